@@ -25,6 +25,7 @@ Command list_command();
 Command manual_command();
 Command metrology_command();
 Command optimize_command();
+Command compose_command();
 Command photometry_command();
 Command plane_command();
 Command report_command();

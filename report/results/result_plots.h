@@ -10,6 +10,7 @@
 #include "core/pictures.h"
 #include "report/image_plot.h"
 #include "report/map_plot.h"
+#include "report/mixture_plot.h"
 #include "report/path_plot.h"
 #include "report/plot.h"
 #include "report/polar_plot.h"
@@ -18,6 +19,8 @@
 namespace retrace::studies {
 
 struct CameraResult;
+struct ComposeRequest;
+struct Composition;
 struct Design;
 struct DetectorResult;
 struct ErrorMap;
@@ -61,6 +64,10 @@ LinePlot observation_plot(const studies::PhotometryResult& result);
 /// The share of parts below a value of the study's first quantity, with its nominal value and the limits on it.
 LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceRequest& request,
                         const studies::ToleranceResult& result);
+
+/// The zones of a part beside what each gives to each goal. Without zones if there is no part.
+MixturePlot composition_plot(const studies::Study& study, const studies::ComposeRequest& request,
+                             const studies::Composition& composition);
 
 /// A measured surface less its form, its roughness, its waviness and its power spectral densities.
 SurfacePlot metrology_plot(const studies::MetrologyResult& result);

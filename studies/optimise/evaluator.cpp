@@ -1,6 +1,7 @@
 #include "studies/optimise/evaluator.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -73,6 +74,17 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
   return found;
 }
 
+void Evaluator::look_at_stored() {
+  std::map<std::uint64_t, const std::string*> by_number;
+  for (const auto& [key, point] : stored_) by_number[point.point] = &key;
+  for (const auto& [number, key] : by_number) {
+    const StoredPoint& point = stored_.at(*key);
+    if (const std::optional<PointValues> values = values_of(study_, point.inputs);
+        values && numbers_.try_emplace(*key, seen_.size()).second)
+      seen_.push_back(variant_of(point, *values));
+  }
+}
+
 Variant Evaluator::variant_of(const StoredPoint& point, const PointValues& design) const {
   Variant variant;
   variant.number = point.point;
@@ -93,13 +105,16 @@ std::optional<double> Evaluator::value(const Variant& variant, const std::string
 void Evaluator::judge(Variant& variant) const {
   if (variant.failed) return;
   double sum = 0.0;
+  double least = std::numeric_limits<double>::infinity();
   bool has_all = true;
   for (const auto& [quantity, weight] : request_.objective.weights) {
     const std::optional<double> term = value(variant, quantity);
     has_all = has_all && term;
-    if (term) sum += weight * *term;
+    if (!term) continue;
+    sum += weight * *term;
+    least = std::min(least, weight * *term);
   }
-  if (has_all) variant.objective = sum;
+  if (has_all) variant.objective = request_.objective.is_least ? least : sum;
   for (std::size_t k = 0; k < request_.constraints.size(); ++k)
     if (request_.constraints[k].violation(value(variant, request_.constraints[k].quantity)) > 0.0)
       variant.broken.push_back(k);
@@ -125,6 +140,7 @@ std::optional<std::pair<RreParameter, double>> rre_parameter(const Parameter& pa
 }  // namespace
 
 std::optional<double> Evaluator::slope(const PointValues& design, std::size_t parameter) const {
+  if (request_.objective.is_least) return std::nullopt;
   try {
     const Candidate candidate = make_candidate(study_, design);
     const auto by = rre_parameter(study_.parameters[parameter], candidate.design());

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/optimise: computes and judges candidates for all stages of the search, each point only once.
+// Computes and judges candidates for all stages of a search, each point only once: what a store has is looked up.
 
 #include <map>
 #include <mutex>
@@ -23,6 +23,8 @@ class Evaluator {
   /// The designs, in the order given; several are computed at a time. \throw Interrupted, OutputError
   std::vector<Variant> look_at(const std::vector<PointValues>& designs);
   Variant look_at(const PointValues& design) { return look_at(std::vector<PointValues>{design}).front(); }
+  /// Takes in every design of the store that the study's parameters allow, as if it had been looked at.
+  void look_at_stored();
 
   /// Everything looked at so far, in the order of its first look.
   const std::vector<Variant>& seen() const { return seen_; }

@@ -21,6 +21,7 @@ namespace retrace::studies {
 /// What is to be as large as it can be: a weighted sum of quantities, negative weights for what is to be small.
 struct Objective {
   std::vector<std::pair<std::string, double>> weights;
+  bool is_least = false;  ///< the least of the weighted quantities, in place of their sum
 };
 
 /// A quantity of the Pareto front.

@@ -17,7 +17,6 @@ namespace {
 
 /// A slope costs as much as a hundred looks.
 constexpr int kMostSlopes = 12;
-constexpr int kMostLooks = 60;
 constexpr double kSmallestStep = 1e-8;
 constexpr double kDifference = 1e-6;
 
@@ -134,16 +133,16 @@ std::vector<Side> sides_of(const OptimiseRequest& request, Problem& problem) {
   return sides;
 }
 
-void run(nlopt::algorithm algorithm, const OptimiseRequest& request, Problem& problem) {
+void run(nlopt::algorithm algorithm, const OptimiseRequest& request, Problem& problem, const RefineLimits& limits) {
   nlopt::opt optimiser(algorithm, static_cast<unsigned>(problem.dimensions()));
   optimiser.set_lower_bounds(0.0);
   optimiser.set_upper_bounds(1.0);
   optimiser.set_max_objective(objective_for_nlopt, &problem);
   std::vector<Side> sides = sides_of(request, problem);
   for (Side& side : sides) optimiser.add_inequality_constraint(excess_for_nlopt, &side, 1e-12);
-  optimiser.set_maxeval(algorithm == nlopt::LN_COBYLA ? kMostLooks : kMostSlopes);
+  optimiser.set_maxeval(algorithm == nlopt::LN_COBYLA ? limits.most_looks : kMostSlopes);
   optimiser.set_xtol_abs(kSmallestStep);
-  if (algorithm == nlopt::LN_COBYLA) optimiser.set_initial_step(0.02);
+  if (algorithm == nlopt::LN_COBYLA) optimiser.set_initial_step(limits.first_step);
   std::vector<double> shares = problem.shares();
   double best = 0.0;
   try {
@@ -156,17 +155,18 @@ void run(nlopt::algorithm algorithm, const OptimiseRequest& request, Problem& pr
 
 }  // namespace
 
-bool refine(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Variant& from) {
+bool refine(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Variant& from,
+            const RefineLimits& limits) {
   Problem problem(study, request, evaluator, from);
   if (problem.dimensions() == 0) return false;
   bool has_slopes = true;
   try {
-    run(nlopt::LD_SLSQP, request, problem);
+    run(nlopt::LD_SLSQP, request, problem, limits);
   } catch (const NoSlope&) {
     has_slopes = false;
   }
   // Slopes find the top of one smooth piece; a look without them goes over its kinks.
-  run(nlopt::LN_COBYLA, request, problem);
+  run(nlopt::LN_COBYLA, request, problem, limits);
   return has_slopes;
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -112,31 +111,41 @@ Plan plan_of(const PhotometryRequest& request, bool mirrors) {
 /// By setting; nothing where it was not measured.
 using Readings = std::vector<std::optional<PhotometerReading>>;
 
-/// The reading of least value of each point that was measured.
-std::vector<PhotometricPoint> points_of(const PhotometryRequest& request, const Plan& plan, const Readings& readings) {
-  std::vector<PhotometricPoint> points;
+/// All readings of each point, in the points' order; none of one that was not measured.
+std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometryRequest& request, const Plan& plan,
+                                                              const Readings& readings) {
+  std::vector<std::vector<PhotometricPoint>> of_points;
   for (std::size_t k = 0; k < request.programme.points.size(); ++k) {
-    const TestPoint& asked = request.programme.points[k];
-    PhotometricPoint least;
-    least.r_a = std::numeric_limits<double>::infinity();
-    bool is_measured = false;
+    std::vector<PhotometricPoint>& of_point = of_points.emplace_back();
     for (const auto& [setting, angle] : plan.readings_of_point[k]) {
       if (!readings[setting]) continue;
-      is_measured = true;
       const PhotometerReading& reading = *readings[setting];
-      least.lacks_diffraction = least.lacks_diffraction || reading.lacks_diffraction;
-      if (!(reading.r_a[angle] < least.r_a)) continue;
-      least.r_a = reading.r_a[angle];
-      least.r_l = reading.r_l[angle];
-      least.v_deg = plan.settings[setting].v_deg;
-      least.rotation_deg = plan.settings[setting].rotation_deg;
-      least.std_error_mcd_per_lx =
-          in_mcd_per_lx(reading.r_a_error[angle], PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
+      PhotometricPoint point;
+      point.asked = request.programme.points[k];
+      point.v_deg = plan.settings[setting].v_deg;
+      point.rotation_deg = plan.settings[setting].rotation_deg;
+      point.r_a = reading.r_a[angle];
+      point.r_l = reading.r_l[angle];
+      const auto in_mcd = [&](double r_a) {
+        return in_mcd_per_lx(r_a, PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
+      };
+      point.r_i_mcd_per_lx = in_mcd(point.r_a);
+      point.std_error_mcd_per_lx = in_mcd(reading.r_a_error[angle]);
+      point.limit_mcd_per_lx = in_mcd_per_lx(point.asked.minimum, point.asked.unit, request.area_cm2);
+      point.lacks_diffraction = reading.lacks_diffraction;
+      of_point.push_back(point);
     }
-    if (!is_measured) continue;
-    least.asked = asked;
-    least.r_i_mcd_per_lx = in_mcd_per_lx(least.r_a, PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
-    least.limit_mcd_per_lx = in_mcd_per_lx(asked.minimum, asked.unit, request.area_cm2);
+  }
+  return of_points;
+}
+
+/// The reading of least value of each point that was measured.
+std::vector<PhotometricPoint> least_of(const std::vector<std::vector<PhotometricPoint>>& readings) {
+  std::vector<PhotometricPoint> points;
+  for (const std::vector<PhotometricPoint>& of_point : readings) {
+    if (of_point.empty()) continue;
+    PhotometricPoint least = *std::ranges::min_element(of_point, {}, &PhotometricPoint::r_a);
+    least.lacks_diffraction = std::ranges::any_of(of_point, &PhotometricPoint::lacks_diffraction);
     points.push_back(least);
   }
   return points;
@@ -186,7 +195,7 @@ std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photomet
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
   const auto readings = photometer.measure(plan.settings, nullptr, cancel);
   if (!readings) return std::nullopt;
-  return points_of(request, plan, {readings->begin(), readings->end()});
+  return least_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
 }
 
 /// Measures tables of changed designs, one direction that is lit by itself after the other, those first at which
@@ -211,7 +220,7 @@ class TablesOfChanges {
       const auto measured = photometer.measure(settings, nullptr, cancel_);
       if (!measured) return std::nullopt;
       for (std::size_t k = 0; k < alike.size(); ++k) readings[alike[k].index] = (*measured)[k];
-      points = points_of(request_, plan_, readings);
+      points = least_of(readings_of_points(request_, plan_, readings));
       if (!(least_ratio(points) < enough)) continue;
       put_first(alike.front().index);
       break;
@@ -418,7 +427,8 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   result.complete = readings.has_value();
   if (readings) {
     for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);
-    result.measured = points_of(request, plan, {readings->begin(), readings->end()});
+    result.readings = readings_of_points(request, plan, {readings->begin(), readings->end()});
+    result.measured = least_of(result.readings);
     result.points = result.measured;
     result.complete = raise_to_mean_field(photometer, request, plan, cancel, result.points);
     result.verdict =

@@ -153,6 +153,8 @@ struct PhotometryResult {
   bool has_diffraction = true;
   std::vector<PhotometricPoint> points;
   std::vector<PhotometricPoint> measured;  ///< the same before lower bounds took the place of values
+  /// Of each point all that its measured value is the least of: one for each V beside it and each turn of the part.
+  std::vector<std::vector<PhotometricPoint>> readings;
   std::vector<PhotometricDirection> directions;
   Verdict verdict = Verdict::fail;
   std::string reason;                       ///< why points are undetermined; empty if none is

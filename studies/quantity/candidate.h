@@ -21,6 +21,7 @@ namespace retrace::studies {
 struct AnalysisSettings {
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
+  double rotation_deg = 0.0;  ///< of the part about its normal, counter-clockwise as seen from the light
   Engine engine = Engine::automatic;
   std::optional<double> target_error;  ///< as RreRequest::target_error
   std::optional<std::uint64_t> rays;

@@ -15,25 +15,53 @@ namespace {
 struct Points {
   std::vector<PhotometricPoint> judged;    ///< may be lower bounds
   std::vector<PhotometricPoint> measured;  ///< may lack diffraction
-  std::string reason;                      ///< why points are undetermined; empty if none is
+  std::vector<std::vector<PhotometricPoint>> readings;
+  std::string reason;  ///< why points are undetermined; empty if none is
 };
 
 class PhotometricQuantity final : public Quantity {
  public:
-  PhotometricQuantity(std::string name, std::shared_ptr<const PhotometricTable> table, std::optional<std::size_t> point,
+  PhotometricQuantity(std::string name, std::shared_ptr<const PhotometricTable> table, const PhotometricChoice& choice,
                       PhotometricFigure figure)
-      : Quantity(std::move(name)), table_(std::move(table)), point_(point), figure_(figure) {}
+      : Quantity(std::move(name)), table_(std::move(table)), choice_(choice), figure_(figure) {}
 
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const override {
     const auto points = candidate.shared<Points>("photometry " + table_->key, [&] {
       return std::make_shared<const Points>(measured_points(candidate, cancel));
     });
     if (points->judged.empty()) return std::nullopt;
-    if (point_) return figure_of(*points, *point_);
+    if (choice_.reading) return figure_of_reading(*points);
+    if (choice_.point) return figure_of(*points, *choice_.point);
     std::vector<Measured> all;
     for (std::size_t k = 0; k < points->judged.size(); ++k) all.push_back(figure_of(*points, k));
     return *std::min_element(all.begin(), all.end(),
                              [](const Measured& a, const Measured& b) { return *a.value < *b.value; });
+  }
+
+  std::string label() const override {
+    if (!choice_.point) return name();
+    const TestPoint& point = table_->request.programme.points.at(*choice_.point);
+    double v_deg = point.v_deg;
+    std::string turn;
+    if (choice_.reading) {
+      if (!point.v_beside_deg.empty()) v_deg = point.v_beside_deg.at(choice_.reading->beside);
+      const double turn_deg = table_->request.rotation_deg.at(choice_.reading->turn);
+      if (turn_deg != 0.0) turn = fmt::format(", turned {:g}", turn_deg);
+    }
+    return fmt::format("{:.3g}' V {:g} H {:g}{}", 60.0 * point.observation_deg, v_deg, point.h_deg, turn);
+  }
+
+  bool adds_up() const override {
+    if (choice_.reading) return true;
+    const PhotometryRequest& request = table_->request;
+    return choice_.point && request.rotation_deg.size() == 1 &&
+           request.programme.points.at(*choice_.point).v_beside_deg.size() < 2;
+  }
+
+  std::optional<QuantityLimit> limit() const override {
+    if (!choice_.point || figure_ != PhotometricFigure::margin) return std::nullopt;
+    const TestPoint& point = table_->request.programme.points.at(*choice_.point);
+    return QuantityLimit{point.minimum, std::string(unit_name(point.unit))};
   }
 
  private:
@@ -44,12 +72,13 @@ class PhotometricQuantity final : public Quantity {
     request.cutoff = analysis.cutoff;
     if (analysis.rays) request.rays = *analysis.rays;
     request.seed = analysis.seed;
+    for (double& turn_deg : request.rotation_deg) turn_deg += analysis.rotation_deg;
     if (table_->dye_unless_coloured && candidate.design().substance.is_coloured()) {
       request.dye.clear();
       request.dye_absorption_per_mm = {};
     }
     const PhotometryResult result = PhotometryStudy(candidate.design(), std::move(request)).run(nullptr, cancel);
-    return result.complete ? Points{result.points, result.measured, result.reason} : Points{};
+    return result.complete ? Points{result.points, result.measured, result.readings, result.reason} : Points{};
   }
 
   /// A margin without the diffraction that was requested would be taken for a verdict.
@@ -60,9 +89,20 @@ class PhotometricQuantity final : public Quantity {
   }
 
   Measured figure_of(const Points& points, std::size_t k) const {
-    const PhotometricPoint& point = points.measured.at(k);
+    return figure_of(points.measured.at(k), points.judged.at(k), points.reason);
+  }
+
+  Measured figure_of_reading(const Points& points) const {
+    const std::vector<PhotometricPoint>& readings = points.readings.at(*choice_.point);
+    const std::size_t turns = table_->request.rotation_deg.size();
+    const std::size_t beside = std::min(choice_.reading->beside, readings.size() / turns - 1);
+    const PhotometricPoint& reading = readings.at(beside * turns + choice_.reading->turn);
+    return figure_of(reading, reading, points.reason);
+  }
+
+  Measured figure_of(const PhotometricPoint& point, const PhotometricPoint& judged, const std::string& reason) const {
     switch (figure_) {
-      case PhotometricFigure::margin: return margin_of(points.judged.at(k), points.reason);
+      case PhotometricFigure::margin: return margin_of(judged, reason);
       case PhotometricFigure::r_i_mcd_per_lx: return {point.r_i_mcd_per_lx, point.std_error_mcd_per_lx};
       case PhotometricFigure::r_a: break;
     }
@@ -71,15 +111,30 @@ class PhotometricQuantity final : public Quantity {
   }
 
   std::shared_ptr<const PhotometricTable> table_;
-  std::optional<std::size_t> point_;
+  PhotometricChoice choice_;
   PhotometricFigure figure_;
 };
 
 }  // namespace
 
 std::shared_ptr<const Quantity> make_photometric(std::string name, std::shared_ptr<const PhotometricTable> table,
-                                                 std::optional<std::size_t> point, PhotometricFigure figure) {
-  return std::make_shared<PhotometricQuantity>(std::move(name), std::move(table), point, figure);
+                                                 const PhotometricChoice& choice, PhotometricFigure figure) {
+  return std::make_shared<PhotometricQuantity>(std::move(name), std::move(table), choice, figure);
+}
+
+Quantities make_photometric_readings(const std::string& name, const std::shared_ptr<const PhotometricTable>& table,
+                                     PhotometricFigure figure) {
+  Quantities all;
+  const PhotometryRequest& request = table->request;
+  for (std::size_t point = 0; point < request.programme.points.size(); ++point) {
+    const std::size_t besides = std::max<std::size_t>(1, request.programme.points[point].v_beside_deg.size());
+    std::size_t number = 0;
+    for (std::size_t beside = 0; beside < besides; ++beside)
+      for (std::size_t turn = 0; turn < request.rotation_deg.size(); ++turn)
+        all.push_back(make_photometric(fmt::format("{}.{}.{}", name, point + 1, ++number), table,
+                                       {point, PhotometricChoice::Reading{beside, turn}}, figure));
+  }
+  return all;
 }
 
 }  // namespace retrace::studies

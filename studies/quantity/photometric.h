@@ -27,9 +27,24 @@ struct PhotometricTable {
   bool dye_unless_coloured = false;
 };
 
-/// \param point of the standard's programme, from 0; none: the least over all
+/// Which of the values of a table is meant.
+struct PhotometricChoice {
+  std::optional<std::size_t> point;  ///< of the standard's programme, from 0; none: the least over all
+  /// The reading at that one of its V beside the mirror image and that turn of the part, from 0; none: the least. Of a
+  /// part without a mirror image all V are that of the point.
+  struct Reading {
+    std::size_t beside = 0;
+    std::size_t turn = 0;
+  };
+  std::optional<Reading> reading;
+};
+
 /// Quantities of one table measure a candidate once.
 std::shared_ptr<const Quantity> make_photometric(std::string name, std::shared_ptr<const PhotometricTable> table,
-                                                 std::optional<std::size_t> point, PhotometricFigure figure);
+                                                 const PhotometricChoice& choice, PhotometricFigure figure);
+
+/// One quantity for each reading of each point, named after point and reading.
+Quantities make_photometric_readings(const std::string& name, const std::shared_ptr<const PhotometricTable>& table,
+                                     PhotometricFigure figure);
 
 }  // namespace retrace::studies

@@ -1,5 +1,7 @@
 #include "studies/quantity/quantity.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <variant>
@@ -23,6 +25,8 @@ RreRequest request_of(const AngleWindow& window, const AnalysisSettings& analysi
   RreRequest request;
   request.incidence_deg = window.incidence_deg.value_or(std::vector{analysis.incidence_deg});
   request.azimuth_deg = window.azimuth_deg.value_or(std::vector{analysis.azimuth_deg});
+  // A part that is turned sees light from a direction that is turned back.
+  for (double& azimuth_deg : request.azimuth_deg) azimuth_deg -= analysis.rotation_deg;
   request.engine = analysis.engine;
   request.target_error = analysis.target_error;
   request.rays = analysis.rays;
@@ -71,14 +75,24 @@ class ShareQuantity final : public Quantity {
       const double sine = std::sin(Angle::from_deg(result.points[k].incidence_deg).rad());
       weights.push_back(spec_.window.by_solid_angle ? std::abs(sine) : 1.0);
     }
-    const Share share = spec_.reduction == Reduction::mean ? mean_of(shares, weights) : least_of(shares);
+    const Share share = spec_.reduction == Reduction::least ? least_of(shares) : mean_of(shares, weights);
     return Measured{share.value, share.std_error};
+  }
+
+  bool adds_up() const override { return spec_.reduction != Reduction::least; }
+
+  std::string label() const override {
+    if (spec_.reduction != Reduction::each) return name();
+    const auto angle = [](const char* of, const std::optional<std::vector<double>>& deg) {
+      return deg ? fmt::format(" {} {:g}", of, deg->front()) : std::string();
+    };
+    return name() + angle("incidence", spec_.window.incidence_deg) + angle("azimuth", spec_.window.azimuth_deg);
   }
 
   std::optional<double> slope(const Candidate& candidate, RreParameter parameter,
                               const Cancellation* cancel) const override {
     const bool is_rre = spec_.account == static_cast<std::size_t>(raytrace::Account::retroreflected);
-    if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction != Reduction::mean) return std::nullopt;
+    if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::least) return std::nullopt;
     RreRequest request = request_of(spec_.window, candidate.analysis());
     if (request.engine != Engine::automatic && request.engine != Engine::exact) return std::nullopt;
     request.engine = Engine::exact;

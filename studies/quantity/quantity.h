@@ -19,6 +19,12 @@ struct Measured {
   double std_error = 0.0;
 };
 
+/// The limit that a margin is counted from: value over limit - 1.
+struct QuantityLimit {
+  double value = 0.0;
+  std::string unit;
+};
+
 /// Something that a study asks of every design: the one way in which sweeps, optimisation and tolerance studies reach
 /// the rest of retrace. Values without state, shared by threads.
 class Quantity {
@@ -32,6 +38,13 @@ class Quantity {
   const std::string& name() const { return name_; }
   /// Nothing if it was cancelled. \throw Error if it cannot be computed for this candidate
   virtual std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const = 0;
+  /// What it is of, for people: "20' V 5 H -20".
+  virtual std::string label() const { return name_; }
+  /// Whether a part that is mixed of several has their mean, weighted by shares of the area: no least of several
+  /// values.
+  virtual bool adds_up() const { return true; }
+  /// Of the margin to a limit: that limit.
+  virtual std::optional<QuantityLimit> limit() const { return std::nullopt; }
   /// Its change with a parameter of the design, per unit of the parameter's name; none where it cannot be told
   /// reliably, or only by differences. \throw Error as measure()
   virtual std::optional<double> slope(const Candidate& candidate, RreParameter parameter,
@@ -50,9 +63,11 @@ struct AngleWindow {
   bool by_solid_angle = false;                       ///< directions count by |sin t|; else all alike
 };
 
-enum class Reduction { mean, least };
+/// `each`: a quantity for each direction.
+enum class Reduction { mean, least, each };
 
-/// A share of the incident light over a window: RRE, or another account of the ledger.
+/// A share of the incident light over a window: RRE, or another account of the ledger. One quantity has one direction
+/// where each has its own.
 struct ShareSpec {
   AngleWindow window;
   Reduction reduction = Reduction::mean;

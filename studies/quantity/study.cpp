@@ -63,4 +63,28 @@ PointValues some_values(const Study& study) {
   return values;
 }
 
+namespace {
+
+/// Nothing if the parameter has no such value. An end of an interval that was reached by rounding belongs to it.
+std::optional<ParameterValue> value_of(const Parameter& parameter, const std::variant<double, std::string>& shown) {
+  const auto found = std::ranges::find(parameter.values, shown, &ParameterValue::shown);
+  if (found != parameter.values.end()) return *found;
+  const double* const number = std::get_if<double>(&shown);
+  if (number == nullptr || !parameter.interval) return std::nullopt;
+  const Interval& interval = *parameter.interval;
+  const double rounding = 1e-12 * std::max(std::abs(interval.from), std::abs(interval.to));
+  if (!(*number >= interval.from - rounding && *number <= interval.to + rounding)) return std::nullopt;
+  return Parameter::value_of(*number);
+}
+
+}  // namespace
+
+std::optional<PointValues> values_of(const Study& study, const std::vector<std::variant<double, std::string>>& shown) {
+  PointValues values;
+  for (std::size_t k = 0; k < study.parameters.size() && k < shown.size(); ++k)
+    if (std::optional<ParameterValue> value = value_of(study.parameters[k], shown[k]))
+      values.push_back(*std::move(value));
+  return values.size() == study.parameters.size() ? std::optional(values) : std::nullopt;
+}
+
 }  // namespace retrace::studies

@@ -81,4 +81,7 @@ using PointValues = std::vector<ParameterValue>;
 /// Values that every parameter of a study may have.
 PointValues some_values(const Study& study);
 
+/// The values that tables show as these; nothing if a parameter of the study does not have such a one.
+std::optional<PointValues> values_of(const Study& study, const std::vector<std::variant<double, std::string>>& shown);
+
 }  // namespace retrace::studies

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "studies/compose/io/compose_reader.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_reader.h"
@@ -55,6 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       refused_in_one_line([&] { studies::make_candidate(study, sweep.values(sweep.size() - 1)); });
     });
     refused_in_one_line([&] { studies::read_optimise(study); });
+    refused_in_one_line([&] { studies::read_compose(study); });
     refused_in_one_line([&] {
       const studies::ToleranceRequest request = studies::read_tolerance(study);
       if (request.samples <= 1000) studies::TolerancePlan(study, request).values(0);

@@ -58,6 +58,7 @@ const std::map<std::string, Names>& study_rooms() {
       {"quantity", {"design", "rre", "inspect", "photometry", "fabrication", "closed_loop"}},
       {"sweep", {"design", "store", "quantity"}},
       {"optimise", {"design", "store", "quantity", "sweep"}},
+      {"compose", {"design", "store", "quantity", "sweep", "optimise"}},
       {"tolerance", {"design", "store", "quantity", "sweep"}},
       {"validation", {"roughness", "quantity"}}};
   return rooms;
@@ -91,8 +92,8 @@ Side side_of(const std::string& path) {
 
 /// Rooms of studies/ that see fabrication/, themselves or through what they include. A design knows of no tool.
 const Names& rooms_that_see_fabrication() {
-  static const Names rooms = {"calibration", "closed_loop", "fabrication", "forces",    "optimise", "planing",
-                              "quantity",    "setup",       "sweep",       "tolerance", "turning",  "validation"};
+  static const Names rooms = {"calibration", "closed_loop", "compose", "fabrication", "forces",  "optimise",  "planing",
+                              "quantity",    "setup",       "sweep",   "tolerance",   "turning", "validation"};
   return rooms;
 }
 
@@ -160,6 +161,8 @@ const std::vector<Library>& libraries() {
        [](const std::string& path) { return path == "studies/sweep/mpi_module.cpp"; }},
       {"NLopt", "nlopt", "a .cpp file of studies/optimise/",
        [](const std::string& path) { return path.starts_with("studies/optimise/") && !is_header(path); }},
+      {"GLPK", "glpk", "studies/compose/linear_programme.cpp",
+       [](const std::string& path) { return path == "studies/compose/linear_programme.cpp"; }},
       {"OpenCASCADE", "STEPControl_", "geometry/io/step_module.cpp", is_step_module},
       {"OpenCASCADE", "TopoDS", "geometry/io/step_module.cpp", is_step_module},
       {"OpenCASCADE", "BRep", "geometry/io/step_module.cpp", is_step_module},

@@ -28,20 +28,40 @@ std::string checked_quantity(const Study& study, const std::string& name, const 
                                meant.empty() ? "" : fmt::format("; did you mean {}?", in_quotes(meant))));
 }
 
-std::vector<Constraint> read_constraints(const Study& study) {
+namespace {
+
+Constraint read_constraint(const Study& study, const std::string& at) {
   const schema::Document& document = *study.document;
+  Constraint constraint;
+  constraint.quantity = checked_quantity(study, document.text(at + ".quantity"), document.where(at + ".quantity"));
+  constraint.least = document.number_if(at + ".min");
+  constraint.most = document.number_if(at + ".max");
+  if (!constraint.least && !constraint.most) document.fail(at + ".max", "missing: a constraint has min, max or both");
+  if (constraint.least && constraint.most && *constraint.least > *constraint.most)
+    document.fail(at + ".max",
+                  fmt::format("must be >= min ({}), got {}", shortest(*constraint.least), shortest(*constraint.most)));
+  return constraint;
+}
+
+}  // namespace
+
+std::vector<Constraint> read_constraints(const Study& study) {
   std::vector<Constraint> constraints;
-  for (std::size_t k = 0; k < document.count("constraint"); ++k) {
+  for (std::size_t k = 0; k < study.document->count("constraint"); ++k) {
     const std::string at = schema::path_of_entry("constraint", k);
-    Constraint constraint;
-    constraint.quantity = checked_quantity(study, document.text(at + ".quantity"), document.where(at + ".quantity"));
-    constraint.least = document.number_if(at + ".min");
-    constraint.most = document.number_if(at + ".max");
-    if (!constraint.least && !constraint.most) document.fail(at + ".max", "missing: a constraint has min, max or both");
-    if (constraint.least && constraint.most && *constraint.least > *constraint.most)
-      document.fail(at + ".max", fmt::format("must be >= min ({}), got {}", shortest(*constraint.least),
-                                             shortest(*constraint.most)));
-    constraints.push_back(constraint);
+    if (study.document->choice<ConstraintOver>(at + ".over") == ConstraintOver::part)
+      study.document->fail(at + ".over", "\"part\" is for retrace compose alone, whose parts have many cells");
+    constraints.push_back(read_constraint(study, at));
+  }
+  return constraints;
+}
+
+std::vector<Constraint> read_constraints(const Study& study, ConstraintOver over) {
+  std::vector<Constraint> constraints;
+  for (std::size_t k = 0; k < study.document->count("constraint"); ++k) {
+    const std::string at = schema::path_of_entry("constraint", k);
+    const Constraint constraint = read_constraint(study, at);
+    if (study.document->choice<ConstraintOver>(at + ".over") == over) constraints.push_back(constraint);
   }
   return constraints;
 }

@@ -45,6 +45,27 @@ std::optional<std::vector<double>> angles_of(const Document& document, const std
   return document.numbers(at);
 }
 
+/// One, or one for each direction.
+Quantities shares_of(const std::string& name, const ShareSpec& spec) {
+  if (spec.reduction != Reduction::each) return {make_share(name, spec)};
+  using Angles = std::optional<std::vector<double>>;
+  const auto each_of = [](const Angles& angles) {
+    std::vector<Angles> each;
+    if (!angles) return std::vector<Angles>{angles};
+    for (const double deg : *angles) each.push_back(std::vector{deg});
+    return each;
+  };
+  Quantities all;
+  for (const Angles& azimuth : each_of(spec.window.azimuth_deg))
+    for (const Angles& incidence : each_of(spec.window.incidence_deg)) {
+      ShareSpec one = spec;
+      one.window.azimuth_deg = azimuth;
+      one.window.incidence_deg = incidence;
+      all.push_back(make_share(fmt::format("{}.{}", name, all.size() + 1), one));
+    }
+  return all;
+}
+
 Quantities read_share(const std::string& name, const Document& document, const std::string& at) {
   constexpr NumberRange incidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
   ShareSpec spec;
@@ -52,8 +73,8 @@ Quantities read_share(const std::string& name, const Document& document, const s
   spec.window.azimuth_deg = angles_of(document, at + ".azimuth_deg", {});
   spec.window.by_solid_angle = document.text(at + ".weighting") == "solid_angle";
   spec.reduction = document.choice<Reduction>(at + ".over_directions");
-  if (spec.window.by_solid_angle && spec.reduction == Reduction::least)
-    document.fail(at + ".weighting", "means nothing for the least of all directions");
+  if (spec.window.by_solid_angle && spec.reduction != Reduction::mean)
+    document.fail(at + ".weighting", "means nothing for the least of all directions, or for each");
   const std::string kind = document.text(at + ".kind");
   if (kind == "ledger") spec.account = document.index(at + ".account");
   if (kind == "far_field") {
@@ -66,7 +87,7 @@ Quantities read_share(const std::string& name, const Document& document, const s
   } else {
     spec.acceptance_half_angle_deg = document.number_if(at + ".acceptance_half_angle_deg");
   }
-  return {make_share(name, spec)};
+  return shares_of(name, spec);
 }
 
 /// \throw InputError that says `--class` as the key `class` of the quantity
@@ -134,12 +155,13 @@ Quantities read_photometric(const std::string& name, const Document& document, c
     const NumberRange there{.low = 1.0, .high = static_cast<double>(points)};
     if (!there.contains(*point))
       document.fail(at + ".points", fmt::format("must be {}, got {}", there.text(), shortest(*point)));
-    return {make_photometric(name, table, static_cast<std::size_t>(*point) - 1, figure)};
+    return {make_photometric(name, table, {static_cast<std::size_t>(*point) - 1, {}}, figure)};
   }
   if (document.text(at + ".points") == "worst") return {make_photometric(name, table, {}, figure)};
+  if (document.text(at + ".points") == "each_reading") return make_photometric_readings(name, table, figure);
   Quantities each;
   for (std::size_t k = 0; k < points; ++k)
-    each.push_back(make_photometric(fmt::format("{}.{}", name, k + 1), table, k, figure));
+    each.push_back(make_photometric(fmt::format("{}.{}", name, k + 1), table, {k, {}}, figure));
   return each;
 }
 

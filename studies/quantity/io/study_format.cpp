@@ -76,9 +76,9 @@ constexpr Words kFarField = {"far_field"};
 constexpr Words kInCone = {"rre", "ledger"};
 constexpr Words kPhotometry = {"photometry"};
 constexpr Words kWeightings = {"uniform", "solid_angle"};
-constexpr Words kReductions = {"mean", "least"};
+constexpr Words kReductions = {"mean", "least", "each"};
 constexpr Words kFigures = {"margin", "r_i_mcd_per_lx", "r_a"};
-constexpr Words kPoints = {"worst", "each"};
+constexpr Words kPoints = {"worst", "each", "each_reading"};
 constexpr Words kLights = {"a", "d65", "design"};
 constexpr Words kFarFields = {"geometric", "diffracted"};
 constexpr Words kMiddles = {"from", "to", "count"};
@@ -100,7 +100,9 @@ constexpr Row kQuantityRows[] = {
     {"incidence_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
     {"azimuth_deg", NumberOrNumbers{{}}, kOfAnalysis, kAngles, kOfShares},
     {"azimuth_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
-    {"over_directions", Word{kReductions}, "mean", "`\"least\"`: the worst direction.", kOfShares},
+    {"over_directions", Word{kReductions}, "mean",
+     "`\"least\"`: the worst direction; `\"each\"`: one quantity a direction, called `NAME.1`, `NAME.2`, ...",
+     kOfShares},
     {"weighting", Word{kWeightings}, "uniform", "`\"solid_angle\"`: directions count by \\|sin incidence\\|.",
      kOfShares},
     {"account", Word{raytrace::kAccountNames}, kRequired, "Of the ledger.", kOfLedger},
@@ -115,8 +117,9 @@ constexpr Row kQuantityRows[] = {
     {"figure", Word{kFigures}, "margin",
      "`\"margin\"`: value over limit less 1, so that at least 0 passes; `\"r_a\"`: in cd/(lx m2).", kOfPhotometry},
     {"points", Word{kPoints}, "worst",
-     "`\"worst\"`: the least of all test points; `\"each\"`: one quantity a point, called `NAME.1`, `NAME.2`, ...; or "
-     "the number of a point, from 1, as `retrace photometry` lists them.",
+     "`\"worst\"`: the least of all test points; `\"each\"`: one quantity a point, called `NAME.1`, `NAME.2`, ...; "
+     "`\"each_reading\"`: one for each place where a point is measured, V beside it and turns of the part, called "
+     "`NAME.1.1`, `NAME.1.2`, ...; or the number of a point, from 1, as `retrace photometry` lists them.",
      kOfPhotometry},
     {"points", Whole{{.low = 1.0, .high = 10'000.0}}, kNone, "The number of a point.", kOfPhotometry},
     {"rotation_deg", NumberOrNumbers{{}}, kOfCommand, "Of the part about its axis.", kOfPhotometry},
@@ -131,6 +134,8 @@ constexpr Words kEngines = {"auto", "exact", "stochastic", "montecarlo", "cell",
 constexpr Row kAnalysisRows[] = {
     {"incidence_deg", Number{kIncidence}, 0.0, "For quantities that name none."},
     {"azimuth_deg", Number{}, 0.0, "For quantities that name none."},
+    {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
+     "Turn of the part about its normal, counter-clockwise as seen from the light, for all that is asked about light."},
     {"engine", Word{kEngines}, "auto", "As `retrace rre --engine`."},
     {"target_error", Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}}, Computed{"1e-4"},
      "As `retrace rre --target-error`."},
@@ -234,9 +239,32 @@ constexpr Row kToleranceRows[] = {
     {"confidence_percent", Number{{.low = 50.0, .high = 99.99}}, 95.0, "Of all intervals."},
     {"least_yield_percent", Number{kPercent}, kNone, "A yield below it makes the answer no (exit code 1)."}};
 
+constexpr Words kOver = {"cell", "part"};
 constexpr Row kConstraintRows[] = {{"quantity", Text{"a quantity of the study"}, kRequired, "What is limited."},
                                    {"min", Number{}, kNone, "Its least value."},
-                                   {"max", Number{}, kNone, "Its largest value."}};
+                                   {"max", Number{}, kNone, "Its largest value."},
+                                   {"over", Word{kOver}, "cell",
+                                    "Of `retrace compose`: `\"cell\"`, cells that break it are none of the family; "
+                                    "`\"part\"`, it is on the mean over the part."}};
+
+constexpr Row kComposeRows[] = {
+    {"maximize", TextOrTexts{"a quantity of the study, or a list of them"}, kRequired,
+     "The quantities of which the least is to be as large as it can be; `\"margin\"` stands for `margin.1`, "
+     "`margin.1.1`, ... as well. Each is a mean over the area: no least of several points, turns or directions."},
+    {"least", Number{}, Computed{"0 where all of them are margins"},
+     "What the least must reach; a part below it makes the answer no (exit code 1)."},
+    {"most_zones", Whole{{.low = 1.0, .high = 100.0}}, kNone, "So many kinds of cells at most."},
+    {"least_share", Number{{.low = 0.0, .high = 1.0}}, 0.0, "Of the area, of a zone that is there."},
+    {"most_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 1.0, "Of the area, of each zone."},
+    {"price", ByName{Number{}, {}, "a table of prices such as {machining_time_h = 0.01}"}, kNone,
+     "What one more of the mean of a quantity over the part takes from the least."},
+    {"front", ByName{Word{kSense}, {}, "a table of one quantity, such as {machining_time_h = \"least\"}"}, kNone,
+     "The mean over the part that the least is told against, and which way it is better."},
+    {"scan", Whole{{.low = 3.0, .high = 100'000.0}}, 65.0,
+     "Cells of the first look for every combination of discrete values, as in [optimize]."},
+    {"rounds", Whole{{.low = 0.0, .high = 100.0}}, 4.0, "Searches by prices, at most."},
+    {"starts", Whole{{.low = 1.0, .high = 100.0}}, 3.0, "Cells that each search goes out from."},
+    {"looks", Whole{{.low = 1.0, .high = 10'000.0}}, 20.0, "Cells that it looks at from each."}};
 
 constexpr Row kRootRows[] = {
     {"title", Text{}, kNone, "Names the study in results."},
@@ -265,6 +293,10 @@ const Table kTables[] = {
      .meaning = "What is best.",
      .rows = kOptimiseRows,
      .rules = kOptimiseRules,
+     .presence = Presence::optional},
+    {.name = "compose",
+     .meaning = "Of which cells a part is best composed.",
+     .rows = kComposeRows,
      .presence = Presence::optional},
     {.name = "constraint",
      .meaning = "What a good part holds.",

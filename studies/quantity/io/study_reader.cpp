@@ -33,6 +33,7 @@ AnalysisSettings analysis_of(const Document& document, std::uint32_t seed) {
   AnalysisSettings analysis;
   analysis.incidence_deg = document.number("analysis.incidence_deg");
   analysis.azimuth_deg = document.number("analysis.azimuth_deg");
+  analysis.rotation_deg = document.number("analysis.rotation_deg");
   analysis.engine = document.choice<Engine>("analysis.engine");
   analysis.target_error = document.number_if("analysis.target_error");
   if (const auto rays = document.number_if("analysis.samples")) analysis.rays = static_cast<std::uint64_t>(*rays);

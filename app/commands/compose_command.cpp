@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/output.h"
+#include "app/progress_bar.h"
+#include "app/ranks.h"
+#include "app/shared_arguments.h"
+#include "report/results/result_plots.h"
+#include "studies/compose/io/compose_reader.h"
+#include "studies/compose/io/composition_files.h"
+#include "studies/quantity/io/study_reader.h"
+#include "studies/sweep/shared_sweep.h"
+
+namespace retrace::app {
+namespace {
+
+class CellsBar : public studies::OptimiseObserver, public studies::SweepObserver {
+ public:
+  explicit CellsBar(bool enabled) : bar_("composing", enabled) {}
+  void at(std::uint64_t done, std::uint64_t, std::uint64_t) override { at(static_cast<std::size_t>(done)); }
+  void at(std::size_t evaluated) override { bar_.count(fmt::format("{} cells looked at", evaluated)); }
+
+ private:
+  ProgressBar bar_;
+};
+
+/// \param session null without MPI
+ExitCode compose_part(const StudyOptions& options, const CommonOptions& common, studies::MpiSession* session) {
+  const auto start = std::chrono::steady_clock::now();
+  const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
+  const studies::ComposeRequest request = studies::read_compose(study);
+  const OrderlyInterrupt interrupt;
+  studies::Composition composition;
+  ResultFiles files(common, study.files, "composition.json");
+  files.add("composition.csv", [&] { return studies::composition_csv(study, request, composition); });
+  files.add_drawing("composition", [&] { return report::composition_plot(study, request, composition); });
+  const std::filesystem::path file = files.reserve("composition.sqlite");
+  files.prepare();
+  studies::ResultStore store(file, studies::compose_layout(study), if_exists_of(options));
+  {
+    CellsBar bar(!common.quiet);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) {
+      if (const ShareTasks share = share_among(session, slots(common), cancel))
+        studies::share_sweep(studies::compose_scan(study, request), store, &bar, share);
+      composition = studies::compose(study, request, store, &bar, cancel);
+    });
+  }
+  const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::string why_not = studies::why_not_reached(study, request, composition);
+  const ExitCode code = files.write(studies::composition_json(study, request, composition, elapsed_s),
+                                    studies::composition_text(study, request, composition), remarks_of(session),
+                                    {.complete = composition.complete,
+                                     .interrupted = fmt::format("cells looked at: {}", composition.evaluations),
+                                     .is_yes = why_not.empty()});
+  if (code == ExitCode::answer_is_no) say("retrace: no such part: " + why_not);
+  return code;
+}
+
+ExitCode run_compose(const StudyOptions& options, const CommonOptions& common) {
+  check_study_options(options, common);
+  return run_on_ranks(
+      common, slots(common), [&](studies::MpiSession* session) { return compose_part(options, common, session); },
+      [&]() -> ComputeTask {
+        const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
+        const auto scan =
+            std::make_shared<const studies::Sweep>(studies::compose_scan(study, studies::read_compose(study)));
+        return [scan](std::uint64_t point, const Cancellation* cancel) {
+          return studies::compute_shared(*scan, point, cancel);
+        };
+      });
+}
+
+}  // namespace
+
+Command compose_command() {
+  return {.name = "compose",
+          .summary = "the best part of several zones of cells, as a study file says",
+          .manual =
+              "Looks for the cells, and their shares of the area, that make the worst of all goals as good as it can "
+              "be, by linear programming; says what binds and at what price. Cells that were looked at are kept in "
+              "`composition.sqlite` in the output folder and serve the next run. Exits with 1 if no part reaches "
+              "what is asked.",
+          .reads = {"retrace.study/1", "retrace.design/1"},
+          .writes = {"retrace.composition/1"},
+          .begin = begins(study_arguments, run_compose)};
+}
+
+}  // namespace retrace::app

@@ -1,0 +1,351 @@
+#include "studies/compose/compose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "core/number_format.h"
+#include "studies/optimise/evaluator.h"
+#include "studies/optimise/refine.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr const char* kStoreKind = "retrace.composition/1";
+/// A cell that gains less than this share of the merit's size does not help.
+constexpr double kHelps = 1e-3;
+/// A first step of searches by prices, as a share of each interval: a tenth of the family.
+constexpr double kFirstStep = 0.1;
+
+/// What one cell alone is to be best at.
+OptimiseRequest single_request(const ComposeRequest& request) {
+  OptimiseRequest single;
+  for (const std::string& goal : request.goals) single.objective.weights.emplace_back(goal, 1.0);
+  single.objective.is_least = true;
+  single.constraints = request.of_cells;
+  single.scan = request.scan;
+  return single;
+}
+
+bool has_intervals(const Study& study) {
+  return std::ranges::any_of(study.parameters, [](const Parameter& p) { return p.interval.has_value(); });
+}
+
+/// Where a quantity stands among those of a study.
+std::size_t index_of(const Study& study, const std::string& quantity) {
+  const auto found = std::ranges::find_if(study.quantities, [&](const auto& each) { return each->name() == quantity; });
+  return static_cast<std::size_t>(found - study.quantities.begin());
+}
+
+/// Makes cells of designs that were looked at.
+class CellReader {
+ public:
+  CellReader(const Study& study, const ComposeRequest& request) {
+    for (const std::string& goal : request.goals) goals_.push_back(index_of(study, goal));
+    for (const Constraint& constraint : request.of_part) means_.push_back(index_of(study, constraint.quantity));
+    if (request.front) means_.push_back(index_of(study, request.front->quantity));
+    for (const auto& [quantity, price] : request.price) prices_.emplace_back(index_of(study, quantity), price);
+  }
+
+  /// Nothing where a quantity has no value.
+  std::optional<FamilyCell> cell_of(const Variant& variant) const {
+    if (!variant.feasible()) return std::nullopt;
+    FamilyCell cell{variant.number, variant.values, {}};
+    const auto take = [&](const std::vector<std::size_t>& of, std::vector<double>& values) {
+      for (const std::size_t k : of)
+        if (variant.outputs[k].value) values.push_back(*variant.outputs[k].value);
+      return values.size() == of.size();
+    };
+    if (!take(goals_, cell.mixed.goals) || !take(means_, cell.mixed.means)) return std::nullopt;
+    for (const auto& [k, price] : prices_) {
+      if (!variant.outputs[k].value) return std::nullopt;
+      cell.mixed.cost += price * *variant.outputs[k].value;
+    }
+    return cell;
+  }
+
+ private:
+  std::vector<std::size_t> goals_;
+  std::vector<std::size_t> means_;
+  std::vector<std::pair<std::size_t, double>> prices_;
+};
+
+/// One composition, from the first look to the last.
+class Composer {
+ public:
+  Composer(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
+           const Cancellation* cancel)
+      : study_(study),
+        request_(request),
+        store_(store),
+        observer_(observer),
+        cancel_(cancel),
+        single_(single_request(request)),
+        reader_(study, request) {}
+
+  void run(Composition& composition) {
+    const Optimum optimum = optimise(study_, single_, store_, observer_, cancel_);
+    if (!optimum.complete) throw Interrupted{};
+    read_catalogue(composition);
+    if (optimum.best) composition.single = reader_.cell_of(*optimum.best);
+    search_by_prices(composition);
+    choose(composition);
+    if (!composition.best) return;
+    count_zones(composition);
+    draw_front(composition);
+  }
+
+  /// Everything of the family that the store holds.
+  void read_catalogue(Composition& composition) const {
+    Evaluator evaluator(study_, single_, store_, nullptr, cancel_);
+    evaluator.look_at_stored();
+    composition.catalogue.clear();
+    composition.failed = 0;
+    composition.evaluations = evaluator.seen().size();
+    for (const Variant& variant : evaluator.seen()) {
+      if (variant.failed && composition.failed++ == 0) composition.first_failure = variant.reason;
+      if (std::optional<FamilyCell> cell = reader_.cell_of(variant)) composition.catalogue.push_back(*std::move(cell));
+    }
+  }
+
+ private:
+  MixtureRules rules(std::optional<std::size_t> most_zones) const {
+    MixtureRules rules;
+    for (const Constraint& constraint : request_.of_part) {
+      Bounds bounds;
+      if (constraint.least) bounds.least = *constraint.least;
+      if (constraint.most) bounds.most = *constraint.most;
+      rules.means.push_back(bounds);
+    }
+    if (request_.front) rules.means.push_back({});
+    rules.least_share = request_.least_share;
+    rules.most_share = request_.most_share;
+    if (most_zones) rules.most_zones = *most_zones;
+    return rules;
+  }
+
+  /// Any number of zones, of any share: the linear programme alone.
+  MixtureRules relaxed_rules() const {
+    MixtureRules relaxed = rules({});
+    relaxed.least_share = 0.0;
+    return relaxed;
+  }
+
+  Mixture mixture_of(const Composition& composition, const MixtureRules& rules) const {
+    std::vector<MixedCell> cells;
+    for (const FamilyCell& cell : composition.catalogue) cells.push_back(cell.mixed);
+    if (cells.empty()) return {};
+    Mixture mixture = best_mixture(cells, rules, cancel_);
+    if (mixture.kind == Mixture::Kind::interrupted) throw Interrupted{};
+    return mixture;
+  }
+
+  static std::vector<Zone> zones_of(const Composition& composition, const Mixture& mixture) {
+    std::vector<Zone> zones;
+    for (const ZoneShare& zone : mixture.zones) zones.push_back({composition.catalogue[zone.cell], zone.share});
+    return zones;
+  }
+
+  /// Cells that gain by the prices of the best mixture, with any number of zones and with as many as are allowed.
+  void search_by_prices(Composition& composition) {
+    for (std::size_t round = 0; round < request_.rounds; ++round) {
+      const Mixture relaxed = mixture_of(composition, relaxed_rules());
+      if (!relaxed.is_there()) return;
+      const std::size_t before = composition.catalogue.size();
+      bool helps = search(composition, relaxed);
+      const Mixture few = mixture_of(composition, rules(request_.most_zones));
+      if (few.is_there() && few.merit < relaxed.merit - kHelps * (1.0 + std::abs(relaxed.merit)))
+        helps = search(composition, few) || helps;
+      composition.has_converged = !helps;
+      if (!helps || composition.catalogue.size() == before) return;
+    }
+  }
+
+  /// What a cell adds to the merit by the prices of a mixture, as an objective of the search for one.
+  OptimiseRequest pricing_request(const Mixture& mixture) const {
+    std::map<std::string, double> weights;
+    for (std::size_t k = 0; k < request_.goals.size(); ++k)
+      if (mixture.prices.goals[k] > 0.0) weights[request_.goals[k]] += mixture.prices.goals[k];
+    for (std::size_t k = 0; k < request_.of_part.size(); ++k)
+      if (mixture.prices.means[k] != 0.0) weights[request_.of_part[k].quantity] -= mixture.prices.means[k];
+    for (const auto& [quantity, price] : request_.price) weights[quantity] -= price;
+    OptimiseRequest pricing;
+    pricing.objective.weights.assign(weights.begin(), weights.end());
+    pricing.constraints = request_.of_cells;
+    return pricing;
+  }
+
+  /// Looks for cells that gain, from the mixture's own and from those that gain most. \return whether one was found
+  bool search(Composition& composition, const Mixture& mixture) {
+    if (!has_intervals(study_)) return false;
+    const OptimiseRequest pricing = pricing_request(mixture);
+    const std::vector<PointValues> starts = starts_of(composition, mixture);
+    Evaluator evaluator(study_, pricing, store_, observer_, cancel_);
+    for (const PointValues& start : starts)
+      refine(study_, pricing, evaluator, evaluator.look_at(start), {request_.looks, kFirstStep});
+    read_catalogue(composition);
+    const double least_gain = kHelps * (1.0 + std::abs(mixture.merit));
+    return std::ranges::any_of(composition.catalogue,
+                               [&](const FamilyCell& cell) { return gain(mixture.prices, cell.mixed) > least_gain; });
+  }
+
+  /// The cells that gain most, the largest zones first among equals, no two of them near each other.
+  std::vector<PointValues> starts_of(const Composition& composition, const Mixture& mixture) const {
+    std::vector<std::size_t> order;
+    for (const ZoneShare& zone : mixture.zones) order.push_back(zone.cell);
+    std::vector<std::size_t> others(composition.catalogue.size());
+    std::iota(others.begin(), others.end(), std::size_t{0});
+    std::ranges::stable_sort(others, [&](std::size_t a, std::size_t b) {
+      return gain(mixture.prices, composition.catalogue[a].mixed) >
+             gain(mixture.prices, composition.catalogue[b].mixed);
+    });
+    order.insert(order.end(), others.begin(), others.end());
+    std::vector<PointValues> starts;
+    for (const std::size_t cell : order) {
+      if (starts.size() == request_.starts) break;
+      const PointValues& values = composition.catalogue[cell].values;
+      if (std::ranges::none_of(starts, [&](const PointValues& other) { return are_near(values, other); }))
+        starts.push_back(values);
+    }
+    return starts;
+  }
+
+  /// Whether one search would do for both: alike in all but a step of the search.
+  bool are_near(const PointValues& a, const PointValues& b) const {
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      const std::optional<Interval>& interval = study_.parameters[k].interval;
+      if (!interval && a[k].toml != b[k].toml) return false;
+      if (!interval) continue;
+      const double between =
+          share_of(*interval, std::get<double>(a[k].shown)) - share_of(*interval, std::get<double>(b[k].shown));
+      if (std::abs(between) > kFirstStep) return false;
+    }
+    return true;
+  }
+
+  /// The best of so many zones at most, or of fewer, where those were found and no better ones.
+  Mixture mixture_of_zones(const Composition& composition, std::size_t most_zones) const {
+    Mixture mixture = mixture_of(composition, rules(most_zones));
+    if (composition.by_zones.empty()) return mixture;
+    const Mixture& fewer = composition.by_zones.back().mixture;
+    if (mixture.is_there() && mixture.merit >= fewer.merit) return mixture;
+    const double bound = std::max(mixture.bound, fewer.merit);
+    mixture = fewer;
+    mixture.bound = bound;
+    return mixture;
+  }
+
+  void choose(Composition& composition) const {
+    const Mixture relaxed = mixture_of(composition, relaxed_rules());
+    Mixture mixture = relaxed.is_there() ? mixture_of(composition, rules(request_.most_zones)) : relaxed;
+    if (mixture.is_there()) {
+      const std::size_t most = request_.most_zones.value_or(mixture.zones.size());
+      for (std::size_t zones = 1; zones <= most; ++zones) add_by_zones(composition, zones);
+      if (!composition.by_zones.empty() && composition.by_zones.back().mixture.merit > mixture.merit)
+        mixture = composition.by_zones.back().mixture;
+    }
+    if (!mixture.is_there()) {
+      composition.none_because = why_none(composition, relaxed);
+      return;
+    }
+    composition.unlimited = relaxed.merit;
+    composition.best =
+        PartOfZones{zones_of(composition, mixture), mixture, request_.most_zones.value_or(mixture.zones.size())};
+    if (mixture.kind == Mixture::Kind::best_found)
+      composition.proof = Proof::none;
+    else
+      composition.proof = has_intervals(study_) ? Proof::catalogue : Proof::family;
+  }
+
+  /// What keeps every mixture from holding the bounds.
+  std::string why_none(const Composition& composition, const Mixture& relaxed) const {
+    if (composition.catalogue.empty())
+      return composition.failed > 0 ? fmt::format("no cell can be computed: {}", composition.first_failure)
+                                    : "the constraints on cells exclude all of them";
+    if (relaxed.is_there())
+      return fmt::format("no mixture of at most {} of the {} cells, each with a share of {} or more, holds the bounds",
+                         request_.most_zones.value_or(composition.catalogue.size()), composition.catalogue.size(),
+                         shortest(request_.least_share));
+    std::string text;
+    for (std::size_t k = 0; k < request_.of_part.size(); ++k)
+      if (std::abs(relaxed.prices.means[k]) > 1e-9)
+        text += fmt::format("{}{}", text.empty() ? "" : " and ", request_.of_part[k].text());
+    if (text.empty())
+      return fmt::format("{} cells with a share of at most {} do not fill the part", composition.catalogue.size(),
+                         shortest(request_.most_share));
+    return fmt::format("{} over the part excludes every mixture of the {} cells", text, composition.catalogue.size());
+  }
+
+  void add_by_zones(Composition& composition, std::size_t zones) const {
+    const Mixture mixture = mixture_of_zones(composition, zones);
+    if (mixture.is_there()) composition.by_zones.push_back({zones_of(composition, mixture), mixture, zones});
+  }
+
+  /// What one zone more than is allowed, or than serves, is worth.
+  void count_zones(Composition& composition) const {
+    const PartOfZones& last = composition.by_zones.empty() ? *composition.best : composition.by_zones.back();
+    add_by_zones(composition, std::max(last.most_zones, composition.best->zones.size()) + 1);
+  }
+
+  /// Parts from the best mean that there is to the mean of the best part, in equal steps.
+  void draw_front(Composition& composition) const {
+    if (!request_.front) return;
+    const double sign = request_.front->largest ? 1.0 : -1.0;
+    MixtureRules along = rules(request_.most_zones);
+    Bounds& bounds = along.means.back();
+    double best = -std::numeric_limits<double>::infinity();
+    for (const FamilyCell& cell : composition.catalogue) best = std::max(best, sign * cell.mixed.means.back());
+    const double of_best = sign * composition.best->mixture.means.back();
+    for (std::size_t k = 0; k < request_.front_points; ++k) {
+      const double step = static_cast<double>(k) / static_cast<double>(request_.front_points - 1);
+      const double mean = sign * (best + step * (of_best - best));
+      (sign > 0.0 ? bounds.least : bounds.most) = mean;
+      const Mixture mixture = mixture_of(composition, along);
+      if (mixture.is_there())
+        composition.front.push_back({mixture.means.back(), mixture.least, zones_of(composition, mixture)});
+    }
+  }
+
+  const Study& study_;
+  const ComposeRequest& request_;
+  ResultStore& store_;
+  OptimiseObserver* observer_;
+  const Cancellation* cancel_;
+  OptimiseRequest single_;
+  CellReader reader_;
+};
+
+}  // namespace
+
+StoreLayout compose_layout(const Study& study) {
+  StoreLayout layout = optimise_layout(study);
+  layout.kind = kStoreKind;
+  // What is asked of mixtures changes no cell.
+  std::erase_if(layout.parts, [](const auto& part) {
+    return part.first == "constraint" || part.first == "optimize" || part.first == "sweep" || part.first == "tolerance";
+  });
+  return layout;
+}
+
+Sweep compose_scan(const Study& study, const ComposeRequest& request) {
+  return optimise_scan(study, single_request(request));
+}
+
+Composition compose(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
+                    const Cancellation* cancel) {
+  Composition composition;
+  Composer composer(study, request, store, observer, cancel);
+  try {
+    composer.run(composition);
+  } catch (const Interrupted&) {
+    composition = {};
+    composition.complete = false;
+    composer.read_catalogue(composition);
+  }
+  return composition;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,96 @@
+#pragma once
+
+// Composes a part of zones of cells: which designs of a family, in which shares of the area, make the worst of all
+// goals as good as it can be. The study behind `retrace compose`.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/progress.h"
+#include "studies/compose/mixture.h"
+#include "studies/optimise/optimise.h"
+
+namespace retrace::studies {
+
+struct ComposeRequest {
+  std::vector<std::string> goals;                     ///< quantities, the least of which is to be as large as it can be
+  std::vector<Constraint> of_cells;                   ///< a cell that breaks one is none of the family
+  std::vector<Constraint> of_part;                    ///< on means over the part
+  std::vector<std::pair<std::string, double>> price;  ///< what one more of the mean of a quantity takes from the merit
+  std::optional<FrontAxis> front;                     ///< the mean that the least goal is told against
+  std::size_t front_points = 9;
+  std::optional<double> least_goal;  ///< a part that does not reach it is none
+  double least_share = 0.0;          ///< of a zone
+  double most_share = 1.0;
+  std::optional<std::size_t> most_zones;  ///< none: as many as serve
+  std::size_t scan = 65;                  ///< cells of the first look, for each combination of discrete values
+  std::size_t rounds = 4;                 ///< searches by prices, at most
+  std::size_t starts = 3;                 ///< cells from which each goes out
+  int looks = 20;                         ///< cells that are looked at from each
+};
+
+/// A cell of the family: a design that was looked at.
+struct FamilyCell {
+  std::uint64_t point = 0;  ///< in the store
+  PointValues values;
+  MixedCell mixed;  ///< goals in the request's order; means are those of `of_part`, then that of the front
+};
+
+struct Zone {
+  FamilyCell cell;
+  double share = 0.0;
+};
+
+/// A part with so many zones at most.
+struct PartOfZones {
+  std::vector<Zone> zones;     ///< the largest first
+  Mixture mixture;             ///< whose cells are numbers in the catalogue
+  std::size_t most_zones = 0;  ///< that were allowed
+};
+
+/// A part on the front, of a mean and the merit.
+struct FrontPart {
+  double mean = 0.0;
+  double least = 0.0;
+  std::vector<Zone> zones;
+};
+
+/// What is known about how good the part is.
+enum class Proof {
+  family,     ///< all cells of the family were looked at: nothing is better
+  catalogue,  ///< nothing is better of the cells that were looked at
+  none        ///< the search among these was cut short
+};
+
+struct Composition {
+  std::vector<FamilyCell> catalogue;  ///< all cells that are allowed, by their points
+  std::optional<PartOfZones> best;    ///< none if no mixture holds the bounds
+  std::string none_because;           ///< then, which bounds exclude all
+  std::optional<FamilyCell> single;   ///< the best part of one kind of cell, as `optimise` finds it
+  Proof proof = Proof::none;
+  bool has_converged = false;         ///< the last search by prices found nothing that helps
+  double unlimited = 0.0;             ///< merit with any number of zones, of any share
+  std::vector<PartOfZones> by_zones;  ///< the best of 1, 2, ... zones at most, up to one more than the best has
+  std::vector<FrontPart> front;
+  std::size_t failed = 0;  ///< designs that could not be computed
+  std::string first_failure;
+  std::size_t evaluations = 0;
+  bool complete = true;
+};
+
+StoreLayout compose_layout(const Study& study);
+
+/// The cells of the first look as points of a sweep, for who wants them in the store before the search.
+/// \throw InputError for too many combinations of discrete values
+Sweep compose_scan(const Study& study, const ComposeRequest& request);
+
+/// Looks for the best part: a scan of the family and what `optimise` makes of it, then cells that gain by the prices of
+/// the best mixture so far, until none does. Cells that the store has are not computed again, and all serve.
+/// \throw OutputError as ResultStore::record()
+Composition compose(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
+                    const Cancellation* cancel);
+
+}  // namespace retrace::studies

@@ -1,0 +1,68 @@
+#include "studies/compose/goals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace retrace::studies {
+namespace {
+
+constexpr double kNoPrice = 1e-9;
+
+}  // namespace
+
+const Quantity& goal_of(const Study& study, const ComposeRequest& request, std::size_t goal) {
+  return **std::ranges::find_if(study.quantities,
+                                [&](const auto& quantity) { return quantity->name() == request.goals[goal]; });
+}
+
+bool are_margins(const Study& study, const ComposeRequest& request) {
+  for (std::size_t k = 0; k < request.goals.size(); ++k)
+    if (!goal_of(study, request, k).limit()) return false;
+  return true;
+}
+
+double given_by(const Zone& zone, std::size_t goal, bool is_margin) {
+  return zone.share * (zone.cell.mixed.goals[goal] + (is_margin ? 1.0 : 0.0));
+}
+
+bool is_price(double price) {
+  return std::abs(price) > kNoPrice;
+}
+
+/// A margin is R / limit - 1.
+std::optional<double> cost_of_limit(const Quantity& quantity, const Mixture& mixture, std::size_t goal) {
+  const std::optional<QuantityLimit> limit = quantity.limit();
+  if (!limit) return std::nullopt;
+  return mixture.prices.goals[goal] * (1.0 + mixture.goals[goal]) / limit->value;
+}
+
+std::vector<std::size_t> goals_to_show(const ComposeRequest& request, const Mixture& mixture) {
+  std::vector<std::size_t> shown;
+  const auto stem = [&](std::size_t goal) { return request.goals[goal].substr(0, request.goals[goal].rfind('.')); };
+  for (std::size_t goal = 0; goal < request.goals.size(); ++goal) {
+    const bool is_reading = std::ranges::count(request.goals[goal], '.') > 1;
+    if (!is_reading || shown.empty() || stem(shown.back()) != stem(goal))
+      shown.push_back(goal);
+    else if (mixture.goals[goal] < mixture.goals[shown.back()])
+      shown.back() = goal;
+  }
+  return shown;
+}
+
+std::string goal_value_text(double value, bool is_margin) {
+  return is_margin ? fmt::format("{:.1f}", 100.0 * value) : fmt::format("{:.5g}", value);
+}
+
+std::string cell_text(const Study& study, const FamilyCell& cell) {
+  std::string text;
+  for (std::size_t k = 0; k < cell.values.size(); ++k) {
+    const double* const number = std::get_if<double>(&cell.values[k].shown);
+    text +=
+        fmt::format("{}{} = {}", k == 0 ? "" : ", ", study.parameters[k].name,
+                    number != nullptr ? fmt::format("{:.6g}", *number) : std::get<std::string>(cell.values[k].shown));
+  }
+  return text;
+}
+
+}  // namespace retrace::studies

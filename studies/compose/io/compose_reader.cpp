@@ -1,0 +1,106 @@
+#include "studies/compose/io/compose_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "studies/quantity/io/constraint_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+using schema::Document;
+
+/// The quantities that a name stands for: the one, or those that are numbered after it.
+std::vector<std::string> quantities_of(const Study& study, const std::string& name) {
+  std::vector<std::string> found;
+  for (const auto& quantity : study.quantities)
+    if (quantity->name() == name || quantity->name().starts_with(name + ".")) found.push_back(quantity->name());
+  if (found.empty()) checked_quantity(study, name, study.document->where("compose.maximize"));
+  return found;
+}
+
+/// \return the name, if a mixture has the mean of that quantity
+std::string checked_mean(const Study& study, const std::string& name, const InputLocation& where) {
+  checked_quantity(study, name, where);
+  const auto found = std::ranges::find_if(study.quantities, [&](const auto& q) { return q->name() == name; });
+  if (!(*found)->adds_up())
+    throw InputError(where,
+                     fmt::format("{} is the least of several values, and the least of a mixture is no mixture of "
+                                 "leasts: give each its own, by points = \"each_reading\" or over_directions = "
+                                 "\"each\"",
+                                 in_quotes(name)));
+  return name;
+}
+
+std::vector<std::string> read_goals(const Document& document, const Study& study) {
+  std::vector<std::string> goals;
+  for (const std::string& name : document.texts("compose.maximize"))
+    for (std::string& goal : quantities_of(study, name)) {
+      if (std::ranges::count(goals, goal) > 0) document.fail("compose.maximize", fmt::format("names {} twice", goal));
+      checked_mean(study, goal, document.where("compose.maximize"));
+      goals.push_back(std::move(goal));
+    }
+  return goals;
+}
+
+bool are_all_margins(const Study& study, const std::vector<std::string>& goals) {
+  return std::ranges::all_of(study.quantities, [&](const auto& quantity) {
+    return quantity->limit().has_value() || std::ranges::count(goals, quantity->name()) == 0;
+  });
+}
+
+void check_shares(const Document& document, const ComposeRequest& request) {
+  if (request.least_share > request.most_share)
+    document.fail("compose.least_share", fmt::format("must be <= most_share ({}), got {}", shortest(request.most_share),
+                                                     shortest(request.least_share)));
+  if (request.most_zones && static_cast<double>(*request.most_zones) * request.most_share < 1.0 - 1e-12)
+    document.fail("compose.most_share", fmt::format("must be >= 1 / most_zones ({}), or zones fill no part, got {}",
+                                                    *request.most_zones, shortest(request.most_share)));
+}
+
+void check_parameters(const Study& study) {
+  for (const Parameter& parameter : study.parameters)
+    if (parameter.distribution)
+      throw InputError(parameter.location, "a distribution is no family of cells: give values, or from and to");
+}
+
+}  // namespace
+
+ComposeRequest read_compose(const Study& study) {
+  const Document& document = *study.document;
+  if (!document.has("compose")) document.fail("compose", "missing, must be a table that says what to maximize");
+  check_parameters(study);
+  ComposeRequest request;
+  request.goals = read_goals(document, study);
+  request.of_cells = read_constraints(study, ConstraintOver::cell);
+  request.of_part = read_constraints(study, ConstraintOver::part);
+  for (const Constraint& constraint : request.of_part)
+    checked_mean(study, constraint.quantity, document.where("constraint"));
+  request.least_goal = document.number_if("compose.least");
+  if (!request.least_goal && are_all_margins(study, request.goals)) request.least_goal = 0.0;
+  request.least_share = document.number("compose.least_share");
+  request.most_share = document.number("compose.most_share");
+  if (const auto most = document.number_if("compose.most_zones")) request.most_zones = static_cast<std::size_t>(*most);
+  check_shares(document, request);
+  if (document.has("compose.price"))
+    for (const auto& [name, price] : document.named("compose.price"))
+      request.price.emplace_back(checked_mean(study, name, document.where("compose.price." + name)),
+                                 std::get<double>(price));
+  if (document.has("compose.front")) {
+    if (document.named("compose.front").size() != 1) document.fail("compose.front", "must name one quantity");
+    const auto& [name, sense] = *document.named("compose.front").begin();
+    request.front = FrontAxis{checked_mean(study, name, document.where("compose.front." + name)),
+                              std::get<std::string>(sense) == "most"};
+  }
+  request.scan = static_cast<std::size_t>(document.number("compose.scan"));
+  request.rounds = static_cast<std::size_t>(document.number("compose.rounds"));
+  request.starts = static_cast<std::size_t>(document.number("compose.starts"));
+  request.looks = static_cast<int>(document.number("compose.looks"));
+  return request;
+}
+
+}  // namespace retrace::studies

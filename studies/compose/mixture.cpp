@@ -1,0 +1,337 @@
+#include "studies/compose/mixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace retrace::studies {
+namespace {
+
+/// Shares below this are none.
+constexpr double kNoShare = 1e-12;
+/// What is better by less, as a share of the merit's size, is as good.
+constexpr double kAsGood = 1e-10;
+
+double as_good(double merit) {
+  return kAsGood * (1.0 + std::abs(merit));
+}
+
+/// Cells of a mixture, with the least share that each must have.
+struct CellSet {
+  std::vector<std::size_t> cells;
+  double least_share = 0.0;
+};
+
+/// Columns are the shares, and the least goal behind them; rows are the goals, the means and the whole.
+LinearProgramme programme_of(const std::vector<MixedCell>& cells, const CellSet& set, const MixtureRules& rules) {
+  LinearProgramme programme;
+  for (const std::size_t cell : set.cells) programme.add_column({set.least_share, rules.most_share}, -cells[cell].cost);
+  const std::size_t least = programme.add_column({}, 1.0);
+  using Terms = std::vector<LinearProgramme::Term>;
+  const auto weighted = [&](auto value) {
+    Terms terms;
+    for (std::size_t k = 0; k < set.cells.size(); ++k) terms.emplace_back(k, value(cells[set.cells[k]]));
+    return terms;
+  };
+  for (std::size_t goal = 0; goal < cells.front().goals.size(); ++goal) {
+    Terms terms = weighted([&](const MixedCell& cell) { return cell.goals[goal]; });
+    terms.emplace_back(least, -1.0);
+    programme.add_row({.least = 0.0}, std::move(terms));
+  }
+  for (std::size_t mean = 0; mean < rules.means.size(); ++mean)
+    programme.add_row(rules.means[mean], weighted([&](const MixedCell& cell) { return cell.means[mean]; }));
+  programme.add_row({1.0, 1.0}, weighted([](const MixedCell&) { return 1.0; }));
+  return programme;
+}
+
+MixturePrices prices_of(const std::vector<double>& of_rows, std::size_t goals, std::size_t means) {
+  MixturePrices prices;
+  for (std::size_t k = 0; k < goals; ++k) prices.goals.push_back(-of_rows[k]);
+  for (std::size_t k = 0; k < means; ++k) prices.means.push_back(of_rows[goals + k]);
+  prices.share = of_rows[goals + means];
+  return prices;
+}
+
+double weighted_sum(const std::vector<double>& weights, const std::vector<double>& values) {
+  return std::inner_product(weights.begin(), weights.end(), values.begin(), 0.0);
+}
+
+/// Takes what the shares of a set come to.
+void add_up(const std::vector<MixedCell>& cells, const CellSet& set, const std::vector<double>& shares,
+            Mixture& mixture) {
+  mixture.goals.assign(cells.front().goals.size(), 0.0);
+  mixture.means.assign(cells.front().means.size(), 0.0);
+  double cost = 0.0;
+  for (std::size_t k = 0; k < set.cells.size(); ++k) {
+    if (!(shares[k] > kNoShare)) continue;
+    const MixedCell& cell = cells[set.cells[k]];
+    mixture.zones.push_back({set.cells[k], shares[k]});
+    cost += shares[k] * cell.cost;
+    for (std::size_t goal = 0; goal < mixture.goals.size(); ++goal) mixture.goals[goal] += shares[k] * cell.goals[goal];
+    for (std::size_t mean = 0; mean < mixture.means.size(); ++mean) mixture.means[mean] += shares[k] * cell.means[mean];
+  }
+  std::ranges::stable_sort(mixture.zones, std::ranges::greater{}, &ZoneShare::share);
+  mixture.least = *std::ranges::min_element(mixture.goals);
+  mixture.merit = mixture.least - cost;
+}
+
+/// The best shares of a set of cells, whatever their number.
+Mixture mixture_of(const std::vector<MixedCell>& cells, const CellSet& set, const MixtureRules& rules,
+                   const Cancellation* cancel) {
+  const LinearOptimum optimum = solve(programme_of(cells, set, rules), cancel);
+  Mixture mixture;
+  if (optimum.kind == LinearOptimum::Kind::interrupted) {
+    mixture.kind = Mixture::Kind::interrupted;
+    return mixture;
+  }
+  mixture.prices = prices_of(optimum.prices, cells.front().goals.size(), rules.means.size());
+  if (optimum.kind != LinearOptimum::Kind::optimal) return mixture;
+  mixture.kind = Mixture::Kind::optimal;
+  add_up(cells, set, optimum.values, mixture);
+  mixture.bound = mixture.merit;
+  return mixture;
+}
+
+/// Prices as a bound: no mixture has more merit than the most that one of its cells has by them.
+class PriceBound {
+ public:
+  PriceBound(const std::vector<MixedCell>& cells, const MixtureRules& rules, const MixturePrices& prices) {
+    // What the bounds on means, each at the end that its price is for, and the whole area come to.
+    double constant = prices.share;
+    for (std::size_t k = 0; k < rules.means.size(); ++k)
+      if (prices.means[k] != 0.0)
+        constant += prices.means[k] * (prices.means[k] > 0.0 ? rules.means[k].most : rules.means[k].least);
+    for (const MixedCell& cell : cells) merits_.push_back(constant + gain(prices, cell));
+    order_.resize(cells.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::ranges::stable_sort(order_, [&](std::size_t x, std::size_t y) { return merits_[x] > merits_[y]; });
+  }
+
+  double merit_of(std::size_t cell) const { return merits_[cell]; }
+  /// Cells, those of most merit first.
+  const std::vector<std::size_t>& order() const { return order_; }
+  /// How many cells have more merit than that.
+  std::size_t count_above(double merit) const {
+    const auto end = std::ranges::partition_point(order_, [&](std::size_t cell) { return merits_[cell] > merit; });
+    return static_cast<std::size_t>(end - order_.begin());
+  }
+  /// Whether a set may have that merit.
+  bool lets_pass(const std::vector<std::size_t>& set, double merit) const {
+    return std::ranges::any_of(set, [&](std::size_t cell) { return merits_[cell] > merit; });
+  }
+  /// No mixture of the set has more.
+  double most_of(const std::vector<std::size_t>& set) const {
+    double most = -std::numeric_limits<double>::infinity();
+    for (const std::size_t cell : set) most = std::max(most, merits_[cell]);
+    return most;
+  }
+
+ private:
+  std::vector<double> merits_;
+  std::vector<std::size_t> order_;
+};
+
+/// Tries sets of few cells. Whatever prices are taken, a set that beats the best has a cell that does so by them: sets
+/// are grown by such cells, by the prices that leave the fewest of them.
+class SetSearch {
+ public:
+  SetSearch(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Cancellation* cancel,
+            std::size_t most_sets)
+      : cells_(cells), rules_(rules), cancel_(cancel), most_sets_(most_sets), is_out_(cells.size(), false) {
+    most_zones_ = std::min(rules.most_zones, cells.size());
+    while (static_cast<double>(most_zones_) * rules.least_share > 1.0 + 1e-9) --most_zones_;
+    for (std::size_t goal = 0; goal < cells.front().goals.size(); ++goal) {
+      MixturePrices alone{std::vector<double>(cells.front().goals.size(), 0.0), std::vector<double>(rules.means.size()),
+                          0.0};
+      alone.goals[goal] = 1.0;
+      bounds_.emplace_back(cells, rules, alone);
+    }
+  }
+
+  /// \param relaxed the best mixture without a limit on zones and without a least share
+  Mixture run(const Mixture& relaxed) {
+    bounds_.emplace_back(cells_, rules_, relaxed.prices);
+    begin_with(relaxed);
+    improve();
+    grow({}, {});
+    if (is_cancelled(cancel_)) best_.kind = Mixture::Kind::interrupted;
+    if (!best_.is_there()) return best_;
+    const bool is_all = sets_ <= most_sets_;
+    best_.kind = is_all ? Mixture::Kind::optimal : Mixture::Kind::best_found;
+    best_.bound = is_all ? best_.merit : relaxed.merit;
+    return best_;
+  }
+
+ private:
+  static constexpr std::size_t kMostBounds = 400;  ///< that are remembered
+  static constexpr std::size_t kMostBeside = 200;  ///< cells that are tried in a place
+
+  bool is_over() const { return sets_ > most_sets_ || is_cancelled(cancel_); }
+  double to_beat() const {
+    return best_.is_there() ? best_.merit + as_good(best_.merit) : -std::numeric_limits<double>::infinity();
+  }
+
+  /// A good mixture to begin with keeps the search short: the largest shares of the relaxed one, fewer and fewer.
+  void begin_with(const Mixture& relaxed) {
+    std::vector<ZoneShare> zones = relaxed.zones;
+    while (zones.size() > 1) {
+      CellSet set;
+      for (const ZoneShare& zone : zones) set.cells.push_back(zone.cell);
+      const Mixture mixture = mixture_of(cells_, set, rules_, cancel_);
+      if (!mixture.is_there()) return;
+      keep_bound(mixture.prices);
+      take(mixture);
+      zones = mixture.zones;
+      zones.pop_back();
+    }
+  }
+
+  /// Puts other cells in the places of single ones for as long as that helps.
+  void improve() {
+    for (double before = -std::numeric_limits<double>::infinity(); best_.is_there() && best_.merit > before;) {
+      before = best_.merit;
+      std::vector<std::size_t> set;
+      for (const ZoneShare& zone : best_.zones) set.push_back(zone.cell);
+      if (set.size() < most_zones_) try_beside(set);
+      for (std::size_t k = 0; k < set.size() && set.size() > 1; ++k) {
+        std::vector<std::size_t> others = set;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+        try_beside(others);
+      }
+    }
+  }
+
+  /// A set with one cell more: those that gain most by its prices, and by what is known of others.
+  void try_beside(const std::vector<std::size_t>& set) {
+    const Mixture mixture = mixture_of(cells_, {set}, rules_, cancel_);
+    if (!mixture.is_there()) return;
+    keep_bound(mixture.prices);
+    std::vector<std::pair<double, std::size_t>> next;
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+      if (std::ranges::count(set, cell) > 0) continue;
+      std::vector<std::size_t> larger = set;
+      larger.push_back(cell);
+      double most = mixture.merit + gain(mixture.prices, cells_[cell]);
+      for (const PriceBound& bound : bounds_) most = std::min(most, bound.most_of(larger));
+      if (most > to_beat()) next.emplace_back(most, cell);
+    }
+    std::ranges::stable_sort(next, [](const auto& a, const auto& b) { return a.first > b.first; });
+    if (next.size() > kMostBeside) next.resize(kMostBeside);
+    for (const auto& [most, cell] : next) {
+      if (is_over()) return;
+      std::vector<std::size_t> larger = set;
+      larger.push_back(cell);
+      ++sets_;
+      const Mixture grown = mixture_of(cells_, {larger}, rules_, cancel_);
+      if (!grown.is_there()) continue;
+      keep_bound(grown.prices);
+      take(grown);
+    }
+  }
+
+  void keep_bound(const MixturePrices& prices) {
+    if (bounds_.size() < kMostBounds) bounds_.emplace_back(cells_, rules_, prices);
+  }
+
+  /// A mixture that may be one of few cells with shares large enough, or that becomes one when its shares are raised.
+  void take(Mixture mixture) {
+    if (mixture.zones.size() > most_zones_) return;
+    if (rules_.least_share > 0.0 && mixture.zones.back().share < rules_.least_share - kNoShare) {
+      CellSet set{{}, rules_.least_share};
+      for (const ZoneShare& zone : mixture.zones) set.cells.push_back(zone.cell);
+      mixture = mixture_of(cells_, set, rules_, cancel_);
+    }
+    if (mixture.is_there() && mixture.merit > to_beat()) best_ = std::move(mixture);
+  }
+
+  /// Goes through all sets that hold this one and no cell that is out, as far as they may be better than the best.
+  /// \param mixture of the set; none of an empty one
+  void grow(const std::vector<std::size_t>& set, const Mixture& mixture) {
+    if (set.size() >= most_zones_) return;
+    const std::vector<std::size_t> next = candidates(set, mixture);
+    std::vector<std::size_t> larger = set;
+    larger.push_back(0);
+    std::vector<std::size_t> tried;
+    for (const std::size_t cell : next) {
+      if (is_over()) break;
+      larger.back() = cell;
+      if (may_beat(larger)) look_at(larger);
+      is_out_[cell] = true;
+      tried.push_back(cell);
+    }
+    for (const std::size_t cell : tried) is_out_[cell] = false;
+  }
+
+  void look_at(const std::vector<std::size_t>& set) {
+    ++sets_;
+    const Mixture mixture = mixture_of(cells_, {set}, rules_, cancel_);
+    if (mixture.kind == Mixture::Kind::interrupted) return;
+    if (mixture.is_there()) {
+      if (set.size() > 1) keep_bound(mixture.prices);
+      take(mixture);
+    }
+    grow(set, mixture);
+  }
+
+  /// Whether a set that cannot be grown may be better than the best by all prices that are known; one that can be
+  /// grown may always.
+  bool may_beat(const std::vector<std::size_t>& set) const {
+    if (set.size() < most_zones_) return true;
+    return std::ranges::all_of(bounds_, [&](const PriceBound& bound) { return bound.lets_pass(set, to_beat()); });
+  }
+
+  /// Cells one of which each better set with this one has, by the prices that leave the fewest.
+  std::vector<std::size_t> candidates(const std::vector<std::size_t>& set, const Mixture& mixture) const {
+    const PriceBound* fewest = nullptr;
+    std::size_t least = cells_.size() + 1;
+    std::optional<PriceBound> own;
+    if (mixture.is_there()) own.emplace(cells_, rules_, mixture.prices);
+    const auto consider = [&](const PriceBound& bound) {
+      const std::size_t count = bound.count_above(to_beat());
+      if (count >= least || bound.lets_pass(set, to_beat())) return;
+      fewest = &bound;
+      least = count;
+    };
+    if (own) consider(*own);
+    for (const PriceBound& bound : bounds_) consider(bound);
+    std::vector<std::size_t> found;
+    const std::vector<std::size_t>& order = fewest != nullptr ? fewest->order() : bounds_.back().order();
+    for (const std::size_t cell : order) {
+      if (fewest != nullptr && !(fewest->merit_of(cell) > to_beat())) break;
+      if (!is_out_[cell] && std::ranges::count(set, cell) == 0) found.push_back(cell);
+    }
+    return found;
+  }
+
+  const std::vector<MixedCell>& cells_;
+  const MixtureRules& rules_;
+  const Cancellation* cancel_;
+  std::size_t most_sets_;
+  std::size_t most_zones_ = 0;
+  std::vector<bool> is_out_;
+  std::vector<PriceBound> bounds_;
+  std::size_t sets_ = 0;
+  Mixture best_;
+};
+
+}  // namespace
+
+double gain(const MixturePrices& prices, const MixedCell& cell) {
+  return weighted_sum(prices.goals, cell.goals) - cell.cost - weighted_sum(prices.means, cell.means) - prices.share;
+}
+
+Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Cancellation* cancel,
+                     std::size_t most_sets) {
+  CellSet all;
+  all.cells.resize(cells.size());
+  std::iota(all.cells.begin(), all.cells.end(), std::size_t{0});
+  Mixture relaxed = mixture_of(cells, all, rules, cancel);
+  const bool holds_all = relaxed.zones.size() <= rules.most_zones &&
+                         (relaxed.zones.empty() || relaxed.zones.back().share >= rules.least_share - kNoShare);
+  if (!relaxed.is_there() || holds_all) return relaxed;
+  return SetSearch(cells, rules, cancel, most_sets).run(relaxed);
+}
+
+}  // namespace retrace::studies

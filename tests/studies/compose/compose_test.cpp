@@ -1,0 +1,287 @@
+// Compositions of analytic families against closed forms, brute force and `optimise`; what is read, said and stored.
+
+#include "studies/compose/compose.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "studies/compose/io/compose_reader.h"
+#include "studies/compose/io/composition_files.h"
+#include "studies/optimise/io/optimise_reader.h"
+#include "studies/quantity/io/study_reader.h"
+
+namespace retrace::testing::compose_test {
+namespace {
+
+using namespace studies;
+
+const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
+
+/// A function of the plate's thickness and of what lies behind the facets, in place of something that is traced.
+class Analytic : public Quantity {
+ public:
+  using Function = std::function<double(double x, double y)>;
+  Analytic(std::string name, Function f) : Quantity(std::move(name)), f_(std::move(f)) {}
+  std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
+    return Measured{f_(candidate.design().part().thickness_mm, candidate.design().substance.back_index), 0.0};
+  }
+
+ private:
+  Function f_;
+};
+
+using Functions = std::vector<std::pair<std::string, Analytic::Function>>;
+
+/// A lobe whose middle is x, seen at a point; the more y, the narrower and the higher.
+Analytic::Function lobe_at(double point) {
+  return [point](double x, double y) { return y * std::exp(-std::pow(y * (x - point), 2.0)); };
+}
+const Functions kThreePoints = {{"g.1", lobe_at(0.8)}, {"g.2", lobe_at(1.6)}, {"g.3", lobe_at(2.7)}};
+
+constexpr const char* kIntervals =
+    "[[parameter]]\nkey = \"body.thickness_mm\"\nname = \"x\"\nfrom = 0.5\nto = 3\n"
+    "[[parameter]]\nkey = \"body.back_index\"\nname = \"y\"\nfrom = 1\nto = 3\n";
+
+Study analytic_study(const std::string& keys, const Functions& functions, const std::string& parameters = kIntervals) {
+  std::string text = "design = \"../rtp_brick_1mm.toml\"\n" + parameters;
+  for (const auto& [name, f] : functions) text += "[[quantity]]\nkind = \"elements_full\"\nname = \"" + name + "\"\n";
+  Study study = parse_study(text + keys, kFolder + "study.toml");
+  study.quantities.clear();
+  for (const auto& [name, f] : functions) study.quantities.push_back(std::make_shared<Analytic>(name, f));
+  return study;
+}
+
+struct Composed {
+  Study study;
+  ComposeRequest request;
+  Composition composition;
+};
+
+Composed composed(const Study& study) {
+  ResultStore store("", compose_layout(study), IfExists::refuse);
+  const ComposeRequest request = read_compose(study);
+  return {study, request, compose(study, request, store, nullptr, nullptr)};
+}
+
+double number(const ParameterValue& value) {
+  return std::get<double>(value.shown);
+}
+
+constexpr const char* kMaximize = "[compose]\nmaximize = \"g\"\n";
+
+TEST(Compose, OfTwoLobesHasTheSharesAndPricesOfTheClosedForm) {
+  // Two cells and three points, of which the outer ones bind.
+  const Study study = analytic_study(kMaximize, kThreePoints,
+                                     "[[parameter]]\nkey = \"body.thickness_mm\"\nname = \"x\"\nvalues = [1.1, 2.1]\n");
+  const Composition composition = composed(study).composition;
+  ASSERT_TRUE(composition.best.has_value());
+  const auto at = [&](double x, std::size_t goal) { return kThreePoints[goal].second(x, 1.0); };
+  const double f0 = at(1.1, 0), f2 = at(1.1, 2), g0 = at(2.1, 0), g2 = at(2.1, 2);
+  const double share = (g2 - g0) / (f0 - f2 + g2 - g0);
+  const double price = (g2 - f2) / (f0 - g0 + g2 - f2);
+  ASSERT_EQ(composition.best->zones.size(), 2U);
+  for (const Zone& zone : composition.best->zones)
+    EXPECT_NEAR(zone.share, number(zone.cell.values[0]) == 1.1 ? share : 1.0 - share, 1e-9);
+  EXPECT_NEAR(composition.best->mixture.prices.goals[0], price, 1e-9);
+  EXPECT_NEAR(composition.best->mixture.prices.goals[1], 0.0, 1e-9);
+  EXPECT_NEAR(composition.best->mixture.prices.goals[2], 1.0 - price, 1e-9);
+  EXPECT_EQ(composition.proof, Proof::family);
+}
+
+TEST(Compose, IsNeverWorseThanThreeZonesOnAGrid) {
+  const Composition composition =
+      composed(analytic_study(std::string(kMaximize) + "most_zones = 3\n", kThreePoints)).composition;
+  ASSERT_TRUE(composition.best.has_value());
+  EXPECT_LE(composition.best->zones.size(), 3U);
+  std::vector<std::array<double, 3>> cells;
+  for (double x = 0.5; x <= 3.0; x += 0.25)
+    for (double y = 1.0; y <= 3.0; y += 0.5)
+      cells.push_back({kThreePoints[0].second(x, y), kThreePoints[1].second(x, y), kThreePoints[2].second(x, y)});
+  double best = 0.0;
+  for (std::size_t a = 0; a < cells.size(); ++a)
+    for (std::size_t b = a + 1; b < cells.size(); ++b)
+      for (std::size_t c = b + 1; c < cells.size(); ++c)
+        for (int i = 0; i <= 20; ++i)
+          for (int j = 0; i + j <= 20; ++j) {
+            double least = 1e9;
+            for (std::size_t goal = 0; goal < 3; ++goal)
+              least = std::min(least, (i * cells[a][goal] + j * cells[b][goal] + (20 - i - j) * cells[c][goal]) / 20.0);
+            best = std::max(best, least);
+          }
+  EXPECT_GE(composition.best->mixture.least, best);
+}
+
+TEST(Compose, FindsTheBestOfAContinuousFamily) {
+  // Three points far apart against the width of lobes: a narrow lobe on each, with equal shares, is best, and no cell
+  // is worth more at its prices than a third of the height, but for what its neighbours' tails give.
+  const Functions far = {{"g.1", lobe_at(0.5)}, {"g.2", lobe_at(1.75)}, {"g.3", lobe_at(3.0)}};
+  const Composition composition = composed(analytic_study(kMaximize, far)).composition;
+  ASSERT_TRUE(composition.best.has_value());
+  const auto top = [&](double between) { return std::exp(-std::pow(3.0 * between, 2.0)); };
+  EXPECT_NEAR(composition.best->mixture.least, 1.0 + top(1.25), 1e-3);
+  EXPECT_TRUE(composition.has_converged);
+  EXPECT_EQ(composition.proof, Proof::catalogue);
+}
+
+TEST(Compose, WithOneZoneFindsWhatOptimiseFinds) {
+  const Functions functions = {{"g.1", lobe_at(1.2)}, {"g.2", lobe_at(1.9)}, {"least", [](double x, double y) {
+                                                                                return std::min(lobe_at(1.2)(x, y),
+                                                                                                lobe_at(1.9)(x, y));
+                                                                              }}};
+  const Study study =
+      analytic_study("[optimize]\nmaximize = \"least\"\n[compose]\nmaximize = \"g\"\nmost_zones = 1\n", functions);
+  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  const Optimum optimum = optimise(study, read_optimise(study), store, nullptr, nullptr);
+  const Composition composition = composed(study).composition;
+  ASSERT_TRUE(composition.best && optimum.best);
+  ASSERT_EQ(composition.best->zones.size(), 1U);
+  EXPECT_EQ(composition.best->zones[0].share, 1.0);
+  EXPECT_GE(composition.best->mixture.least, *optimum.best->objective);
+  // The top of a least is a kink, which a search without slopes comes near to.
+  EXPECT_NEAR(composition.best->mixture.least, *optimum.best->objective, 2e-3);
+  ASSERT_TRUE(composition.single.has_value());
+  EXPECT_EQ(std::min(composition.single->mixed.goals[0], composition.single->mixed.goals[1]), *optimum.best->objective);
+}
+
+TEST(Compose, HoldsConstraintsOverCellsAndThePart) {
+  Functions functions = kThreePoints;
+  functions.emplace_back("thickness", [](double x, double) { return x; });
+  functions.emplace_back("index", [](double, double y) { return y; });
+  const Composition composition =
+      composed(analytic_study("[compose]\nmaximize = \"g\"\nleast_share = 0.1\nmost_share = 0.5\n"
+                              "[[constraint]]\nquantity = \"index\"\nmax = 2\n"
+                              "[[constraint]]\nquantity = \"thickness\"\nmax = 1.5\nover = \"part\"\n",
+                              functions))
+          .composition;
+  ASSERT_TRUE(composition.best.has_value());
+  double thickness = 0.0;
+  for (const Zone& zone : composition.best->zones) {
+    EXPECT_LE(number(zone.cell.values[1]), 2.0);
+    EXPECT_GE(zone.share, 0.1 - 1e-9);
+    EXPECT_LE(zone.share, 0.5 + 1e-9);
+    thickness += zone.share * number(zone.cell.values[0]);
+  }
+  EXPECT_LE(thickness, 1.5 + 1e-9);
+  EXPECT_GT(composition.best->mixture.prices.means[0], 0.0);
+}
+
+TEST(Compose, PaysWhatIsAskedAndDrawsTheFront) {
+  Functions functions = kThreePoints;
+  functions.emplace_back("hours", [](double, double y) { return y; });
+  const auto with_price = [&](const std::string& price) {
+    return composed(analytic_study(
+                        "[compose]\nmaximize = \"g\"\nfront = {hours = \"least\"}\nprice = {hours = " + price + "}\n",
+                        functions))
+        .composition;
+  };
+  const Composition free = with_price("0");
+  const Composition dear = with_price("0.2");
+  ASSERT_TRUE(free.best && dear.best);
+  EXPECT_LT(dear.best->mixture.means.back(), free.best->mixture.means.back());
+  EXPECT_LT(dear.best->mixture.least, free.best->mixture.least);
+  EXPECT_NEAR(dear.best->mixture.merit, dear.best->mixture.least - 0.2 * dear.best->mixture.means.back(), 1e-12);
+  ASSERT_EQ(free.front.size(), 9U);
+  for (std::size_t k = 1; k < free.front.size(); ++k) {
+    EXPECT_GE(free.front[k].mean, free.front[k - 1].mean - 1e-9);
+    EXPECT_GE(free.front[k].least, free.front[k - 1].least - 1e-9);
+  }
+  EXPECT_NEAR(free.front.back().least, free.best->mixture.least, 1e-9);
+}
+
+TEST(Compose, SaysWhatOneZoneMoreIsWorth) {
+  const Composition composition =
+      composed(analytic_study(std::string(kMaximize) + "most_zones = 2\n", kThreePoints)).composition;
+  ASSERT_TRUE(composition.best.has_value());
+  ASSERT_EQ(composition.by_zones.size(), 3U);
+  for (std::size_t k = 1; k < 3; ++k)
+    EXPECT_GE(composition.by_zones[k].mixture.least, composition.by_zones[k - 1].mixture.least);
+  EXPECT_NEAR(composition.by_zones[1].mixture.least, composition.best->mixture.least, 1e-12);
+  EXPECT_GE(composition.unlimited, composition.by_zones[2].mixture.least - 1e-12);
+}
+
+TEST(Compose, GoesOnWithWhatTheStoreHas) {
+  const Study study = analytic_study(kMaximize, kThreePoints);
+  const ComposeRequest request = read_compose(study);
+  ResultStore store("", compose_layout(study), IfExists::refuse);
+  const Composition first = compose(study, request, store, nullptr, nullptr);
+  Cancellation cancel;
+  cancel.request();
+  const Composition cut = compose(study, request, store, nullptr, &cancel);
+  EXPECT_FALSE(cut.complete);
+  EXPECT_EQ(cut.evaluations, first.evaluations);
+  const Composition again = compose(study, request, store, nullptr, nullptr);
+  EXPECT_TRUE(again.complete);
+  EXPECT_GE(again.best->mixture.least, first.best->mixture.least - 1e-9);
+}
+
+TEST(Compose, SaysInWordsWhatExcludesAllMixtures) {
+  const Composed low = composed(analytic_study(std::string(kMaximize) + "least = 5\n", kThreePoints));
+  const std::string why = why_not_reached(low.study, low.request, low.composition);
+  EXPECT_NE(why.find("and 5 is asked: g.1 ("), std::string::npos) << why;
+  EXPECT_NE(why.find("exclude every mixture"), std::string::npos) << why;
+  Functions functions = kThreePoints;
+  functions.emplace_back("thickness", [](double x, double) { return x; });
+  const Composed none = composed(analytic_study(
+      std::string(kMaximize) + "[[constraint]]\nquantity = \"thickness\"\nmax = 0.1\nover = \"part\"\n", functions));
+  EXPECT_FALSE(none.composition.best.has_value());
+  EXPECT_NE(why_not_reached(none.study, none.request, none.composition).find("thickness <= 0.1 over the part excludes"),
+            std::string::npos);
+}
+
+TEST(Compose, DocumentsHoldWhatWasFound) {
+  const Composed made = composed(analytic_study(kMaximize, kThreePoints));
+  const auto json = nlohmann::json::parse(composition_json(made.study, made.request, made.composition, 1.0));
+  EXPECT_EQ(json.at("schema"), "retrace.composition/1");
+  double shares = 0.0, prices = 0.0;
+  for (const auto& zone : json.at("zones")) shares += zone.at("share").get<double>();
+  for (const auto& goal : json.at("goals")) {
+    prices += goal.at("price").get<double>();
+    double given = 0.0;
+    for (const auto& part : goal.at("given_by_zones")) given += part.get<double>();
+    EXPECT_NEAR(given, goal.at("value").get<double>(), 1e-12);
+  }
+  EXPECT_NEAR(shares, 1.0, 1e-9);
+  EXPECT_NEAR(prices, 1.0, 1e-9);
+  const std::string csv = composition_csv(made.study, made.request, made.composition);
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
+  EXPECT_NE(composition_text(made.study, made.request, made.composition).find("binding: "), std::string::npos);
+}
+
+/// What reading a study with these keys says.
+std::string refusal(const std::string& keys, const std::string& parameters = kIntervals) {
+  try {
+    read_compose(analytic_study(keys, kThreePoints, parameters));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Compose, RefusesWhatMeansNothing) {
+  const auto says = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  says(refusal(""), "compose: missing");
+  says(refusal("[compose]\nmaximize = \"h\"\n"), "compose.maximize: must be a quantity of the study");
+  says(refusal("[compose]\nmaximize = [\"g\", \"g.1\"]\n"), "compose.maximize: names g.1 twice");
+  says(refusal("[compose]\nmaximize = \"g\"\nleast_share = 0.6\nmost_share = 0.5\n"),
+       "compose.least_share: must be <=");
+  says(refusal("[compose]\nmaximize = \"g\"\nmost_zones = 2\nmost_share = 0.4\n"),
+       "compose.most_share: must be >= 1 /");
+  says(refusal("[compose]\nmaximize = \"g\"\nprice = {h = 1}\n"), "compose.price.h: must be a quantity");
+  says(refusal("[compose]\nmaximize = \"g\"\nfront = {g = \"most\", h = \"least\"}\n"), "compose.front: must name one");
+  says(refusal("[compose]\nmaximize = \"g\"\nleast_share = 2\n"), "compose.least_share: must be");
+  says(refusal(kMaximize,
+               "[[parameter]]\nkey = \"body.thickness_mm\"\ndistribution = \"normal\"\nmean = 1\nsigma = 0.1\n"),
+       "a distribution is no family");
+}
+
+}  // namespace
+}  // namespace retrace::testing::compose_test

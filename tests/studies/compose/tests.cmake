@@ -1,0 +1,3 @@
+retrace_test(studies_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/compose_test.cpp ${CMAKE_CURRENT_LIST_DIR}/mixture_test.cpp ${CMAKE_CURRENT_LIST_DIR}/readings_test.cpp
+  LIBRARIES retrace::compose nlohmann_json::nlohmann_json)
