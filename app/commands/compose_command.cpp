@@ -13,6 +13,7 @@
 #include "report/results/result_plots.h"
 #include "studies/compose/io/compose_reader.h"
 #include "studies/compose/io/composition_files.h"
+#include "studies/compose/io/zone_designs.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/shared_sweep.h"
 
@@ -29,6 +30,12 @@ class CellsBar : public studies::OptimiseObserver, public studies::SweepObserver
   ProgressBar bar_;
 };
 
+/// The design of a zone's cells; empty where the part has fewer.
+std::string zone_design(const studies::Study& study, const studies::Composition& composition, std::size_t zone) {
+  if (!composition.best || zone >= composition.best->zones.size()) return {};
+  return studies::zone_design_text(study, *composition.best, zone);
+}
+
 /// \param session null without MPI
 ExitCode compose_part(const StudyOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
@@ -39,6 +46,8 @@ ExitCode compose_part(const StudyOptions& options, const CommonOptions& common, 
   ResultFiles files(common, study.files, "composition.json");
   files.add("composition.csv", [&] { return studies::composition_csv(study, request, composition); });
   files.add_drawing("composition", [&] { return report::composition_plot(study, request, composition); });
+  for (std::size_t zone = 0; zone < studies::most_zone_designs(request); ++zone)
+    files.add(fmt::format("zone_{}.toml", zone + 1), [&, zone] { return zone_design(study, composition, zone); });
   const std::filesystem::path file = files.reserve("composition.sqlite");
   files.prepare();
   studies::ResultStore store(file, studies::compose_layout(study), if_exists_of(options));
@@ -86,7 +95,7 @@ Command compose_command() {
               "`composition.sqlite` in the output folder and serve the next run. Exits with 1 if no part reaches "
               "what is asked.",
           .reads = {"retrace.study/1", "retrace.design/1"},
-          .writes = {"retrace.composition/1"},
+          .writes = {"retrace.composition/1", "retrace.design/1"},
           .begin = begins(study_arguments, run_compose)};
 }
 

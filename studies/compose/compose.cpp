@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/number_format.h"
+#include "studies/compose/composition_errors.h"
 #include "studies/optimise/evaluator.h"
 #include "studies/optimise/refine.h"
 
@@ -96,6 +97,8 @@ class Composer {
     if (!composition.best) return;
     count_zones(composition);
     draw_front(composition);
+    if (request_.errors)
+      composition.errors = effects_of_errors(study_, request_, *composition.best, observer_, cancel_);
   }
 
   /// Everything of the family that the store holds.

@@ -15,6 +15,14 @@
 
 namespace retrace::studies {
 
+/// How the angles between facets are spread, Gaussian and independent: in minutes of arc.
+struct ErrorSpread {
+  double cell_sigma_arcmin = 0.0;     ///< from cell to cell, which averages out over a zone
+  double zone_sigma_arcmin = 0.0;     ///< from zone to zone, the same in all cells of one, which does not
+  std::size_t parts = 1024;           ///< that are drawn
+  std::optional<double> worst_share;  ///< shares are told that are best for so many of them, the worst
+};
+
 struct ComposeRequest {
   std::vector<std::string> goals;                     ///< quantities, the least of which is to be as large as it can be
   std::vector<Constraint> of_cells;                   ///< a cell that breaks one is none of the family
@@ -30,6 +38,7 @@ struct ComposeRequest {
   std::size_t rounds = 4;                 ///< searches by prices, at most
   std::size_t starts = 3;                 ///< cells from which each goes out
   int looks = 20;                         ///< cells that are looked at from each
+  std::optional<ErrorSpread> errors;
 };
 
 /// A cell of the family: a design that was looked at.
@@ -58,6 +67,28 @@ struct FrontPart {
   std::vector<Zone> zones;
 };
 
+/// Of parts that are drawn.
+struct PartYield {
+  std::vector<double> leasts;           ///< their least goals, the lowest first
+  std::optional<std::size_t> good;      ///< how many reach what is asked
+  std::optional<double> mean_of_worst;  ///< of the share of the worst that is asked for
+};
+
+/// The same cells in shares that are best for the worst parts.
+struct SharesForWorst {
+  std::vector<double> shares;  ///< of the zones, in their order
+  PartYield yield;
+};
+
+/// What errors of the angles between facets make of a part.
+struct ErrorEffects {
+  std::vector<double> goals;                ///< with what spreads from cell to cell alone
+  std::vector<std::vector<double>> slopes;  ///< of the least goal, per minute of arc, by zone and angle; shares follow
+  PartYield yield;
+  std::optional<SharesForWorst> for_worst;
+  double missed_by = 0.0;  ///< the most by which polynomials missed goals that were computed
+};
+
 /// What is known about how good the part is.
 enum class Proof {
   family,     ///< all cells of the family were looked at: nothing is better
@@ -75,6 +106,7 @@ struct Composition {
   double unlimited = 0.0;             ///< merit with any number of zones, of any share
   std::vector<PartOfZones> by_zones;  ///< the best of 1, 2, ... zones at most, up to one more than the best has
   std::vector<FrontPart> front;
+  std::optional<ErrorEffects> errors;
   std::size_t failed = 0;  ///< designs that could not be computed
   std::string first_failure;
   std::size_t evaluations = 0;

@@ -3,11 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace retrace::studies {
 namespace {
 
 constexpr double kNoPrice = 1e-9;
+
+/// Ends of intervals are often reached but for rounding.
+std::string value_text(const Parameter& parameter, const ParameterValue& value) {
+  const double* const number = std::get_if<double>(&value.shown);
+  if (number == nullptr) return std::get<std::string>(value.shown);
+  if (!parameter.interval) return fmt::format("{:.6g}", *number);
+  const auto is_near = [&](double end) {
+    return std::abs(*number - end) < 1e-9 * (parameter.interval->to - parameter.interval->from);
+  };
+  for (const double end : {parameter.interval->from, parameter.interval->to})
+    if (is_near(end)) return fmt::format("{:.6g}", end);
+  return fmt::format("{:.4g}", *number);
+}
 
 }  // namespace
 
@@ -56,12 +70,9 @@ std::string goal_value_text(double value, bool is_margin) {
 
 std::string cell_text(const Study& study, const FamilyCell& cell) {
   std::string text;
-  for (std::size_t k = 0; k < cell.values.size(); ++k) {
-    const double* const number = std::get_if<double>(&cell.values[k].shown);
-    text +=
-        fmt::format("{}{} = {}", k == 0 ? "" : ", ", study.parameters[k].name,
-                    number != nullptr ? fmt::format("{:.6g}", *number) : std::get<std::string>(cell.values[k].shown));
-  }
+  for (std::size_t k = 0; k < cell.values.size(); ++k)
+    text += fmt::format("{}{} = {}", k == 0 ? "" : ", ", study.parameters[k].name,
+                        value_text(study.parameters[k], cell.values[k]));
   return text;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "studies/compose/cell_errors.h"
 #include "studies/quantity/io/constraint_reader.h"
 
 namespace retrace::studies {
@@ -68,6 +69,25 @@ void check_parameters(const Study& study) {
       throw InputError(parameter.location, "a distribution is no family of cells: give values, or from and to");
 }
 
+/// \throw InputError where cells have no angles between facets
+std::optional<ErrorSpread> read_errors(const Document& document, const Study& study) {
+  const auto cells = document.number_if("compose.cell_sigma_arcmin");
+  const auto zones = document.number_if("compose.zone_sigma_arcmin");
+  const char* const key = zones ? "compose.zone_sigma_arcmin" : "compose.cell_sigma_arcmin";
+  if (!cells && !zones) {
+    if (document.has("compose.worst_share"))
+      document.fail("compose.worst_share",
+                    "needs cell_sigma_arcmin or zone_sigma_arcmin: without errors of angle no "
+                    "part is worse than another");
+    return std::nullopt;
+  }
+  if (angles_of(study, some_values(study)) == 0)
+    document.fail(key, "means nothing here: cells have no facets that include angles");
+  ErrorSpread spread{cells.value_or(0.0), zones.value_or(0.0), {}, document.number_if("compose.worst_share")};
+  spread.parts = static_cast<std::size_t>(document.number("compose.parts"));
+  return spread;
+}
+
 }  // namespace
 
 ComposeRequest read_compose(const Study& study) {
@@ -100,6 +120,7 @@ ComposeRequest read_compose(const Study& study) {
   request.rounds = static_cast<std::size_t>(document.number("compose.rounds"));
   request.starts = static_cast<std::size_t>(document.number("compose.starts"));
   request.looks = static_cast<int>(document.number("compose.looks"));
+  request.errors = read_errors(document, study);
   return request;
 }
 

@@ -10,6 +10,7 @@
 #include "core/json_text.h"
 #include "core/number_format.h"
 #include "studies/compose/goals.h"
+#include "studies/compose/io/error_effects_files.h"
 
 namespace retrace::studies {
 namespace {
@@ -82,6 +83,7 @@ void add_part(const Study& study, const ComposeRequest& request, const Compositi
                         {"merit", of.mixture.merit},
                         {"zones", zones_json(study, of.zones)}});
   json["by_number_of_zones"] = by_zones;
+  if (composition.errors) json["errors_of_angle"] = error_effects_json(request, *composition.errors);
   if (!request.front) return;
   Json front = Json::array();
   for (const FrontPart& at : composition.front)
@@ -167,8 +169,8 @@ std::string prices_text(const Study& study, const ComposeRequest& request, const
     if (!(is_price(part.mixture.prices.goals[k]))) continue;
     const Quantity& quantity = goal_of(study, request, k);
     if (const auto cost = cost_of_limit(quantity, part.mixture, k))
-      text += fmt::format("binding: {}; 1 {} more there would cost {:.3g} % of the least margin\n", quantity.label(),
-                          quantity.limit()->unit, 100.0 * *cost);
+      text += fmt::format("binding: {}; 1 {} more there would cost {:.3g} points of the least margin\n",
+                          quantity.label(), quantity.limit()->unit, 100.0 * *cost);
     else
       text +=
           fmt::format("binding: {}; 1 more there would cost {:.3g}\n", quantity.label(), part.mixture.prices.goals[k]);
@@ -220,6 +222,7 @@ std::string composition_text(const Study& study, const ComposeRequest& request, 
   text += fmt::format("least: {}{}\n", goal_value_text(part.mixture.least, margins), margins ? " %" : "");
   if (!request.price.empty()) text += fmt::format("less its cost: {:.6g}\n", part.mixture.merit);
   text += prices_text(study, request, part) + worth_text(study, request, composition) + proof_text(composition);
+  if (composition.errors) text += "\n" + error_effects_text(request, *composition.errors, margins);
   return text;
 }
 

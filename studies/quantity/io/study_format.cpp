@@ -264,7 +264,15 @@ constexpr Row kComposeRows[] = {
      "Cells of the first look for every combination of discrete values, as in [optimize]."},
     {"rounds", Whole{{.low = 0.0, .high = 100.0}}, 4.0, "Searches by prices, at most."},
     {"starts", Whole{{.low = 1.0, .high = 100.0}}, 3.0, "Cells that each search goes out from."},
-    {"looks", Whole{{.low = 1.0, .high = 10'000.0}}, 20.0, "Cells that it looks at from each."}};
+    {"looks", Whole{{.low = 1.0, .high = 10'000.0}}, 20.0, "Cells that it looks at from each."},
+    {"cell_sigma_arcmin", Number{{.low = 0.0, .high = 60.0}}, kNone,
+     "Standard deviation of every angle between facets from cell to cell, which averages out over a zone."},
+    {"zone_sigma_arcmin", Number{{.low = 0.0, .high = 60.0}}, kNone,
+     "The same from zone to zone, which does not. With either of the two, what errors of angle do to the part is told; "
+     "0 is allowed."},
+    {"parts", Whole{{.low = 16.0, .high = 16'384.0}}, 1024.0, "Parts with errors that are drawn, for the yield."},
+    {"worst_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
+     "Shares are told, too, that are best for so many of the drawn parts, the worst: 0.05 for one in twenty."}};
 
 constexpr Row kRootRows[] = {
     {"title", Text{}, kNone, "Names the study in results."},

@@ -1,0 +1,84 @@
+#include "studies/compose/io/error_effects_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/number_format.h"
+#include "studies/compose/goals.h"
+
+namespace retrace::studies {
+namespace {
+
+/// So many of the drawn parts are better than what is told of them.
+constexpr double kMostParts = 0.95;
+
+double least_of_most(const PartYield& yield) {
+  const double below = (1.0 - kMostParts) * static_cast<double>(yield.leasts.size());
+  return yield.leasts[static_cast<std::size_t>(below)];
+}
+
+nlohmann::ordered_json yield_json(const PartYield& yield) {
+  nlohmann::ordered_json json = {{"parts", yield.leasts.size()}};
+  if (yield.good) json["good"] = *yield.good;
+  json["least_of_95_percent"] = least_of_most(yield);
+  if (yield.mean_of_worst) json["mean_of_worst"] = *yield.mean_of_worst;
+  return json;
+}
+
+std::string yield_text(const ComposeRequest& request, const PartYield& yield, bool are_margins) {
+  const char* const unit = are_margins ? " %" : "";
+  std::string text;
+  if (yield.good)
+    text += fmt::format("{} of {} parts reach {}{}, ", *yield.good, yield.leasts.size(),
+                        goal_value_text(*request.least_goal, are_margins), unit);
+  text += fmt::format("95 % of {} {}{} or more", yield.good ? "them have" : "parts have",
+                      goal_value_text(least_of_most(yield), are_margins), unit);
+  if (yield.mean_of_worst)
+    text += fmt::format(", the mean of the worst {:g} % is {}{}", 100.0 * *request.errors->worst_share,
+                        goal_value_text(*yield.mean_of_worst, are_margins), unit);
+  return text + "\n";
+}
+
+}  // namespace
+
+nlohmann::ordered_json error_effects_json(const ComposeRequest& request, const ErrorEffects& effects) {
+  nlohmann::ordered_json json = {{"cell_sigma_arcmin", request.errors->cell_sigma_arcmin},
+                                 {"zone_sigma_arcmin", request.errors->zone_sigma_arcmin},
+                                 {"least", *std::ranges::min_element(effects.goals)},
+                                 {"goals", effects.goals},
+                                 {"slopes_per_arcmin", effects.slopes},
+                                 {"yield", yield_json(effects.yield)}};
+  if (effects.for_worst) {
+    json["worst_share"] = *request.errors->worst_share;
+    json["best_for_worst"] = {{"shares", effects.for_worst->shares}, {"yield", yield_json(effects.for_worst->yield)}};
+  }
+  json["missed_by"] = effects.missed_by;
+  return json;
+}
+
+std::string error_effects_text(const ComposeRequest& request, const ErrorEffects& effects, bool are_margins) {
+  const char* const unit = are_margins ? " %" : "";
+  const auto shown = [&](double value) { return goal_value_text(value, are_margins) + unit; };
+  std::string text = fmt::format("every angle spread by {:g}' from cell to cell: least {}\n",
+                                 request.errors->cell_sigma_arcmin, shown(*std::ranges::min_element(effects.goals)));
+  text += fmt::format("and by {:g}' from zone to zone: {}", request.errors->zone_sigma_arcmin,
+                      yield_text(request, effects.yield, are_margins));
+  for (std::size_t z = 0; z < effects.slopes.size(); ++z) {
+    text += fmt::format("zone {}: 1' more of its angles changes the least by", z + 1);
+    for (std::size_t k = 0; k < effects.slopes[z].size(); ++k)
+      text += (k == 0 ? " " : ", ") + shown(effects.slopes[z][k]);
+    text += "\n";
+  }
+  if (effects.for_worst) {
+    text += "best for the worst parts: shares of";
+    for (std::size_t z = 0; z < effects.for_worst->shares.size(); ++z)
+      text += fmt::format("{} {:.2f} %", z == 0 ? "" : ",", 100.0 * effects.for_worst->shares[z]);
+    text += ": " + yield_text(request, effects.for_worst->yield, are_margins);
+  }
+  return text + fmt::format("polynomials in the errors missed goals that were computed by {} at most\n",
+                            shown(effects.missed_by));
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,115 @@
+#include "studies/compose/part_yield.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "studies/sweep/sampling.h"
+
+namespace retrace::studies {
+namespace {
+
+/// A goal of a part.
+using PartGoal = std::pair<std::size_t, std::size_t>;
+
+double value_of(const std::vector<std::vector<double>>& zones, const std::vector<double>& shares, std::size_t goal) {
+  double value = 0.0;
+  for (std::size_t z = 0; z < zones.size(); ++z) value += shares[z] * zones[z][goal];
+  return value;
+}
+
+std::size_t worst_goal(const std::vector<std::vector<double>>& zones, const std::vector<double>& shares) {
+  std::size_t worst = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t goal = 0; goal < zones.front().size(); ++goal)
+    if (const double value = value_of(zones, shares, goal); value < least) {
+      least = value;
+      worst = goal;
+    }
+  return worst;
+}
+
+/// Columns are the shares, the value below which a part is one of the worst, and how far each part lies below it.
+LinearProgramme yield_programme(const DrawnParts& parts, double worst_share, const Bounds& bounds,
+                                const std::set<PartGoal>& rows) {
+  LinearProgramme programme;
+  const std::size_t zones = parts.front().size();
+  std::vector<LinearProgramme::Term> whole;
+  for (std::size_t z = 0; z < zones; ++z) whole.emplace_back(programme.add_column(bounds, 0.0), 1.0);
+  const std::size_t threshold = programme.add_column({}, 1.0);
+  const double weight = -1.0 / (worst_share * static_cast<double>(parts.size()));
+  const std::size_t first = threshold + 1;
+  for (std::size_t part = 0; part < parts.size(); ++part) programme.add_column({.least = 0.0}, weight);
+  programme.add_row({1.0, 1.0}, whole);
+  for (const auto& [part, goal] : rows) {
+    std::vector<LinearProgramme::Term> terms = {{threshold, -1.0}, {first + part, 1.0}};
+    for (std::size_t z = 0; z < zones; ++z) terms.emplace_back(z, parts[part][z][goal]);
+    programme.add_row({.least = 0.0}, std::move(terms));
+  }
+  return programme;
+}
+
+}  // namespace
+
+DrawnParts drawn_parts(const std::vector<ErrorResponse>& responses, double sigma_arcmin, std::size_t parts,
+                       std::uint32_t seed) {
+  std::size_t angles = 0;
+  for (const ErrorResponse& response : responses) angles += response.angles();
+  const UnitSamples samples(UnitSamples::Kind::sobol, std::max<std::size_t>(1, angles), parts, seed);
+  const boost::math::normal_distribution<double> normal;
+  DrawnParts drawn;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::vector<double> unit = samples.at(part);
+    auto next = unit.begin();
+    std::vector<std::vector<double>>& zones = drawn.emplace_back();
+    for (const ErrorResponse& response : responses) {
+      std::vector<double> errors;
+      for (std::size_t k = 0; k < response.angles(); ++k)
+        errors.push_back(sigma_arcmin * boost::math::quantile(normal, *next++));
+      zones.push_back(response.at(errors));
+    }
+  }
+  return drawn;
+}
+
+std::vector<double> leasts_of(const DrawnParts& parts, const std::vector<double>& shares) {
+  std::vector<double> leasts;
+  for (const auto& zones : parts) leasts.push_back(value_of(zones, shares, worst_goal(zones, shares)));
+  return leasts;
+}
+
+double mean_of_worst(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  const double count = share * static_cast<double>(values.size());
+  double sum = 0.0;
+  for (std::size_t k = 0; k < values.size() && static_cast<double>(k) < count; ++k)
+    sum += values[k] * std::min(1.0, count - static_cast<double>(k));
+  return sum / count;
+}
+
+std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double worst_share, const Bounds& bounds,
+                                               const Cancellation* cancel) {
+  const std::size_t zones = parts.front().size();
+  std::vector<double> shares(zones, 1.0 / static_cast<double>(zones));
+  std::set<PartGoal> rows;
+  for (std::size_t part = 0; part < parts.size(); ++part) rows.emplace(part, worst_goal(parts[part], shares));
+  // Rows that the shares so far miss are added until none is: those of the other goals do not bind.
+  for (;;) {
+    const LinearOptimum optimum = solve(yield_programme(parts, worst_share, bounds, rows), cancel);
+    if (optimum.kind != LinearOptimum::Kind::optimal) return std::nullopt;
+    shares.assign(optimum.values.begin(), optimum.values.begin() + static_cast<std::ptrdiff_t>(zones));
+    const std::size_t before = rows.size();
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const std::size_t goal = worst_goal(parts[part], shares);
+      const double missed =
+          optimum.values[zones] - optimum.values[zones + 1 + part] - value_of(parts[part], shares, goal);
+      if (missed > 1e-9 * (1.0 + std::abs(optimum.objective))) rows.emplace(part, goal);
+    }
+    if (rows.size() == before) return shares;
+  }
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,120 @@
+// `retrace compose` as users meet it: what it writes, read again by other commands; runs that go on, say no or are
+// refused.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/app/program.h"
+#include "tests/studies/sweep/stored_points.h"
+
+namespace retrace::test::compose_command_test {
+namespace {
+
+constexpr std::array<int, 4> kAzimuthsDeg = {0, 60, 120, 210};
+
+/// Canted cube corners that stand turned in the part, and the light that they send back from steep directions.
+std::string study(const std::string& keys, const std::string& cutoff = "1e-2") {
+  return "design = \"" + example("honeycomb_infinite.toml") +
+         "\"\n"
+         "[[parameter]]\nkey = \"element.cant_deg\"\nname = \"cant\"\nfrom = 0\nto = 12\n"
+         "[[parameter]]\nkey = \"analysis.rotation_deg\"\nname = \"turn\"\nfrom = 0\nto = 360\n"
+         "[[quantity]]\nkind = \"rre\"\nname = \"g\"\nover_directions = \"each\"\n"
+         "incidence_deg = 35\nazimuth_deg = [0, 60, 120, 210]\n"
+         "[analysis]\nengine = \"exact\"\ncutoff = " +
+         cutoff + "\n[compose]\nmaximize = \"g\"\nscan = 17\n" + keys;
+}
+
+Arguments compose(const Arguments& more = {}) {
+  return with({"compose", "study.toml", "-o", "out"}, more);
+}
+
+TEST(ComposeCommand, WritesZonesThatMakeThePart) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study("most_zones = 3\nrounds = 1\nzone_sigma_arcmin = 1\nparts = 64\n"));
+  const Outcome outcome = retrace(folder, compose());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("least with at most 1 zone: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("from zone to zone: "), std::string::npos) << outcome.out;
+  const Json json = folder.json("out/composition.json");
+  const Json& zones = json.at("zones");
+  const std::vector<std::string> names = folder.names();
+  for (const std::string name : {"composition.csv", "composition.svg", "composition.png", "composition.sqlite"})
+    EXPECT_EQ(std::ranges::count(names, "out/" + name), 1) << name;
+  // Each zone's design, traced by another command in the part's directions, in the shares that are told.
+  for (std::size_t goal = 0; goal < kAzimuthsDeg.size(); ++goal) {
+    double part = 0.0;
+    for (std::size_t z = 0; z < zones.size(); ++z) {
+      const double azimuth_deg = kAzimuthsDeg[goal] - zones[z].at("cell").at("turn").get<double>();
+      const Json traced =
+          retrace_json(folder, {"rre", "out/zone_" + std::to_string(z + 1) + ".toml", "--engine", "exact", "--cutoff",
+                                "1e-2", "--incidence", "35", "--azimuth=" + std::to_string(azimuth_deg)});
+      part += zones[z].at("share").get<double>() * traced.at("points").at(0).at("rre").get<double>();
+    }
+    EXPECT_NEAR(part, json.at("goals").at(goal).at("value").get<double>(), 1e-5);
+  }
+}
+
+TEST(ComposeCommand, GoesOnWithItsStore) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study("most_zones = 1\nrounds = 0\n"));
+  ASSERT_EQ(retrace(folder, compose()).code, 0);
+  const Json first = folder.json("out/composition.json");
+  EXPECT_EQ(retrace(folder, compose()).code, 2) << "an existing store needs a word";
+  // Other rules for the mixture take all cells that are there.
+  folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
+  ASSERT_EQ(retrace(folder, compose({"--resume"})).code, 0);
+  const Json second = folder.json("out/composition.json");
+  EXPECT_EQ(second.at("evaluations"), first.at("evaluations"));
+  EXPECT_GE(second.at("least").get<double>(), first.at("least").get<double>());
+  EXPECT_EQ(second.at("by_number_of_zones").at(0).at("least"), first.at("least"));
+}
+
+TEST(ComposeCommand, SaysNoAndWhy) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study("least = 0.99\nrounds = 0\n"));
+  const Outcome outcome = retrace(folder, compose({"--quiet"}));
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("retrace: no such part: the least is "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("exclude every mixture"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(folder.json("out/composition.json").contains("not_reached"));
+}
+
+TEST(ComposeCommand, RefusesWhatMeansNothing) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& text, const std::string& begin) {
+    folder.write("study.toml", text);
+    const Outcome outcome = retrace(folder, compose());
+    expect_refused(outcome, begin);
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"study.toml"});
+  };
+  refused(study("least_share = 0.7\nmost_share = 0.6\n"), "study.toml:24: compose.least_share: must be <= most_share");
+  refused(study("most_zones = 0\n"), "study.toml:24: compose.most_zones: must be");
+  refused(study("most_share = 2\n"), "study.toml:24: compose.most_share: must be");
+  refused(study("worst_share = 0.1\n"), "study.toml:24: compose.worst_share: needs cell_sigma_arcmin or");
+  refused(study("price = {hours = 1}\n"), "study.toml:24: compose.price.hours: must be");
+}
+
+TEST(ComposeCommand, EndsSoonWhenItIsInterrupted) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study("rounds = 100\nstarts = 100\nlooks = 10000\n", "1e-6"));
+  Child child(folder.path(), with({RETRACE_PROGRAM}, compose({"--quiet"})));
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (stored_points(folder.path() / "out/composition.sqlite").size() < 5) {
+    ASSERT_FALSE(child.has_ended()) << "it was over too soon";
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "no cells were stored";
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  child.interrupt();
+  EXPECT_EQ(child.wait(std::chrono::seconds(60)).code, 130);
+  EXPECT_EQ(folder.json("out/composition.json").at("complete"), false);
+}
+
+}  // namespace
+}  // namespace retrace::test::compose_command_test

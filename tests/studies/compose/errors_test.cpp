@@ -1,0 +1,199 @@
+// Errors of angle in composed parts: responses, yields and shares for the worst parts against closed forms and grids.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "core/error.h"
+#include "studies/compose/cell_errors.h"
+#include "studies/compose/io/compose_reader.h"
+#include "studies/compose/io/composition_files.h"
+#include "studies/compose/part_yield.h"
+#include "studies/quantity/io/study_reader.h"
+
+namespace retrace::testing::errors_test {
+namespace {
+
+using namespace studies;
+using Numbers = std::vector<double>;
+
+const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
+
+/// The response of a function whose goals are computed where it asks for them.
+ErrorResponse response_to(std::size_t angles, double step, const std::function<Numbers(const Numbers&)>& goals) {
+  std::vector<Numbers> computed;
+  for (const Numbers& errors : ErrorResponse::errors_to_compute(angles, step)) computed.push_back(goals(errors));
+  return {angles, step, computed};
+}
+
+TEST(ErrorResponse, IsExactOfTheSecondDegree) {
+  const auto goals = [](const Numbers& e) {
+    return Numbers{1.0 + 2.0 * e[0] - e[1] + 0.5 * e[0] * e[0] - e[1] * e[2] + 2.0 * e[2] * e[2], e[2] - e[0] * e[1]};
+  };
+  const ErrorResponse response = response_to(3, 0.3, goals);
+  for (const Numbers& e : {Numbers{0, 0, 0}, Numbers{1, -2, 0.5}, Numbers{-0.7, 0.1, 3}})
+    for (std::size_t g = 0; g < 2; ++g) EXPECT_NEAR(response.at(e)[g], goals(e)[g], 1e-12);
+  EXPECT_NEAR(response.slope(0, 0), 2.0, 1e-12);
+  EXPECT_NEAR(response.slope(2, 1), 1.0, 1e-12);
+  // Means of squares are the variance, those of products of two angles nothing.
+  EXPECT_NEAR(response.spread(0.4).at({0, 0, 0})[0], 1.0 + 0.16 * (0.5 + 2.0), 1e-12);
+  EXPECT_NEAR(response.spread(0.4).at({0, 0, 0})[1], 0.0, 1e-12);
+}
+
+TEST(ErrorResponse, HasTheMeanOfALobe) {
+  // The mean of exp(-e^2 / 2) over a Gaussian of deviation s is 1 / sqrt(1 + s^2).
+  const double sigma = 0.2;
+  const ErrorResponse response =
+      response_to(1, std::sqrt(3.0) * sigma, [](const Numbers& e) { return Numbers{std::exp(-0.5 * e[0] * e[0])}; });
+  EXPECT_NEAR(response.spread(sigma).at({0.0})[0], 1.0 / std::sqrt(1.0 + sigma * sigma), 1e-5);
+}
+
+ErrorResponse linear(const Numbers& at_none, const Numbers& slopes) {
+  return response_to(1, 1.0, [&](const Numbers& e) {
+    Numbers goals = at_none;
+    for (std::size_t g = 0; g < goals.size(); ++g) goals[g] += slopes[g] * e[0];
+    return goals;
+  });
+}
+
+TEST(PartYield, OfLinearGoalsIsThatOfTheNormalDistribution) {
+  const DrawnParts parts = drawn_parts({linear({1.0}, {1.0}), linear({1.0}, {-2.0})}, 0.5, 4096, 1);
+  const Numbers leasts = leasts_of(parts, {0.6, 0.4});
+  const double sigma = 0.5 * std::hypot(0.6, 0.8);
+  const auto above = [&](double limit) {
+    return static_cast<double>(std::ranges::count_if(leasts, [&](double l) { return l >= limit; })) / 4096.0;
+  };
+  for (const double z : {-1.5, 0.0, 1.0})
+    EXPECT_NEAR(above(1.0 + z * sigma), 0.5 * std::erfc(z / std::sqrt(2.0)), 5e-3) << z;
+  // The mean below the 5 % quantile lies density / 0.05 deviations below the middle.
+  EXPECT_NEAR(mean_of_worst(leasts, 0.05), 1.0 - 2.0627 * sigma, 0.01);
+}
+
+TEST(PartYield, TakesPartOfAPart) {
+  EXPECT_NEAR(mean_of_worst({4.0, 1.0, 3.0, 2.0}, 0.375), (1.0 + 0.5 * 2.0) / 1.5, 1e-12);
+  EXPECT_NEAR(mean_of_worst({4.0, 1.0, 3.0, 2.0}, 1.0), 2.5, 1e-12);
+  EXPECT_NEAR(mean_of_worst({4.0, 1.0, 3.0, 2.0}, 0.1), 1.0, 1e-12);
+}
+
+TEST(PartYield, SharesForTheWorstAreNeverWorseThanAGrid) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(0.0, 1.0);
+  for (int trial = 0; trial < 4; ++trial) {
+    std::vector<ErrorResponse> zones;
+    for (int z = 0; z < 3; ++z)
+      zones.push_back(linear({number(random), number(random), number(random)},
+                             {number(random) - 0.5, number(random) - 0.5, number(random) - 0.5}));
+    const DrawnParts parts = drawn_parts(zones, 0.5, 64, 1);
+    const auto worst = [&](const Numbers& shares) { return mean_of_worst(leasts_of(parts, shares), 0.1); };
+    const auto best = best_shares(parts, 0.1, {0.05, 0.8}, nullptr);
+    ASSERT_TRUE(best.has_value());
+    double of_grid = -1e9;
+    for (int i = 2; i <= 32; ++i)
+      for (int j = 2; j <= 32 && i + j <= 38; ++j)
+        if (40 - i - j <= 32) of_grid = std::max(of_grid, worst({i / 40.0, j / 40.0, (40 - i - j) / 40.0}));
+    EXPECT_GE(worst(*best), of_grid - 1e-9);
+    EXPECT_LE(worst(*best), of_grid + 0.05);
+    for (const double share : *best) {
+      EXPECT_GE(share, 0.05 - 1e-9);
+      EXPECT_LE(share, 0.8 + 1e-9);
+    }
+  }
+}
+
+/// What a prism's own error of angle makes of a goal that is best at one minute of arc.
+class Peak : public Quantity {
+ public:
+  explicit Peak(double side) : Quantity(side > 0.0 ? "g.1" : "g.2"), side_(side) {}
+  std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
+    const double error = candidate.design().part().angle_errors.dihedral_error_arcmin[0];
+    return Measured{2.0 + side_ * (error - 1.0) - std::pow(error - 1.0, 2.0), 0.0};
+  }
+
+ private:
+  double side_;
+};
+
+Study study_of_peaks(const std::string& keys) {
+  Study study = parse_study(
+      "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"surface.dihedral_error_arcmin\"\nvalues = [0, 1, 2]\n"
+      "[[quantity]]\nkind = \"elements_full\"\nname = \"g.1\"\n[[quantity]]\nkind = \"elements_full\"\nname = "
+      "\"g.2\"\n[compose]\nmaximize = \"g\"\n" +
+          keys,
+      kFolder + "study.toml");
+  study.quantities = {std::make_shared<Peak>(0.5), std::make_shared<Peak>(-0.5)};
+  return study;
+}
+
+TEST(ComposeErrors, AreThoseOfTheClosedForm) {
+  // One cell, at an error of 1, is best. A zone's further error e leaves the least at 2 - |e| / 2 - e^2, less the
+  // variance of the cells.
+  const Study study = study_of_peaks(
+      "least = 1.5\nmost_zones = 1\ncell_sigma_arcmin = 0.3\nzone_sigma_arcmin = 0.4\nparts = 4096\nworst_share = "
+      "0.1\n");
+  ResultStore store("", compose_layout(study), IfExists::refuse);
+  const ComposeRequest request = read_compose(study);
+  const Composition composition = compose(study, request, store, nullptr, nullptr);
+  ASSERT_TRUE(composition.errors.has_value());
+  const ErrorEffects& effects = *composition.errors;
+  for (const double goal : effects.goals) EXPECT_NEAR(goal, 2.0 - 0.09, 1e-9);
+  const double most = -0.25 + std::sqrt(0.0625 + 0.5 - 0.09);
+  EXPECT_NEAR(static_cast<double>(*effects.yield.good) / 4096.0, std::erf(most / (0.4 * std::sqrt(2.0))), 5e-3);
+  EXPECT_NEAR(effects.missed_by, 0.0, 1e-9);
+  // Prices of 1/2 each: what one goal gains the other loses.
+  const double price = composition.best->mixture.prices.goals[0];
+  EXPECT_NEAR(effects.slopes.at(0).at(0), price * 0.5 - (1.0 - price) * 0.5, 1e-9);
+  EXPECT_NEAR(effects.for_worst->shares.at(0), 1.0, 1e-12);
+  const auto json = nlohmann::json::parse(composition_json(study, request, composition, 1.0)).at("errors_of_angle");
+  EXPECT_EQ(json.at("yield").at("good"), *effects.yield.good);
+  EXPECT_NE(composition_text(study, request, composition).find("of 4096 parts reach 1.5, 95 % of them have"),
+            std::string::npos);
+}
+
+TEST(ComposeErrors, AreAddedToThoseOfTheDesign) {
+  // A cube corner's three angles, against the same design with them in its file.
+  const std::string text =
+      "design = \"../honeycomb_infinite.toml\"\n[[parameter]]\nkey = \"surface.dihedral_error_arcmin\"\nvalues = [5]\n"
+      "[[quantity]]\nkind = \"rre\"\nincidence_deg = [0, 15]\nover_directions = \"each\"\n[compose]\nmaximize = "
+      "\"rre\"\n";
+  const Study study = parse_study(text, kFolder + "study.toml");
+  EXPECT_EQ(angles_of(study, some_values(study)), 3U);
+  const auto goals =
+      goals_with_errors(study, read_compose(study), {0, some_values(study), {}}, {{0, 0, 0}, {3, 0, -2}}, nullptr);
+  const auto measured = [&](const std::string& values) {
+    std::string with = text;
+    with.replace(with.find("[5]"), 3, values);
+    const Study other = parse_study(with, kFolder + "study.toml");
+    const Candidate candidate = make_candidate(other, some_values(other));
+    Numbers all;
+    for (const auto& quantity : other.quantities) all.push_back(*quantity->measure(candidate, nullptr)->value);
+    return all;
+  };
+  EXPECT_EQ(goals[0], measured("[5]"));
+  EXPECT_EQ(goals[1], measured("[[8, 5, 3]]"));
+  EXPECT_NE(goals[0], goals[1]);
+}
+
+TEST(ComposeErrors, RefuseWhatMeansNothing) {
+  const auto refusal = [](const std::string& keys) -> std::string {
+    try {
+      read_compose(study_of_peaks(keys));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_NE(refusal("worst_share = 0.1\n").find("compose.worst_share: needs cell_sigma_arcmin or"), std::string::npos);
+  EXPECT_NE(refusal("zone_sigma_arcmin = -1\n").find("compose.zone_sigma_arcmin: must be"), std::string::npos);
+  EXPECT_NE(refusal("zone_sigma_arcmin = 1\nworst_share = 0\n").find("compose.worst_share: must be"),
+            std::string::npos);
+  EXPECT_NE(refusal("parts = 3\n").find("compose.parts: must be"), std::string::npos);
+  EXPECT_EQ(refusal("zone_sigma_arcmin = 0\n"), "");
+}
+
+}  // namespace
+}  // namespace retrace::testing::errors_test

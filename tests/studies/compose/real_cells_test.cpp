@@ -1,0 +1,120 @@
+// Parts of zones of cells that are traced: against brute force over a grid, against `optimise`, and the designs that
+// are written of zones, traced again.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "studies/compose/compose.h"
+#include "studies/compose/io/compose_reader.h"
+#include "studies/compose/io/zone_designs.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/optimise/io/optimise_reader.h"
+#include "studies/quantity/io/study_reader.h"
+
+namespace retrace::testing::real_cells_test {
+namespace {
+
+using namespace studies;
+
+constexpr std::size_t kGoals = 4;
+using Goals = std::array<double, kGoals>;
+
+/// Canted cube corners that stand turned in the part, and the light that they send back from steep directions.
+Study study_of_corners(const std::string& keys) {
+  return parse_study(
+      "design = \"../honeycomb_infinite.toml\"\n"
+      "[[parameter]]\nkey = \"element.cant_deg\"\nname = \"cant\"\nfrom = 0\nto = 12\n"
+      "[[parameter]]\nkey = \"analysis.rotation_deg\"\nname = \"turn\"\nfrom = 0\nto = 360\n"
+      "[[quantity]]\nkind = \"rre\"\nname = \"g\"\nover_directions = \"each\"\n"
+      "incidence_deg = 35\nazimuth_deg = [0, 60, 120, 210]\n"
+      "[analysis]\nengine = \"exact\"\ncutoff = 1e-2\n" +
+          keys,
+      std::string(RETRACE_SOURCE_DIR) + "/examples/studies/study.toml");
+}
+
+Composition composed(const Study& study) {
+  ResultStore store("", compose_layout(study), IfExists::refuse);
+  return compose(study, read_compose(study), store, nullptr, nullptr);
+}
+
+Goals goals_of(const Study& study, const Candidate& candidate) {
+  Goals goals{};
+  for (std::size_t k = 0; k < kGoals; ++k) goals[k] = *study.quantities[k]->measure(candidate, nullptr)->value;
+  return goals;
+}
+
+/// Of three cells in twentieths of the area, the largest least goal.
+double best_in_twentieths(const Goals& a, const Goals& b, const Goals& c) {
+  double best = 0.0;
+  for (int i = 0; i <= 20; ++i)
+    for (int j = 0; i + j <= 20; ++j) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < kGoals; ++k)
+        least = std::min(least, (i * a[k] + j * b[k] + (20 - i - j) * c[k]) / 20.0);
+      best = std::max(best, least);
+    }
+  return best;
+}
+
+constexpr const char* kThreeZones = "[compose]\nmaximize = \"g\"\nmost_zones = 3\n";
+
+TEST(RealCells, AreNeverWorseThanThreeZonesOnAGrid) {
+  const Study study = study_of_corners(kThreeZones);
+  std::vector<Goals> cells;
+  for (const double cant : {0.0, 4.0, 8.0, 12.0})
+    for (const double turn : {0.0, 60.0, 120.0, 180.0, 240.0, 300.0}) {
+      const PointValues values = {Parameter::value_of(cant), Parameter::value_of(turn)};
+      cells.push_back(goals_of(study, make_candidate(study, values)));
+    }
+  double best = 0.0;
+  for (std::size_t a = 0; a < cells.size(); ++a)
+    for (std::size_t b = a + 1; b < cells.size(); ++b)
+      for (std::size_t c = b + 1; c < cells.size(); ++c)
+        best = std::max(best, best_in_twentieths(cells[a], cells[b], cells[c]));
+  const Composition composition = composed(study);
+  ASSERT_TRUE(composition.best.has_value());
+  EXPECT_LE(composition.best->zones.size(), 3U);
+  EXPECT_GE(composition.best->mixture.least, best);
+  EXPECT_GT(composition.best->mixture.least, composition.by_zones.front().mixture.least);
+}
+
+TEST(RealCells, OfOneZoneAreWhatOptimiseFinds) {
+  const std::string one = "[compose]\nmaximize = \"g\"\nmost_zones = 1\nrounds = 0\n";
+  const Study study = study_of_corners(one);
+  const Composition composition = composed(study);
+  ASSERT_TRUE(composition.best && composition.single);
+  ASSERT_EQ(composition.best->zones.size(), 1U);
+  // `optimize` with the least of the same directions as a quantity of its own.
+  const Study least = study_of_corners(
+      "[[quantity]]\nkind = \"rre\"\nname = \"least\"\nover_directions = \"least\"\nincidence_deg = 35\n"
+      "azimuth_deg = [0, 60, 120, 210]\n[optimize]\nmaximize = \"least\"\n");
+  ResultStore store("", optimise_layout(least), IfExists::refuse);
+  const Optimum optimum = optimise(least, read_optimise(least), store, nullptr, nullptr);
+  ASSERT_TRUE(optimum.best.has_value());
+  EXPECT_EQ(composition.best->mixture.least, *optimum.best->objective);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_EQ(composition.single->values[k].shown, optimum.best->values[k].shown);
+}
+
+TEST(RealCells, AreWrittenAsTheDesignsOfTheirZones) {
+  const Study study = study_of_corners(kThreeZones);
+  const Composition composition = composed(study);
+  ASSERT_TRUE(composition.best.has_value());
+  Goals part{};
+  for (std::size_t z = 0; z < composition.best->zones.size(); ++z) {
+    const Zone& zone = composition.best->zones[z];
+    const std::string text = zone_design_text(study, *composition.best, z);
+    EXPECT_TRUE(text.starts_with("# Zone " + std::to_string(z + 1) + " of ")) << text;
+    const Candidate in_study = make_candidate(study, zone.cell.values);
+    const Goals goals = goals_of(study, {parse_design(text, "zone.toml"), in_study.analysis(), in_study.machining()});
+    for (std::size_t k = 0; k < kGoals; ++k) part[k] += zone.share * goals[k];
+  }
+  for (std::size_t k = 0; k < kGoals; ++k) EXPECT_NEAR(part[k], composition.best->mixture.goals[k], 1e-9);
+}
+
+}  // namespace
+}  // namespace retrace::testing::real_cells_test
