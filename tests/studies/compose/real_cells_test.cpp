@@ -96,8 +96,7 @@ TEST(RealCells, OfOneZoneAreWhatOptimiseFinds) {
   const Optimum optimum = optimise(least, read_optimise(least), store, nullptr, nullptr);
   ASSERT_TRUE(optimum.best.has_value());
   EXPECT_EQ(composition.best->mixture.least, *optimum.best->objective);
-  for (std::size_t k = 0; k < 2; ++k)
-    EXPECT_EQ(composition.single->values[k].shown, optimum.best->values[k].shown);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(composition.single->values[k].shown, optimum.best->values[k].shown);
 }
 
 TEST(RealCells, AreWrittenAsTheDesignsOfTheirZones) {
