@@ -355,17 +355,21 @@ raytrace::Optics with_back_index(const Design& design, raytrace::Optics optics, 
   return optics;
 }
 
-/// Gives the wet elements of a design their back index, at every wavelength.
+/// Gives chosen elements of a design their back index.
+void wet(const Design& design, const std::shared_ptr<const geometry::ChosenElements>& chosen,
+         raytrace::Optics& optics) {
+  if (chosen->is_nothing()) return;
+  raytrace::Optics wet_optics = with_back_index(design, optics, design.wet_back->index);
+  if (chosen->is_everything())
+    optics = std::move(wet_optics);
+  else
+    optics.wet = std::make_shared<const raytrace::WetBack>(raytrace::WetBack{std::move(wet_optics), chosen});
+}
+
+/// At every wavelength.
 void add_wet_back(const Design& design, OpticalModel& model) {
   model.wet_elements = std::make_shared<const geometry::ChosenElements>(model.part, design.wet_back->where);
-  if (model.wet_elements->is_nothing()) return;
-  for (SpectralOptics& at : model.spectral) {
-    raytrace::Optics wet = with_back_index(design, at.optics, design.wet_back->index);
-    if (model.wet_elements->is_everything())
-      at.optics = std::move(wet);
-    else
-      at.optics.wet = std::make_shared<const raytrace::WetBack>(raytrace::WetBack{std::move(wet), model.wet_elements});
-  }
+  for (SpectralOptics& at : model.spectral) wet(design, model.wet_elements, at.optics);
   model.optics = nearest(model.spectral, model.wavelength_nm).optics;
 }
 
@@ -375,7 +379,7 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
   check_taken(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
   if (entrances == Entrances::plane && design.entrance)
     throw InputError(design.where(design.entrance_key()),
-                     "a [front] is taken by retrace rre, photometry and inspect alone");
+                     "a [front] is taken by retrace rre, photometry, inspect and rays alone");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.entrance) model.entrance = entrance_of_design(design, model.part);
@@ -383,22 +387,57 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
   return model;
 }
 
+struct OpticsOfDesign::Hidden {
+  const Design& design;
+  const materials::MaterialLibrary& library;
+  materials::Material material;
+  std::optional<surface_models::HeightMap> map;
+  surface_models::FacetForm form;
+};
+
+OpticsOfDesign::OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library,
+                               std::vector<std::string>& warnings) {
+  materials::Material material = material_of(design, library);
+  if (!design.substance.refractive_index) require_temperature(design, material);
+  std::optional<surface_models::HeightMap> map = facet_map(design, warnings);
+  hidden_ = std::make_unique<const Hidden>(
+      Hidden{design, library, std::move(material), std::move(map), form_of_design(design, warnings)});
+}
+OpticsOfDesign::~OpticsOfDesign() = default;
+
+raytrace::Optics OpticsOfDesign::at(double wavelength_nm) const {
+  const Hidden& h = *hidden_;
+  raytrace::Optics optics = optics_at(h.design, h.material, h.library, h.map, wavelength_nm);
+  optics.facet_form = h.form;
+  return optics;
+}
+
+raytrace::Optics OpticsOfDesign::at(double wavelength_nm,
+                                    const std::shared_ptr<const geometry::ChosenElements>& chosen) const {
+  raytrace::Optics optics = at(wavelength_nm);
+  if (chosen) wet(hidden_->design, chosen, optics);
+  return optics;
+}
+
+bool OpticsOfDesign::is_backed_at(double wavelength_nm) const {
+  return hidden_->design.substance.refractive_index || is_valid_at(hidden_->material, wavelength_nm);
+}
+
+const materials::Material& OpticsOfDesign::material() const {
+  return hidden_->material;
+}
+
 OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library) {
   OpticalModel model;
-  const materials::Material material = material_of(design, library);
-  if (!design.substance.refractive_index) require_temperature(design, material);
   const materials::Spectrum light = wavelengths_to_trace(design);
-  const std::optional<surface_models::HeightMap> map = facet_map(design, model.warnings);
+  const OpticsOfDesign optics(design, library, model.warnings);
   for (std::size_t k = 0; k < light.size(); ++k)
-    model.spectral.push_back({light.wavelengths_nm[k], light.weights[k],
-                              optics_at(design, material, library, map, light.wavelengths_nm[k])});
-  const surface_models::FacetForm form = form_of_design(design, model.warnings);
-  for (SpectralOptics& at : model.spectral) at.optics.facet_form = form;
+    model.spectral.push_back({light.wavelengths_nm[k], light.weights[k], optics.at(light.wavelengths_nm[k])});
   model.wavelength_nm = light.centroid_nm();
   model.optics = nearest(model.spectral, model.wavelength_nm).optics;
   if (!design.substance.refractive_index) {
-    warn_of_extrapolation(design, material, model);
-    warn_of_temperature(design, material, model);
+    warn_of_extrapolation(design, optics.material(), model);
+    warn_of_temperature(design, optics.material(), model);
   }
   add_coating_warnings(design, library, model);
   add_texture_warnings(design, model);

@@ -47,4 +47,26 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
 /// The same without the part: what can trace balls needs no more. \throw InputError likewise
 OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library);
 
+/// The optics of a design at whatever wavelength they are asked for.
+class OpticsOfDesign {
+ public:
+  /// Reads what does not depend on the wavelength. \param warnings what the user should know is added
+  /// \pre `design` and `library` outlive it \throw InputError as make_model()
+  OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library, std::vector<std::string>& warnings);
+  ~OpticsOfDesign();
+
+  /// Without what lies behind single elements. \throw InputError where there are no data for it
+  raytrace::Optics at(double wavelength_nm) const;
+  /// The same of elements that have another medium behind them. \param chosen as OpticalModel::wet_elements
+  raytrace::Optics at(double wavelength_nm, const std::shared_ptr<const geometry::ChosenElements>& chosen) const;
+  /// Whether data back the index of the body there.
+  bool is_backed_at(double wavelength_nm) const;
+  /// What the body is made of.
+  const materials::Material& material() const;
+
+ private:
+  struct Hidden;
+  std::unique_ptr<const Hidden> hidden_;
+};
+
 }  // namespace retrace::studies

@@ -214,7 +214,8 @@ TEST_F(Entrance, ReportSaysThatItIsNotShown) {
   const Outcome outcome = retrace(folder_, {"report", "out"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("no view in three dimensions"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("a [front] is taken by retrace rre, photometry and inspect alone"), std::string::npos);
+  EXPECT_NE(outcome.err.find("a [front] is taken by retrace rre, photometry, inspect and rays alone"),
+            std::string::npos);
 }
 
 // The freeform lenslets of turning's example, steep blends and all, over prisms.
@@ -268,7 +269,7 @@ TEST_F(Entrance, OthersRefuseItByName) {
               where + option + " takes no [front], only a plane entrance face");
   for (const std::string kind : {"--detector", "--camera"})
     EXPECT_EQ(refusal(design, {"image", "design.toml", kind, "-o", "out"}),
-              where + "a [front] is taken by retrace rre, photometry and inspect alone");
+              where + "a [front] is taken by retrace rre, photometry, inspect and rays alone");
   EXPECT_EQ(refusal(design, {"image", "design.toml", "--road", "-o", "out"}),
             where + "retrace image takes no [front], only a plane entrance face");
   EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl"}),

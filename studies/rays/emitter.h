@@ -1,0 +1,63 @@
+#pragma once
+
+// An emitter of our own in place of a file: a disc that sends out rays by one of three laws.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "studies/rays/ray_source.h"
+
+namespace retrace::studies {
+
+/// How rays are spread over the disc and about its axis.
+enum class EmitterKind {
+  lambertian,  ///< evenly over a disc, radiance alike in all directions up to the half angle
+  gaussian,    ///< both like exp(-2 (q / w)^2), with w half the diameter, and the half angle
+  collimated   ///< evenly over a disc, and evenly by solid angle up to the half angle
+};
+inline constexpr std::array<std::string_view, 3> kEmitterNames = {"lambertian", "gaussian", "collimated"};
+
+/// A disc round the origin that faces +z.
+struct Emitter {
+  EmitterKind kind = EmitterKind::lambertian;
+  double disc_mm = 0.0;          ///< diameter; 0: a point
+  double half_angle_deg = 90.0;  ///< 0 to 90
+  std::uint64_t rays = 1'000'000;
+  double power = 1.0;        ///< of all rays together
+  bool is_luminous = false;  ///< power is in lm; else in W
+  std::uint32_t seed = 1;
+};
+
+/// \throw InputError for another name
+EmitterKind emitter_from_name(std::string_view name);
+
+/// What is asked of one.
+struct EmitterRequest {
+  EmitterKind kind = EmitterKind::lambertian;
+  std::optional<double> disc_mm;         ///< none: a point, but of collimated light what covers the part
+  std::optional<double> half_angle_deg;  ///< none: 90, but of other light than lambertian 0
+  std::uint64_t rays = 1'000'000;
+  double power = 1.0;
+};
+
+/// Random rays of equal power.
+class EmitterSource : public RaySource {
+ public:
+  explicit EmitterSource(const Emitter& emitter);
+
+  const RaySetInfo& info() const override { return info_; }
+  bool read(std::size_t most, std::vector<SetRay>& rays) override;
+  double share_read() const override;
+
+ private:
+  SetRay ray(std::uint64_t number) const;
+
+  Emitter emitter_;
+  RaySetInfo info_;
+  std::uint64_t rays_read_ = 0;
+};
+
+}  // namespace retrace::studies

@@ -1,0 +1,65 @@
+#pragma once
+
+// Rays as tables of comma-separated values, a line each.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <istream>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/atomic_file.h"
+#include "studies/rays/io/ray_input.h"
+#include "studies/rays/ray_source.h"
+
+namespace retrace::studies {
+
+/// Reads such a table. \throw InputError naming file, line and column
+class RayCsvSource : public RaySource {
+ public:
+  explicit RayCsvSource(const std::filesystem::path& file);
+  /// \param file name of the input, for messages
+  RayCsvSource(RayInput input, std::string file);
+
+  const RaySetInfo& info() const override { return info_; }
+  bool read(std::size_t most, std::vector<SetRay>& rays) override;
+  double share_read() const override;
+
+ private:
+  [[noreturn]] void fail(std::string_view column, std::string_view text) const;
+  bool next_line();
+  void read_names();
+  double value(std::size_t quantity, bool not_negative = false) const;
+  bool has(std::size_t quantity) const { return columns_[quantity] >= 0; }
+  SetRay ray() const;
+
+  std::unique_ptr<std::istream> stream_;
+  std::string file_;
+  std::uint64_t bytes_ = 0;
+  std::uint64_t at_ = 0;
+  std::string text_;
+  std::vector<std::string_view> values_;  ///< of the line
+  std::array<int, 17> columns_ = {};      ///< where the quantities stand; -1: nowhere
+  std::size_t column_count_ = 0;
+  int line_ = 0;
+  RaySetInfo info_;
+};
+
+/// Writes such a table, with the number of the ray that each comes from and its account.
+class RayCsvSink : public RaySink {
+ public:
+  /// \throw OutputError
+  explicit RayCsvSink(const std::filesystem::path& file) : file_(file) {}
+
+  void begin(const RaySinkLayout& layout) override;
+  void write(std::span<const AccountedRay> rays) override;
+  void finish() override { file_.finish(); }
+
+ private:
+  GrowingFile file_;
+  RaySinkLayout layout_;
+};
+
+}  // namespace retrace::studies

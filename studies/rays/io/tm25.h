@@ -1,0 +1,86 @@
+#pragma once
+
+// Ray files of IES TM-25-13: what is in the file, byte by byte, and the source and the sink that read and write them.
+// Layout and its readings: docs/theory/rays.md.
+
+#include <cstdint>
+#include <filesystem>
+#include <istream>
+#include <memory>
+#include <string>
+
+#include "core/atomic_file.h"
+#include "studies/rays/io/ray_input.h"
+#include "studies/rays/ray_source.h"
+
+namespace retrace::studies {
+
+/// Reads a set of rays. \throw InputError naming file and byte
+class Tm25Source : public RaySource {
+ public:
+  /// A regular file.
+  explicit Tm25Source(const std::filesystem::path& file);
+  /// \param file name of the input, for messages
+  Tm25Source(RayInput input, std::string file);
+
+  const RaySetInfo& info() const override { return info_; }
+  bool read(std::size_t most, std::vector<SetRay>& rays) override;
+  double share_read() const override;
+  std::vector<std::string> warnings() const override;
+
+ private:
+  [[noreturn]] void fail(std::uint64_t byte, std::string_view text) const;
+  std::string_view take(std::uint64_t bytes, std::string_view what);
+  std::int32_t whole();
+  float number();
+  std::int32_t whole_within(std::string_view what, std::int32_t least, std::int32_t most);
+  std::optional<double> flux(std::string_view what);
+  bool flag(std::string_view what);
+  void read_header();
+  void read_flags();
+  void read_texts();
+  void read_tables(std::int32_t count);
+  materials::SpectralCurve read_table(std::int32_t number);
+  void find_rays(std::int32_t items, std::int32_t text_bytes);
+  SetRay ray_at(const char* record, std::uint64_t byte);
+
+  std::unique_ptr<std::istream> stream_;
+  std::string file_;
+  std::uint64_t bytes_ = 0;
+  std::uint64_t at_ = 0;  ///< read so far
+  std::string buffer_;
+  RaySetInfo info_;
+  std::size_t record_bytes_ = 0;
+  std::uint64_t rays_read_ = 0;
+  bool has_wavelengths_ = false;
+  bool has_tables_ = false;
+  std::uint64_t not_unit_ = 0;  ///< directions that are no unit vectors
+  double radiant_w_ = 0.0;
+  double luminous_lm_ = 0.0;
+};
+
+/// Writes a set of rays; each has its account as an additional item.
+class Tm25Sink : public RaySink {
+ public:
+  /// \throw OutputError
+  explicit Tm25Sink(const std::filesystem::path& file) : file_(file) {}
+
+  void begin(const RaySinkLayout& layout) override;
+  void write(std::span<const AccountedRay> rays) override;
+  void finish() override;
+
+ private:
+  void write_header();
+  void write_totals();
+
+  GrowingFile file_;
+  RaySinkLayout layout_;
+  bool has_wavelength_column_ = false;
+  std::uint64_t rays_ = 0;
+  double radiant_w_ = 0.0;
+  double luminous_lm_ = 0.0;
+  double shortest_nm_ = 0.0;  ///< of the rays; 0: none yet
+  double longest_nm_ = 0.0;
+};
+
+}  // namespace retrace::studies

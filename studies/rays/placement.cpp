@@ -1,0 +1,70 @@
+#include "studies/rays/placement.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "raytrace/light/light_setup.h"
+#include "raytrace/light/optics.h"
+#include "raytrace/sampling/entrance_sampler.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr double kUsualDistanceMm = 10.0;
+
+void require(bool is_right, const char* option, const std::string& text) {
+  if (!is_right) throw InputError({"", 0, option}, text);
+}
+
+Vec3 place_of(const std::array<double, 3>& numbers, const char* option) {
+  for (const double n : numbers) require(std::isfinite(n), option, "must be three finite numbers");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+/// Axes of a source that looks along `forward`.
+Eigen::Matrix3d aimed(const Vec3& forward) {
+  Vec3 right = Vec3::UnitX() - forward.x() * forward;
+  if (right.norm() < 1e-9) right = Vec3::UnitY() - forward.y() * forward;
+  right.normalize();
+  Eigen::Matrix3d turn;
+  turn << right, forward.cross(right), forward;
+  return turn;
+}
+
+}  // namespace
+
+Vec3 middle_of_face(const geometry::Part& part) {
+  const geometry::Vec2 middle = raytrace::EntranceSampler(part).centre_mm();
+  return {middle.x(), middle.y(), part.thickness_mm};
+}
+
+RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Part& part) {
+  RayPlacement placement;
+  std::optional<Vec3> aim;
+  if (request.is_by_angles()) {
+    require(!request.at_mm, "--at-mm", "not together with --incidence, --azimuth and --distance-mm");
+    const double incidence = request.incidence_deg.value_or(0.0);
+    const double azimuth = request.azimuth_deg.value_or(0.0);
+    const double distance = request.distance_mm.value_or(kUsualDistanceMm);
+    require(std::abs(incidence) < 90.0, "--incidence",
+            fmt::format("must lie between -90 and 90 degrees, got {}", incidence));
+    require(std::isfinite(azimuth), "--azimuth", fmt::format("must be finite, got {}", azimuth));
+    require(distance > 0.0 && std::isfinite(distance), "--distance-mm", fmt::format("must be > 0, got {}", distance));
+    aim = middle_of_face(part);
+    const raytrace::Illumination light{Angle::from_deg(incidence), Angle::from_deg(azimuth), raytrace::kUnpolarised};
+    placement.at_mm = *aim + distance * raytrace::direction_to_source(light);
+  }
+  if (request.at_mm) placement.at_mm = place_of(*request.at_mm, "--at-mm");
+  if (request.aim_mm) aim = place_of(*request.aim_mm, "--aim-mm");
+  if (!aim) return placement;
+  const Vec3 way = *aim - placement.at_mm;
+  require(way.norm() > 0.0, "--aim-mm", "must be another place than that of the source");
+  placement.part_from_source = aimed(way.normalized());
+  return placement;
+}
+
+}  // namespace retrace::studies

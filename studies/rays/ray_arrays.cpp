@@ -1,0 +1,98 @@
+#include "studies/rays/ray_arrays.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "studies/rays/ray_limits.h"
+
+namespace retrace::studies {
+namespace {
+
+[[noreturn]] void refuse(const char* array, std::size_t ray, const std::string& text) {
+  throw InputError({"", 0, array}, fmt::format("ray {}: {}", ray, text));
+}
+
+/// \param more_may_be other numbers of values that it may have
+void require_size(std::span<const double> values, const char* array, std::size_t size,
+                  std::initializer_list<std::size_t> more_may_be = {}) {
+  if (values.size() == size || std::ranges::count(more_may_be, values.size()) > 0) return;
+  throw InputError({"", 0, array}, fmt::format("must have {} numbers, got {}", size, values.size()));
+}
+
+Vec3 three(std::span<const double> values, std::size_t ray, const char* array) {
+  const Vec3 v(values[3 * ray], values[3 * ray + 1], values[3 * ray + 2]);
+  if (!v.allFinite()) refuse(array, ray, "must be finite numbers");
+  return v;
+}
+
+}  // namespace
+
+ArraySource::ArraySource(const RaySpans& arrays) : arrays_(arrays), count_(arrays.origins_mm.size() / 3) {
+  require_size(arrays.origins_mm, "origins", 3 * count_);
+  require_size(arrays.directions, "directions", 3 * count_);
+  require_size(arrays.stokes, "stokes", 4 * count_, {4});
+  require_size(arrays.axes, "axes", 3 * count_, {0});
+  require_size(arrays.wavelengths_nm, "wavelength_nm", count_, {0, 1});
+  info_.rays = count_;
+  info_.has_stokes = true;
+  if (arrays.wavelengths_nm.empty()) return;
+  const bool is_one = arrays.wavelengths_nm.size() == 1;
+  info_.spectrum = is_one ? RaySpectrum::one_wavelength : RaySpectrum::wavelength_of_each;
+  info_.wavelength_nm = arrays.wavelengths_nm.front();
+  for (std::size_t k = 0; k < arrays.wavelengths_nm.size(); ++k)
+    if (!is_wavelength(arrays.wavelengths_nm[k])) refuse("wavelength_nm", k, wavelength_text(arrays.wavelengths_nm[k]));
+}
+
+double ArraySource::share_read() const {
+  return count_ > 0 ? static_cast<double>(rays_read_) / static_cast<double>(count_) : 1.0;
+}
+
+bool ArraySource::read(std::size_t most, std::vector<SetRay>& rays) {
+  rays.clear();
+  const std::size_t end = std::min(count_, rays_read_ + most);
+  for (; rays_read_ < end; ++rays_read_) rays.push_back(ray(rays_read_));
+  return !rays.empty();
+}
+
+SetRay ArraySource::ray(std::size_t number) const {
+  SetRay ray;
+  ray.position_mm = three(arrays_.origins_mm, number, "origins");
+  ray.direction = three(arrays_.directions, number, "directions");
+  const double length = ray.direction.norm();
+  if (!(length > 0.0)) refuse("directions", number, "must not be 0");
+  ray.direction /= length;
+  const std::size_t at = arrays_.stokes.size() == 4 ? 0 : 4 * number;
+  ray.radiant_w = arrays_.stokes[at];
+  if (!(ray.radiant_w >= 0.0) || !std::isfinite(ray.radiant_w))
+    refuse("stokes", number, fmt::format("the power must be >= 0, got {}", ray.radiant_w));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double s = arrays_.stokes[at + 1 + k];
+    if (!std::isfinite(s)) refuse("stokes", number, "must be finite numbers");
+    ray.stokes[k] = ray.radiant_w > 0.0 ? s / ray.radiant_w : 0.0;
+  }
+  ray.axis = arrays_.axes.empty() ? axis_across(ray.direction) : three(arrays_.axes, number, "axes");
+  if (const char* const wrong = settle_stokes(ray)) refuse("stokes", number, wrong);
+  if (arrays_.wavelengths_nm.size() == count_) ray.wavelength_nm = arrays_.wavelengths_nm[number];
+  return ray;
+}
+
+void ArraySink::write(std::span<const AccountedRay> rays) {
+  for (const AccountedRay& ray : rays) {
+    origins_mm.insert(origins_mm.end(), ray.position_mm.begin(), ray.position_mm.end());
+    directions.insert(directions.end(), ray.direction.begin(), ray.direction.end());
+    stokes.push_back(ray.radiant_w);
+    for (const double s : ray.stokes) stokes.push_back(ray.radiant_w * s);
+    axes.insert(axes.end(), ray.axis.begin(), ray.axis.end());
+    wavelengths_nm.push_back(ray.wavelength_nm);
+    accounts.push_back(static_cast<std::uint8_t>(ray.account));
+    incident.push_back(ray.number - 1);
+  }
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,50 @@
+#include "studies/rays/ray_limits.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace retrace::studies {
+namespace {
+
+constexpr double kLeastNm = 100.0;
+constexpr double kMostNm = 100'000.0;
+// Stokes parameters come in single precision.
+constexpr double kRounding = 1e-5;
+// Of the sine between axis and direction.
+constexpr double kLeastAcross = 1e-3;
+
+}  // namespace
+
+bool is_wavelength(double nm) {
+  return nm >= kLeastNm && nm <= kMostNm;
+}
+
+std::string wavelength_text(double nm) {
+  return fmt::format("a wavelength must be {} to {} nm, got {}", kLeastNm, kMostNm, nm);
+}
+
+Vec3 axis_across(const Vec3& direction) {
+  const Vec3 across = Vec3::UnitX() - direction.x() * direction;
+  return across.norm() > kLeastAcross ? across.normalized() : direction.unitOrthogonal();
+}
+
+const char* settle_stokes(SetRay& ray) {
+  double sum = 0.0;
+  for (const double s : ray.stokes) sum += s * s;
+  if (sum == 0.0) {
+    ray.axis = ray.direction.unitOrthogonal();
+    return nullptr;
+  }
+  if (sum > 1.0 + kRounding) return "the squares of S1, S2 and S3 must add up to 1 at most";
+  if (sum > 1.0)
+    for (double& s : ray.stokes) s /= std::sqrt(sum);
+  const Vec3 across = ray.axis - ray.axis.dot(ray.direction) * ray.direction;
+  if (!(across.norm() > kLeastAcross * ray.axis.norm()))
+    return "the axis of polarisation must lie across the direction";
+  ray.axis = across.normalized();
+  return nullptr;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,297 @@
+#include "studies/rays/ray_study.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "core/version.h"
+#include "raytrace/light/light_setup.h"
+#include "studies/rays/ray_accounts.h"
+#include "studies/rays/ray_wavelengths.h"
+
+namespace retrace::studies {
+namespace {
+
+// Rays that are read at a time, and of those that leave about as many: what bounds memory.
+constexpr std::size_t kRaysAtATime = 65536;
+constexpr std::size_t kFewestAtATime = 1024;
+
+void require_share(double value, const char* option) {
+  if (!(value >= 0.0 && value <= 1.0))
+    throw InputError({"", 0, option}, fmt::format("must be >= 0 and <= 1, got {}", value));
+}
+
+std::u32string wide_text(std::string_view ascii) {
+  return {ascii.begin(), ascii.end()};
+}
+
+/// Light of a ray in its part's frame. \param of_design polarisation, for rays of sources that tell none
+raytrace::Light light_of(const SetRay& ray, double power, bool has_stokes, const raytrace::Stokes& of_design) {
+  if (has_stokes) return {{power, power * ray.stokes[0], power * ray.stokes[1], power * ray.stokes[2]}, ray.axis};
+  const bool is_along_x = ray.direction.cross(Vec3::UnitX()).squaredNorm() < raytrace::Light::kNormalIncidence;
+  if (is_along_x || (of_design.q == 0.0 && of_design.u == 0.0 && of_design.v == 0.0))
+    return {{power, 0.0, 0.0, 0.0}, ray.direction.unitOrthogonal()};
+  raytrace::Light light = raytrace::light_of_beam(of_design, -ray.direction);
+  light.scale(power);
+  return light;
+}
+
+/// With the long axis of the polarisation ellipse as its axis, so that S2 is 0.
+void settle_polarisation(const raytrace::Light& light, AccountedRay& ray) {
+  const raytrace::Stokes& s = light.stokes;
+  ray.axis = light.s_axis;
+  if (!(s.i > 0.0)) return;
+  const double along = std::hypot(s.q, s.u);
+  ray.stokes = {along / s.i, 0.0, s.v / s.i};
+  if (!(along > 0.0)) return;
+  const double turn = 0.5 * std::atan2(s.u, s.q);
+  ray.axis = (std::cos(turn) * light.s_axis + std::sin(turn) * ray.direction.cross(light.s_axis)).normalized();
+}
+
+/// Of a circle round the entrance face, or round a period of it.
+double radius_of_face(const geometry::Part& part) {
+  if (part.period_mm) return 0.5 * part.period_mm->norm();
+  const geometry::Vec2 middle = middle_of_face(part).head<2>();
+  double reach2 = 0.0;
+  for (const geometry::Vec2& corner : part.outline) reach2 = std::max(reach2, (corner - middle).squaredNorm());
+  return std::sqrt(reach2);
+}
+
+}  // namespace
+
+struct RayStudy::Hidden {
+  Hidden(Design d, RayRequest r)
+      : design(std::move(d)),
+        request(std::move(r)),
+        library(materials::MaterialLibrary::shipped()),
+        model(make_model(design, library, Entrances::any)),
+        optics(design, library, ignored),
+        placement(placement_of(request.placement, model.part)) {}
+
+  Design design;
+  RayRequest request;
+  materials::MaterialLibrary library;
+  OpticalModel model;
+  std::vector<std::string> ignored;  ///< warnings that the model has as well
+  OpticsOfDesign optics;
+  RayPlacement placement;
+};
+
+RayStudy::RayStudy(Design design, RayRequest request) {
+  require_share(request.split, "--split");
+  require_share(request.cutoff, "--cutoff");
+  hidden_ = std::make_unique<const Hidden>(std::move(design), std::move(request));
+}
+RayStudy::~RayStudy() = default;
+
+const geometry::Part& RayStudy::part() const {
+  return hidden_->model.part;
+}
+
+const Design& RayStudy::design() const {
+  return hidden_->design;
+}
+
+Emitter RayStudy::emitter_of(const EmitterRequest& request) const {
+  const auto check = [](bool is_right, const char* option, const char* allowed, double given) {
+    if (!is_right) throw InputError({"", 0, option}, fmt::format("must be {}, got {}", allowed, given));
+  };
+  const LightSpectrum* const spectrum = hidden_->design.light.spectrum();
+  Emitter emitter;
+  emitter.kind = request.kind;
+  emitter.disc_mm = request.disc_mm.value_or(
+      request.kind == EmitterKind::collimated ? 2.0 * radius_of_face(hidden_->model.part) : 0.0);
+  emitter.half_angle_deg = request.half_angle_deg.value_or(request.kind == EmitterKind::lambertian ? 90.0 : 0.0);
+  emitter.rays = request.rays;
+  emitter.power = request.power;
+  emitter.is_luminous = spectrum != nullptr && spectrum->photopic;
+  emitter.seed = hidden_->request.seed;
+  check(emitter.disc_mm >= 0.0 && std::isfinite(emitter.disc_mm), "--disc-mm", ">= 0", emitter.disc_mm);
+  check(emitter.half_angle_deg >= 0.0 && emitter.half_angle_deg <= 90.0, "--half-angle-deg", ">= 0 and <= 90",
+        emitter.half_angle_deg);
+  check(emitter.power > 0.0 && std::isfinite(emitter.power), "--power", "> 0", emitter.power);
+  if (emitter.rays < 1) throw InputError({"", 0, "--rays"}, "must be at least 1, got 0");
+  return emitter;
+}
+
+/// One source at one part.
+class RayStudy::Run {
+ public:
+  Run(const Hidden& hidden, RaySource& source, RaySink* sink)
+      : hidden_(hidden),
+        source_(source),
+        sink_(sink),
+        is_luminous_(!source.info().has_radiant),
+        tracer_(hidden.model.part, hidden.model.entrance ? &*hidden.model.entrance : nullptr,
+                hidden.design.detector.acceptance_half_angle_deg.back(), policy_of(hidden.request),
+                hidden.request.seed),
+        wavelengths_(source.info(), hidden.model.spectral, is_luminous_, hidden.request.seed,
+                     [this](double nm) { return add_optics(nm); }) {}
+
+  RayResult run(Progress* progress, const Cancellation* cancel) {
+    begin();
+    std::size_t most = kRaysAtATime;
+    while (result_.complete && source_.read(most, rays_)) {
+      const std::size_t leaving = trace(cancel);
+      if (!result_.complete) break;
+      most = std::clamp(kRaysAtATime * rays_.size() / std::max<std::size_t>(leaving, 1), kFewestAtATime, kRaysAtATime);
+      if (progress != nullptr) progress->at(source_.share_read());
+      result_.complete = !is_cancelled(cancel);
+    }
+    end();
+    return std::move(result_);
+  }
+
+ private:
+  static raytrace::PathPolicy policy_of(const RayRequest& request) {
+    raytrace::PathPolicy policy;
+    policy.cutoff = request.cutoff;
+    policy.split_power = request.split;
+    return policy;
+  }
+
+  std::uint32_t add_optics(double wavelength_nm) {
+    if (!hidden_.optics.is_backed_at(wavelength_nm)) extrapolated_nm_.push_back(wavelength_nm);
+    return tracer_.add(hidden_.optics.at(wavelength_nm, hidden_.model.wet_elements));
+  }
+
+  void begin() {
+    result_.design = hidden_.design;
+    result_.request = hidden_.request;
+    result_.source = source_.info();
+    result_.placement = hidden_.placement;
+    result_.acceptance_half_angle_deg = hidden_.design.detector.acceptance_half_angle_deg.back();
+    result_.power = is_luminous_ ? RayPower::luminous_lm : RayPower::radiant_w;
+    layout_ = layout();
+    if (sink_ != nullptr) sink_->begin(layout_);
+  }
+
+  /// What the rays hold that leave.
+  RaySinkLayout layout() const {
+    RaySinkLayout layout{source_.info(), wavelengths_.are_several()};
+    RaySetInfo& info = layout.info;
+    const raytrace::Stokes& light = hidden_.design.light.polarisation;
+    info.has_stokes = info.has_stokes || hidden_.request.stokes || light.q != 0.0 || light.u != 0.0 || light.v != 0.0;
+    if (!info.tables.empty() && info.has_radiant) info.has_luminous = info.has_tristimulus = false;
+    info.tables.clear();
+    if (!layout.tells_wavelengths && info.spectrum == RaySpectrum::unknown) {
+      info.spectrum = RaySpectrum::one_wavelength;
+      info.wavelength_nm = hidden_.model.spectral.front().wavelength_nm;
+    }
+    info.text(RayText::file_creator) = U"retrace";
+    info.text(RayText::equipment) = wide_text(std::string("retrace ") + kVersion);
+    info.text(RayText::more) = U"Light that has left a part";
+    info.text(RayText::geometry) = U"mm in the frame of the part: the entrance face looks along +z";
+    return layout;
+  }
+
+  double power_of(const SetRay& ray) const { return is_luminous_ ? ray.luminous_lm : ray.radiant_w; }
+
+  /// \return how many rays leave
+  std::size_t trace(const Cancellation* cancel) {
+    std::vector<raytrace::IncidentRay> incident;
+    incident.reserve(rays_.size());
+    for (std::size_t k = 0; k < rays_.size(); ++k) {
+      SetRay& ray = rays_[k];
+      hidden_.placement.apply(ray);
+      const std::uint32_t optics = wavelengths_.settle(ray, read_ + k);
+      incident.push_back({ray.position_mm, ray.direction,
+                          light_of(ray, power_of(ray), source_.info().has_stokes, hidden_.design.light.polarisation),
+                          optics});
+    }
+    const raytrace::TracedRays traced = tracer_.trace(incident, read_, cancel);
+    if (is_cancelled(cancel)) {
+      result_.complete = false;
+      return 0;
+    }
+    result_.ledger.add(traced.ledger);
+    if (sink_ != nullptr) write(traced);
+    read_ += rays_.size();
+    return traced.leaving.size();
+  }
+
+  /// In the order of the rays of the source.
+  void write(const raytrace::TracedRays& traced) {
+    std::vector<AccountedRay> out;
+    out.reserve(traced.leaving.size() + (hidden_.request.keep_missed ? traced.missed.size() : 0));
+    auto missed = hidden_.request.keep_missed ? traced.missed.begin() : traced.missed.end();
+    const auto add_missed_before = [&](std::uint32_t incident) {
+      for (; missed != traced.missed.end() && *missed < incident; ++missed) out.push_back(missed_ray(*missed));
+    };
+    for (const raytrace::LeavingRay& ray : traced.leaving) {
+      add_missed_before(ray.incident);
+      out.push_back(leaving_ray(ray));
+    }
+    add_missed_before(UINT32_MAX);
+    sink_->write(out);
+    result_.rays_out += out.size();
+  }
+
+  AccountedRay missed_ray(std::uint32_t incident) const {
+    AccountedRay out{rays_[incident], read_ + incident + 1, kMissedAccount};
+    const SetRay& ray = rays_[incident];
+    const bool has_stokes = source_.info().has_stokes;
+    settle_polarisation(light_of(ray, power_of(ray), has_stokes, hidden_.design.light.polarisation), out);
+    return out;
+  }
+
+  AccountedRay leaving_ray(const raytrace::LeavingRay& ray) const {
+    const SetRay& source = rays_[ray.incident];
+    AccountedRay out{source, read_ + ray.incident + 1, static_cast<std::size_t>(ray.account)};
+    out.position_mm = ray.position_mm;
+    out.direction = ray.direction;
+    const double share = ray.light.power() / power_of(source);
+    out.radiant_w *= share;
+    out.luminous_lm *= share;
+    out.tristimulus_x *= share;
+    out.tristimulus_z *= share;
+    settle_polarisation(ray.light, out);
+    return out;
+  }
+
+  void end() {
+    if (sink_ != nullptr) sink_->finish();
+    result_.shortest_nm = wavelengths_.shortest_nm();
+    result_.longest_nm = wavelengths_.longest_nm();
+    result_.warnings = hidden_.model.warnings;
+    if (source_.info().spectrum != RaySpectrum::unknown && !extrapolated_nm_.empty()) {
+      const auto [least, most] = std::minmax_element(extrapolated_nm_.begin(), extrapolated_nm_.end());
+      const materials::Material& material = hidden_.optics.material();
+      result_.warnings.push_back(
+          fmt::format("{}: the data of {} reach from {} to {} nm; its index is extrapolated for wavelengths of rays "
+                      "from {} to {} nm",
+                      hidden_.design.source_name(), material.name, material.valid_from_nm, material.valid_to_nm,
+                      shortest(*least), shortest(*most)));
+    }
+    for (std::string& warning : source_.warnings()) result_.warnings.push_back(std::move(warning));
+    if (result_.ledger.rays > 0 && result_.ledger.rays_missed == result_.ledger.rays)
+      result_.warnings.push_back("no ray meets the part: see --at-mm, --aim-mm and --incidence");
+  }
+
+  const Hidden& hidden_;
+  RaySource& source_;
+  RaySink* sink_;
+  bool is_luminous_;
+  std::vector<double> extrapolated_nm_;
+  raytrace::RayTracer tracer_;
+  RayWavelengths wavelengths_;
+  RaySinkLayout layout_;
+  std::vector<SetRay> rays_;
+  std::uint64_t read_ = 0;
+  RayResult result_;
+};
+
+RayResult RayStudy::run(RaySource& source, RaySink* sink, Progress* progress, const Cancellation* cancel) const {
+  const auto start = std::chrono::steady_clock::now();
+  RayResult result = Run(*hidden_, source, sink).run(progress, cancel);
+  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,364 @@
+// Rays of a set at a part: places, wavelengths, polarisation and accounts, against closed forms and beams.
+#include "studies/rays/ray_study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "materials/dispersion.h"
+#include "materials/io/material_library.h"
+#include "raytrace/sampling/threads.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/rays/ray_accounts.h"
+#include "studies/rre/rre.h"
+#include "tests/support/refusals.h"
+
+namespace retrace::testing::ray_study_test {
+namespace {
+
+using namespace studies;
+using raytrace::Account;
+
+/// Rays in memory.
+class Given : public RaySource {
+ public:
+  Given(RaySetInfo info, std::vector<SetRay> rays) : info_(std::move(info)), rays_(std::move(rays)) {}
+  const RaySetInfo& info() const override { return info_; }
+  bool read(std::size_t, std::vector<SetRay>& rays) override {
+    rays = std::move(rays_);
+    rays_.clear();
+    return !rays.empty();
+  }
+  double share_read() const override { return rays_.empty() ? 1.0 : 0.0; }
+
+ private:
+  RaySetInfo info_;
+  std::vector<SetRay> rays_;
+};
+
+struct Kept : RaySink {
+  RaySinkLayout layout;
+  std::vector<AccountedRay> rays;
+  bool is_finished = false;
+  void begin(const RaySinkLayout& given) override { layout = given; }
+  void write(std::span<const AccountedRay> more) override { rays.insert(rays.end(), more.begin(), more.end()); }
+  void finish() override { is_finished = true; }
+};
+
+/// A plate of 10 mm x 10 mm x 2 mm. \param more lines of [body], then other sections
+Design plate(const std::string& more = "refractive_index = 1.5\n") {
+  return parse_design("[part]\nplate_mm = [10, 10]\n[body]\nthickness_mm = 2\n" + more, "plate.toml");
+}
+
+SetRay down_at(double x, double y) {
+  SetRay ray;
+  ray.position_mm = {x, y, 5.0};
+  ray.direction = {0, 0, -1};
+  ray.radiant_w = 3.0;
+  return ray;
+}
+
+RayResult traced(const Design& design, const RayRequest& request, RaySource&& source, Kept& kept) {
+  return RayStudy(design, request).run(source, &kept, nullptr, nullptr);
+}
+
+TEST(RayStudy, APlateSplitsLightAsItsSeriesSays) {
+  RayRequest request;
+  request.split = 0.0;
+  request.cutoff = 1e-9;
+  Kept kept;
+  const RayResult result = traced(plate(), request, Given({}, {down_at(4, 5)}), kept);
+  const double r = 0.04;  // (0.5 / 2.5)^2
+  // Up: r, then (1 - r)^2 r^(2k - 1); down: (1 - r)^2 r^(2k).
+  ASSERT_GE(kept.rays.size(), 4U);
+  double up = 0.0;
+  double down = 0.0;
+  for (const AccountedRay& ray : kept.rays) {
+    (ray.direction.z() > 0.0 ? up : down) += ray.radiant_w;
+    EXPECT_EQ(ray.number, 1U);
+    EXPECT_NEAR((ray.position_mm - Vec3(4, 5, ray.direction.z() > 0.0 ? 2.0 : 0.0)).norm(), 0.0, 1e-12);
+  }
+  EXPECT_NEAR(up, 3.0 * (r + (1 - r) * (1 - r) * r / (1 - r * r)), 1e-7);
+  EXPECT_NEAR(down, 3.0 * (1 - r) * (1 - r) / (1 - r * r), 1e-7);
+  // Straight back is within the cone.
+  EXPECT_NEAR(result.ledger.ledger[Account::retroreflected], up, 1e-12);
+  EXPECT_NEAR(result.ledger.ledger[Account::transmitted], down, 1e-12);
+  EXPECT_NEAR(result.ledger.ledger.total(), 3.0, 1e-9);
+  EXPECT_TRUE(kept.is_finished);
+  EXPECT_EQ(result.rays_out, kept.rays.size());
+}
+
+TEST(RayStudy, APlateShiftsObliqueLightAndPolarisesIt) {
+  RayRequest request;
+  request.split = 0.0;
+  const double t = 50.0 * std::numbers::pi / 180.0;
+  SetRay ray;
+  ray.direction = {std::sin(t), 0.0, -std::cos(t)};
+  ray.position_mm = Vec3(2.0, 5.0, 2.0) - 3.0 * ray.direction;
+  ray.radiant_w = 1.0;
+  Kept kept;
+  traced(plate(), request, Given({}, {ray}), kept);
+  const double inside = std::asin(std::sin(t) / 1.5);
+  const double r_s = std::pow(std::sin(t - inside) / std::sin(t + inside), 2.0);
+  const double r_p = std::pow(std::tan(t - inside) / std::tan(t + inside), 2.0);
+  const auto straight = std::ranges::max_element(kept.rays, {}, &AccountedRay::radiant_w);
+  EXPECT_NEAR((straight->position_mm - Vec3(2.0 + 2.0 * std::tan(inside), 5.0, 0.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((straight->direction - ray.direction).norm(), 0.0, 1e-12);
+  const double s = std::pow(1.0 - r_s, 2.0);
+  const double p = std::pow(1.0 - r_p, 2.0);
+  EXPECT_NEAR(straight->radiant_w, 0.5 * (s + p), 1e-12);
+  EXPECT_FALSE(kept.layout.info.has_stokes);
+  // More of p passes: the long axis lies in the plane of incidence.
+  EXPECT_NEAR(straight->stokes[0], (p - s) / (p + s), 1e-12);
+  EXPECT_NEAR(std::abs(straight->axis.y()), 0.0, 1e-9);
+}
+
+TEST(RayStudy, StokesParametersOfTheSetGoIn) {
+  RayRequest request;
+  request.split = 0.0;
+  const double brewster = std::atan(1.5);
+  SetRay ray;
+  ray.direction = {std::sin(brewster), 0.0, -std::cos(brewster)};
+  ray.position_mm = Vec3(2.0, 5.0, 2.0) - 3.0 * ray.direction;
+  ray.radiant_w = 1.0;
+  RaySetInfo info;
+  info.has_stokes = true;
+  // In the plane of incidence nothing is reflected; at 45 degrees to it half as much as of what lies across.
+  for (const double turn : {0.0, 0.25 * std::numbers::pi, 0.5 * std::numbers::pi}) {
+    const Vec3 in_plane(std::cos(brewster), 0.0, std::sin(brewster));
+    ray.axis = std::cos(turn) * in_plane + std::sin(turn) * Vec3::UnitY();
+    ray.stokes = {1.0, 0.0, 0.0};
+    Kept kept;
+    const RayResult result = traced(plate(), request, Given(info, {ray}), kept);
+    const double r_s = std::pow(std::sin(2.0 * brewster - 0.5 * std::numbers::pi), 2.0);
+    EXPECT_NEAR(result.ledger.ledger[Account::front_specular], r_s * std::pow(std::sin(turn), 2.0), 1e-12);
+  }
+}
+
+TEST(RayStudy, MissedRaysAreToldAndKeptOnRequest) {
+  for (const bool keep : {false, true}) {
+    RayRequest request;
+    request.keep_missed = keep;
+    Kept kept;
+    const RayResult result =
+        traced(plate(), request, Given({}, {down_at(-20, 0), down_at(4, 5), down_at(20, 0)}), kept);
+    EXPECT_EQ(result.ledger.rays_missed, 2U);
+    EXPECT_EQ(result.ledger.missed, 6.0);
+    EXPECT_EQ(kept.rays.size(), keep ? 3U : 1U);
+    if (!keep) continue;
+    EXPECT_EQ(kept.rays[0].account, kMissedAccount);
+    EXPECT_EQ(kept.rays[0].number, 1U);
+    EXPECT_EQ(kept.rays[1].number, 2U);
+    EXPECT_EQ(kept.rays[2].position_mm, Vec3(20, 0, 5));
+  }
+}
+
+TEST(RayStudy, OneRayInIsOneOutUnlessItIsSplit) {
+  Kept kept;
+  const RayResult result = traced(plate(), {}, Given({}, std::vector<SetRay>(20000, down_at(4, 5))), kept);
+  EXPECT_EQ(kept.rays.size(), 20000U);
+  const double through = 0.96 * 0.96 / (1 - 0.04 * 0.04);
+  EXPECT_NEAR(result.ledger.ledger[Account::transmitted] / result.ledger.incident, through, 4 * 0.0019);
+  EXPECT_NEAR(result.ledger.std_error(), std::sqrt(through * (1 - through) / 20000), 2e-5);
+}
+
+/// Where a ray leaves that comes in obliquely: by its index.
+double index_from(const AccountedRay& ray, double t) {
+  const double tan_inside = (ray.position_mm.x() - 2.0) / 2.0;
+  return std::sin(t) / std::sin(std::atan(tan_inside));
+}
+
+double index_of_bk7(double nm) {
+  const auto library = materials::MaterialLibrary::shipped();
+  const materials::Material& glass = library.find("N-BK7", {});
+  return materials::index_relative_to_air(glass, library.air(), nm, glass.temperature_c);
+}
+
+std::vector<SetRay> oblique(std::size_t count) {
+  const double t = 0.7;
+  SetRay ray;
+  ray.direction = {std::sin(t), 0.0, -std::cos(t)};
+  ray.position_mm = Vec3(2.0, 5.0, 2.0) - 3.0 * ray.direction;
+  ray.radiant_w = ray.luminous_lm = 1.0;
+  return std::vector<SetRay>(count, ray);
+}
+
+TEST(RayStudy, EachRayIsTracedAtItsWavelength) {
+  RaySetInfo info;
+  info.spectrum = RaySpectrum::wavelength_of_each;
+  std::vector<SetRay> rays = oblique(3);
+  rays[0].wavelength_nm = 440.0;
+  rays[1].wavelength_nm = 587.6;
+  rays[2].wavelength_nm = 780.0;
+  RayRequest request;
+  request.split = 0.0;
+  Kept kept;
+  const RayResult result = traced(plate("material = \"N-BK7\"\n"), request, Given(info, rays), kept);
+  EXPECT_EQ(result.shortest_nm, 440.0);
+  EXPECT_EQ(result.longest_nm, 780.0);
+  EXPECT_TRUE(kept.layout.tells_wavelengths);
+  for (const AccountedRay& ray : kept.rays)
+    if (ray.radiant_w > 0.5) {
+      EXPECT_NEAR(index_from(ray, 0.7), index_of_bk7(rays[ray.number - 1].wavelength_nm), 1e-9);
+      EXPECT_EQ(ray.wavelength_nm, rays[ray.number - 1].wavelength_nm);
+    }
+}
+
+TEST(RayStudy, SpectraAreTakenByTheirPower) {
+  RaySetInfo info;
+  info.spectrum = RaySpectrum::table_of_each;
+  info.tables = {{{450.0}, {1.0}}, {{600.0, 610.0, 620.0}, {0.0, 1.0, 0.0}}, {{500.0, 700.0}, {1.0, 1.0}}};
+  std::vector<SetRay> rays = oblique(30000);
+  for (std::size_t k = 0; k < rays.size(); ++k) rays[k].table = static_cast<std::uint32_t>(1 + k % 3);
+  Kept kept;
+  traced(plate("material = \"N-BK7\"\n"), {}, Given(info, rays), kept);
+  EXPECT_EQ(kept.layout.info.spectrum, RaySpectrum::table_of_each);
+  EXPECT_TRUE(kept.layout.tells_wavelengths);
+  double below_600 = 0.0;
+  double of_third = 0.0;
+  for (const AccountedRay& ray : kept.rays) {
+    const double middle_nm = ray.table == 1 ? 450.0 : ray.table == 2 ? 610.0 : 600.0;
+    const double half_nm = ray.table == 1 ? 0.0 : ray.table == 2 ? 10.0 : 100.0;
+    EXPECT_LE(std::abs(ray.wavelength_nm - middle_nm), half_nm);
+    if (ray.table != 3) continue;
+    ++of_third;
+    below_600 += ray.wavelength_nm < 600.0 ? 1.0 : 0.0;
+  }
+  EXPECT_NEAR(below_600 / of_third, 0.5, 0.025);
+}
+
+TEST(RayStudy, LightOfTheDesignIsTakenWhereTheSetTellsNone) {
+  const std::string lamp = "material = \"N-BK7\"\n[light]\nspectrum = \"A\"\n";
+  Kept kept;
+  RaySetInfo luminous;
+  luminous.has_radiant = false;
+  luminous.has_luminous = true;
+  const RayResult result = traced(plate(lamp), {}, Given(luminous, oblique(4000)), kept);
+  EXPECT_EQ(result.power, RayPower::luminous_lm);
+  EXPECT_TRUE(kept.layout.tells_wavelengths);
+  double sum = 0.0;
+  for (const AccountedRay& ray : kept.rays) sum += ray.wavelength_nm / static_cast<double>(kept.rays.size());
+  EXPECT_NEAR(sum, 572.0, 3.0);  // the centroid of A weighed by the eye
+}
+
+TEST(RayStudy, BothFluxesAndTristimulusValuesShrinkAlike) {
+  RaySetInfo info;
+  info.has_luminous = info.has_tristimulus = true;
+  SetRay ray = down_at(4, 5);
+  ray.luminous_lm = 300.0;
+  ray.tristimulus_x = 200.0;
+  ray.tristimulus_z = 100.0;
+  RayRequest request;
+  request.split = 0.0;
+  Kept kept;
+  traced(plate("refractive_index = 1.5\nabsorption_per_mm = 0.1\n"), request, Given(info, {ray}), kept);
+  for (const AccountedRay& out : kept.rays) {
+    EXPECT_NEAR(out.luminous_lm, 100.0 * out.radiant_w, 1e-9);
+    EXPECT_NEAR(out.tristimulus_x, 200.0 / 3.0 * out.radiant_w, 1e-9);
+    EXPECT_NEAR(out.tristimulus_z, 100.0 / 3.0 * out.radiant_w, 1e-9);
+  }
+}
+
+// The light of an emitter that is all but a beam has the accounts of the beam; what passes the face is missed.
+TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
+  const Design design = parse_design(
+      "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"offset\"\nx_length_mm = "
+      "6\ny_length_mm = 4\n[body]\nthickness_mm = 0.02\nrefractive_index = 1.4917\n",
+      "bricks.toml");
+  RayRequest request;
+  request.placement.incidence_deg = 20.0;
+  request.placement.azimuth_deg = 30.0;
+  const RayStudy study(design, request);
+  EmitterRequest emitter;
+  emitter.kind = EmitterKind::collimated;
+  emitter.rays = 60000;
+  EmitterSource source(study.emitter_of(emitter));
+  const RayResult result = study.run(source, nullptr, nullptr, nullptr);
+  studies::RreRequest beam;
+  beam.incidence_deg = {20.0};
+  beam.azimuth_deg = {30.0};
+  const RrePoint known = RreStudy({design}, beam).run(nullptr, nullptr).points.at(0);
+  const double met = result.ledger.incident - result.ledger.missed;
+  // Of the circle round the face, as it looks from there.
+  EXPECT_NEAR(result.ledger.missed, 1.0 - 24.0 * std::cos(20.0 * std::numbers::pi / 180.0) / (13.0 * std::numbers::pi),
+              0.012);
+  for (std::size_t k = 0; k < raytrace::kAccountCount; ++k) {
+    // Sides, which rays meet and the beam does not, take some of the light: a plate of 0.02 mm.
+    EXPECT_NEAR(result.ledger.ledger.power[k] / met, known.ledger.power[k], 0.02) << raytrace::kAccountNames[k];
+  }
+}
+
+TEST(RayStudy, SourcesAreMovedAndTurned) {
+  RayRequest request;
+  request.placement.at_mm = {{1.0, 2.0, 12.0}};
+  request.placement.aim_mm = {{4.0, 5.0, 2.0}};
+  const RayStudy aimed(plate(), request);
+  SetRay ray;
+  ray.direction = {0, 0, 1};  // along the axis of its source
+  ray.radiant_w = 1.0;
+  Given source({}, {ray});
+  Kept kept;
+  aimed.run(source, &kept, nullptr, nullptr);
+  ASSERT_EQ(kept.rays.size(), 1U);
+  const Vec3 way = Vec3(3.0, 3.0, -10.0).normalized();
+  // Down through the plate, or back up: as long as it is on its way, along or against the turned axis.
+  EXPECT_NEAR(std::abs(kept.rays[0].direction.z()), std::abs(way.z()), 1e-12);
+  EXPECT_NEAR((kept.rays[0].direction - way).head<2>().norm(), 0.0, 1e-12);
+  const RayPlacement placement = placement_of(request.placement, aimed.part());
+  EXPECT_NEAR(placement.part_from_source.determinant(), 1.0, 1e-12);
+  EXPECT_NEAR(placement.part_from_source.col(0).dot(way), 0.0, 1e-12);
+  EXPECT_GT(placement.part_from_source(0, 0), 0.9);
+}
+
+TEST(RayStudy, WhatMakesNoSenseIsRefused) {
+  const auto complaint = [](const auto& change) {
+    return refusal_of([&] {
+      RayRequest request;
+      change(request);
+      RayStudy(plate(), request);
+    });
+  };
+  EXPECT_EQ(complaint([](RayRequest& r) { r.split = 1.5; }), "--split: must be >= 0 and <= 1, got 1.5");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.cutoff = NAN; }), "--cutoff: must be >= 0 and <= 1, got nan");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.incidence_deg = 90.0; }),
+            "--incidence: must lie between -90 and 90 degrees, got 90");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.distance_mm = 0.0; }), "--distance-mm: must be > 0, got 0");
+  EXPECT_EQ(complaint([](RayRequest& r) {
+              r.placement.azimuth_deg = 0.0;
+              r.placement.at_mm = {{0, 0, 0}};
+            }),
+            "--at-mm: not together with --incidence, --azimuth and --distance-mm");
+  EXPECT_EQ(complaint([](RayRequest& r) {
+              r.placement.at_mm = {{0, 0, 9}};
+              r.placement.aim_mm = {{0, 0, 9}};
+            }),
+            "--aim-mm: must be another place than that of the source");
+  const auto emitter = [](const auto& change) {
+    return refusal_of([&] {
+      EmitterRequest request;
+      change(request);
+      RayStudy(plate(), {}).emitter_of(request);
+    });
+  };
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.disc_mm = -1.0; }), "--disc-mm: must be >= 0, got -1");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.half_angle_deg = 91.0; }),
+            "--half-angle-deg: must be >= 0 and <= 90, got 91");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.power = 0.0; }), "--power: must be > 0, got 0");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = 0; }), "--rays: must be at least 1, got 0");
+}
+
+TEST(RayStudy, ACancelledRunKeepsWhatItHas) {
+  Cancellation cancel;
+  cancel.request();
+  Given source({}, std::vector<SetRay>(1000, down_at(4, 5)));
+  Kept kept;
+  const RayResult result = RayStudy(plate(), {}).run(source, &kept, nullptr, &cancel);
+  EXPECT_FALSE(result.complete);
+  EXPECT_TRUE(kept.is_finished);
+  EXPECT_EQ(result.ledger.rays, 0U);
+}
+
+}  // namespace
+}  // namespace retrace::testing::ray_study_test
