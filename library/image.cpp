@@ -10,6 +10,7 @@
 #include "report/io/picture_file.h"
 #include "report/results/result_plots.h"
 #include "studies/image/io/image_documents.h"
+#include "studies/image/io/lamp_reader.h"
 #include "studies/photometry/io/standard_reader.h"
 
 namespace retrace {
@@ -27,6 +28,11 @@ studies::DetectorRequest to_study(const DetectorRequest& request) {
   of_study.rays = request.samples;
   of_study.seed = request.seed;
   return of_study;
+}
+
+std::optional<studies::PhotometricLamp> lamp_of(const std::filesystem::path& file) {
+  if (file.empty()) return std::nullopt;
+  return studies::read_lamp(file, "lamp");
 }
 
 studies::CameraRequest to_study(const CameraRequest& request) {
@@ -50,6 +56,8 @@ studies::CameraRequest to_study(const CameraRequest& request) {
   of_study.cylinder_mm = request.cylinder_mm;
   of_study.noise = request.noise;
   of_study.passes = request.passes;
+  of_study.lamp = lamp_of(request.lamp);
+  of_study.lamp_aim_deg = request.lamp_aim_deg;
   of_study.seed = request.seed;
   return of_study;
 }
@@ -58,6 +66,9 @@ studies::RoadRequest to_study(const RoadRequest& request) {
   studies::RoadRequest of_study;
   of_study.distance_m = request.distance_m;
   of_study.lamp_cd = request.lamp_cd;
+  of_study.lamp = lamp_of(request.lamp);
+  of_study.lamp_height_m = request.lamp_height_m;
+  of_study.lamp_aim_deg = request.lamp_aim_deg;
   const std::filesystem::path dye = studies::dye_file_of(request.dye, false, {});
   if (dye.empty()) return of_study;
   of_study.dye = request.dye;

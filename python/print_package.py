@@ -24,6 +24,7 @@ FORMATS = {
 COMMANDS = (
     "rre",
     "photometry",
+    "rays",
     "export",
     "job",
     "fabricate",

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -50,6 +51,8 @@ struct CameraRequest {
   std::optional<double> cylinder_mm = {};          ///< radius that the sheet is bent to; < 0: seen from inside
   double noise = 0.02;                             ///< relative, of pixels, to reach
   std::optional<std::uint32_t> passes = {};        ///< in place of noise
+  std::filesystem::path lamp = {};  ///< photometric file (.ies, .ldt), in place of illuminance_lx; empty: none
+  double lamp_aim_deg = 0.0;        ///< by which its axis points down
   std::uint32_t seed = 1;
 };
 
@@ -57,7 +60,11 @@ struct CameraRequest {
 struct RoadRequest {
   std::vector<double> distance_m = {10.0, 30.0, 100.0};  ///< of the car ahead
   double lamp_cd = 10'000.0;                             ///< of each headlamp towards the reflectors
-  std::string dye = "none";                              ///< none, red, amber or a file
+  std::filesystem::path lamp =
+      {};                       ///< photometric file (.ies, .ldt) of each headlamp, in place of lamp_cd; empty: none
+  double lamp_height_m = 0.65;  ///< of the headlamps' middles
+  double lamp_aim_deg = 0.0;    ///< by which the axes of headlamps from a file point down
+  std::string dye = "none";     ///< none, red, amber or a file
   std::uint32_t seed = 1;
 };
 

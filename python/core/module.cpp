@@ -22,6 +22,7 @@
 #include "retrace/metrology.h"
 #include "retrace/part.h"
 #include "retrace/photometry.h"
+#include "retrace/rays.h"
 #include "retrace/report.h"
 #include "retrace/rre.h"
 #include "retrace/running.h"
@@ -30,6 +31,8 @@
 
 namespace retrace::python {
 namespace {
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// Raises what the package calls it.
 void raise(const char* name, const py::args& arguments) {
@@ -335,11 +338,16 @@ void bind_images(py::module_& module) {
       .def_readwrite("cylinder_mm", &CameraRequest::cylinder_mm)
       .def_readwrite("noise", &CameraRequest::noise)
       .def_readwrite("passes", &CameraRequest::passes)
+      .def_readwrite("lamp", &CameraRequest::lamp)
+      .def_readwrite("lamp_aim_deg", &CameraRequest::lamp_aim_deg)
       .def_readwrite("seed", &CameraRequest::seed);
   py::class_<RoadRequest>(module, "RoadRequest")
       .def(py::init<>())
       .def_readwrite("distance_m", &RoadRequest::distance_m)
       .def_readwrite("lamp_cd", &RoadRequest::lamp_cd)
+      .def_readwrite("lamp", &RoadRequest::lamp)
+      .def_readwrite("lamp_height_m", &RoadRequest::lamp_height_m)
+      .def_readwrite("lamp_aim_deg", &RoadRequest::lamp_aim_deg)
       .def_readwrite("dye", &RoadRequest::dye)
       .def_readwrite("seed", &RoadRequest::seed);
   result_class<ImageResult>(module, "ImageResult").def_readonly("complete", &ImageResult::complete);
@@ -355,6 +363,69 @@ void bind_images(py::module_& module) {
   bind("detector", detector);
   bind("camera", camera);
   bind("road", road);
+}
+
+std::vector<double> numbers_of(const Numbers& array) {
+  return {array.data(), array.data() + array.size()};
+}
+
+/// The result and its arrays.
+py::tuple told(TracedRays traced) {
+  const auto count = static_cast<py::ssize_t>(traced.accounts.size());
+  py::dict arrays;
+  arrays["origins"] = array_of<double>(std::move(traced.origins_mm), {count, 3});
+  arrays["directions"] = array_of<double>(std::move(traced.directions), {count, 3});
+  arrays["stokes"] = array_of<double>(std::move(traced.stokes), {count, 4});
+  arrays["axes"] = array_of<double>(std::move(traced.axes), {count, 3});
+  arrays["wavelength_nm"] = array_of<double>(std::move(traced.wavelengths_nm), {count});
+  arrays["account"] = array_of<std::uint8_t>(std::move(traced.accounts), {count});
+  arrays["incident"] = array_of<std::uint64_t>(std::move(traced.incident), {count});
+  return py::make_tuple(std::move(traced), arrays);
+}
+
+void bind_rays(py::module_& module) {
+  py::class_<RaysRequest>(module, "RaysRequest")
+      .def(py::init<>())
+      .def_readwrite("source", &RaysRequest::source)
+      .def_readwrite("emitter", &RaysRequest::emitter)
+      .def_readwrite("disc_mm", &RaysRequest::disc_mm)
+      .def_readwrite("half_angle_deg", &RaysRequest::half_angle_deg)
+      .def_readwrite("rays", &RaysRequest::rays)
+      .def_readwrite("power", &RaysRequest::power)
+      .def_readwrite("incidence_deg", &RaysRequest::incidence_deg)
+      .def_readwrite("azimuth_deg", &RaysRequest::azimuth_deg)
+      .def_readwrite("distance_mm", &RaysRequest::distance_mm)
+      .def_readwrite("at_mm", &RaysRequest::at_mm)
+      .def_readwrite("aim_mm", &RaysRequest::aim_mm)
+      .def_readwrite("split", &RaysRequest::split)
+      .def_readwrite("cutoff", &RaysRequest::cutoff)
+      .def_readwrite("stokes", &RaysRequest::stokes)
+      .def_readwrite("keep_missed", &RaysRequest::keep_missed)
+      .def_readwrite("out", &RaysRequest::out)
+      .def_readwrite("seed", &RaysRequest::seed);
+  result_class<RaysResult>(module, "RaysResult");
+  module.def("rays",
+             [](const Design& design, const RaysRequest& request, const py::object& progress, unsigned threads) {
+               return watched(progress, threads,
+                              [design, request](const Running& running) { return rays(design, request, running); });
+             });
+  py::class_<TraceRequest>(module, "TraceRequest")
+      .def(py::init<>())
+      .def_readwrite("split", &TraceRequest::split)
+      .def_readwrite("cutoff", &TraceRequest::cutoff)
+      .def_readwrite("keep_missed", &TraceRequest::keep_missed)
+      .def_readwrite("seed", &TraceRequest::seed);
+  result_class<TracedRays>(module, "TracedRays");
+  module.def("ray_accounts", &ray_accounts);
+  module.def("trace", [](const Design& design, const Numbers& origins, const Numbers& directions, const Numbers& stokes,
+                         const Numbers& axes, const Numbers& wavelengths, const TraceRequest& request,
+                         const py::object& progress, unsigned threads) {
+    RayArrays arrays{numbers_of(origins), numbers_of(directions), numbers_of(stokes), numbers_of(axes),
+                     numbers_of(wavelengths)};
+    return told(watched(progress, threads, [design, arrays = std::move(arrays), request](const Running& running) {
+      return trace(design, arrays, request, running);
+    }));
+  });
 }
 
 py::array_t<double> heights_of(HeightMap& map) {
@@ -390,8 +461,7 @@ void bind_surfaces(py::module_& module) {
   module.def("measure_file", [](const std::filesystem::path& file, const MetrologyRequest& request) {
     return told(watched(py::none(), 0, [file, request](const Running&) { return metrology(file, request); }));
   });
-  using Heights = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  module.def("measure_heights", [](const Heights& heights, const MetrologyRequest& request) {
+  module.def("measure_heights", [](const Numbers& heights, const MetrologyRequest& request) {
     HeightMap map;
     map.rows = static_cast<std::size_t>(heights.shape(0));
     map.columns = static_cast<std::size_t>(heights.shape(1));
@@ -423,5 +493,6 @@ PYBIND11_MODULE(_core, module) {
   bind_making(module);
   bind_studies(module);
   bind_images(module);
+  bind_rays(module);
   bind_surfaces(module);
 }

@@ -16,6 +16,7 @@ from ._errors import BudgetError, Error, InputError, OutputError
 from ._fabrication import Fabrication, Job, Verification, fabricate, job, verify
 from ._light import Footprint, PhotometryResult, RreResult, footprint, photometry, rre
 from ._part import ExportResult, FaceKind, Inspection, Mesh, export, inspect, mesh
+from ._rays import RayAccount, RaysResult, TracedRays, rays, trace
 from ._report import Page, report
 from ._results import Columns, Drawing, Result
 from ._studies import (
@@ -51,10 +52,13 @@ __all__ = [
     "OutputError",
     "Page",
     "PhotometryResult",
+    "RayAccount",
+    "RaysResult",
     "Result",
     "RreResult",
     "SweepResult",
     "ToleranceResult",
+    "TracedRays",
     "Verification",
     "export",
     "fabricate",
@@ -66,9 +70,11 @@ __all__ = [
     "metrology",
     "optimize",
     "photometry",
+    "rays",
     "report",
     "rre",
     "sweep",
     "tolerance",
+    "trace",
     "verify",
 ]

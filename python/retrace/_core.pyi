@@ -32,6 +32,8 @@ class CameraRequest:
     cylinder_mm: float | None
     noise: float
     passes: int | None
+    lamp: Path | str
+    lamp_aim_deg: float
     seed: int
 
 class Design:
@@ -220,10 +222,41 @@ class PhotometryResult:
     @property
     def observation(self) -> Drawing: ...
 
+class RaysRequest:
+    def __init__(self) -> None: ...
+    source: Path | str
+    emitter: str
+    disc_mm: float | None
+    half_angle_deg: float | None
+    rays: int
+    power: float
+    incidence_deg: float | None
+    azimuth_deg: float | None
+    distance_mm: float | None
+    at_mm: list[float] | None
+    aim_mm: list[float] | None
+    split: float
+    cutoff: float
+    stokes: bool
+    keep_missed: bool
+    out: Path | str
+    seed: int
+
+class RaysResult:
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def json(self) -> str: ...
+    @property
+    def table(self) -> str: ...
+
 class RoadRequest:
     def __init__(self) -> None: ...
     distance_m: list[float]
     lamp_cd: float
+    lamp: Path | str
+    lamp_height_m: float
+    lamp_aim_deg: float
     dye: str
     seed: int
 
@@ -296,6 +329,21 @@ class StudyResult:
     @property
     def drawing(self) -> Drawing: ...
 
+class TraceRequest:
+    def __init__(self) -> None: ...
+    split: float
+    cutoff: float
+    keep_missed: bool
+    seed: int
+
+class TracedRays:
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def json(self) -> str: ...
+    @property
+    def table(self) -> str: ...
+
 class Verification:
     @property
     def warnings(self) -> list[str]: ...
@@ -355,6 +403,22 @@ def camera(
 def road(
     design: Design, request: RoadRequest, progress: _Progress, threads: int, /
 ) -> tuple[ImageResult, _Pictures]: ...
+def ray_accounts() -> list[str]: ...
+def rays(
+    design: Design, request: RaysRequest, progress: _Progress, threads: int, /
+) -> RaysResult: ...
+def trace(
+    design: Design,
+    origins: _Floats,
+    directions: _Floats,
+    stokes: _Floats,
+    axes: _Floats,
+    wavelengths: _Floats,
+    request: TraceRequest,
+    progress: _Progress,
+    threads: int,
+    /,
+) -> tuple[TracedRays, dict[str, NDArray[Any]]]: ...
 def measure_file(
     file: Path | str, request: MetrologyRequest, /
 ) -> tuple[Metrology, tuple[_Floats, _Floats, _Floats]]: ...

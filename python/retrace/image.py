@@ -6,7 +6,18 @@ from collections.abc import Mapping
 from typing import Any
 
 from . import _core
-from ._arguments import Numbers, checked, give, number, number_list, path, thread_count, whole, word
+from ._arguments import (
+    Numbers,
+    PathLike,
+    checked,
+    give,
+    number,
+    number_list,
+    path,
+    thread_count,
+    whole,
+    word,
+)
 from ._design import AnyDesign, design_of
 from ._errors import InputError
 from ._options import OPTIONS
@@ -149,6 +160,8 @@ def camera(
     cylinder_mm: float | None = None,
     noise: float = 0.02,
     passes: int | None = None,
+    lamp: PathLike | None = None,
+    lamp_aim_deg: float = 0.0,
     seed: int = 1,
     threads: int | None = None,
     progress: Progress = None,
@@ -156,7 +169,7 @@ def camera(
     """The part in the light of a lamp, as a camera sees it ("camera": luminance Y in cd/m2), as
     `retrace image --camera`.
 
-    eye_mm, lamp_mm, film_mm: three, three and two numbers."""
+    eye_mm, lamp_mm, film_mm: three, three and two numbers. lamp: a photometric file."""
     if not isinstance(pixels, (tuple, list)) or len(pixels) != 2:
         raise InputError("must be a pair (columns, rows)", key="pixels")
     request = give(
@@ -175,6 +188,7 @@ def camera(
                 ("ambient_lx", ambient_lx),
                 ("backlight_lx", backlight_lx),
                 ("noise", noise),
+                ("lamp_aim_deg", lamp_aim_deg),
             )
         },
         columns=whole("pixels", pixels[0], 1, _MOST),
@@ -190,6 +204,8 @@ def camera(
             setattr(request, name, number(name, length))
     if passes is not None:
         request.passes = whole("passes", passes, 1, _MOST)
+    if lamp is not None:
+        request.lamp = path("lamp", lamp)
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "rendering") as tell:
         return ImageResult(_core.camera(taken._core, request, tell, count))
@@ -201,6 +217,9 @@ def road(
     *,
     distance_m: Numbers = (10.0, 30.0, 100.0),
     lamp_cd: float = 10000.0,
+    lamp: PathLike | None = None,
+    lamp_height_m: float = 0.65,
+    lamp_aim_deg: float = 0.0,
     dye: str = "none",
     seed: int = 1,
     threads: int | None = None,
@@ -212,9 +231,13 @@ def road(
         _core.RoadRequest(),
         distance_m=number_list("distance_m", distance_m),
         lamp_cd=number("lamp_cd", lamp_cd, 0, low_included=False),
+        lamp_height_m=number("lamp_height_m", lamp_height_m),
+        lamp_aim_deg=number("lamp_aim_deg", lamp_aim_deg),
         dye=path("dye", dye),
         seed=whole("seed", seed, 0, _MOST),
     )
+    if lamp is not None:
+        request.lamp = path("lamp", lamp)
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "tracing") as tell:
         return ImageResult(_core.road(taken._core, request, tell, count))

@@ -10,6 +10,7 @@ import numpy as np
 import program
 import retrace as rt
 
+BEAM = program.example("low_beam.ies")
 BRICK = program.example("rtp_brick_1mm.toml")
 PRISM = program.example("rtp_single_0p45mm.toml")
 SOME_RAYS = {"analysis.engine": "montecarlo", "analysis.samples": 64}
@@ -78,6 +79,8 @@ class Equality(unittest.TestCase):
                 passes=2,
                 ambient_lx=1,
                 eye_mm=(0, 30, 8000),
+                lamp=BEAM,
+                lamp_aim_deg=1,
             ),
             program.document(
                 "image",
@@ -87,12 +90,33 @@ class Equality(unittest.TestCase):
                 "--passes=2",
                 "--ambient-lx=1",
                 "--eye-mm=0,30,8000",
+                f"--lamp={BEAM}",
+                "--lamp-aim-deg=1",
             ),
         )
         reflector = program.example("reflex_reflector.toml")
         self.assertEqual(
             program.answer(rt.image.road, reflector, distance_m=[30], dye="red"),
             program.document("image", reflector, "--road", "--road-distance-m=30", "--dye=red"),
+        )
+        self.assertEqual(
+            program.answer(
+                rt.image.road,
+                reflector,
+                distance_m=[30],
+                lamp=BEAM,
+                lamp_height_m=0.8,
+                lamp_aim_deg=0.5,
+            ),
+            program.document(
+                "image",
+                reflector,
+                "--road",
+                "--road-distance-m=30",
+                f"--lamp={BEAM}",
+                "--lamp-height-m=0.8",
+                "--lamp-aim-deg=0.5",
+            ),
         )
 
 
@@ -321,6 +345,8 @@ class Pictures(unittest.TestCase):
             (rt.image.camera, {"noise": "low"}, "noise"),
             (rt.image.road, {"distance_m": []}, "distance_m"),
             (rt.image.road, {"lamp_cd": 0}, "lamp_cd"),
+            (rt.image.road, {"lamp": "lamp.txt"}, "lamp"),
+            (rt.image.camera, {"lamp": 3}, "lamp"),
         ):
             with self.subTest(keywords=keywords):
                 with self.assertRaises(rt.InputError) as caught:

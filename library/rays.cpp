@@ -1,0 +1,103 @@
+#include "retrace/rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "library/content.h"
+#include "raytrace/sampling/threads.h"
+#include "studies/rays/io/ray_documents.h"
+#include "studies/rays/io/ray_files.h"
+#include "studies/rays/ray_accounts.h"
+#include "studies/rays/ray_arrays.h"
+#include "studies/rays/ray_study.h"
+
+namespace retrace {
+namespace {
+
+studies::RayRequest to_study(const RaysRequest& request) {
+  studies::RayRequest of_study;
+  of_study.placement = {request.at_mm, request.aim_mm, request.incidence_deg, request.azimuth_deg, request.distance_mm};
+  if (!request.emitter.empty()) of_study.placement.face_part();
+  of_study.split = request.split;
+  of_study.cutoff = request.cutoff;
+  of_study.stokes = request.stokes;
+  of_study.keep_missed = request.keep_missed;
+  of_study.seed = request.seed;
+  return of_study;
+}
+
+studies::EmitterRequest emitter_of(const RaysRequest& request) {
+  return {studies::emitter_from_name(request.emitter), request.disc_mm, request.half_angle_deg, request.rays,
+          request.power};
+}
+
+/// What results of files and of memory have in common.
+template <class Result>
+void tell(const studies::RayResult& found, Result& result) {
+  const double whole = found.ledger.incident > 0.0 ? found.ledger.incident : 1.0;
+  for (std::size_t k = 0; k < raytrace::kAccountCount; ++k)
+    result.ledger.emplace(studies::kRayAccounts[k], found.ledger.ledger.power[k] / whole);
+  result.ledger.emplace(studies::kRayAccounts[studies::kMissedAccount], found.ledger.missed / whole);
+  result.power = found.ledger.incident;
+  result.warnings = found.warnings;
+  result.complete = found.complete;
+  result.json = studies::rays_json(found);
+  result.table = studies::rays_table(found);
+}
+
+}  // namespace
+
+RaysResult rays(const Design& design, const RaysRequest& request, const Running& running) {
+  if (request.source.empty() == request.emitter.empty())
+    throw InputError({"", 0, "source"}, "one of source and emitter must be given");
+  const studies::RayStudy study(design.content().design, to_study(request));
+  std::optional<studies::Emitter> emitter;
+  if (!request.emitter.empty()) emitter = study.emitter_of(emitter_of(request));
+  if (!request.out.empty()) studies::check_ray_file(request.out, "out");
+  const std::unique_ptr<studies::RaySource> source =
+      emitter ? std::make_unique<studies::EmitterSource>(*emitter) : studies::open_ray_file(request.source, "source");
+  std::unique_ptr<studies::RaySink> sink;
+  if (!request.out.empty()) sink = studies::make_ray_file(request.out, "out");
+  studies::RayResult found;
+  raytrace::run_with_threads(running.threads,
+                             [&] { found = study.run(*source, sink.get(), running.progress, running.cancellation); });
+  found.source_name = request.source.string();
+  found.emitter = emitter;
+  found.out_name = request.out.string();
+  RaysResult result;
+  tell(found, result);
+  return result;
+}
+
+std::vector<std::string> ray_accounts() {
+  return {studies::kRayAccounts.begin(), studies::kRayAccounts.end()};
+}
+
+TracedRays trace(const Design& design, const RayArrays& rays, const TraceRequest& request, const Running& running) {
+  studies::RayRequest of_study;
+  of_study.split = request.split;
+  of_study.cutoff = request.cutoff;
+  of_study.stokes = true;
+  of_study.keep_missed = request.keep_missed;
+  of_study.seed = request.seed;
+  const studies::RayStudy study(design.content().design, of_study);
+  studies::ArraySource source({rays.origins_mm, rays.directions, rays.stokes, rays.axes, rays.wavelengths_nm});
+  studies::ArraySink sink;
+  studies::RayResult found;
+  raytrace::run_with_threads(running.threads,
+                             [&] { found = study.run(source, &sink, running.progress, running.cancellation); });
+  TracedRays result;
+  result.origins_mm = std::move(sink.origins_mm);
+  result.directions = std::move(sink.directions);
+  result.stokes = std::move(sink.stokes);
+  result.axes = std::move(sink.axes);
+  result.wavelengths_nm = std::move(sink.wavelengths_nm);
+  result.accounts = std::move(sink.accounts);
+  result.incident = std::move(sink.incident);
+  tell(found, result);
+  return result;
+}
+
+}  // namespace retrace

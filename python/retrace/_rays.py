@@ -1,0 +1,227 @@
+"""Rays through a part: those of files or an emitter, and those of memory."""
+
+from __future__ import annotations
+
+import enum
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._arguments import (
+    Numbers,
+    PathLike,
+    checked,
+    flag,
+    give,
+    number,
+    number_list,
+    path,
+    refuse,
+    thread_count,
+    whole,
+    word,
+)
+from ._design import AnyDesign, design_of
+from ._errors import InputError
+from ._options import OPTIONS
+from ._progress import Progress, teller
+from ._results import Array, Result
+
+__all__ = ["RayAccount", "RaysResult", "TracedRays", "rays", "trace"]
+
+_MOST_SEED = 2**32 - 1
+_EMITTERS = ("lambertian", "gaussian", "collimated")
+_NAMES = {"incidence_deg": "incidence", "azimuth_deg": "azimuth", "design": "", "out": ""}
+
+
+class RayAccount(enum.IntEnum):
+    """Where a ray has left the part, or missed it."""
+
+    RETROREFLECTED = 0
+    FRONT_SPECULAR = 1
+    SCATTERED_OUT = 2
+    RETURNED_ELSEWHERE = 3
+    SIDE_EXIT = 4
+    TRANSMITTED = 5
+    ABSORBED = 6
+    TRUNCATED = 7
+    LOST = 8
+    MISSED = 9
+
+
+class RaysResult(Result):
+    """Where the power of rays has gone; the rays that left are in the file that was asked for."""
+
+    _told = ("rays", "power", "power_unit")
+
+    ledger: dict[str, float]  #: shares of the power of all rays by account, which add up to 1
+    power: float  #: of all rays
+    complete: bool
+
+
+class TracedRays(RaysResult):
+    """Every ray that left: arrays with one row a ray, in the order of the incident rays."""
+
+    power_out: Array  #: (m,) of each ray
+    origins: Array  #: (m, 3) where it left, in mm in the part's frame
+    directions: Array  #: (m, 3) unit vectors
+    stokes: Array  #: (m, 4) the first the power
+    axes: Array  #: (m, 3) of the Stokes parameters: along the long axis of the polarisation ellipse
+    wavelength_nm: Array  #: (m,)
+    account: NDArray[np.uint8]  #: (m,) values of RayAccount
+    incident: NDArray[np.uint64]  #: (m,) which of the incident rays it comes from
+
+    def __init__(self, made: tuple[Any, dict[str, Any]]) -> None:
+        core, arrays = made
+        super().__init__(core)
+        for name, array in arrays.items():
+            setattr(self, name, array)
+        self.power_out = self.stokes[:, 0]
+
+    def __len__(self) -> int:
+        return len(self.account)
+
+
+def _array(name: str, values: object, width: int) -> Array:
+    """Numbers in rows of some length."""
+    allowed = f"an array of numbers of shape (n, {width})"
+    try:
+        array = np.asarray(values)
+    except Exception:  # whatever an __array__ of somebody else raises
+        raise refuse(name, allowed, values) from None
+    if array.dtype.kind not in "iuf" or array.ndim != 2 or array.shape[1] != width:
+        raise InputError(
+            f"must be {allowed}, got shape {array.shape} of {array.dtype}", key=name
+        ) from None
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _stokes(stokes: object, count: int) -> Array:
+    if np.shape(stokes) == (4,):  # type: ignore[arg-type]
+        return np.array([number_list("stokes", stokes)])
+    array = _array("stokes", stokes, 4)
+    if len(array) != count:
+        raise InputError(f"must have {count} rows, got {len(array)}", key="stokes")
+    return array
+
+
+@checked(OPTIONS["rays"], _NAMES)
+def trace(
+    design: AnyDesign,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    stokes: ArrayLike = (1.0, 0.0, 0.0, 0.0),
+    *,
+    axes: ArrayLike | None = None,
+    wavelength_nm: Numbers | None = None,
+    split: float = 1.0,
+    cutoff: float = 1e-10,
+    keep_missed: bool = False,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> TracedRays:
+    """What becomes of rays in memory, as `retrace rays` does of those of files.
+
+    origins, directions: (n, 3), in mm in the part's frame; directions of any length above 0.
+    stokes: (n, 4), or four numbers for all, the first the power; along `axes` (n, 3) [+x, seen
+    across each direction]. wavelength_nm: one, or one a ray [the design's light]."""
+    taken = design_of(design)
+    places = _array("origins", origins, 3)
+    ways = _array("directions", directions, 3)
+    if len(ways) != len(places):
+        raise InputError(f"must have {len(places)} rows, got {len(ways)}", key="directions")
+    along = np.empty((0, 3)) if axes is None else _array("axes", axes, 3)
+    if axes is not None and len(along) != len(places):
+        raise InputError(f"must have {len(places)} rows, got {len(along)}", key="axes")
+    waves = np.empty(0)
+    if wavelength_nm is not None:
+        waves = np.asarray(wavelength_nm)
+        if waves.dtype.kind not in "iuf" or waves.ndim > 1 or waves.size not in (1, len(places)):
+            raise refuse("wavelength_nm", f"a number, or {len(places)} of them", wavelength_nm)
+        waves = np.ascontiguousarray(waves, dtype=np.float64).reshape(-1)
+    request = give(
+        _core.TraceRequest(),
+        split=number("split", split, 0, 1),
+        cutoff=number("cutoff", cutoff, 0, 1),
+        keep_missed=flag("keep_missed", keep_missed),
+        seed=whole("seed", seed, 0, _MOST_SEED),
+    )
+    light = _stokes(stokes, len(places))
+    count = thread_count(threads)
+    with teller(progress, "tracing") as tell:
+        return TracedRays(
+            _core.trace(taken._core, places, ways, light, along, waves, request, tell, count)
+        )
+
+
+def _place(name: str, values: Numbers) -> list[float]:
+    place = number_list(name, values)
+    if len(place) != 3:
+        raise InputError(f"must be three numbers, got {len(place)}", key=name)
+    return place
+
+
+@checked(OPTIONS["rays"], _NAMES)
+def rays(
+    design: AnyDesign,
+    *,
+    source: PathLike | None = None,
+    emitter: str | None = None,
+    rays: int = 1_000_000,
+    disc_mm: float | None = None,
+    half_angle_deg: float | None = None,
+    power: float = 1.0,
+    incidence_deg: float | None = None,
+    azimuth_deg: float | None = None,
+    distance_mm: float | None = None,
+    at_mm: Numbers | None = None,
+    aim_mm: Numbers | None = None,
+    split: float = 1.0,
+    cutoff: float = 1e-10,
+    stokes: bool = False,
+    keep_missed: bool = False,
+    out: PathLike | None = None,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> RaysResult:
+    """What becomes of the rays of a file or an emitter, as `retrace rays`.
+
+    out: the file that rays are written to, .tm25ray or .csv; without one they are counted alone."""
+    taken = design_of(design)
+    if (source is None) == (emitter is None):
+        raise InputError("one of source and emitter must be given", key="source")
+    request = give(
+        _core.RaysRequest(),
+        rays=whole("rays", rays, 1, 2**40),
+        power=number("power", power, 0, low_included=False),
+        split=number("split", split, 0, 1),
+        cutoff=number("cutoff", cutoff, 0, 1),
+        stokes=flag("stokes", stokes),
+        keep_missed=flag("keep_missed", keep_missed),
+        seed=whole("seed", seed, 0, _MOST_SEED),
+    )
+    if source is not None:
+        request.source = path("source", source)
+    if emitter is not None:
+        request.emitter = word("emitter", emitter, _EMITTERS)
+    if out is not None:
+        request.out = path("out", out)
+    for name, value in (
+        ("disc_mm", disc_mm),
+        ("half_angle_deg", half_angle_deg),
+        ("incidence_deg", incidence_deg),
+        ("azimuth_deg", azimuth_deg),
+        ("distance_mm", distance_mm),
+    ):
+        if value is not None:
+            setattr(request, name, number(name, value))
+    for name, place in (("at_mm", at_mm), ("aim_mm", aim_mm)):
+        if place is not None:
+            setattr(request, name, _place(name, place))
+    count = thread_count(threads)
+    with teller(progress, "tracing") as tell:
+        return RaysResult(_core.rays(taken._core, request, tell, count))
