@@ -1,6 +1,7 @@
 #include "raytrace/light/light_setup.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace retrace::raytrace {
@@ -112,6 +113,14 @@ void Tally::add(const Tally& more) {
   for (std::size_t k = 0; k < kAccountCount; ++k) other.power[k] += more.other.power[k];
   segments += more.segments;
   misses += more.misses;
+}
+
+void Tally::clear() {
+  for (std::vector<Stokes>* const sums : {&returned, &scattered, &front})
+    std::fill(sums->begin(), sums->end(), Stokes{});
+  std::fill(score.begin(), score.end(), 0.0);
+  other = {};
+  segments = misses = 0;
 }
 
 Ledger Tally::ledger(std::size_t cone) const {

@@ -74,6 +74,8 @@ struct Tally {
   std::uint64_t misses = 0;       ///< rays that missed every face although the part or its surface surrounds them
 
   void add(const Tally& more);
+  /// Nothing is in it any more.
+  void clear();
   /// The ledger for one cone, in units of the tally. \param cone index into the cones of the set-up
   Ledger ledger(std::size_t cone) const;
   /// Of what is retroreflected into one cone.

@@ -67,7 +67,8 @@ struct RayTracer::Scene {
 /// Follows rays, one after the other, and keeps what becomes of them.
 class RayTracer::Walk : public ExitObserver {
  public:
-  explicit Walk(const Scene& scene) : scene_(scene), from_centre_(scene.centre_mm.x(), scene.centre_mm.y(), 0.0) {}
+  Walk(const Scene& scene, TracedRays& traced)
+      : scene_(scene), from_centre_(scene.centre_mm.x(), scene.centre_mm.y(), 0.0), traced_(traced) {}
 
   void trace(const IncidentRay& ray, std::uint64_t number, std::uint32_t incident) {
     const double power = ray.light.power();
@@ -79,18 +80,12 @@ class RayTracer::Walk : public ExitObserver {
     if (!(power > 0.0)) return;
     Ray start{ray.direction, ray.light, false, false};
     start.light.scale(1.0 / power);
-    tally_ = Tally(1);
+    tally_.clear();
     PathWalker& walker = walker_at(ray.optics);
     if (!walker.launch(ray.position_mm - from_centre_, start, {scene_.seed, kRayChoiceStream},
                        static_cast<std::uint32_t>(number >> 32), static_cast<std::uint32_t>(number)))
       return miss();
     book();
-  }
-
-  TracedRays take() {
-    TracedRays taken = std::move(traced_);
-    traced_ = {};
-    return taken;
   }
 
   void leaves(const Departure& departure) override {
@@ -130,7 +125,7 @@ class RayTracer::Walk : public ExitObserver {
   Vec3 from_centre_;
   Tally tally_{1};
   std::vector<std::unique_ptr<PathWalker>> walkers_;  ///< by wavelength
-  TracedRays traced_;
+  TracedRays& traced_;
   std::uint32_t incident_ = 0;
   double power_ = 0.0;
 };
@@ -154,14 +149,18 @@ TracedRays RayTracer::trace(std::span<const IncidentRay> rays, std::uint64_t fir
   for_each_in_parallel(tasks, [&](std::size_t task) {
     if (is_cancelled(cancel)) return;
     const FlushDenormals flush;
-    Walk walk(*scene_);
     const std::size_t end = std::min(rays.size(), (task + 1) * kRaysTogether);
+    done[task].leaving.reserve(end - task * kRaysTogether);
+    Walk walk(*scene_, done[task]);
     for (std::size_t k = task * kRaysTogether; k < end; ++k)
       walk.trace(rays[k], first + k, static_cast<std::uint32_t>(k));
-    done[task] = walk.take();
   });
-  TracedRays all;
-  for (const TracedRays& some : done) {
+  if (tasks == 0) return {};
+  TracedRays all = std::move(done.front());
+  std::size_t leaving = 0;
+  for (const TracedRays& some : done) leaving += some.leaving.size();
+  all.leaving.reserve(leaving + all.leaving.size());
+  for (const TracedRays& some : std::span(done).subspan(1)) {
     all.leaving.insert(all.leaving.end(), some.leaving.begin(), some.leaving.end());
     all.missed.insert(all.missed.end(), some.missed.begin(), some.missed.end());
     all.ledger.add(some.ledger);

@@ -19,7 +19,7 @@ namespace retrace::studies {
 namespace {
 
 // Rays that are read at a time, and of those that leave about as many: what bounds memory.
-constexpr std::size_t kRaysAtATime = 65536;
+constexpr std::size_t kRaysAtATime = 16384;
 constexpr std::size_t kFewestAtATime = 1024;
 
 void require_share(double value, const char* option) {
@@ -195,17 +195,16 @@ class RayStudy::Run {
 
   /// \return how many rays leave
   std::size_t trace(const Cancellation* cancel) {
-    std::vector<raytrace::IncidentRay> incident;
-    incident.reserve(rays_.size());
+    incident_.clear();
     for (std::size_t k = 0; k < rays_.size(); ++k) {
       SetRay& ray = rays_[k];
       hidden_.placement.apply(ray);
       const std::uint32_t optics = wavelengths_.settle(ray, read_ + k);
-      incident.push_back({ray.position_mm, ray.direction,
-                          light_of(ray, power_of(ray), source_.info().has_stokes, hidden_.design.light.polarisation),
-                          optics});
+      incident_.push_back({ray.position_mm, ray.direction,
+                           light_of(ray, power_of(ray), source_.info().has_stokes, hidden_.design.light.polarisation),
+                           optics});
     }
-    const raytrace::TracedRays traced = tracer_.trace(incident, read_, cancel);
+    const raytrace::TracedRays traced = tracer_.trace(incident_, read_, cancel);
     if (is_cancelled(cancel)) {
       result_.complete = false;
       return 0;
@@ -218,26 +217,26 @@ class RayStudy::Run {
 
   /// In the order of the rays of the source.
   void write(const raytrace::TracedRays& traced) {
-    std::vector<AccountedRay> out;
-    out.reserve(traced.leaving.size() + (hidden_.request.keep_missed ? traced.missed.size() : 0));
+    out_.clear();
     auto missed = hidden_.request.keep_missed ? traced.missed.begin() : traced.missed.end();
     const auto add_missed_before = [&](std::uint32_t incident) {
-      for (; missed != traced.missed.end() && *missed < incident; ++missed) out.push_back(missed_ray(*missed));
+      for (; missed != traced.missed.end() && *missed < incident; ++missed) out_.push_back(missed_ray(*missed));
     };
     for (const raytrace::LeavingRay& ray : traced.leaving) {
       add_missed_before(ray.incident);
-      out.push_back(leaving_ray(ray));
+      out_.push_back(leaving_ray(ray));
     }
     add_missed_before(UINT32_MAX);
-    sink_->write(out);
-    result_.rays_out += out.size();
+    sink_->write(out_);
+    result_.rays_out += out_.size();
   }
 
   AccountedRay missed_ray(std::uint32_t incident) const {
     AccountedRay out{rays_[incident], read_ + incident + 1, kMissedAccount};
     const SetRay& ray = rays_[incident];
     const bool has_stokes = source_.info().has_stokes;
-    settle_polarisation(light_of(ray, power_of(ray), has_stokes, hidden_.design.light.polarisation), out);
+    if (layout_.info.has_stokes)
+      settle_polarisation(light_of(ray, power_of(ray), has_stokes, hidden_.design.light.polarisation), out);
     return out;
   }
 
@@ -251,7 +250,7 @@ class RayStudy::Run {
     out.luminous_lm *= share;
     out.tristimulus_x *= share;
     out.tristimulus_z *= share;
-    settle_polarisation(ray.light, out);
+    if (layout_.info.has_stokes) settle_polarisation(ray.light, out);
     return out;
   }
 
@@ -283,6 +282,8 @@ class RayStudy::Run {
   RayWavelengths wavelengths_;
   RaySinkLayout layout_;
   std::vector<SetRay> rays_;
+  std::vector<raytrace::IncidentRay> incident_;
+  std::vector<AccountedRay> out_;
   std::uint64_t read_ = 0;
   RayResult result_;
 };

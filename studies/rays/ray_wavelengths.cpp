@@ -66,10 +66,12 @@ bool RayWavelengths::are_several() const {
 }
 
 std::uint32_t RayWavelengths::optics_at(double wavelength_nm) {
-  if (const auto found = known_.find(wavelength_nm); found != known_.end()) return found->second;
+  if (wavelength_nm == last_nm_) return last_;
+  last_nm_ = wavelength_nm;
+  if (const auto found = known_.find(wavelength_nm); found != known_.end()) return last_ = found->second;
   shortest_nm_ = known_.empty() ? wavelength_nm : std::min(shortest_nm_, wavelength_nm);
   longest_nm_ = std::max(longest_nm_, wavelength_nm);
-  return known_[wavelength_nm] = add_(wavelength_nm);
+  return last_ = known_[wavelength_nm] = add_(wavelength_nm);
 }
 
 std::uint32_t RayWavelengths::settle(SetRay& ray, std::uint64_t number) {
@@ -78,6 +80,8 @@ std::uint32_t RayWavelengths::settle(SetRay& ray, std::uint64_t number) {
     return optics_at(std::round(ray.wavelength_nm * kStepsPerNm) / kStepsPerNm);
   if (!choices_.empty()) {
     const Choice& choice = choices_[kind_ == RaySpectrum::table_of_each ? ray.table - 1 : 0];
+    ray.wavelength_nm = choice.wavelengths_nm.front();
+    if (choice.wavelengths_nm.size() == 1) return optics_at(ray.wavelength_nm);
     const auto words = philox({seed_, kWavelengthStream}, static_cast<std::uint32_t>(number),
                               static_cast<std::uint32_t>(number >> 32));
     const double u = unit_interval(words[0]) * choice.cumulative.back();

@@ -46,6 +46,8 @@ class RayWavelengths {
   std::uint32_t seed_;
   Add add_;
   std::map<double, std::uint32_t> known_;
+  double last_nm_ = 0.0;
+  std::uint32_t last_ = 0;  ///< of `last_nm_`
   double shortest_nm_ = 0.0;
   double longest_nm_ = 0.0;
 };
