@@ -86,7 +86,7 @@ struct ErrorEffects {
   std::vector<std::vector<double>> slopes;  ///< of the least goal, per minute of arc, by zone and angle; shares follow
   PartYield yield;
   std::optional<SharesForWorst> for_worst;
-  double missed_by = 0.0;  ///< the most by which polynomials missed goals that were computed
+  double missed_by = 0.0;  ///< no goal of the part is missed by more where polynomials were held against computed ones
 };
 
 /// What is known about how good the part is.

@@ -106,7 +106,7 @@ ErrorEffects effects_of_errors(const Study& study, const ComposeRequest& request
   for (const Zone& zone : part.zones) {
     const CheckedResponse made = response_of(study, request, zone.cell, cancel);
     responses.push_back(made.response.spread(spread.cell_sigma_arcmin));
-    effects.missed_by = std::max(effects.missed_by, made.missed_by);
+    effects.missed_by += zone.share * made.missed_by;
     shares.push_back(zone.share);
     if (observer != nullptr) observer->at(responses.size());
   }

@@ -77,8 +77,9 @@ std::string error_effects_text(const ComposeRequest& request, const ErrorEffects
       text += fmt::format("{} {:.2f} %", z == 0 ? "" : ",", 100.0 * effects.for_worst->shares[z]);
     text += ": " + yield_text(request, effects.for_worst->yield, are_margins);
   }
-  return text + fmt::format("polynomials in the errors missed goals that were computed by {} at most\n",
-                            shown(effects.missed_by));
+  return text +
+         fmt::format("the polynomials behind this miss goals of the part by {} at most, where that was computed\n",
+                     shown(effects.missed_by));
 }
 
 }  // namespace retrace::studies
