@@ -39,5 +39,6 @@ Command turn_command();
 Command validate_command();
 Command verify_command();
 Command calibrate_command();
+Command correct_command();
 
 }  // namespace retrace::app

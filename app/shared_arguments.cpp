@@ -2,10 +2,22 @@
 
 #include <utility>
 
+#include "core/error.h"
+#include "core/text.h"
 #include "fabrication/read/nc_program.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::app {
+namespace {
+
+double spacing_of(std::string_view text, const std::string& whole) {
+  const std::optional<double> value = number_in(text);
+  if (!value || !(*value > 0.0))
+    throw InputError({"", 0, "--pixel-um"}, "must be one number > 0, or two for x and y as in 0.5,0.6, got " + whole);
+  return *value;
+}
+
+}  // namespace
 
 Argument design_argument(std::string& design) {
   return {"DESIGN", "design file; - is standard input", &design, files(".toml")};
@@ -52,6 +64,30 @@ void check_study_options(const StudyOptions& options, const CommonOptions& commo
 studies::IfExists if_exists_of(const StudyOptions& options) {
   if (options.resume) return studies::IfExists::resume;
   return options.overwrite ? studies::IfExists::overwrite : studies::IfExists::refuse;
+}
+
+std::vector<Argument> map_arguments(MapOptions& options) {
+  const Words units = {"m", "mm", "um", "nm", "pm"};
+  return {{"--pixel-um P", "spacing of the points, or PX,PY [what the file says]", &options.pixel_um},
+          {"--height-unit UNIT", "of the heights: m, mm, um, nm or pm [what the file says]", &options.height_unit,
+           one_of(units)},
+          {"--lateral-unit UNIT", "of lengths without a unit, likewise [what the file says]", &options.lateral_unit,
+           one_of(units)},
+          {"--channel N", "channel of a GWY file [the first]", &options.channel, whole(0, 999999)}};
+}
+
+surface_models::HeightMapOptions reading_of(const MapOptions& options) {
+  surface_models::HeightMapOptions reading;
+  reading.height_unit = options.height_unit;
+  reading.lateral_unit = options.lateral_unit;
+  reading.channel = options.channel;
+  if (!options.pixel_um) return reading;
+  const std::string& text = *options.pixel_um;
+  const std::size_t comma = text.find(',');
+  reading.x_pixel_um = spacing_of(std::string_view(text).substr(0, comma), text);
+  reading.y_pixel_um =
+      comma == std::string::npos ? *reading.x_pixel_um : spacing_of(std::string_view(text).substr(comma + 1), text);
+  return reading;
 }
 
 }  // namespace retrace::app

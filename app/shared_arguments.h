@@ -3,10 +3,13 @@
 // Arguments that several commands have, each with one name and one help text: design, job and part files, engine, dye,
 // and how a study treats an existing store.
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "app/command.h"
 #include "studies/store/store.h"
+#include "surface_models/io/height_map_reader.h"
 
 namespace retrace::app {
 
@@ -28,6 +31,17 @@ Argument dye_argument(Name& dye, const std::string& help) {
 
 /// Names of the engines of `retrace rre`, or of those that pictures and photometry have as well.
 Words engine_words(bool of_rre);
+
+/// How height maps are read, where their files do not say it.
+struct MapOptions {
+  std::optional<std::string> pixel_um;  ///< one number, or two with a comma between
+  std::optional<std::string> height_unit;
+  std::optional<std::string> lateral_unit;
+  std::optional<std::size_t> channel;
+};
+std::vector<Argument> map_arguments(MapOptions& options);
+/// What they say. \throw InputError naming --pixel-um
+surface_models::HeightMapOptions reading_of(const MapOptions& options);
 
 /// Of commands that keep their points in a store.
 struct StudyOptions {

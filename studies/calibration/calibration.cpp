@@ -28,20 +28,6 @@ constexpr double kMostOutliers = 0.1;
 /// Leverage from which on nothing checks a measurement.
 constexpr double kUnchecked = 1.0 - 1e-9;
 
-std::vector<CutPart> cut_parts(const MeasuredParts& measured) {
-  std::vector<CutPart> parts;
-  for (std::size_t k = 0; k < measured.plans.size(); ++k) {
-    std::set<std::size_t> elements;
-    for (const Measurement& m : measured.measurements) {
-      if (m.part != k) continue;
-      elements.insert(m.at.element);
-      if (m.from) elements.insert(m.from->element);
-    }
-    parts.emplace_back(measured.plans[k], std::vector<std::size_t>(elements.begin(), elements.end()));
-  }
-  return parts;
-}
-
 void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
   for (const Measurement& m : measured.measurements)
     if (const std::string fault = parts[m.part].fault_of(m); !fault.empty())
@@ -50,15 +36,15 @@ void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
 
 /// Gauss-Newton steps among the combinations that are told about the nominal machine: in all others the measurements
 /// change by terms of the second order alone, which would be taken for signs of them.
-Estimate fit(const std::vector<CutPart>& parts, const std::vector<Measurement>& measurements, const Machine& nominal,
-             const std::string& file) {
-  LinearModel model = linear_model(parts, measurements, nominal);
+Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
+  const Machine& nominal = measured.plans.front().machine;
+  LinearModel model = linear_model(parts, measured.measurements, nominal, measured.map_faces);
   Estimate result = estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
   const Eigen::MatrixXd told = result.told;
   for (int step = 0; step < kMostSteps; ++step) {
     const VectorXd before = told.transpose() * result.value;
     const std::span<const double> amounts(result.value.data(), static_cast<std::size_t>(result.value.size()));
-    model = linear_model(parts, measurements, with_errors(nominal, amounts));
+    model = linear_model(parts, measured.measurements, with_errors(nominal, amounts), measured.map_faces);
     const Eigen::MatrixXd of_told = model.of_setup * told;
     const Estimate next = estimate(of_told, model.of_poses, model.residual + of_told * before, 2.0 * kSetUpByEye);
     result.value = told * next.value;
@@ -67,14 +53,14 @@ Estimate fit(const std::vector<CutPart>& parts, const std::vector<Measurement>& 
     result.leverage = next.leverage;
     if ((next.value - before).cwiseQuotient(next.covariance.diagonal().cwiseSqrt()).norm() < kLastStep) return result;
   }
-  throw InputError({file, 0, ""},
+  throw InputError({measured.file, 0, ""},
                    "no machine near that of the jobs leaves what was measured: are units and facets right?");
 }
 
-/// The measurement that the others contradict most, with by how much.
-std::pair<std::size_t, double> worst(const Estimate& estimate) {
+/// The one of so many measurements that the others contradict most, with by how much.
+std::pair<std::size_t, double> worst(const Estimate& estimate, std::size_t measurements) {
   std::pair<std::size_t, double> found{0, 0.0};
-  for (Index k = 0; k < estimate.residual.size(); ++k) {
+  for (Index k = 0; k < static_cast<Index>(measurements); ++k) {
     if (estimate.leverage[k] >= kUnchecked) continue;
     const double deviations = std::abs(estimate.residual[k]) / std::sqrt(1.0 - estimate.leverage[k]);
     if (deviations > found.second) found = {static_cast<std::size_t>(k), deviations};
@@ -87,15 +73,18 @@ double most_by_chance(std::size_t measurements) {
   return boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
 }
 
-[[noreturn]] void refuse(const std::string& file, const std::vector<Outlier>& outliers) {
-  std::string lines;
-  for (const Outlier& outlier : outliers)
-    lines += fmt::format("{}{}", lines.empty() ? "" : ", ", outlier.measurement.line);
+[[noreturn]] void refuse(const MeasuredParts& measured, const std::vector<Outlier>& outliers) {
+  std::string places;
+  for (const Outlier& outlier : outliers) {
+    const Measurement& m = outlier.measurement;
+    places += places.empty() ? "" : ", ";
+    places += m.line > 0 ? std::to_string(m.line) : fmt::format("facet {} of element {}", m.at.facet + 1, m.at.element);
+  }
+  const int line = outliers.front().measurement.line;
   throw InputError(
-      {file, outliers.front().measurement.line, ""},
-      fmt::format("measurements contradict each other by more than their uncertainties: those of lines {}, "
-                  "the worst first",
-                  lines));
+      {line > 0 ? measured.file : measured.jobs[outliers.front().measurement.part], line, ""},
+      fmt::format("measurements contradict each other by more than their uncertainties: {}{}, the worst first",
+                  line > 0 ? "those of lines " : "", places));
 }
 
 /// One combination: "2 c_x_um + 1 tool_x_um".
@@ -149,10 +138,11 @@ void tell(Calibration& result, const Estimate& fitted) {
       tell_source(result.machine, found, std::filesystem::path(result.parts.file).filename().string());
   }
   result.untold = untold_words(fitted, nominal.tilt);
-  result.residuals.assign(fitted.residual.begin(), fitted.residual.end());
+  const auto measurements = static_cast<std::ptrdiff_t>(result.parts.measurements.size());
+  result.residuals.assign(fitted.residual.begin(), fitted.residual.begin() + measurements);
   result.chi_square = fitted.residual.squaredNorm();
   // The sum of leverages is the number of unknowns that are told, poses included.
-  const double freedom = static_cast<double>(result.residuals.size()) - fitted.leverage.sum();
+  const double freedom = static_cast<double>(fitted.residual.size()) - fitted.leverage.sum();
   result.freedom = static_cast<std::size_t>(std::max(0L, std::lround(freedom)));
 }
 
@@ -165,6 +155,20 @@ std::vector<std::string> untold_words(const Estimate& estimate, Tilt tilt) {
   return words;
 }
 
+std::vector<CutPart> cut_parts(const MeasuredParts& measured) {
+  std::vector<CutPart> parts;
+  for (std::size_t k = 0; k < measured.parts(); ++k) {
+    std::set<std::size_t> elements;
+    for (const Measurement& m : measured.measurements) {
+      if (m.part != k) continue;
+      elements.insert(m.at.element);
+      if (m.from) elements.insert(m.from->element);
+    }
+    parts.emplace_back(measured.plan_of(k), std::vector<std::size_t>(elements.begin(), elements.end()));
+  }
+  return parts;
+}
+
 Calibration calibrate(MeasuredParts measured) {
   const std::vector<CutPart> parts = cut_parts(measured);
   check(measured, parts);
@@ -172,14 +176,13 @@ Calibration calibrate(MeasuredParts measured) {
   std::vector<Measurement>& measurements = measured.measurements;
   const auto most = static_cast<std::size_t>(std::ceil(kMostOutliers * static_cast<double>(measurements.size())));
   const double by_chance = most_by_chance(measurements.size());
-  const Machine nominal = measured.plans.front().machine;
-  Estimate fitted = fit(parts, measurements, nominal, measured.file);
-  for (auto [at, deviations] = worst(fitted); deviations > by_chance;) {
+  Estimate fitted = fit(parts, measured);
+  for (auto [at, deviations] = worst(fitted, measurements.size()); deviations > by_chance;) {
     result.outliers.push_back({measurements[at], deviations});
-    if (result.outliers.size() > most) refuse(measured.file, result.outliers);
+    if (result.outliers.size() > most) refuse(measured, result.outliers);
     measurements.erase(measurements.begin() + static_cast<std::ptrdiff_t>(at));
-    fitted = fit(parts, measurements, nominal, measured.file);
-    std::tie(at, deviations) = worst(fitted);
+    fitted = fit(parts, measured);
+    std::tie(at, deviations) = worst(fitted, measurements.size());
   }
   result.parts = std::move(measured);
   tell(result, fitted);

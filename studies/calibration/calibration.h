@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,14 @@ struct MeasuredParts {
   std::string file;               ///< of the measurements, for messages
   std::vector<std::string> jobs;  ///< as the file has them
   std::vector<FabricationResult> plans;
+  /// Of parts that are maps of one part, all of the first plan: what each shows of the blank's face. Empty: parts are
+  /// measured against that face.
+  std::vector<std::optional<FaceFigures>> map_faces;
   std::vector<Measurement> measurements;
   std::size_t empty_rows = 0;  ///< that have no value yet
+
+  std::size_t parts() const { return map_faces.empty() ? plans.size() : map_faces.size(); }
+  const FabricationResult& plan_of(std::size_t part) const { return map_faces.empty() ? plans[part] : plans.front(); }
 };
 
 /// What a quantity of the set-up is.
@@ -57,6 +64,9 @@ inline constexpr double kSetUpByEye = 100.0;
 
 /// The combinations of the set-up that an estimate leaves untold, in words: "-0.707 c_lean_x_arcsec + a_lean_y_arcsec".
 std::vector<std::string> untold_words(const Estimate& estimate, fabrication::Tilt tilt);
+
+/// The parts of measurements, as Measurement::part counts them, each with the elements that are measured.
+std::vector<CutPart> cut_parts(const MeasuredParts& measured);
 
 /// Estimates the set-up by Gauss-Newton steps. Measurements that miss what the others say by more than chance are left
 /// out one by one (Baarda's data snooping: W. Baarda, A testing procedure for use in geodetic networks, 1968).

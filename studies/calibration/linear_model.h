@@ -4,6 +4,7 @@
 // measured.
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,14 +16,17 @@ namespace retrace::studies {
 /// Measurements about a machine, each divided by its standard uncertainty.
 struct LinearModel {
   Eigen::MatrixXd of_setup;  ///< by setup_quantities()
-  /// By the poses of the parts: two shifts and three turns of each. Heights count from the face that the tool was
-  /// touched off on, which therefore lies where programs have it.
+  /// By the poses of the parts: shifts along X and Y and three turns of each. Heights count from the face that the tool
+  /// was touched off on, which therefore lies where programs have it. Maps lie at any height as well, which what they
+  /// show of the face tells; how that face lay in the machine, two turns, is common to all maps of a part.
   Eigen::MatrixXd of_poses;
   Eigen::VectorXd residual;  ///< what was measured, less what the machine would leave
 };
 
 /// \param parts as Measurement::part counts them
+/// \param map_faces as MeasuredParts::map_faces; three rows more for each face, behind all measurements
 LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Measurement> measurements,
-                         const fabrication::Machine& machine);
+                         const fabrication::Machine& machine,
+                         const std::vector<std::optional<FaceFigures>>& map_faces = {});
 
 }  // namespace retrace::studies

@@ -17,7 +17,6 @@ namespace {
 using namespace fabrication;
 using geometry::Vec3;
 
-constexpr double kArcsecPerRad = 180.0 * 3600.0 / std::numbers::pi;
 constexpr double kMmPerUm = 1e-3;
 /// Sines of angles between facets below this: the angle does not change with either of them.
 constexpr double kParallel = 1e-6;
@@ -93,7 +92,12 @@ double CutPart::end_nm(const Measurement& m, const Machine& real) const {
 double CutPart::of_one(const Measurement& m, const FacetPlace& at, const Machine& real, const PartPose& pose) const {
   const MadeFacet facet = made(at, real, pose);
   switch (m.what) {
-    case FacetQuantity::distance: return kNmPerMm * facet.height_mm(facet.groove->facet_middle(at.facet));
+    case FacetQuantity::distance: {
+      const Vec3 place = m.place_mm ? Vec3(facet.groove->root_mm + m.place_mm->x() * facet.design().up_slope +
+                                           m.place_mm->y() * facet.groove->level_of(at.facet))
+                                    : facet.groove->facet_middle(at.facet);
+      return kNmPerMm * facet.height_mm(place);
+    }
     case FacetQuantity::up: return kArcsecPerRad * facet.rise(facet.design().up_slope);
     case FacetQuantity::along: return kArcsecPerRad * facet.rise(facet.groove->level_of(at.facet));
     case FacetQuantity::angle: {

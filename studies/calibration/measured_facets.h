@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,8 @@
 #include "studies/fabrication/fabricate.h"
 
 namespace retrace::studies {
+
+inline constexpr double kArcsecPerRad = 180.0 * 3600.0 / std::numbers::pi;
 
 /// A quantity of a facet, as the difference from what the design has. Heights and distances are positive where material
 /// is left; a facet of a cube corner has its level line in place of a root.
@@ -49,6 +52,16 @@ struct Measurement {
   std::optional<FacetPlace> from;  ///< the value is the difference from this facet's; of `angle` the other facet
   double along_edge = 0.0;         ///< of `end`: -1 and 1 at the ends of the edge, 0 in its middle
   int line = 0;                    ///< of the file
+  /// Of `distance`: where, up the facet from the root and along that; none: in the facet's middle.
+  std::optional<geometry::Vec2> place_mm = {};
+};
+
+/// What a map of a part shows of the blank's face about the middle of what it shows of it: its height over the face,
+/// nm, and its tilts, which rise along X and Y of the workpiece, arcsec.
+struct FaceFigures {
+  geometry::Vec2 middle_mm = geometry::Vec2::Zero();
+  geometry::Vec3 value = geometry::Vec3::Zero();
+  geometry::Vec3 uncertainty = geometry::Vec3::Ones();  ///< standard
 };
 
 /// How a part lies where it is measured, against how it lay when it was cut: small, and never known.

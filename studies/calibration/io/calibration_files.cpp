@@ -22,8 +22,8 @@ std::string_view word_of(FacetQuantity what) {
 }
 
 std::string place_of(const MeasuredParts& parts, const Measurement& m) {
-  return fmt::format("line {}: {} of element {}, facet {} of {}", m.line, word_of(m.what), m.at.element, m.at.facet + 1,
-                     parts.jobs[m.part]);
+  return fmt::format("{}{} of element {}, facet {} of {}", m.line > 0 ? fmt::format("line {}: ", m.line) : "",
+                     word_of(m.what), m.at.element, m.at.facet + 1, parts.jobs[m.part]);
 }
 
 /// How much more than their uncertainties say the residuals scatter; 1 without any to spare.
@@ -31,12 +31,7 @@ double scatter(const Calibration& result) {
   return result.freedom == 0 ? 1.0 : std::sqrt(result.chi_square / static_cast<double>(result.freedom));
 }
 
-}  // namespace
-
-std::string calibration_json(const Calibration& result) {
-  Json json;
-  json["measurements"] = result.parts.file;
-  json["jobs"] = result.parts.jobs;
+void put(Json& json, const Calibration& result) {
   json["machine"] = result.machine.name;
   json["used"] = result.parts.measurements.size();
   json["empty"] = result.parts.empty_rows;
@@ -59,13 +54,16 @@ std::string calibration_json(const Calibration& result) {
   json["untold"] = result.untold;
   json["outliers"] = Json::array();
   for (const Outlier& outlier : result.outliers)
-    json["outliers"].push_back({{"line", outlier.measurement.line}, {"deviations", outlier.deviations}});
-  return result_text("retrace.calibration/1", std::move(json), result.warnings);
+    json["outliers"].push_back({{"line", outlier.measurement.line},
+                                {"part", result.parts.jobs[outlier.measurement.part]},
+                                {"element", outlier.measurement.at.element},
+                                {"facet", outlier.measurement.at.facet + 1},
+                                {"what", word_of(outlier.measurement.what)},
+                                {"deviations", outlier.deviations}});
 }
 
-std::string calibration_table(const Calibration& result) {
-  std::string text = fmt::format("{} on machine {}: {} measurements\n", result.parts.file, result.machine.name,
-                                 result.parts.measurements.size());
+std::string rows_of(const Calibration& result) {
+  std::string text;
   for (const CalibratedQuantity& q : result.quantities)
     text += fmt::format("  {:<38} {}\n", fmt::format("{}, {}", q.quantity->words, q.quantity->unit()),
                         q.is_told ? fmt::format("{:>12} +- {}", fixed(q.value, 3), fixed(q.uncertainty, 3))
@@ -77,6 +75,62 @@ std::string calibration_table(const Calibration& result) {
   for (const Outlier& outlier : result.outliers)
     text += fmt::format("  left out, {} deviations off: {}\n", fixed(outlier.deviations, 1),
                         place_of(result.parts, outlier.measurement));
+  return text;
+}
+
+}  // namespace
+
+std::string calibration_json(const Calibration& result) {
+  Json json;
+  json["measurements"] = result.parts.file;
+  json["jobs"] = result.parts.jobs;
+  put(json, result);
+  return result_text("retrace.calibration/1", std::move(json), result.warnings);
+}
+
+std::string calibration_table(const Calibration& result) {
+  return fmt::format("{} on machine {}: {} measurements\n", result.parts.file, result.machine.name,
+                     result.parts.measurements.size()) +
+         rows_of(result);
+}
+
+std::string correction_json(const Correction& result) {
+  Json json;
+  json["job"] = result.calibration.parts.file;
+  json["maps"] = Json::array();
+  for (std::size_t k = 0; k < result.maps.size(); ++k) {
+    const RegisteredMap& map = result.registered[k];
+    const geometry::Vec3& at = map.part_from_map.translation_mm;
+    json["maps"].push_back({{"file", result.maps[k].file},
+                            {"middle_mm", {at.x(), at.y(), at.z()}},
+                            {"rms_nm", map.rms_nm},
+                            {"facets", map.figures.size() / 3},
+                            {"face", map.face.has_value()}});
+  }
+  put(json, result.calibration);
+  const auto outlook = [](const FacetOutlook& o) -> Json {
+    return {{"distance_nm", o.distance_nm}, {"tilt_arcsec", o.tilt_arcsec}};
+  };
+  json["before"] = outlook(result.before);
+  json["after"] = outlook(result.after);
+  return result_text("retrace.correction/1", std::move(json), result.calibration.warnings);
+}
+
+std::string correction_table(const Correction& result) {
+  const Calibration& found = result.calibration;
+  std::string text =
+      fmt::format("{} on machine {}: {} maps\n", found.parts.file, found.machine.name, result.maps.size());
+  for (std::size_t k = 0; k < result.maps.size(); ++k) {
+    const RegisteredMap& map = result.registered[k];
+    text += fmt::format("  {:<24} middle at X {} Y {} mm, {} facets{}, {} nm rms off the design\n", result.maps[k].file,
+                        fixed(map.part_from_map.translation_mm.x(), 4), fixed(map.part_from_map.translation_mm.y(), 4),
+                        map.figures.size() / 3, map.face ? " and the face" : "", fixed(map.rms_nm, 1));
+  }
+  text += rows_of(found);
+  text += fmt::format("  facets, up to                          {} nm, {} arcsec off\n",
+                      fixed(result.before.distance_nm, 1), fixed(result.before.tilt_arcsec, 2));
+  text += fmt::format("  on the corrected machine within        {} nm, {} arcsec\n", fixed(result.after.distance_nm, 1),
+                      fixed(result.after.tilt_arcsec, 2));
   return text;
 }
 

@@ -24,8 +24,6 @@ namespace {
 
 using namespace fabrication;
 
-constexpr double kArcsecPerRad = 180.0 * 3600.0 / std::numbers::pi;
-
 /// Four prisms, two of them turned, 10 mm apart: facets at C = 0, 90, 180 and 270, at the A of their apex angle.
 std::string job_text(double apex_angle_deg) {
   return fmt::format(R"(schema = "retrace.job/1"

@@ -1,0 +1,107 @@
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "app/commands.h"
+#include "app/output.h"
+#include "app/shared_arguments.h"
+#include "core/error.h"
+#include "core/message_text.h"
+#include "core/text.h"
+#include "fabrication/job/io/job_files.h"
+#include "studies/calibration/io/calibration_files.h"
+#include "surface_models/io/height_map_reader.h"
+
+namespace retrace::app {
+namespace {
+
+struct CorrectOptions {
+  std::string job;
+  std::vector<std::string> maps;
+  MapOptions reading;
+};
+
+std::vector<Argument> arguments(CorrectOptions& options) {
+  std::vector<Argument> all = {job_argument(options.job, "job file whose programs cut the part"),
+                               {"MAP",
+                                "height maps of it, each FILE@X,Y or FILE@X,Y,TURN: where its middle lies on the "
+                                "workpiece, in mm, and how it is "
+                                "turned about Z, in degrees",
+                                &options.maps, files("")}};
+  for (Argument& argument : map_arguments(options.reading)) all.push_back(std::move(argument));
+  return all;
+}
+
+[[noreturn]] void refuse_place(const std::string& text) {
+  throw InputError({"", 0, "MAP"},
+                   "must say where its middle lies, as in facets.txt@0.25,-0.5, got " + in_quotes(text));
+}
+
+/// A map without its heights. \param text FILE@X,Y or FILE@X,Y,TURN
+studies::FacetMap place_of(const std::string& text) {
+  constexpr double kFarthestMm = 1e4;
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos || at == 0) refuse_place(text);
+  std::vector<double> numbers;
+  for (const std::string_view word : split(std::string_view(text).substr(at + 1), ',')) {
+    const std::optional<double> number = number_in(word);
+    if (!number || !(std::abs(*number) <= kFarthestMm)) refuse_place(text);
+    numbers.push_back(*number);
+  }
+  if (numbers.size() < 2 || numbers.size() > 3) refuse_place(text);
+  studies::FacetMap map;
+  map.file = text.substr(0, at);
+  map.middle_mm = {numbers[0], numbers[1]};
+  map.turn_deg = numbers.size() == 3 ? numbers[2] : 0.0;
+  return map;
+}
+
+ExitCode run(const CorrectOptions& options, const CommonOptions& common) {
+  std::vector<studies::FacetMap> maps;
+  for (const std::string& text : options.maps) maps.push_back(place_of(text));
+  studies::FabricationRequest request;
+  request.job_file = options.job;
+  const studies::FabricationResult plan = studies::fabricate(request);
+  std::vector<std::string> inputs = {options.job};
+  if (std::filesystem::path(plan.job.machine).has_extension()) inputs.push_back(plan.job.machine);
+  for (const studies::FacetMap& map : maps) inputs.push_back(map.file);
+  ResultFiles files(common, inputs, "correction.json");
+  std::optional<studies::Correction> result;
+  files.add("machine.toml", [&] { return studies::calibrated_machine_toml(result->calibration); });
+  files.add("job.toml", [&] {
+    fabrication::Job job = plan.job;
+    job.machine = "machine.toml";
+    return fabrication::job_text(job);
+  });
+  files.add("residuals.csv", [&] { return studies::residuals_csv(result->calibration); });
+  files.check();
+  std::vector<std::string> warnings;
+  surface_models::HeightMapOptions reading = reading_of(options.reading);
+  for (studies::FacetMap& map : maps) {
+    surface_models::HeightMapFile file = surface_models::read_height_map(map.file, reading);
+    for (const std::string& warning : file.warnings) warnings.push_back(warning);
+    map.heights = std::move(file.map);
+  }
+  result = studies::correct(plan, std::move(maps));
+  files.prepare();
+  warnings.insert(warnings.end(), result->calibration.warnings.begin(), result->calibration.warnings.end());
+  return files.write(studies::correction_json(*result), studies::correction_table(*result), warnings);
+}
+
+}  // namespace
+
+Command correct_command() {
+  return {.name = "correct",
+          .summary = "a corrected machine and job, from height maps of the part that the job cut",
+          .manual =
+              "Registers height maps of a part on its design, takes from them how far each facet and the blank's face "
+              "are off, and estimates from these what of the set-up was wrong, each with its uncertainty. Writes the "
+              "machine's "
+              "file as it is and the job for it, and tells what its next part will be.",
+          .reads = {"retrace.job/1", "retrace.machine/1", "height map (text, SDF, GSF, GWY)"},
+          .writes = {"retrace.correction/1", "retrace.machine/1", "retrace.job/1"},
+          .refuses_set = "correct reads no design",
+          .begin = begins<CorrectOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app

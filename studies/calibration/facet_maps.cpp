@@ -1,0 +1,344 @@
+#include "studies/calibration/facet_maps.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "core/error.h"
+#include "core/number_format.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+using geometry::Vec2, geometry::Vec3;
+
+/// Points that registration looks at, at first and then.
+constexpr std::size_t kCoarsePoints = 300;
+constexpr std::size_t kFinePoints = 4000;
+/// Places that are tried across an element, and turns.
+constexpr int kPlaces = 12;
+constexpr double kTurnsDeg[] = {-2.0, -1.0, 0.0, 1.0, 2.0};
+/// The best of them that are followed.
+constexpr std::size_t kFollowed = 4;
+constexpr int kMostMoves = 60;
+constexpr double kLastMove = 1e-12;  ///< mm or rad
+/// Of an element's depth, that a registered map may lie off the design.
+constexpr double kMostOff = 0.02;
+/// A facet, or a face, is told by so many points at least.
+constexpr std::size_t kLeastPoints = 30;
+/// Of a facet's length, and in points of the map: nearer to edges nothing is taken.
+constexpr double kMargin = 0.05;
+constexpr double kMarginPixels = 2.0;
+/// Points farther off than so many median deviations are left out.
+constexpr double kFarOff = 6.0;
+
+/// What a point of the design's surface belongs to: a facet of an element, or the blank's face.
+struct Region {
+  std::size_t element = 0;
+  std::size_t facet = 0;
+  bool is_face = false;
+
+  auto operator<=>(const Region&) const = default;
+};
+
+/// The design as a surface over the plane.
+class DesignSurface {
+ public:
+  explicit DesignSurface(const std::vector<Groove>& grooves) : grooves_(grooves), map_(grooves) {}
+
+  Region region(double x_mm, double y_mm) const {
+    const auto element = map_.at(x_mm, y_mm);
+    if (!element) return {0, 0, true};
+    Region region{*element, 0, false};
+    for (std::size_t f = 1; f < grooves_[*element].facets.size(); ++f)
+      if (z_of(*element, f, x_mm, y_mm) > z_of(*element, region.facet, x_mm, y_mm)) region.facet = f;
+    return region;
+  }
+  double z(double x_mm, double y_mm) const {
+    const Region r = region(x_mm, y_mm);
+    return r.is_face ? 0.0 : std::min(0.0, z_of(r.element, r.facet, x_mm, y_mm));
+  }
+  /// The region that holds all within a margin; none where there are several.
+  std::optional<Region> clear_region(const Vec3& p, double margin_mm) const {
+    const Region middle = region(p.x(), p.y());
+    for (const Vec2& off : {Vec2(margin_mm, margin_mm), Vec2(-margin_mm, margin_mm), Vec2(margin_mm, -margin_mm),
+                            Vec2(-margin_mm, -margin_mm)})
+      if (region(p.x() + off.x(), p.y() + off.y()) != middle) return std::nullopt;
+    return middle;
+  }
+  Vec3 normal(const Region& r) const { return r.is_face ? Vec3::UnitZ() : grooves_[r.element].facets[r.facet].normal; }
+  double height_mm(const Region& r, const Vec3& p) const {
+    return r.is_face ? p.z() : grooves_[r.element].facets[r.facet].height_mm(p);
+  }
+  const std::vector<Groove>& grooves() const { return grooves_; }
+
+ private:
+  double z_of(std::size_t element, std::size_t facet, double x_mm, double y_mm) const {
+    const DesignFacet& f = grooves_[element].facets[facet];
+    return (f.offset_mm - f.normal.x() * x_mm - f.normal.y() * y_mm) / f.normal.z();
+  }
+
+  const std::vector<Groove>& grooves_;
+  GrooveMap map_;
+};
+
+/// The measured points, from the middle of the map, z from their mean.
+std::vector<Vec3> points_of(const surface_models::HeightMap& map) {
+  std::vector<Vec3> points;
+  double mean = 0.0;
+  const auto from_middle = [](std::size_t at, std::size_t count) {
+    return static_cast<double>(at) - 0.5 * static_cast<double>(count - 1);
+  };
+  for (std::size_t row = 0; row < map.rows; ++row)
+    for (std::size_t column = 0; column < map.columns; ++column) {
+      const double nm = map.at(column, row);
+      if (!std::isfinite(nm)) continue;
+      points.emplace_back(1e-3 * map.x_pixel_um * from_middle(column, map.columns),
+                          1e-3 * map.y_pixel_um * from_middle(row, map.rows), 1e-6 * nm);
+      mean += 1e-6 * nm;
+    }
+  if (!points.empty()) mean /= static_cast<double>(points.size());
+  for (Vec3& p : points) p.z() -= mean;
+  return points;
+}
+
+std::vector<Vec3> thinned(const std::vector<Vec3>& points, std::size_t most) {
+  if (points.size() <= most) return points;
+  std::vector<Vec3> some;
+  // A step that is no divisor of the rows' length.
+  const double step = static_cast<double>(points.size()) / static_cast<double>(most);
+  for (std::size_t k = 0; k < most; ++k)
+    some.push_back(points[static_cast<std::size_t>(step * (static_cast<double>(k) + 0.5))]);
+  return some;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Turns maps until they lie on the design.
+class Registration {
+ public:
+  Registration(const FacetMap& map, const DesignSurface& surface) : surface_(surface), points_(points_of(map.heights)) {
+    const Groove& groove = surface.grooves().front();
+    margin_mm_ = std::max(kMargin * groove.facet_length_mm,
+                          kMarginPixels * 1e-3 * std::max(map.heights.x_pixel_um, map.heights.y_pixel_um));
+    reach_mm_ = std::max(groove.half_base_mm, groove.half_width_mm);
+    if (points_.size() < 3 * kLeastPoints)
+      throw InputError({map.file, 0, ""}, fmt::format("must have at least {} points with a height, got {}",
+                                                      3 * kLeastPoints, points_.size()));
+  }
+
+  RigidMotion best(const FacetMap& map) const {
+    std::vector<std::pair<double, RigidMotion>> tried = coarse(map);
+    RigidMotion best;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto& [off, pose] : tried) {
+      refine(pose);
+      const double now = off_mm(pose);
+      if (now < least) std::tie(least, best) = std::pair(now, pose);
+    }
+    const double most = kMostOff * surface_.grooves().front().depth_mm;
+    if (!(least < most))
+      throw InputError(
+          {map.file, 0, ""},
+          fmt::format(
+              "lies nowhere on the part within half an element of {}, {} mm: half of its points are {} nm off at "
+              "best, {} are borne. Rows must lie along X of the workpiece",
+              shortest(map.middle_mm.x()), shortest(map.middle_mm.y()), fixed(1e6 * least, 0), fixed(1e6 * most, 0)));
+    return best;
+  }
+
+  const std::vector<Vec3>& points() const { return points_; }
+  double margin_mm() const { return margin_mm_; }
+
+ private:
+  std::vector<std::pair<double, RigidMotion>> coarse(const FacetMap& map) const {
+    const std::vector<Vec3> some = thinned(points_, kCoarsePoints);
+    std::vector<std::pair<double, RigidMotion>> all;
+    for (const double turn_deg : kTurnsDeg)
+      for (int i = 0; i < kPlaces; ++i)
+        for (int j = 0; j < kPlaces; ++j) {
+          const double step = 2.0 * reach_mm_ / kPlaces;
+          RigidMotion pose{rotation_about(Vec3::UnitZ(), Angle::from_deg(map.turn_deg + turn_deg)),
+                           Vec3(map.middle_mm.x() + (i + 0.5) * step - reach_mm_,
+                                map.middle_mm.y() + (j + 0.5) * step - reach_mm_, 0.0)};
+          std::vector<double> off;
+          for (const Vec3& p : some) {
+            const Vec3 at = pose.point(p);
+            off.push_back(at.z() - surface_.z(at.x(), at.y()));
+          }
+          const double middle = median_of(off);
+          pose.translation_mm.z() = -middle;
+          for (double& o : off) o = std::abs(o - middle);
+          all.emplace_back(median_of(off), pose);
+        }
+    const auto order = [](const auto& a, const auto& b) { return a.first < b.first; };
+    std::partial_sort(all.begin(), all.begin() + kFollowed, all.end(), order);
+    all.resize(kFollowed);
+    return all;
+  }
+
+  /// The median distance of points on facets off the design: a face fits itself wherever it lies.
+  double off_mm(const RigidMotion& pose) const {
+    std::vector<double> off;
+    for (const Vec3& p : thinned(points_, kFinePoints)) {
+      const Vec3 at = pose.point(p);
+      const Region region = surface_.region(at.x(), at.y());
+      if (!region.is_face) off.push_back(std::abs(surface_.height_mm(region, at)));
+    }
+    return off.empty() ? std::numeric_limits<double>::infinity() : median_of(off);
+  }
+
+  /// Steps of Gauss and Newton, each point drawn to the plane that it lies over; at first all, then only those that are
+  /// clear of edges.
+  void refine(RigidMotion& pose) const {
+    const std::vector<Vec3> some = thinned(points_, kFinePoints);
+    for (int step = 0; step < kMostMoves; ++step) {
+      std::vector<std::pair<Vec3, Region>> placed;
+      std::vector<double> off;
+      std::vector<double> off_facets;
+      for (const Vec3& p : some) {
+        const Vec3 at = pose.point(p);
+        const auto region =
+            step < kMostMoves / 3 ? surface_.region(at.x(), at.y()) : surface_.clear_region(at, margin_mm_);
+        if (!region) continue;
+        placed.emplace_back(at, *region);
+        off.push_back(std::abs(surface_.height_mm(*region, at)));
+        if (!region->is_face) off_facets.push_back(off.back());
+      }
+      if (off_facets.size() < kLeastPoints) return;
+      const double most = kFarOff * median_of(off_facets) + 1e-9;
+      Eigen::Matrix<double, 6, 6> a = Eigen::Matrix<double, 6, 6>::Identity() * 1e-12;
+      Eigen::Matrix<double, 6, 1> b = Eigen::Matrix<double, 6, 1>::Zero();
+      for (std::size_t k = 0; k < placed.size(); ++k) {
+        if (off[k] > most) continue;
+        const auto& [at, region] = placed[k];
+        Eigen::Matrix<double, 6, 1> row;
+        row << surface_.normal(region), at.cross(surface_.normal(region));
+        a += row * row.transpose();
+        b -= row * surface_.height_mm(region, at);
+      }
+      const Eigen::Matrix<double, 6, 1> move = a.ldlt().solve(b);
+      const Vec3 turn = move.tail<3>();
+      const RigidMotion small{turn.norm() > 0.0 ? rotation_about(turn.normalized(), Angle::from_rad(turn.norm()))
+                                                : Eigen::Matrix3d(Eigen::Matrix3d::Identity()),
+                              move.head<3>()};
+      pose = {small.rotation * pose.rotation, small.point(pose.translation_mm)};
+      if (step > kMostMoves / 3 && move.norm() < kLastMove) return;
+    }
+  }
+
+  const DesignSurface& surface_;
+  std::vector<Vec3> points_;
+  double margin_mm_ = 0.0;
+  double reach_mm_ = 0.0;
+};
+
+/// A plane through heights over a region, about the middle of its points: its height and both tilts.
+struct RegionFit {
+  Vec2 middle_mm;
+  Vec3 value;
+  Vec3 uncertainty;
+};
+
+/// \param along two coordinates and the height of each point
+std::optional<RegionFit> fitted(std::vector<Vec3> along) {
+  if (along.size() < kLeastPoints) return std::nullopt;
+  std::vector<double> heights;
+  for (const Vec3& p : along) heights.push_back(p.z());
+  const double middle = median_of(heights);
+  for (double& h : heights) h = std::abs(h - middle);
+  const double most = std::max(kFarOff * median_of(heights), 1e-12);
+  std::erase_if(along, [&](const Vec3& p) { return std::abs(p.z() - middle) > most; });
+  if (along.size() < kLeastPoints) return std::nullopt;
+  RegionFit fit{Vec2::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (const Vec3& p : along) fit.middle_mm += p.head<2>() / static_cast<double>(along.size());
+  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+  Vec3 b = Vec3::Zero();
+  for (const Vec3& p : along) {
+    const Vec3 row(1.0, p.x() - fit.middle_mm.x(), p.y() - fit.middle_mm.y());
+    a += row * row.transpose();
+    b += row * p.z();
+  }
+  const Eigen::Matrix3d inverse = a.inverse();
+  fit.value = inverse * b;
+  double rest = 0.0;
+  for (const Vec3& p : along) {
+    const double off = p.z() - fit.value.dot(Vec3(1.0, p.x() - fit.middle_mm.x(), p.y() - fit.middle_mm.y()));
+    rest += off * off;
+  }
+  fit.uncertainty = (rest / static_cast<double>(along.size() - 3) * inverse.diagonal()).cwiseSqrt();
+  if (!(fit.uncertainty.minCoeff() > 0.0) || !fit.uncertainty.allFinite()) return std::nullopt;
+  return fit;
+}
+
+void add_figures(RegisteredMap& result, const Region& region, const RegionFit& fit) {
+  const auto add = [&](FacetQuantity what, double value, double uncertainty) {
+    Measurement m;
+    m.at = {region.element, region.facet};
+    m.what = what;
+    m.value = value;
+    m.uncertainty = uncertainty;
+    if (what == FacetQuantity::distance) m.place_mm = fit.middle_mm;
+    result.figures.push_back(m);
+  };
+  add(FacetQuantity::distance, kNmPerMm * fit.value[0], kNmPerMm * fit.uncertainty[0]);
+  add(FacetQuantity::up, kArcsecPerRad * fit.value[1], kArcsecPerRad * fit.uncertainty[1]);
+  add(FacetQuantity::along, kArcsecPerRad * fit.value[2], kArcsecPerRad * fit.uncertainty[2]);
+}
+
+}  // namespace
+
+RegisteredMap registered(const FacetMap& map, const std::vector<Groove>& grooves) {
+  const DesignSurface surface(grooves);
+  const Registration registration(map, surface);
+  RegisteredMap result;
+  result.part_from_map = registration.best(map);
+  std::map<Region, std::vector<Vec3>> by_region;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Vec3& p : registration.points()) {
+    const Vec3 at = result.part_from_map.point(p);
+    const auto region = surface.clear_region(at, registration.margin_mm());
+    if (!region) continue;
+    const double height = surface.height_mm(*region, at);
+    sum += height * height;
+    ++count;
+    if (region->is_face) {
+      by_region[*region].emplace_back(at.x(), at.y(), height);
+      continue;
+    }
+    const Groove& groove = grooves[region->element];
+    const Vec3 from_root = at - groove.root_mm;
+    by_region[*region].emplace_back(groove.facets[region->facet].up_slope.dot(from_root),
+                                    groove.level_of(region->facet).dot(from_root), height);
+  }
+  if (count > 0) result.rms_nm = kNmPerMm * std::sqrt(sum / static_cast<double>(count));
+  for (auto& [region, points] : by_region) {
+    const std::optional<RegionFit> fit = fitted(std::move(points));
+    if (!fit) continue;
+    if (region.is_face)
+      result.face = FaceFigures{
+          fit->middle_mm,
+          {kNmPerMm * fit->value[0], kArcsecPerRad * fit->value[1], kArcsecPerRad * fit->value[2]},
+          {kNmPerMm * fit->uncertainty[0], kArcsecPerRad * fit->uncertainty[1], kArcsecPerRad * fit->uncertainty[2]}};
+    else
+      add_figures(result, region, *fit);
+  }
+  if (result.figures.empty()) throw InputError({map.file, 0, ""}, "shows no facet: its points lie too near to edges");
+  return result;
+}
+
+}  // namespace retrace::studies
