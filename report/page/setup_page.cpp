@@ -20,9 +20,9 @@ using studies::FabricationResult, studies::SetupSheet, studies::Sensitivity;
 constexpr const char* kPrintStyle =
     "ol.steps{padding-left:1.4rem}ol.steps li{margin:.35rem 0;padding-right:2.2rem;position:relative}"
     "ol.steps li:after{content:\"\";position:absolute;right:.2rem;top:.15rem;width:1rem;height:1rem;border:1px solid "
-    "var(--quiet);border-radius:.15rem}.table-box{max-height:none}td{overflow-wrap:anywhere}"
+    "var(--quiet);border-radius:.15rem}.table-box{max-height:none}td{overflow-wrap:break-word}"
     "@media print{@page{size:A4;margin:12mm 11mm}body{padding:0;font-size:10px}h2{font-size:13px;"
-    "break-after:avoid}table{font-size:8.6px}th,td{padding:.15rem "
+    "break-after:avoid}table{font-size:8.6px}td{overflow-wrap:anywhere}th,td{padding:.15rem "
     ".35rem}.facts{grid-template-columns:repeat(4,1fr);gap:"
     ".3rem}.facts>div{padding:.25rem .4rem}.facts dt{font-size:9px}.facts dd{font-size:11px}.facts "
     "dd.long{font-size:10px}"

@@ -11,6 +11,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 /// Combinations whose share of an unknown is below this leave it told.
 constexpr double kLeastShare = 1e-3;
+/// Beside the largest share of a combination those below this are left out of words.
+constexpr double kLeastShareInWords = 0.02;
 
 /// Orthonormal columns that span those of a matrix.
 MatrixXd span_of(const MatrixXd& columns) {
@@ -57,7 +59,7 @@ MatrixXd reduced_combinations(const MatrixXd& untold) {
     for (Index other = 0; other < rows.rows(); ++other)
       if (other != k) rows.row(other) -= rows(other, column) * rows.row(k);
   }
-  return rows.unaryExpr([](double share) { return std::abs(share) < kLeastShare ? 0.0 : share; }).transpose();
+  return rows.unaryExpr([](double share) { return std::abs(share) < kLeastShareInWords ? 0.0 : share; }).transpose();
 }
 
 }  // namespace retrace::studies
