@@ -9,6 +9,7 @@
 
 #include "app/commands.h"
 #include "app/output.h"
+#include "core/leading_number.h"
 #include "core/version.h"
 
 namespace retrace::app {
@@ -31,9 +32,8 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
 
 CLI::Validator real_number() {
   const auto check = [](const std::string& text) -> std::string {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error == std::errc{} && end == text.data() + text.size()) return {};
+    const std::optional<LeadingNumber> number = leading_number(text);
+    if (number && number->length == text.size()) return {};
     return fmt::format("must be a number, got {}", text);
   };
   return {check, "", "REAL"};

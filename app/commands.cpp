@@ -9,12 +9,12 @@ namespace retrace::app {
 
 std::span<const Command> commands() {
   static const std::vector<Command> all = {
-      rre_command(),       inspect_command(),   photometry_command(), roughness_command(), metrology_command(),
-      sweep_command(),     job_command(),       fabricate_command(),  optimize_command(),  compose_command(),
-      tolerance_command(), verify_command(),    calibrate_command(),  correct_command(),   forces_command(),
-      turn_command(),      plane_command(),     image_command(),      rays_command(),      export_command(),
-      report_command(),    validate_command(),  init_command(),       list_command(),      schema_command(),
-      manual_command(),    completion_command()};
+      rre_command(),       inspect_command(), photometry_command(), roughness_command(), metrology_command(),
+      sweep_command(),     job_command(),     fabricate_command(),  optimize_command(),  compose_command(),
+      tolerance_command(), verify_command(),  calibrate_command(),  correct_command(),   forces_command(),
+      turn_command(),      plane_command(),   image_command(),      rays_command(),      export_command(),
+      report_command(),    explore_command(), validate_command(),   init_command(),      list_command(),
+      schema_command(),    manual_command(),  completion_command()};
   return all;
 }
 

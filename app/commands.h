@@ -14,6 +14,7 @@ std::span<const Command> commands();
 // One function a command, each in a file of its own.
 
 Command completion_command();
+Command explore_command();
 Command export_command();
 Command fabricate_command();
 Command forces_command();

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "benchmarks/scenes.h"
+#include "raytrace/exact/scattered_rays.h"
 #include "raytrace/exact/stochastic_beams.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/paths/monte_carlo.h"
@@ -44,9 +45,13 @@ std::vector<Scene> scenes_of_all_sizes() {
 double stochastic_error(const geometry::Part& part, const raytrace::Optics& optics, const raytrace::Illumination& light,
                         const raytrace::Sampling& sampling) {
   const raytrace::BeamTracer tracer(part);
-  std::optional<raytrace::BackSurface> scattering;
-  if (!optics.is_smooth()) scattering.emplace(part, tracer.centre_mm());
-  raytrace::StochasticBeams beams(tracer, scattering ? &*scattering : nullptr, optics, light, {0.5}, sampling);
+  std::optional<raytrace::BackSurface> surface;
+  std::optional<raytrace::ScatteredLightByRays> scattered;
+  if (!optics.is_smooth()) {
+    surface.emplace(part, tracer.centre_mm());
+    scattered.emplace(tracer, *surface, optics, light, std::vector<double>{0.5});
+  }
+  raytrace::StochasticBeams beams(tracer, scattered ? &*scattered : nullptr, optics, light, {0.5}, sampling);
   while (!beams.advance()) continue;
   return beams.result().cones.front().std_error;
 }

@@ -2,15 +2,68 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
 
 namespace retrace {
+namespace {
+
+/// A number as d.ddd times 10 to the exponent.
+struct Decimal {
+  std::string digits;  ///< as few as tell the number from its neighbours
+  int exponent = 0;
+};
+
+/// \param text of a number other than 0, with as few digits as it takes, such as 0.001, 1234.5 or 1e-07
+Decimal decimal_of(std::string_view text) {
+  const std::size_t e = text.find('e');
+  const std::string_view mantissa = text.substr(0, e);
+  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+  const std::size_t first = mantissa.find_first_of("123456789");
+  Decimal decimal;
+  decimal.exponent = static_cast<int>(point) - static_cast<int>(first) - (first < point ? 1 : 0);
+  if (e != std::string_view::npos) decimal.exponent += std::atoi(std::string(text.substr(e + 1)).c_str());
+  for (const char c : mantissa.substr(first))
+    if (c != '.') decimal.digits += c;
+  decimal.digits.erase(decimal.digits.find_last_not_of('0') + 1);
+  return decimal;
+}
+
+std::string with_exponent(const Decimal& d) {
+  const std::string_view digits = d.digits;
+  return fmt::format("{}{}{}e{:+03d}", digits.substr(0, 1), digits.size() > 1 ? "." : "", digits.substr(1), d.exponent);
+}
+
+std::string without_exponent(const Decimal& d, double magnitude) {
+  if (d.exponent < 0) return "0." + std::string(static_cast<std::size_t>(-d.exponent - 1), '0') + d.digits;
+  // All digits of a whole number, not zeros in place of those that are not needed to tell it.
+  if (d.exponent + 1 >= static_cast<int>(d.digits.size())) return fmt::format("{:.0f}", magnitude);
+  std::string text = d.digits;
+  return text.insert(static_cast<std::size_t>(d.exponent) + 1, ".");
+}
+
+/// \param magnitude finite and above 0
+std::string shortest_of(double magnitude) {
+  std::string text = fmt::format("{}", magnitude);
+  // No exponent would make these shorter.
+  const bool is_plain =
+      text.find('e') == std::string::npos && (text.find('.') != std::string::npos || text.size() <= 5);
+  if (is_plain && magnitude >= 1e-3) return text;
+  const Decimal decimal = decimal_of(text);
+  text = with_exponent(decimal);
+  if (std::abs(decimal.exponent) > static_cast<int>(text.size())) return text;
+  const std::string plain = without_exponent(decimal, magnitude);
+  return plain.size() > text.size() ? text : plain;
+}
+
+}  // namespace
 
 std::string shortest(double value) {
-  std::array<char, 32> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value == 0.0 ? 0.0 : value);
-  return error == std::errc{} ? std::string(buffer.data(), end) : fmt::format("{}", value);
+  if (value == 0.0) return "0";
+  if (!std::isfinite(value)) return fmt::format("{}", value);
+  return value < 0.0 ? "-" + shortest_of(-value) : shortest_of(value);
 }
 
 std::string fixed(double value, int digits) {

@@ -1,8 +1,9 @@
 #include "core/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "core/leading_number.h"
 
 namespace retrace {
 
@@ -37,10 +38,9 @@ std::vector<std::string_view> words_in(std::string_view text) {
 
 std::optional<double> number_in(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const std::optional<LeadingNumber> number = leading_number(text);
+  if (!number || number->length != text.size() || !std::isfinite(number->value)) return std::nullopt;
+  return number->value;
 }
 
 std::size_t utf8_length(std::string_view text) {

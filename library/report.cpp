@@ -17,7 +17,8 @@ ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& 
   report::Page page = report::study_page(folder, title);
   ReportPage made;
   made.warnings = report::add_scene(page, folder);
-  made.html = report::page_html(page, report::shipped_page_assets());
+  report::add_live(page, folder);
+  made.html = report::page_html(page, report::assets_for(page));
   return made;
 }
 

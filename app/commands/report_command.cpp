@@ -14,6 +14,8 @@ namespace retrace::app {
 namespace fs = std::filesystem;
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct ReportOptions {
   std::string folder;
   std::string title;  ///< empty: that of the design
@@ -42,7 +44,6 @@ std::vector<std::string> results_read(const report::ResultFolder& folder) {
 
 std::string report_json(const report::Page& page, const report::ResultFolder& folder, const fs::path& file,
                         std::size_t bytes, const std::vector<std::string>& warnings) {
-  using Json = nlohmann::ordered_json;
   Json documents = Json::array();
   for (const auto& document : folder.documents) documents.push_back(document.name);
   Json sections = Json::array();
@@ -60,7 +61,8 @@ ExitCode run(const ReportOptions& options, const CommonOptions& common) {
   const report::ResultFolder folder = report::read_result_folder(options.folder);
   report::Page page = report::study_page(folder, options.title);
   const std::vector<std::string> warnings = report::add_scene(page, folder);
-  const std::string html = report::page_html(page, report::shipped_page_assets());
+  report::add_live(page, folder);
+  const std::string html = report::page_html(page, report::assets_for(page));
   const fs::path file = page_file(options, common);
   ResultFiles files(without_folder(common), results_read(folder));
   files.add_named("report", file, [&] { return html; });

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <numbers>
 
+#include "core/leading_number.h"
 #include "core/math/formula_evaluation.h"
 #include "core/message_text.h"
 
@@ -46,12 +46,11 @@ double same(double a) {
 int number_at(const char* text, int* position, double* value) {
   if (*text != '.' && std::isdigit(static_cast<unsigned char>(*text)) == 0) return 0;
   const std::string_view rest(text);
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  const std::optional<LeadingNumber> number = leading_number(rest);
   // Left to the library's own reader it would become a number that is taken for a step.
-  if (error != std::errc{}) throw mu::Parser::exception_type("a number too large or too small");
-  *position += static_cast<int>(end - rest.data());
-  *value = recorder->add(Step::constant, 0.0, 0.0, number);
+  if (!number) throw mu::Parser::exception_type("a number too large or too small");
+  *position += static_cast<int>(number->length);
+  *value = recorder->add(Step::constant, 0.0, 0.0, number->value);
   return 1;
 }
 
@@ -122,24 +121,6 @@ std::vector<Formula::Node> simplified(std::vector<Formula::Node> nodes, std::siz
 }
 
 }  // namespace
-
-bool is_binary(Formula::Step step) {
-  switch (step) {
-    case Step::add:
-    case Step::subtract:
-    case Step::multiply:
-    case Step::divide:
-    case Step::power:
-    case Step::atan2: return true;
-    default: return false;
-  }
-}
-
-bool Formula::uses(int variable) const {
-  for (const Node& node : nodes)
-    if (node.step == Step::variable && node.a == variable) return true;
-  return false;
-}
 
 Formula parse_formula(const std::string& text, const std::vector<std::string>& variables, const InputLocation& where) {
   if (text.size() > kLongestFormula)

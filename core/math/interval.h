@@ -2,7 +2,20 @@
 
 // Interval arithmetic from Boost, for proofs that a function keeps within a bound over a whole region.
 
-#include <boost/numeric/interval.hpp>
+// All of <boost/numeric/interval.hpp> but the rounding modes of processors, which not every one has.
+#include <boost/limits.hpp>
+#include <boost/numeric/interval/arith.hpp>
+#include <boost/numeric/interval/arith2.hpp>
+#include <boost/numeric/interval/arith3.hpp>
+#include <boost/numeric/interval/checking.hpp>
+#include <boost/numeric/interval/compare.hpp>
+#include <boost/numeric/interval/constants.hpp>
+#include <boost/numeric/interval/interval.hpp>
+#include <boost/numeric/interval/policies.hpp>
+#include <boost/numeric/interval/rounded_arith.hpp>
+#include <boost/numeric/interval/rounded_transc.hpp>
+#include <boost/numeric/interval/transc.hpp>
+#include <boost/numeric/interval/utility.hpp>
 
 namespace retrace {
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "core/leading_number.h"
 #include "core/message_text.h"
 
 namespace retrace::fabrication {
@@ -93,7 +93,7 @@ NcNumber take_number(std::string_view& text, const NcLines& lines) {
   constexpr std::size_t most_digits = 20;
   if (digits == 0 || digits > most_digits)
     lines.fail(fmt::format("must have a number of at most {} digits at {}", most_digits, in_quotes(text)));
-  std::from_chars(text.data() + first, text.data() + end, number.value, std::chars_format::fixed);
+  number.value = leading_number(text.substr(first, end - first))->value;
   if (text[0] == '-') number.value = -number.value;
   text.remove_prefix(end);
   return number;

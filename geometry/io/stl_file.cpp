@@ -5,13 +5,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <optional>
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/leading_number.h"
 #include "core/message_text.h"
 
 // Own code, for want of a library that names the line at fault: a binary file is a header and an array, and an ASCII
@@ -153,10 +153,9 @@ class Words {
   double number() {
     const std::string_view word = next();
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc{} || end != digits.data() + digits.size()) fail("a number", word);
-    return value;
+    const std::optional<LeadingNumber> number = leading_number(digits);
+    if (!number || number->length != digits.size()) fail("a number", word);
+    return number->value;
   }
 
   std::string_view text_;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -202,12 +201,6 @@ class Record {
 };
 
 }  // namespace
-
-bool is_index_record(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".yml" || ending == ".yaml";
-}
 
 Material parse_index_record(std::string_view text, const std::string& file) {
   try {

@@ -2,6 +2,8 @@
 
 // Reads records of the refractiveindex.info database (YAML): one material a file.
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,7 +14,11 @@
 namespace retrace::materials {
 
 /// Whether a file's name is that of a record: it ends in .yml or .yaml.
-bool is_index_record(const std::filesystem::path& file);
+inline bool is_index_record(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".yml" || ending == ".yaml";
+}
 
 /// The material that a record tells, by its DATA: one of the formulas 1 to 9 or a table of n, and a table of k, from
 /// which the absorption is 4 pi k / w. Beyond its wavelengths a table of n has no index. Indices are relative to air,

@@ -7,7 +7,7 @@
 #include "raytrace/exact/beam_generation.h"
 #include "raytrace/exact/beam_walk.h"
 #include "raytrace/sampling/entrance_sampler.h"
-#include "raytrace/sampling/replicates.h"
+#include "raytrace/sampling/replicate_means.h"
 
 namespace retrace::raytrace {
 namespace {

@@ -122,6 +122,7 @@ class BeamTracer {
                    const BeamPolicy& policy, const Cancellation* cancel = nullptr,
                    const BeamObserver& observer = {}) const;
 
+  const geometry::Part& part() const { return part_; }
   /// Of the part: beams are relative to it.
   const Vec2& centre_mm() const { return centre_mm_; }
 

@@ -18,16 +18,16 @@ namespace bg = boost::geometry;
 
 using geometry::Vec2, geometry::Vec3;
 using Corner = bg::model::point<double, 2, bg::cs::cartesian>;
-using Box = bg::model::box<Corner>;
-using Entry = std::pair<Box, std::size_t>;
+using TreeBox = bg::model::box<Corner>;
+using Entry = std::pair<TreeBox, std::size_t>;
 using Tree = bg::index::rtree<Entry, bg::index::quadratic<16>>;
 
-constexpr double kMergeShare = 1e-11;
-constexpr double kLeastAreaShare = 1e-13;
+constexpr double kPieceMergeShare = 1e-11;
+constexpr double kLeastPieceShare = 1e-13;
 // Corners of neighbours count as one, and edges as straight, within this share of the size.
 constexpr double kFuseShare = 1e-10;
 
-Box box_of(const FlatPolygon& polygon) {
+TreeBox box_of(const FlatPolygon& polygon) {
   Vec2 lower = polygon[0];
   Vec2 upper = polygon[0];
   for (const Vec2& p : polygon) {
@@ -40,7 +40,8 @@ Box box_of(const FlatPolygon& polygon) {
 }  // namespace
 
 struct Overlay::Hidden {
-  explicit Hidden(double size_mm) : merge_mm(kMergeShare * size_mm), least_area(kLeastAreaShare * size_mm * size_mm) {}
+  explicit Hidden(double size_mm)
+      : merge_mm(kPieceMergeShare * size_mm), least_area(kLeastPieceShare * size_mm * size_mm) {}
 
   double merge_mm;
   double least_area;

@@ -29,6 +29,16 @@ Vec3 point_of(const Corners& corners, const Vec2& u) {
          across * ((1.0 - u.y()) * (corners[triangle] - corners[0]) + u.y() * (corners[triangle + 1] - corners[0]));
 }
 
+ScatteredLightByRays::ScatteredLightByRays(const BeamTracer& tracer, const BackSurface& surface, const Optics& optics,
+                                           const Illumination& illumination, const std::vector<double>& cones_deg)
+    : setup_(tracer.part(), surface, tracer.centre_mm(), optics, illumination, cones_deg, PathPolicy{}) {}
+
+std::unique_ptr<ScatteredReplicate> ScatteredLightByRays::replicate(RandomKey key, std::uint32_t number,
+                                                                    std::uint32_t round,
+                                                                    const Cancellation* cancel) const {
+  return std::make_unique<ScatteredRays>(setup_, key, number, round, cancel);
+}
+
 ScatteredRays::ScatteredRays(const PathSetup& setup, RandomKey key, std::uint32_t replicate, std::uint32_t round,
                              const Cancellation* cancel)
     : setup_(setup),

@@ -3,11 +3,11 @@
 // The light that rough facets scatter out of beams, followed as rays.
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "core/progress.h"
-#include "core/random.h"
-#include "raytrace/exact/beam.h"
+#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/scattered_light.h"
 #include "raytrace/paths/path_tracer.h"
 
 namespace retrace::raytrace {
@@ -15,7 +15,7 @@ namespace retrace::raytrace {
 /// Launches rays where beams meet rough facets. A ray stands for scattered power alone, begins at a random place of the
 /// piece of the facet in a random direction of the lobe, and is followed by all physics from there on; it never becomes
 /// a beam again, so that nothing is counted twice. For one replicate and one thread.
-class ScatteredRays {
+class ScatteredRays : public ScatteredReplicate {
  public:
   /// \param setup outlives this \param key of the random numbers of this replicate and round
   ScatteredRays(const PathSetup& setup, RandomKey key, std::uint32_t replicate, std::uint32_t round,
@@ -23,9 +23,9 @@ class ScatteredRays {
 
   /// Rays for all that these sites scatter, each for at most `most_power` of it: the sites get them in proportion to
   /// what they scatter, by systematic sampling. Stops half way if it was cancelled.
-  void launch(const std::vector<ScatterSite>& sites, double most_power);
+  void launch(const std::vector<ScatterSite>& sites, double most_power) override;
 
-  const Tally& tally() const { return tally_; }
+  const Tally& tally() const override { return tally_; }
 
  private:
   void launch_one(const ScatterSite& site, double power);
@@ -37,6 +37,20 @@ class ScatteredRays {
   const Cancellation* cancel_;
   Tally tally_;
   PathWalker walker_;
+};
+
+/// Follows scattered light as rays: ScatteredRays of each replicate.
+class ScatteredLightByRays : public ScatteredLight {
+ public:
+  /// \param surface of `tracer`'s part; both outlive this
+  ScatteredLightByRays(const BeamTracer& tracer, const BackSurface& surface, const Optics& optics,
+                       const Illumination& illumination, const std::vector<double>& cones_deg);
+
+  std::unique_ptr<ScatteredReplicate> replicate(RandomKey key, std::uint32_t number, std::uint32_t round,
+                                                const Cancellation* cancel) const override;
+
+ private:
+  PathSetup setup_;
 };
 
 /// A point of a convex polygon: uniform over its area for `u` uniform in the unit square.

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/random.h"
 #include "raytrace/exact/beam_generation.h"
 #include "raytrace/exact/beam_walk.h"
-#include "raytrace/sampling/replicates.h"
+#include "raytrace/sampling/replicate_means.h"
 #include "raytrace/sampling/threads.h"
 
 namespace retrace::raytrace {
@@ -53,22 +54,20 @@ bool StochasticBeams::serves(const Optics& optics) {
   return optics.is_smooth() || (rough != nullptr && rough->roughness().waviness_sq_nm == 0.0);
 }
 
-StochasticBeams::StochasticBeams(const BeamTracer& tracer, const BackSurface* surface, const Optics& optics,
+StochasticBeams::StochasticBeams(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
                                  const Illumination& illumination, const std::vector<double>& cones_deg,
-                                 const Sampling& sampling, const Cancellation* cancel)
+                                 const Sampling& sampling, const Cancellation* cancel, BeamObserver observer)
     : tracer_(tracer),
       setup_(tracer.part_, tracer.centre_mm_, optics, illumination, cones_deg),
+      scattered_(scattered),
       cones_deg_(cones_deg),
       sampling_(sampling),
       cancel_(cancel),
-      strong_(
-          std::make_unique<BeamWalk>(tracer.part_, tracer.centre_mm_, tracer.cells_, setup_, policy_, BeamObserver{})),
+      strong_(std::make_unique<BeamWalk>(tracer.part_, tracer.centre_mm_, tracer.cells_, setup_, policy_,
+                                         std::move(observer))),
       threshold_(kFirstThreshold),
       ray_power_(kFirstRayPower) {
-  if (surface != nullptr) {
-    paths_.emplace(tracer.part_, *surface, tracer.centre_mm_, optics, illumination, cones_deg, PathPolicy{});
-    strong_->collect(strong_sites_);
-  }
+  if (scattered_ != nullptr) strong_->collect(strong_sites_);
   strong_->enter(entrance_outline(tracer.part_), threshold_, BeamWalk::Approach::kept);
 }
 
@@ -125,8 +124,8 @@ std::uint64_t StochasticBeams::beams() const {
 }
 
 double StochasticBeams::next_threshold() const {
-  const double target = (paths_ ? kShareOfTarget : 1.0) * sampling_.target_error;
-  if (paths_ && beam_error_ <= target) return threshold_;
+  const double target = (scattered_ != nullptr ? kShareOfTarget : 1.0) * sampling_.target_error;
+  if (scattered_ != nullptr && beam_error_ <= target) return threshold_;
   const double fall = kMargin * std::pow(target / beam_error_, 1.0 / kConvergence);
   return std::max(kLastThreshold, threshold_ * std::clamp(fall, kSteepestFall, kGentlestFall));
 }
@@ -158,9 +157,9 @@ std::optional<StochasticBeams::Replicate> StochasticBeams::replicate(std::uint32
                                                                      const BeamGeneration& first) const {
   BeamWalk walk(tracer_.part_, tracer_.centre_mm_, tracer_.cells_, setup_, policy_, BeamObserver{});
   std::vector<ScatterSite> sites;
-  std::optional<ScatteredRays> rays;
-  if (paths_) {
-    rays.emplace(*paths_, RandomKey{sampling_.seed, kScatterStream}, number, round_, cancel_);
+  std::unique_ptr<ScatteredReplicate> rays;
+  if (scattered_ != nullptr) {
+    rays = scattered_->replicate(RandomKey{sampling_.seed, kScatterStream}, number, round_, cancel_);
     walk.collect(sites);
     rays->launch(strong_sites_, ray_power_);
   }

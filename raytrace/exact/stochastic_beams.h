@@ -10,7 +10,7 @@
 
 #include "core/progress.h"
 #include "raytrace/exact/beam_tracer.h"
-#include "raytrace/exact/scattered_rays.h"
+#include "raytrace/exact/scattered_light.h"
 #include "raytrace/paths/monte_carlo.h"
 
 namespace retrace::raytrace {
@@ -26,8 +26,8 @@ class BeamGeneration;
 /// random numbers of its own, give the standard error. It is never told to be less than what a survivor brings over
 /// their number: so much may be in beams that none of them has seen (docs/theory/beams.md).
 ///
-/// At rough facets beams keep their specular light, and what is scattered goes on as rays, of which each replicate has
-/// its own (ScatteredRays).
+/// At rough facets beams keep their specular light, and what is scattered goes on by itself, in each replicate of its
+/// own (ScatteredLight).
 ///
 /// For one thread at a time; replicates are shared out among threads, and results do not depend on their number.
 class StochasticBeams {
@@ -40,11 +40,12 @@ class StochasticBeams {
   /// Whether facets leave enough light specular for beams: smooth ones, and those of `harvey_shack` without waviness.
   static bool serves(const Optics& optics);
 
-  /// \param sampling its seed and target error \param surface of the same part, for scattered light; null: facets are
-  /// smooth \pre serves(optics); `tracer`, `surface` and `cancel` outlive this
-  StochasticBeams(const BeamTracer& tracer, const BackSurface* surface, const Optics& optics,
+  /// \param sampling its seed and target error \param scattered of the same part in the same light; null: facets are
+  /// smooth \param observer told of the returned beams that are followed exactly, each once
+  /// \pre serves(optics); `tracer`, `scattered` and `cancel` outlive this
+  StochasticBeams(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
                   const Illumination& illumination, const std::vector<double>& cones_deg, const Sampling& sampling,
-                  const Cancellation* cancel = nullptr);
+                  const Cancellation* cancel = nullptr, BeamObserver observer = {});
   ~StochasticBeams();
 
   /// One more round, at a lower threshold. \return whether that was the last one that is needed or possible; if it was
@@ -67,7 +68,7 @@ class StochasticBeams {
 
   const BeamTracer& tracer_;
   const LightSetup setup_;
-  std::optional<PathSetup> paths_;  ///< of scattered light
+  const ScatteredLight* scattered_;
   const BeamPolicy policy_;
   std::vector<double> cones_deg_;
   Sampling sampling_;
@@ -75,7 +76,7 @@ class StochasticBeams {
   std::unique_ptr<BeamWalk> strong_;  ///< above the threshold
   std::vector<ScatterSite> strong_sites_;
   double threshold_;
-  double ray_power_;                           ///< most that a ray of scattered light stands for
+  double ray_power_;                           ///< most that a piece of scattered light stands for
   double beam_error_ = 0.0, ray_error_ = 0.0;  ///< of the last round: the largest of all cones
   std::uint32_t round_ = 0;
   std::uint64_t work_ = 0;

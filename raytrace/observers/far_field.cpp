@@ -7,7 +7,7 @@
 
 #include "raytrace/light/light_setup.h"
 #include "raytrace/observers/small_angle.h"
-#include "raytrace/sampling/replicates.h"
+#include "raytrace/sampling/replicate_means.h"
 #include "raytrace/sampling/sobol.h"
 
 namespace retrace::raytrace {

@@ -28,7 +28,7 @@ constexpr double kLengthStep = 1e-7, kCosineStep = 1e-8, kAmplitudeStep = 1e-7, 
 // Of places where facets were met, in elements, and of their slopes.
 constexpr double kHitStep = 1e-6;
 // Polygons are joined if their union is convex but for this share of an element's area.
-constexpr double kJoinShare = 1e-10;
+constexpr double kJoinOutlinesShare = 1e-10;
 
 std::int64_t step_of(double value, double step) {
   return std::llround(value / step);
@@ -36,7 +36,7 @@ std::int64_t step_of(double value, double step) {
 
 /// Coherency matrix of the incident light along the axes of the source. Its second axis is p of light that comes down
 /// reversed.
-Eigen::Matrix2cd coherency_of(const Stokes& s) {
+Eigen::Matrix2cd incident_coherency(const Stokes& s) {
   Eigen::Matrix2cd c;
   c << s.i + s.q, std::complex<double>(s.u, -s.v), std::complex<double>(s.u, s.v), s.i - s.q;
   return 0.5 * c;
@@ -102,7 +102,7 @@ FarFieldCollector::FarFieldCollector(const geometry::Part& part, const Illuminat
       directions_(kOneDirection_rad) {
   field_.replicates_ = policy.replicates;
   field_.wavelength_mm_ = 1e-6 * policy.wavelength_nm;
-  field_.coherency_ = coherency_of(illumination.stokes);
+  field_.coherency_ = incident_coherency(illumination.stokes);
   field_.cancel_ = policy.cancel;
 }
 
@@ -274,7 +274,7 @@ void FarFieldCollector::join(std::vector<Piece>& pieces) const {
       transmission += pieces[last].transmission;
       power += pieces[last].power;
     }
-    if (last - first > 1) join_convex(outlines, kJoinShare * size_mm_ * size_mm_);
+    if (last - first > 1) join_convex(outlines, kJoinOutlinesShare * size_mm_ * size_mm_);
     for (const FlatPolygon& outline : outlines) {
       Piece piece = pieces[first];
       piece.outline_mm.assign(outline.begin(), outline.end());

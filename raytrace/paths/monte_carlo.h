@@ -11,10 +11,10 @@
 #include "core/progress.h"
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
-#include "raytrace/light/ledger.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/optics.h"
 #include "raytrace/light/path_policy.h"
+#include "raytrace/sampling/replicate_means.h"
 
 namespace retrace::raytrace {
 
@@ -30,27 +30,6 @@ struct Sampling {
   std::optional<std::uint64_t> rays;  ///< traced exactly (rounded up to whole replicates); else until the target
   double target_error = 1e-4;         ///< standard error of RRE to reach, > 0
   std::uint64_t max_rays = 1U << 26;  ///< limit on the way there
-};
-
-/// RRE and ledger for one acceptance cone.
-struct ConeResult {
-  double half_angle_deg = 0.0;
-  double rre = 0.0;
-  double std_error = 0.0;  ///< from the spread of independent replicates
-  Stokes stokes;           ///< of what is retroreflected, along source_axis()
-  Ledger ledger;
-};
-
-struct MonteCarloResult {
-  std::vector<ConeResult> cones;  ///< in the order given
-  /// Of the directions that were scored: sums over what leaves, per unit of incident power, and standard errors.
-  std::vector<double> score;
-  std::vector<double> score_error;
-  std::uint64_t rays = 0;
-  std::uint64_t segments = 0;
-  std::uint64_t misses = 0;
-  bool reached_target = true;
-  bool complete = true;  ///< false if it was cancelled: the figures are then of what was traced, none if rays is 0
 };
 
 /// Monte-Carlo estimates of where light goes, by Owen-scrambled Sobol points over the entrance face. The result depends

@@ -26,43 +26,6 @@ constexpr std::uint32_t kFirstRound = 256;
 // The error falls about as rays to this power: 0.5 by chance, 1 where all is smooth.
 constexpr double kConvergence = 0.75;
 
-ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double half_angle_deg, std::size_t cone) {
-  const auto count = static_cast<double>(replicates.size());
-  ConeResult result;
-  result.half_angle_deg = half_angle_deg;
-  std::vector<double> rre;
-  for (const Tally& tally : replicates) {
-    const Ledger ledger = tally.ledger(cone);
-    rre.push_back(ledger[Account::retroreflected] / rays);
-    result.stokes += 1.0 / (rays * count) * tally.retroreflected(cone);
-    for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays / count;
-  }
-  result.rre = result.ledger[Account::retroreflected];
-  double squares = 0.0;
-  for (const double r : rre) squares += (r - result.rre) * (r - result.rre);
-  result.std_error = std::sqrt(squares / (count - 1.0) / count);
-  // Replicates that agree to rounding say the same.
-  if (result.std_error < 1e-15) result.std_error = 0.0;
-  return result;
-}
-
-/// Means and standard errors of what was scored.
-void add_score(const std::vector<Tally>& replicates, double rays, MonteCarloResult& result) {
-  const auto count = static_cast<double>(replicates.size());
-  const std::size_t size = replicates.front().score.size();
-  result.score.assign(size, 0.0);
-  result.score_error.assign(size, 0.0);
-  for (std::size_t k = 0; k < size; ++k) {
-    for (const Tally& tally : replicates) result.score[k] += tally.score[k] / rays / count;
-    double squares = 0.0;
-    for (const Tally& tally : replicates) {
-      const double off = tally.score[k] / rays - result.score[k];
-      squares += off * off;
-    }
-    result.score_error[k] = std::sqrt(squares / (count - 1.0) / count);
-  }
-}
-
 void check_lost(const MonteCarloResult& result) {
   for (const ConeResult& cone : result.cones)
     if (cone.ledger[Account::lost] > kLostLimit)
@@ -73,37 +36,6 @@ void check_lost(const MonteCarloResult& result) {
 }
 
 }  // namespace
-
-MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t rays_per_replicate,
-                           const std::vector<double>& cones_deg) {
-  MonteCarloResult result;
-  result.rays = std::uint64_t{rays_per_replicate} * replicates.size();
-  for (const Tally& tally : replicates) {
-    result.segments += tally.segments;
-    result.misses += tally.misses;
-  }
-  for (std::size_t cone = 0; cone < cones_deg.size(); ++cone)
-    result.cones.push_back(cone_result(replicates, rays_per_replicate, cones_deg[cone], cone));
-  add_score(replicates, rays_per_replicate, result);
-  return result;
-}
-
-double student_factor(std::size_t replicates) {
-  // Abramowitz and Stegun, 26.7.5; over z.
-  constexpr double z2 = 1.959964 * 1.959964;
-  const double nu = static_cast<double>(replicates - 1);
-  const double first = (z2 + 1.0) / 4.0;
-  const double second = ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0;
-  const double third = (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0;
-  const double fourth = ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) / 92160.0;
-  return 1.0 + (first + (second + (third + fourth / nu) / nu) / nu) / nu;
-}
-
-double largest_error(const MonteCarloResult& result) {
-  double largest = 0.0;
-  for (const ConeResult& cone : result.cones) largest = std::max(largest, cone.std_error);
-  return largest;
-}
 
 /// Of the scrambles of a replicate's entry points.
 std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t replicate) {

@@ -22,18 +22,6 @@ inline constexpr std::uint32_t kChoiceStream = 2;
 /// Of the scrambles of a replicate's entry points.
 std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t replicate);
 
-/// Means over independent replicates, and standard errors from their spread.
-/// \param rays_per_replicate that each tally is the sum of; of incident power 1 each
-MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t rays_per_replicate,
-                           const std::vector<double>& cones_deg);
-
-/// By how much the standard error of so few replicates is to be widened for 1.96 of it to hold the truth in 95 of 100
-/// cases: the 97.5 % point of Student's distribution over that of the normal one.
-double student_factor(std::size_t replicates);
-
-/// The standard error of the cone where it is largest.
-double largest_error(const MonteCarloResult& result);
-
 /// Traces rays first..last-1 of a replicate; nothing if it was cancelled.
 using ReplicateTask =
     std::function<std::optional<Tally>(std::uint32_t replicate, std::uint32_t first, std::uint32_t last)>;

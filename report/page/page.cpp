@@ -6,41 +6,13 @@
 #include <iterator>
 #include <string_view>
 
-#include "core/atomic_file.h"
-#include "core/data_directory.h"
+#include "core/base64.h"
 #include "core/number_format.h"
 #include "core/version.h"
+#include "report/page/html_text.h"
 
 namespace retrace::report {
 namespace {
-
-std::string base64(std::string_view bytes) {
-  static constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      group = (group << 8) | (k + i < bytes.size() ? static_cast<unsigned char>(bytes[k + i]) : 0U);
-    for (std::size_t i = 0; i < 4; ++i) text += k + i <= bytes.size() ? digits[(group >> (18 - 6 * i)) & 63U] : '=';
-  }
-  return text;
-}
-
-/// A text in JSON that stands in an HTML document: nothing in it can end its element.
-std::string json_string(std::string_view text) {
-  std::string json = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      json += {'\\', c};
-    else if (byte < 0x20 || c == '<' || c == '>' || c == '&')
-      json += fmt::format("\\u{:04x}", byte);
-    else
-      json += c;
-  }
-  return json + "\"";
-}
 
 std::string json_number(double value) {
   return std::isfinite(value) ? shortest(value) : "null";
@@ -135,6 +107,7 @@ class HtmlWriter {
         html_text(assets.licences));
     add("<script type=\"application/json\" id=\"page-data\">{{\"charts\":[{}],\"paths\":[{}],\"scene\":{}}}</script>\n",
         charts_, paths_, page_.scene ? json_of(*page_.scene) : "null");
+    if (page_.live) html_ += live_elements(*page_.live, assets, true);
     add("<script>{}</script>\n", assets.script);
   }
 
@@ -155,6 +128,7 @@ class HtmlWriter {
     write_facts(section.facts);
     write_steps(section.steps);
     if (section.has_scene && page_.scene) write_scene();
+    if (section.has_live && page_.live) add("<div id=\"live\"></div>\n");
     for (const PageChart& chart : section.charts) write_chart(chart);
     for (const PagePath& path : section.paths) write_path(path);
     write_figures(section.figures);
@@ -272,25 +246,8 @@ PageCell::PageCell(double value) : text(shown(value)) {
   if (all != text) full = std::move(all);
 }
 
-std::string html_text(std::string_view text) {
-  std::string html;
-  html.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&': html += "&amp;"; break;
-      case '<': html += "&lt;"; break;
-      case '>': html += "&gt;"; break;
-      case '"': html += "&quot;"; break;
-      case '\'': html += "&#39;"; break;
-      default: html += c;
-    }
-  }
-  return html;
-}
-
-PageAssets shipped_page_assets() {
-  const auto folder = data_directory() / "report_page";
-  return {read_file(folder / "page.js"), read_file(folder / "page.css"), read_file(folder / "LICENCES.txt")};
+PageAssets assets_for(const Page& page) {
+  return page.live ? shipped_live_assets() : shipped_page_assets();
 }
 
 std::string page_html(const Page& page, const PageAssets& assets) {

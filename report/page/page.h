@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "report/page/html_text.h"
+#include "report/page/live_page.h"
+
 namespace retrace::report {
 
 /// One cell of a table: what is shown, and the value in full for the CSV file where that differs.
@@ -94,6 +97,7 @@ struct PageSection {
   std::vector<PageTable> tables;
   std::vector<std::pair<std::string, std::string>> details;  ///< folded texts: title, content
   bool has_scene = false;
+  bool has_live = false;
 };
 
 PageSection titled(std::string title, const std::string& paragraph = {});
@@ -118,23 +122,14 @@ struct Page {
   std::string subtitle;
   std::vector<PageSection> sections;
   std::optional<SceneView> scene;
+  std::optional<LiveStart> live;  ///< the design that can be changed on the page
 };
 
-/// Scripts and styles that go into the page.
-struct PageAssets {
-  std::string script;  ///< empty: a page without charts and views, to be printed
-  std::string style;
-  std::string licences;
-};
-
-/// Those that retrace ships. \throw InputError where they are missing
-PageAssets shipped_page_assets();
+/// What retrace ships for such a page. \throw InputError where it is missing
+PageAssets assets_for(const Page& page);
 
 /// The page as one HTML file that needs no other file and no network. Whatever texts hold, they are shown as texts.
 std::string page_html(const Page& page, const PageAssets& assets);
-
-/// `text` with what HTML gives a meaning replaced.
-std::string html_text(std::string_view text);
 
 /// Six significant digits.
 std::string shown(double value);

@@ -15,4 +15,8 @@ SceneView scene_view(const studies::DesignScene& scene);
 /// is better than none. \return why it has none, if so
 std::vector<std::string> add_scene(Page& page, const ResultFolder& folder);
 
+/// Gives a page a section in which the design that its results quote can be changed; none of one that names files, or
+/// that results do not quote.
+void add_live(Page& page, const ResultFolder& folder);
+
 }  // namespace retrace::report

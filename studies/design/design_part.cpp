@@ -23,4 +23,15 @@ geometry::Part part_of(const Design& design) {
   }
 }
 
+Design single_element_of(const Design& design) {
+  Design single = design;
+  geometry::PartSpec spec = design.part();
+  spec.array = {};
+  spec.array.arrangement = geometry::Arrangement::single;
+  spec.substrate.reset();
+  spec.is_pin_bundle = false;
+  single.shape = ElementArray{std::move(spec), {}, {}};
+  return single;
+}
+
 }  // namespace retrace::studies

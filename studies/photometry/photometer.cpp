@@ -313,17 +313,8 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vec
       const std::vector<Piece> seen = measure_exactly(settings, alike, k % wavelengths, tracer, cancel);
       for (std::size_t s = 0; s < alike.size(); ++s) pieces[alike[s].index][k % wavelengths] = seen[s];
     });
-  } else {
-    std::optional<raytrace::MonteCarlo> tracer;
-    if (!design_.balls())
-      tracer.emplace(model_.part, raytrace::MonteCarlo::Engine::embree, model_.entrance ? &*model_.entrance : nullptr);
-    for (std::size_t k = 0; k < settings.size() * wavelengths; ++k) {
-      if (is_cancelled(cancel)) return std::nullopt;
-      pieces[k / wavelengths][k % wavelengths] =
-          measure_by_rays(settings[k / wavelengths], k % wavelengths, tracer ? &*tracer : nullptr, cancel);
-      if (progress != nullptr)
-        progress->at(static_cast<double>(k + 1) / static_cast<double>(settings.size() * wavelengths));
-    }
+  } else if (!measure_by_rays(settings, progress, cancel, pieces)) {
+    return std::nullopt;
   }
   std::vector<PhotometerReading> readings;
   for (std::size_t k = 0; k < settings.size(); ++k) {

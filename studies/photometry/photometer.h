@@ -102,6 +102,9 @@ class Photometer {
   /// \param tracer null for balls, which have their own
   Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
                         const Cancellation* cancel) const;
+  /// All of them. \param pieces by setting and wavelength; filled. False if it was cancelled
+  bool measure_by_rays(const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel,
+                       std::vector<std::vector<Piece>>& pieces) const;
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
   std::size_t middle_wavelength() const;
   std::uint32_t seed_of(std::size_t wavelength) const;

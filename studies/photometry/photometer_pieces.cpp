@@ -1,8 +1,7 @@
-// What one wavelength adds to a reading: the members of Photometer that trace it.
+// What one wavelength adds to a reading: the members of Photometer that trace it exactly.
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/balls/ball_tracer.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
@@ -126,44 +125,6 @@ void Photometer::look(const PhotometerSetting& setting, const SharedDirection& s
     const raytrace::FarField::Split parts = field.split(frame, window_rad);
     piece.split = {model_.spectral[wavelength].wavelength_nm, parts.inside, parts.outside, field.total_power()};
   }
-}
-
-Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
-                                              const raytrace::MonteCarlo* tracer, const Cancellation* cancel) const {
-  const SpectralOptics& light = model_.spectral[wavelength];
-  const ReturnFrame frame = frame_of(setting);
-  const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
-  raytrace::DirectionScore score{frame, kernel_, {}, {}};
-  for (const double observation_deg : setting.observation_deg)
-    score.receivers.push_back(frame.direction({0.0, Angle::from_deg(observation_deg).rad()}));
-  if (setting.map_columns > 0)
-    score.grid.emplace(raytrace::DirectionGrid::Layout::square, Angle::from_deg(request_.window_deg).rad(),
-                       setting.map_columns, setting.map_columns);
-  raytrace::Sampling sampling;
-  sampling.seed = seed_of(wavelength);
-  sampling.rays = std::max<std::uint64_t>(1, request_.rays / model_.spectral.size());
-  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
-  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
-  const raytrace::MonteCarloResult traced =
-      tracer != nullptr ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score)
-                        : raytrace::BallTracer(*design_.balls())
-                              .trace(light.optics, illumination, cones, sampling, {}, cancel, &score);
-  Piece piece;
-  if (!traced.complete) return piece;
-  const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
-  piece.rre = traced.cones.back().rre;
-  piece.std_error = traced.cones.back().std_error;
-  piece.truncated = traced.cones.back().ledger[raytrace::Account::truncated];
-  piece.per_sr.assign(traced.score.begin(), traced.score.begin() + receivers);
-  piece.error_per_sr.assign(traced.score_error.begin(), traced.score_error.begin() + receivers);
-  // Replicates that all saw nothing agree, but know no better than to the light of one ray.
-  const double one_ray_per_sr = kernel_.per_sr(0.0) / static_cast<double>(sampling.rays.value());
-  for (double& error : piece.error_per_sr) error = std::max(error, one_ray_per_sr);
-  if (score.grid)
-    for (std::size_t bin = 0; bin < score.grid->size(); ++bin)
-      piece.map_per_sr.push_back(traced.score[score.receivers.size() + bin] / score.grid->solid_angle_sr(bin));
-  piece.complete = true;
-  return piece;
 }
 
 }  // namespace retrace::studies

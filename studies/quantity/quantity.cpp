@@ -9,6 +9,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "geometry/elements/element_cells.h"
+#include "studies/design/design_part.h"
 #include "studies/design/optical_model.h"
 #include "studies/inspect/inspect.h"
 
@@ -142,16 +143,6 @@ double full_element_area_mm2(const geometry::PartSpec& spec) {
   return geometry::area(geometry::aperture_outline(spec.element));
 }
 
-/// Area of the facets of one whole element.
-double facets_of_element_mm2(const geometry::PartSpec& spec) {
-  geometry::PartSpec single = spec;
-  single.array.arrangement = geometry::Arrangement::single;
-  single.array.extent = geometry::Extent::finite;
-  single.array.x_gap_mm = single.array.y_gap_mm = single.array.x_offset_mm = single.array.y_offset_mm = 0.0;
-  single.array.x_length_mm = single.array.y_length_mm = 0.0;
-  return geometry::build_part(single).retro_facet_area_mm2;
-}
-
 std::optional<double> total_reflection_limit_deg(const Candidate& candidate) {
   if (candidate.design().part().substrate) return std::nullopt;  // elements stand at angles of their own
   const auto library = materials::MaterialLibrary::shipped();
@@ -188,7 +179,8 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
     case PlainQuantity::lens_thickness_mm: return candidate.part().element_depth_mm + candidate.part().thickness_mm;
     case PlainQuantity::facet_area_mm2: return candidate.part().retro_facet_area_mm2;
     case PlainQuantity::effective_area_mm2:
-      return static_cast<double>(candidate.part().elements_full) * facets_of_element_mm2(spec);
+      return static_cast<double>(candidate.part().elements_full) *
+             geometry::build_part(single_element_of(candidate.design()).part()).retro_facet_area_mm2;
     case PlainQuantity::entrance_area_mm2: return candidate.part().entrance_area_mm2;
     case PlainQuantity::full_element_share:
       return static_cast<double>(candidate.part().elements_full) * full_element_area_mm2(spec) /

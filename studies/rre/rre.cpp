@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -17,13 +16,6 @@
 
 namespace retrace::studies {
 namespace {
-
-constexpr std::array<std::pair<std::string_view, Engine>, 6> kEngines = {{{"auto", Engine::automatic},
-                                                                          {"exact", Engine::exact},
-                                                                          {"stochastic", Engine::stochastic},
-                                                                          {"montecarlo", Engine::montecarlo},
-                                                                          {"cell", Engine::cell},
-                                                                          {"embree", Engine::embree}}};
 
 void check_incidence(double deg) {
   if (!(std::abs(deg) < 90.0))
@@ -83,31 +75,6 @@ std::string missed_target_text(const Design& design, const RrePoint& at, const R
 
 double target_error_of(const RreRequest& request) {
   return request.target_error.value_or(request.incidence_spans.empty() ? kUsualTargetError : 0.5 * kCurveTolerance);
-}
-
-void check_share(double value, bool zero_allowed, const char* option) {
-  if (!(value > 0.0 && value < 1.0) && !(zero_allowed && value == 0.0))
-    throw InputError({"", 0, option},
-                     fmt::format("must lie between 0 {}and 1, got {}", zero_allowed ? "(included) " : "", value));
-}
-
-Engine engine_from_name(std::string_view name) {
-  for (const auto& [known, engine] : kEngines)
-    if (known == name) return engine;
-  throw InputError({"", 0, "--engine"},
-                   fmt::format("must be auto, exact, stochastic, montecarlo, cell or embree, got {}", name));
-}
-
-raytrace::Sampling::Kind sampling_from_name(std::string_view name) {
-  if (name == "stratified") return raytrace::Sampling::Kind::stratified;
-  if (name == "plain") return raytrace::Sampling::Kind::plain;
-  throw InputError({"", 0, "--sampling"}, fmt::format("must be stratified or plain, got {}", name));
-}
-
-std::string_view engine_name(Engine engine) {
-  for (const auto& [name, known] : kEngines)
-    if (known == engine) return name;
-  return "";
 }
 
 namespace {

@@ -2,24 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <mutex>
 
 #include "core/error.h"
 #include "raytrace/balls/ball_tracer.h"
-#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/exact/scattered_rays.h"
 #include "raytrace/exact/stochastic_beams.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/sampling/threads.h"
+#include "studies/rre/beam_race.h"
+#include "studies/rre/beam_tracing.h"
 
 namespace retrace::studies {
 namespace {
 
 // What the counts of work of the tracers stand for, as benchmarks/engine_choice.cpp measured them: choices rest on
 // counts and not on clocks, so that they are the same on every machine.
-constexpr double kNsPerLook = 30.0;
-/// Of stochastic beams, which are fewer and wider.
-constexpr double kNsPerStochasticLook = 15.0;
 /// Of a straight piece, and of each facet of an element besides; of a finite array Embree does what is near its
 /// borders.
 struct SegmentCost {
@@ -31,24 +29,8 @@ constexpr SegmentCost kCellOfFinite{220.0, 25.0};
 constexpr SegmentCost kEmbree{350.0, 25.0};
 /// Straight pieces of a first round of Monte Carlo, before there was one.
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
-/// Looks that stochastic beams take to the usual error, before there was a round. Light that enters prisms askew
-/// wanders far, and little of it comes back.
-constexpr double kLooksForCubes = 300'000.0;
-constexpr double kLooksForPrisms = 1'000'000.0;
-/// Facets of a cell beyond which they take more, as measured with rounded edges: 300 times as many at 24.
-constexpr double kFewFacets = 4.0;
-constexpr double kGrowthWithFacets = 3.0;
 /// What beams may take below the error that was requested: some 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
-/// Share of what rays are expected to take that beams may take, however long they are expected to.
-constexpr double kHedge = 0.2;
-/// Work after which the engines are compared for the first time: a millisecond.
-constexpr double kFirstLook = 30'000.0;
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
-raytrace::Illumination illumination_of(const RrePoint& at, const Design& design) {
-  return {Angle::from_deg(at.incidence_deg), Angle::from_deg(at.azimuth_deg), design.light.polarisation};
-}
 
 /// The sampling of one wavelength. Rays are shared in proportion to the weights w: variances v / (w N) of the estimates
 /// then make w^2 v / (w N) each and v / N in all, as if all N rays were of one wavelength. A target t becomes
@@ -63,36 +45,6 @@ raytrace::Sampling sampling_of(const RreRequest& request, double weight, std::si
     sampling.rays = std::max<std::uint64_t>(
         1, static_cast<std::uint64_t>(std::llround(weight * static_cast<double>(*request.rays))));
   return sampling;
-}
-
-std::vector<RrePoint> points_of(const RrePoint& at, const raytrace::MonteCarloResult& traced) {
-  std::vector<RrePoint> points;
-  for (const raytrace::ConeResult& cone : traced.cones) {
-    RrePoint point = at;
-    point.acceptance_half_angle_deg = cone.half_angle_deg;
-    point.rre = cone.rre;
-    point.std_error = cone.std_error;
-    point.stokes = cone.stokes;
-    point.ledger = cone.ledger;
-    points.push_back(point);
-  }
-  return points;
-}
-
-std::vector<RrePoint> points_of(const RrePoint& at, const std::vector<double>& cones,
-                                const raytrace::BeamResult& traced) {
-  std::vector<RrePoint> points;
-  for (std::size_t cone = 0; cone < cones.size(); ++cone) {
-    RrePoint point = at;
-    point.acceptance_half_angle_deg = cones[cone];
-    point.ledger = traced.ledgers[cone];
-    point.rre = point.ledger[raytrace::Account::retroreflected];
-    point.stokes = traced.stokes[cone];
-    point.beams = traced.beams;
-    point.depth = traced.depth;
-    points.push_back(point);
-  }
-  return points;
 }
 
 /// The point of a direction at one of its wavelengths, before it is traced.
@@ -117,32 +69,6 @@ raytrace::BeamPolicy beam_policy(const RreRequest& request) {
   if (is_free) policy.spare_work = kSpareWork;
   return policy;
 }
-
-/// Gathers the returned beams of one direction, as far as they were requested.
-class Collector {
- public:
-  Collector(const RreRequest& request, const OpticalModel& model, std::size_t cones,
-            const raytrace::Illumination& illumination) {
-    if (request.footprint) footprint_.emplace(model.part, cones);
-    if (request.far_field) far_field_.emplace(illumination);
-  }
-
-  raytrace::BeamObserver observer() {
-    if (!footprint_ && !far_field_) return {};
-    return [this](const raytrace::ReturnedBeam& beam) {
-      if (footprint_) footprint_->add(beam);
-      if (far_field_) far_field_->add(beam);
-    };
-  }
-  void finish(Direction& direction) const {
-    if (footprint_) direction.footprint = footprint_->finish();
-    if (far_field_) direction.far_field = far_field_->finish();
-  }
-
- private:
-  std::optional<FootprintBuilder> footprint_;
-  std::optional<FarFieldBuilder> far_field_;
-};
 
 /// False if it was cancelled.
 bool add_derivatives(const TracedDirection& traced, const Cancellation* cancel, std::vector<RrePoint>& points) {
@@ -214,21 +140,8 @@ class DesignTracing {
   double ns_of_segment() const {
     const bool is_cell = ray_engine() == raytrace::MonteCarlo::Engine::cell;
     const SegmentCost cost = !is_cell ? kEmbree : model_.part.period_mm ? kCell : kCellOfFinite;
-    return cost.ns + cost.ns_per_facet * facets_of_cell();
+    return cost.ns + cost.ns_per_facet * facets_of_cell(model_.part);
   }
-
-  double facets_of_cell() const {
-    const geometry::SurfacePatch& patch = model_.part.patches.front();
-    return static_cast<double>(patch.facets.size()) / static_cast<double>(patch.cells.size());
-  }
-
-  double looks_of_stochastic() const {
-    const double looks =
-        std::holds_alternative<geometry::RtpElement>(model_.part.spec.element) ? kLooksForPrisms : kLooksForCubes;
-    return looks * std::max(1.0, std::pow(facets_of_cell() / kFewFacets, kGrowthWithFacets));
-  }
-
-  const raytrace::BackSurface* scattering() const { return scattering_ ? &*scattering_ : nullptr; }
 
   /// Made when it is first needed, by whichever thread needs it.
   const raytrace::MonteCarlo& ray_tracer() {
@@ -268,13 +181,20 @@ class DesignTracing {
 
   bool trace_beams(Direction& direction, std::size_t wavelength) {
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
-    Collector collector(request_, model_, cones().size(), illumination);
-    const raytrace::BeamResult traced =
-        beam_tracer_->trace(light(wavelength).optics, illumination, cones(), beams_, cancel_, collector.observer());
-    if (!keep(direction, wavelength, traced)) return false;
-    collector.finish(direction);
-    return !request_.derivatives || add_derivatives({design_, model_, *beam_tracer_, illumination, beams_, traced},
-                                                    cancel_, direction.spectral[wavelength]);
+    BeamAnswer answer =
+        follow_beams(*beam_tracer_, model_.part, light(wavelength).optics, illumination, cones(), beams_,
+                     {.footprint = request_.footprint, .far_field = request_.far_field}, cancel_);
+    if (!keep(direction, wavelength, answer.traced)) return false;
+    direction.footprint = std::move(answer.footprint);
+    direction.far_field = std::move(answer.far_field);
+    return !request_.derivatives ||
+           add_derivatives({design_, model_, *beam_tracer_, illumination, beams_, answer.traced}, cancel_,
+                           direction.spectral[wavelength]);
+  }
+
+  bool keep(Direction& direction, std::size_t wavelength, const BeamRace& traced) const {
+    return traced.is_exact() ? keep(direction, wavelength, traced.exact())
+                             : keep(direction, wavelength, traced.stochastic());
   }
 
   bool keep(Direction& direction, std::size_t wavelength, const raytrace::StochasticBeams& traced) const {
@@ -283,9 +203,18 @@ class DesignTracing {
     return true;
   }
 
+  /// Null where facets do not scatter.
+  std::unique_ptr<raytrace::ScatteredLight> scattered_light(const raytrace::Optics& optics,
+                                                            const raytrace::Illumination& illumination) const {
+    if (!scattering_) return nullptr;
+    return std::make_unique<raytrace::ScatteredLightByRays>(*beam_tracer_, *scattering_, optics, illumination, cones());
+  }
+
   bool trace_stochastic(Direction& direction, std::size_t wavelength) {
-    raytrace::StochasticBeams beams(*beam_tracer_, scattering(), light(wavelength).optics,
-                                    illumination_of(direction.at, design_), cones(),
+    const raytrace::Optics& optics = light(wavelength).optics;
+    const raytrace::Illumination illumination = illumination_of(direction.at, design_);
+    const std::unique_ptr<raytrace::ScatteredLight> scattered = scattered_light(optics, illumination);
+    raytrace::StochasticBeams beams(*beam_tracer_, scattered.get(), optics, illumination, cones(),
                                     sampling_of(request_, light(wavelength).weight, wavelength), cancel_);
     while (!beams.advance())
       ;
@@ -299,26 +228,14 @@ class DesignTracing {
     const raytrace::Optics& optics = light(wavelength).optics;
     const raytrace::Sampling sampling = sampling_of(request_, light(wavelength).weight, wavelength);
     const double ns_per_segment = ns_of_segment();
-    const double first_looks = looks_of_stochastic();
-    std::optional<raytrace::BeamTrace> beams;
-    if (optics.is_smooth()) beams.emplace(*beam_tracer_, optics, illumination, cones(), beams_);
-    std::optional<raytrace::StochasticBeams> stochastic;
-    bool stochastic_may_do = !request_.cutoff;
+    const std::unique_ptr<raytrace::ScatteredLight> scattered = scattered_light(optics, illumination);
+    BeamRace beams(*beam_tracer_, scattered.get(), optics, illumination, cones(), beams_, sampling,
+                   {.may_resample = !request_.cutoff}, cancel_);
     std::optional<raytrace::MonteCarlo::Run> rays;
     for (;;) {
-      const double beams_take = beams ? kNsPerLook * std::min(beams->expected_work(), beams->work() / kHedge) : kNever;
       const double rays_take = ns_per_segment * (rays ? rays->expected_segments() : kSegmentsOfFirstRound);
-      const double stochastic_takes =
-          !stochastic_may_do ? kNever : kNsPerStochasticLook * (stochastic ? stochastic->expected_work() : first_looks);
-      if (beams_take <= std::min(rays_take, stochastic_takes)) {
-        const double look = std::max(kFirstLook, 1.1 * beams->work());
-        if (beams->advance(static_cast<std::uint64_t>(look), cancel_))
-          return keep(direction, wavelength, beams->result());
-      } else if (stochastic_takes <= rays_take) {
-        if (!stochastic)
-          stochastic.emplace(*beam_tracer_, scattering(), optics, illumination, cones(), sampling, cancel_);
-        stochastic_may_do = !stochastic->advance();
-        if (stochastic->result().reached_target) return keep(direction, wavelength, *stochastic);
+      if (beams.expected_ns() <= rays_take) {
+        if (beams.advance()) return keep(direction, wavelength, beams);
       } else {
         if (!rays) rays.emplace(ray_tracer(), optics, illumination, cones(), sampling, paths_, cancel_);
         if (rays->advance()) return keep(direction, wavelength, rays->result(), name_of(ray_engine()));

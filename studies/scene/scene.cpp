@@ -1,145 +1,13 @@
 #include "studies/scene/scene.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/number_format.h"
 #include "core/schema/json.h"
-#include "geometry/elements/element_cells.h"
-#include "geometry/part/faceted_solid.h"
 #include "studies/design/io/design_format.h"
 #include "studies/design/io/design_reader.h"
 
 namespace retrace::studies {
-namespace {
-
-constexpr int kGrid = 24;                     // entry points along an element
-constexpr std::size_t kPathsEach = 3;         // from one direction
-constexpr std::size_t kMostTriangles = 4000;  // of a mesh that is shown
-
-geometry::Rectangle element_box(const geometry::Element& element) {
-  return geometry::bounding_box(geometry::aperture_outline(element));
-}
-
-/// A few elements of the design, and what was changed.
-Design few_elements(const Design& design, std::vector<std::string>& remarks) {
-  Design small = design;
-  small.surface.texture = {};
-  small.surface.form = {};
-  small.wet_back.reset();
-  if (small.light.spectrum() != nullptr) small.light.colour = Light{}.colour;
-  if (design.mask()) remarks.push_back("the mask is not shown");
-  if (!design.surface.is_smooth()) remarks.push_back("facets are shown smooth");
-  if (!design.surface.form.is_plane()) remarks.push_back("facets are shown plane");
-  if (design.wet_back) remarks.push_back("wet backs are shown dry");
-  small.surface.entrance = {};
-  if (!design.surface.entrance.is_clean()) remarks.push_back("the entrance face is shown clean");
-  if (design.facet_planes()) remarks.push_back("facets are shown as designed");
-  if (!design.elements()) return small;
-  small.shape = ElementArray{design.part(), {}, {}};
-  geometry::PartSpec& spec = small.part();
-  const geometry::Vec2 size = element_box(spec.element).size();
-  if (spec.array.arrangement != geometry::Arrangement::single) {
-    const geometry::Vec2 wanted = kSceneElements * (size + geometry::Vec2(spec.array.x_gap_mm, spec.array.y_gap_mm));
-    const bool is_larger = spec.array.extent == geometry::Extent::infinite ||
-                           spec.array.x_length_mm > 1.01 * wanted.x() || spec.array.y_length_mm > 1.01 * wanted.y();
-    if (is_larger) {
-      spec.array.extent = geometry::Extent::finite;
-      spec.array.x_length_mm = spec.array.x_length_mm > 0.0 ? std::min(spec.array.x_length_mm, wanted.x()) : wanted.x();
-      spec.array.y_length_mm = spec.array.y_length_mm > 0.0 ? std::min(spec.array.y_length_mm, wanted.y()) : wanted.y();
-      spec.array.x_offset_mm = spec.array.y_offset_mm = 0.0;
-      remarks.push_back("a piece of the array is shown");
-    }
-  }
-  const double top_mm = geometry::element_top_mm(spec.element, spec.angle_errors);
-  const double plate_mm = std::max(1.5 * top_mm, 0.7 * size.maxCoeff());
-  if (spec.thickness_mm > 2.0 * plate_mm && !spec.substrate) {
-    spec.thickness_mm = plate_mm;
-    remarks.push_back("the plate is drawn thinner");
-  }
-  return small;
-}
-
-/// Edges between triangles that do not lie in one plane.
-std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMesh& mesh) {
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  if (!geometry::is_closed_manifold(mesh)) return edges;
-  const auto normal = [&](std::size_t t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    return geometry::Vec3(
-        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).normalized());
-  };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> first;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = mesh.triangles[t][k];
-      const std::uint32_t b = mesh.triangles[t][(k + 1) % 3];
-      const auto [it, is_new] = first.try_emplace(std::minmax(a, b), t);
-      if (!is_new && normal(t).dot(normal(it->second)) < 1.0 - 1e-6) edges.push_back({a, b});
-    }
-  return edges;
-}
-
-/// The part's own boundary; of a mesh, what was read.
-geometry::BoundaryMesh boundary_of_part(const geometry::Part& part) {
-  if (!part.patches[part.placements[0].patch].border_rim.empty()) return geometry::closed_boundary(part);
-  const geometry::SurfacePatch& patch = part.patches[0];
-  geometry::BoundaryMesh mesh;
-  mesh.vertices = patch.vertices;
-  mesh.triangles = patch.triangles;
-  for (const std::uint32_t facet : patch.triangle_facet) mesh.roles.push_back(patch.facets[facet].role);
-  // The entrance face alone closes the picture; sides are left open.
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const geometry::Vec2& p : part.outline) mesh.vertices.emplace_back(p.x(), p.y(), part.thickness_mm);
-  for (std::uint32_t k = 1; k + 1 < part.outline.size(); ++k) {
-    mesh.triangles.push_back({first, first + k, first + k + 1});
-    mesh.roles.push_back(geometry::FacetRole::entrance);
-  }
-  return mesh;
-}
-
-/// Tells paths apart by what happens to them.
-using Story = std::vector<std::pair<raytrace::PathEvent, geometry::FacetRole>>;
-
-Story story_of(const raytrace::LightPath& path) {
-  Story story;
-  for (const raytrace::PathStep& step : path.steps) story.emplace_back(step.event, step.role);
-  return story;
-}
-
-/// The most frequent ways of light that falls on the middle of the part.
-std::vector<ScenePath> paths_from(const SceneLight& light, const OpticalModel& model, double cone_deg) {
-  const geometry::Rectangle box = geometry::bounding_box(model.part.outline);
-  const geometry::Vec2 centre = box.middle();
-  const raytrace::ExactSurface surface(model.part, centre);
-  const geometry::Vec2 window = box.size().cwiseMin(geometry::Vec2::Constant(model.part.size_mm));
-  raytrace::Illumination from;
-  from.incidence = Angle::from_deg(light.incidence_deg);
-  from.azimuth = Angle::from_deg(light.azimuth_deg);
-  std::map<Story, std::vector<raytrace::LightPath>> stories;
-  for (int j = 0; j < kGrid; ++j)
-    for (int i = 0; i < kGrid; ++i) {
-      // Off the lines of symmetry, where light would meet edges.
-      const geometry::Vec2 at((i + 0.43) / kGrid - 0.5, (j + 0.47) / kGrid - 0.5);
-      raytrace::LightPath path = raytrace::strongest_path(model.part, surface, centre, model.optics, from, cone_deg,
-                                                          centre + at.cwiseProduct(window));
-      stories[story_of(path)].push_back(std::move(path));
-    }
-  std::vector<std::vector<raytrace::LightPath>> found;
-  for (auto& [story, paths] : stories) found.push_back(std::move(paths));
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  std::vector<ScenePath> chosen;
-  for (std::size_t k = 0; k < std::min(found.size(), kPathsEach); ++k)
-    chosen.push_back({found[k][found[k].size() / 3], light.incidence_deg, light.azimuth_deg,
-                      static_cast<double>(found[k].size()) / (kGrid * kGrid)});
-  return chosen;
-}
-
-}  // namespace
 
 Design design_of_json(const nlohmann::ordered_json& json) {
   const bool has_source = json.is_object() && json.contains("source") && json["source"].is_string();
@@ -148,19 +16,10 @@ Design design_of_json(const nlohmann::ordered_json& json) {
 }
 
 DesignScene make_scene(const Design& design, const std::vector<SceneLight>& lights) {
-  DesignScene scene;
-  const Design small = few_elements(design, scene.remarks);
-  const OpticalModel model = make_model(small, materials::MaterialLibrary::shipped());
-  scene.mesh = boundary_of_part(model.part);
-  if (scene.mesh.triangles.size() > kMostTriangles) {
-    scene.mesh.triangles.resize(kMostTriangles);
-    scene.mesh.roles.resize(kMostTriangles);
-    scene.remarks.push_back("a part of the mesh is shown");
-  }
-  scene.edges = sharp_edges(scene.mesh);
+  const Piece piece(design, materials::MaterialLibrary::shipped(), kSceneElements);
+  DesignScene scene{piece.mesh(), piece.edges(), {}, piece.remarks()};
   for (const SceneLight& light : lights)
-    for (ScenePath& path : paths_from(light, model, design.detector.acceptance_half_angle_deg.back()))
-      scene.paths.push_back(std::move(path));
+    for (ScenePath& path : piece.stories(light)) scene.paths.push_back(std::move(path));
   return scene;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -17,6 +16,7 @@
 #include <thread>
 
 #include "core/error.h"
+#include "core/leading_number.h"
 #include "raytrace/sampling/threads.h"
 #include "studies/sweep/mpi_mailbox.h"
 
@@ -55,12 +55,10 @@ std::string bytes_of_result(std::uint64_t task, const std::string& bytes) {
 std::chrono::duration<double> silence_limit() {
   const char* const text = std::getenv(kSilenceVariable);
   if (text == nullptr) return std::chrono::duration<double>(kSilenceS);
-  double seconds = 0.0;
-  const char* const end = text + std::strlen(text);
-  const auto [rest, error] = std::from_chars(text, end, seconds);
-  if (error != std::errc() || rest != end || !(seconds >= 1.0 && seconds <= 86400.0))
+  const std::optional<LeadingNumber> seconds = leading_number(text);
+  if (!seconds || text[seconds->length] != '\0' || !(seconds->value >= 1.0 && seconds->value <= 86400.0))
     throw InputError(fmt::format("{}: must be a number of seconds in 1..86400, got \"{}\"", kSilenceVariable, text));
-  return std::chrono::duration<double>(seconds);
+  return std::chrono::duration<double>(seconds->value);
 }
 
 }  // namespace

@@ -70,6 +70,22 @@ TEST(Shortest, NoShorterTextReadsBackEqual) {
   }));
 }
 
+std::string of_charconv(double value) {
+  std::array<char, 400> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+/// The standard library's own writer, where it has one, is the judge: not only of digits, of the layout as well.
+TEST(Shortest, IsWhatTheStandardLibraryWrites) {
+  EXPECT_TRUE(rc::check([](std::uint64_t bits, std::int64_t whole, int power) {
+    const auto any = std::bit_cast<double>(bits);
+    for (const double value :
+         {any, static_cast<double>(whole), std::ldexp(static_cast<double>(whole % 1000), power % 300),
+          std::pow(10.0, power % 300), static_cast<double>(whole % 1'000'000) * 1e-6})
+      if (std::isfinite(value) && value != 0.0) RC_ASSERT(shortest(value) == of_charconv(value));
+  }));
+}
+
 TEST(Fixed, HasAsManyDigitsAsAskedFor) {
   EXPECT_EQ(fixed(1.0 / 3.0, 4), "0.3333");
   EXPECT_EQ(fixed(2.0, 0), "2");

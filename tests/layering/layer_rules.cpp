@@ -29,6 +29,7 @@ const std::map<std::string, Names>& folders() {
       {"studies", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication"}},
       {"report", {"core", "geometry", "studies"}},
       {"library", {"core", "geometry", "materials", "raytrace", "fabrication", "studies", "report"}},
+      {"live", {"core", "geometry", "materials", "surface_models", "raytrace", "studies"}},
       {"python", {"library", "core"}},
       {"app", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication", "studies", "report"}}};
   return order;
@@ -151,6 +152,8 @@ const std::vector<Library>& libraries() {
       {"Embree", "embree", "a .cpp file of raytrace/",
        [](const std::string& path) { return path.starts_with("raytrace/") && !is_header(path); }},
       {"pybind11", "pybind11/", "python/", [](const std::string& path) { return path.starts_with("python/"); }},
+      {"fast_float", "fast_float/", "core/leading_number.cpp",
+       [](const std::string& path) { return path == "core/leading_number.cpp"; }},
       {"toml++", "toml++/", "core/io/", [](const std::string& path) { return path.starts_with("core/io/"); }},
       {"yaml-cpp", "yaml-cpp/", "materials/io/index_record.cpp",
        [](const std::string& path) { return path == "materials/io/index_record.cpp"; }},

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
+#include "raytrace/exact/scattered_rays.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/sampling/threads.h"
 #include "tests/support/designs.h"
@@ -30,7 +32,9 @@ Sampling until(double target_error, std::uint32_t seed = 1) {
 MonteCarloResult traced(const BeamTracer& tracer, const Optics& optics, const Illumination& light,
                         const std::vector<double>& cones_deg, const Sampling& sampling,
                         const BackSurface* scattering = nullptr) {
-  StochasticBeams beams(tracer, scattering, optics, light, cones_deg, sampling);
+  std::optional<ScatteredLightByRays> scattered;
+  if (scattering != nullptr) scattered.emplace(tracer, *scattering, optics, light, cones_deg);
+  StochasticBeams beams(tracer, scattered ? &*scattered : nullptr, optics, light, cones_deg, sampling);
   while (!beams.advance()) continue;
   return beams.result();
 }
@@ -88,11 +92,12 @@ Optics rough(double sq_nm, double correlation_length_um) {
 std::vector<ConeResult> answers(const Question& question, const Optics& optics, double target_error, bool one_round) {
   constexpr std::uint32_t kSeeds = 200;
   const BeamTracer tracer(question.part);
-  const BackSurface scattering(question.part, tracer.centre_mm());
+  const BackSurface surface(question.part, tracer.centre_mm());
+  const ScatteredLightByRays scattered(tracer, surface, optics, question.light, {0.5});
   std::vector<ConeResult> found(kSeeds);
   for_each_in_parallel(kSeeds, [&](std::size_t k) {
     const Sampling sampling = until(target_error, static_cast<std::uint32_t>(k + 1));
-    StochasticBeams beams(tracer, optics.is_smooth() ? nullptr : &scattering, optics, question.light, {0.5}, sampling);
+    StochasticBeams beams(tracer, optics.is_smooth() ? nullptr : &scattered, optics, question.light, {0.5}, sampling);
     while (!beams.advance() && !one_round) continue;
     found[k] = beams.result().cones[0];
     return true;

@@ -57,6 +57,7 @@ STYLE = """\
 .md-typeset table.dataframe { display: block; overflow-x: auto; border: 0; font-size: .66rem }
 .md-grid { max-width: 72rem }
 .formula { overflow-x: auto; overflow-y: hidden; margin: 1em 0 }
+.live { width: 100%; height: 85vh; border: 1px solid var(--md-default-fg-color--lightest) }
 .examples { display: grid; grid-template-columns: repeat(auto-fill, minmax(11rem, 1fr)); gap: .8rem }
 .examples a { display: block; font-size: .7rem }
 .examples img { width: 100%; height: 8rem; object-fit: contain }
@@ -220,6 +221,9 @@ class Pages:
             text = outside_of_blocks((SOURCE / page).read_text(), list_needs_blank())
             text = outside_of_blocks(outside_of_blocks(text, pipes_in_tables), lambda line, _: self.links(page, line))
             text = set_formulas(page, text)
+            if page == "README.md":
+                title, rest = text.split("\n\n", 1)
+                text = f"{title}\n\n{FRONT}{rest}"
             write("index.md" if page == "README.md" else page, text)
 
 
@@ -314,6 +318,21 @@ def notebook_pages():
             shutil.copytree(pictures, PAGES / path.parent / pictures.name)
 
 
+FRONT = """\
+<iframe class="live" src="explore.html" title="A prism array with the exact engine: change it and watch its light"></iframe>
+
+[The page by itself](explore.html); `retrace explore` writes it, with a design of yours in it.
+
+"""
+
+
+def front_page():
+    """The live page, which the site begins with."""
+    made = run(PROGRAM, "explore", "--quiet", "--out", PAGES / "explore.html")
+    if made.returncode != 0:
+        faults.append(f"explore.html: {made.stderr.strip()}")
+
+
 def document_page():
     """Which JSON documents there are, from what the program says of itself."""
     manual = json.loads(run(PROGRAM, "manual", "--json", "-").stdout)
@@ -403,6 +422,7 @@ def main():
     example_pages()
     notebook_pages()
     document_page()
+    front_page()
     pages = Pages()
     pages.want("README.md")
     for pattern in ("docs/**/*.md", "CONVENTIONS.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md",

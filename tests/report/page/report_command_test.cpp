@@ -47,7 +47,7 @@ TEST(Report, SaysWhatIsInIt) {
   EXPECT_EQ(json.at("title"), "Mine");
   EXPECT_EQ(json.at("documents"), Json::array({"rre.json"}));
   EXPECT_GE(json.at("light_paths"), 2);
-  EXPECT_LT(json.at("bytes"), 2'000'000);
+  EXPECT_LT(json.at("bytes"), 3'000'000);
 }
 
 TEST(Report, TakesResultsInFoldersOfTheFolder) {

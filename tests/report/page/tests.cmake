@@ -2,7 +2,7 @@ retrace_test(studies_tests
   SOURCES report/page/page_test.cpp
   LIBRARIES retrace::report_page)
 retrace_test(command_tests
-  SOURCES report/page/report_command_test.cpp
+  SOURCES report/page/explore_command_test.cpp report/page/report_command_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 add_test(NAME page/bundle_test COMMAND "${RETRACE_PYTHON}" -B report/page/bundle_test.py "${PROJECT_SOURCE_DIR}"
          WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")

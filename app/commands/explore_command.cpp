@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/output.h"
+#include "app/shared_arguments.h"
+#include "core/json_text.h"
+#include "core/schema/writer.h"
+#include "report/page/live_page.h"
+#include "studies/design/io/design_format.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/design/io/file_names.h"
+
+namespace retrace::app {
+namespace {
+
+struct ExploreOptions {
+  std::optional<std::string> design;
+};
+
+std::vector<Argument> arguments(ExploreOptions& options) {
+  return {{"DESIGN", "design file [a page that begins with templates]", &options.design, files(".toml")}};
+}
+
+constexpr std::string_view kTitle = "retrace: prism arrays and their light";
+
+/// A design with its text, byte for byte unless options change it.
+report::LiveStart start_of(const studies::Design& design) {
+  studies::check_names_no_file(design, "which a page by itself does not have");
+  const schema::Document& document = *design.document;
+  const bool is_changed = !document.origin().overrides.empty();
+  const std::string name =
+      design.source == "-" ? "design.toml" : std::filesystem::path(design.source).filename().string();
+  return {is_changed ? schema::document_text(studies::design_format(), document) : document.origin().text, name};
+}
+
+ExitCode run(const ExploreOptions& options, const CommonOptions& common) {
+  report::LiveStart start;
+  std::string title(kTitle);
+  std::vector<std::string> inputs;
+  if (options.design) {
+    const studies::Design design = studies::read_design(*options.design, common.overrides);
+    start = start_of(design);
+    if (!design.title.empty()) title = design.title;
+    inputs = files_read({design});
+  } else if (!common.overrides.empty()) {
+    throw InputError({"", 0, "--set"}, "needs a design");
+  }
+  // The page is the result itself: without --out it goes to standard output.
+  CommonOptions output = without_folder(common);
+  output.quiet = common.quiet && !common.out.empty();
+  ResultFiles files(output, inputs);
+  std::string html;
+  files.add_named("--out", common.out, [&] { return html; });
+  files.prepare();
+  html = report::live_html(start, title, report::shipped_live_assets());
+  const nlohmann::ordered_json json = {{"file", common.out}, {"title", title}, {"bytes", html.size()}};
+  return files.write(result_text("retrace.explore/1", json, {}),
+                     common.out.empty() ? html : fmt::format("{}: {} KiB\n", title, html.size() / 1024));
+}
+
+}  // namespace
+
+Command explore_command() {
+  return {
+      .name = "explore",
+      .summary = "a page with the exact engine in it: change a design and watch its light",
+      .manual =
+          "Writes one HTML file that needs no other file and no network: a form with the keys of designs, and "
+          "live beside it the part with light paths, its footprint, RRE over incidence and azimuth, the ledger, the "
+          "far field and the test points of standards. Without a design it begins with templates.",
+      .reads = {"retrace.design/1"},
+      .writes = {"retrace.explore/1", "HTML"},
+      .begin = begins<ExploreOptions>(arguments, run)};
+}
+
+}  // namespace retrace::app

@@ -1,0 +1,60 @@
+// The answer about a design that was opened: its keys, and whether its light can be followed.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/number_format.h"
+#include "live/engine/answers.h"
+#include "live/engine/form.h"
+#include "studies/design/azimuth_symmetry.h"
+
+namespace retrace::live {
+namespace {
+
+// Elements of a finite array from which on a direction takes longer than a drag allows.
+constexpr std::int64_t kManyElements = 100;
+
+std::vector<std::string> notes_of(const OpenedDesign& opened) {
+  std::vector<std::string> notes;
+  const studies::OpticalModel* const model = opened.model();
+  if (model == nullptr || !opened.why_not().empty()) return notes;
+  if (!model->part.period_mm && model->part.elements_full > kManyElements)
+    notes.push_back(fmt::format("every one of its {} elements is traced: an endless array is quicker by far",
+                                model->part.elements_full));
+  if (model->spectral.size() > 1)
+    notes.push_back(
+        fmt::format("its light is {} wavelengths, each of which is traced; footprint and far field are of "
+                    "{} nm",
+                    model->spectral.size(), fixed(model->optics.wavelength_nm, 1)));
+  return notes;
+}
+
+}  // namespace
+
+Json design_json(const OpenedDesign& opened) {
+  const studies::Design& design = opened.design();
+  Json json = {{"title", design.title},
+               {"source", design.source},
+               {"toml", opened.toml()},
+               {"keys", keys_json(*design.document)},
+               {"traces", opened.why_not().empty()},
+               {"why_not", opened.why_not()},
+               {"command", opened.command()},
+               {"notes", notes_of(opened)},
+               {"acceptance_half_angle_deg", design.detector.acceptance_half_angle_deg}};
+  if (const auto symmetry = studies::azimuth_symmetry(design))
+    json["azimuth_symmetry"] = {{"period_deg", symmetry->period_deg}, {"mirror_deg", symmetry->mirror_deg}};
+  const studies::OpticalModel* const model = opened.model();
+  json["warnings"] = model != nullptr ? model->warnings : std::vector<std::string>();
+  if (model == nullptr) return json;
+  for (const studies::SpectralOptics& lit : model->spectral) json["wavelengths_nm"].push_back(lit.wavelength_nm);
+  json["refractive_index"] = model->optics.index;
+  json["elements"] = model->part.elements_full;
+  json["partial_elements"] = model->part.elements_partial;
+  json["entrance_area_mm2"] = model->part.entrance_area_mm2;
+  json["element_depth_mm"] = model->part.element_depth_mm;
+  json["thickness_mm"] = model->part.thickness_mm;
+  return json;
+}
+
+}  // namespace retrace::live

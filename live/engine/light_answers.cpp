@@ -1,0 +1,240 @@
+// Answers about light: directions and RRE, by the exact engine.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "live/engine/answers.h"
+#include "live/engine/request.h"
+#include "studies/rre/beam_race.h"
+#include "studies/rre/beam_tracing.h"
+#include "studies/rre/spectral_mean.h"
+
+namespace retrace::live {
+namespace {
+
+using studies::RrePoint;
+
+constexpr double kMovingError = 1e-4;
+
+/// What was found at one wavelength, by cone.
+struct Found {
+  std::vector<RrePoint> points;
+  RrePoint at_middle;  ///< of the widest cone, at the wavelength that the others are of
+  std::optional<studies::Footprint> footprint;
+  std::optional<studies::FarField> far_field;
+};
+
+RrePoint point_at(const OpenedDesign& opened, const studies::SceneLight& light) {
+  RrePoint at;
+  at.incidence_deg = light.incidence_deg;
+  at.azimuth_deg = light.azimuth_deg;
+  at.wavelength_nm = opened.require_model().wavelength_nm;
+  return at;
+}
+
+/// The index of the wavelength that the model's own optics are of.
+std::size_t middle_of(const studies::OpticalModel& model) {
+  std::size_t middle = 0;
+  for (std::size_t k = 0; k < model.spectral.size(); ++k)
+    if (model.spectral[k].wavelength_nm == model.optics.wavelength_nm) middle = k;
+  return middle;
+}
+
+/// How a direction is traced.
+struct Way {
+  double target_error = kMovingError;  ///< what may be left behind, or the standard error of RRE
+  bool is_exact = false;               ///< not by resampled beams
+  studies::BeamQuestion question = {};
+};
+
+/// One direction at one of a design's wavelengths.
+class Tracing {
+ public:
+  Tracing(const OpenedDesign& opened, const RrePoint& at, std::size_t wavelength)
+      : opened_(opened),
+        lit_(opened.require_model().spectral[wavelength]),
+        at_(at),
+        illumination_(studies::illumination_of(at, opened.design())) {
+    at_.wavelength_nm = lit_.wavelength_nm;
+    sampling_.seed = static_cast<std::uint32_t>(wavelength + 1);
+  }
+
+  /// By the quicker way. Nothing if there was no time. \param limit null: none
+  std::optional<Found> trace(const Way& way, const TimeLimit* limit) {
+    studies::BeamCollector collector(way.question, part(), cones().size(), illumination_);
+    sampling_.target_error = way.target_error / std::sqrt(lit_.weight);
+    raytrace::BeamPolicy policy;
+    policy.truncated_goal = way.target_error;
+    studies::BeamRace race(opened_.require_tracer(), nullptr, lit_.optics, illumination_, cones(), policy, sampling_,
+                           {.may_resample = !way.is_exact, .observer = collector.observer()}, nullptr);
+    while (!race.advance())
+      if (limit != nullptr && limit->is_over()) return std::nullopt;
+    return race.is_exact() ? exact(race.exact(), way.question) : stochastic(race.stochastic(), collector);
+  }
+
+ private:
+  const geometry::Part& part() const { return opened_.require_model().part; }
+  const std::vector<double>& cones() const { return opened_.design().detector.acceptance_half_angle_deg; }
+
+  Found exact(const raytrace::BeamResult& traced, const studies::BeamQuestion& question) {
+    at_.engine = "exact";
+    Found found{studies::points_of(at_, cones(), traced), {}, {}, {}};
+    if (!question.footprint && !question.far_field) return found;
+    raytrace::BeamPolicy again;
+    again.cutoff = traced.cutoff;
+    studies::BeamAnswer answer = studies::follow_beams(opened_.require_tracer(), part(), lit_.optics, illumination_,
+                                                       cones(), again, question, nullptr);
+    found.footprint = std::move(answer.footprint);
+    found.far_field = std::move(answer.far_field);
+    return found;
+  }
+
+  Found stochastic(const raytrace::StochasticBeams& traced, const studies::BeamCollector& collector) {
+    at_.engine = "stochastic";
+    Found found{studies::points_of(at_, traced.result()), {}, collector.footprint(), collector.far_field()};
+    for (RrePoint& point : found.points) point.beams = traced.beams();
+    return found;
+  }
+
+  const OpenedDesign& opened_;
+  const studies::SpectralOptics& lit_;
+  RrePoint at_;
+  raytrace::Illumination illumination_;
+  raytrace::Sampling sampling_;
+};
+
+/// A direction at all wavelengths; footprint and far field are those of the one in the middle. Nothing if there was no
+/// time.
+std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLight& light, const Way& way,
+                            const TimeLimit* limit) {
+  const studies::OpticalModel& model = opened.require_model();
+  const RrePoint at = point_at(opened, light);
+  const std::size_t middle = middle_of(model);
+  Found all;
+  std::vector<std::vector<studies::SpectralPoint>> spectral(opened.design().detector.acceptance_half_angle_deg.size());
+  for (std::size_t k = 0; k < model.spectral.size(); ++k) {
+    Way of_wavelength = way;
+    if (k != middle) of_wavelength.question = {};
+    std::optional<Found> found = Tracing(opened, at, k).trace(of_wavelength, limit);
+    if (!found) return std::nullopt;
+    for (std::size_t cone = 0; cone < spectral.size(); ++cone)
+      spectral[cone].push_back({model.spectral[k].weight, found->points[cone]});
+    if (k != middle) continue;
+    all.at_middle = found->points.back();
+    all.footprint = std::move(found->footprint);
+    all.far_field = std::move(found->far_field);
+  }
+  for (const std::vector<studies::SpectralPoint>& points : spectral) {
+    all.points.push_back(points.size() == 1 ? points.front().point : studies::spectral_mean(at, points));
+    all.points.back().acceptance_half_angle_deg = points.front().point.acceptance_half_angle_deg;
+  }
+  return all;
+}
+
+Way way_of(const Json& request) {
+  const auto engine = get<std::string>(request, "engine", std::string("auto"));
+  if (engine != "auto" && engine != "exact") throw InputError({"", 0, "engine"}, "must be auto or exact");
+  return {share_of(request, "target_error", kMovingError), engine == "exact"};
+}
+
+Json flat(const geometry::Polygon& outline) {
+  Json list = Json::array();
+  for (const geometry::Vec2& p : outline) {
+    list.push_back(p.x());
+    list.push_back(p.y());
+  }
+  return list;
+}
+
+Json footprint_json(const studies::Footprint& footprint) {
+  Json regions = Json::array();
+  for (const studies::ActiveRegion& region : footprint.regions)
+    regions.push_back({{"outline", flat(region.outline_mm)}, {"efficiency", region.efficiency}});
+  return {
+      {"active_share", footprint.active_share()}, {"shown", footprint.rre_shown()}, {"regions", std::move(regions)}};
+}
+
+/// \param point of the same direction, which knows of weak beams as well
+Json far_field_json(const studies::FarField& far_field, const RrePoint& point) {
+  using raytrace::Account;
+  Json spots = Json::array();
+  double total = 0.0;
+  for (const Account account :
+       {Account::retroreflected, Account::front_specular, Account::scattered_out, Account::returned_elsewhere})
+    total += point.ledger[account];
+  double shown = 0.0;
+  for (const studies::FarFieldSpot& spot : far_field.spots) {
+    shown += spot.stokes.i;
+    spots.push_back({{"deviation_deg", spot.deviation.deg()},
+                     {"orientation_deg", spot.orientation.deg()},
+                     {"power", spot.stokes.i},
+                     {"depth", spot.least_depth}});
+  }
+  return {{"spots", std::move(spots)}, {"other_power", std::max(0.0, total - shown)}, {"total_power", total}};
+}
+
+Json cones_json(const std::vector<RrePoint>& points) {
+  Json cones = Json::array();
+  for (const RrePoint& point : points)
+    cones.push_back({{"acceptance_half_angle_deg", point.acceptance_half_angle_deg},
+                     {"rre", point.rre},
+                     {"std_error", point.std_error},
+                     {"ledger", point.ledger.power}});
+  return cones;
+}
+
+Json by_wavelength_json(const RrePoint& point) {
+  Json list = Json::array();
+  for (const studies::SpectralRre& at : point.by_wavelength)
+    list.push_back({{"wavelength_nm", at.wavelength_nm}, {"weight", at.weight}, {"rre", at.rre}});
+  return list;
+}
+
+[[noreturn]] void fail_on_time() {
+  throw BudgetError(
+      "this direction takes longer than it was given: ask for less exactness, or use the program retrace");
+}
+
+}  // namespace
+
+Json direction_json(const OpenedDesign& opened, const Json& request, const TimeLimit& limit) {
+  Way way = way_of(request);
+  way.question = {.footprint = true, .far_field = true};
+  const std::optional<Found> found = traced(opened, light_of(request), way, &limit);
+  if (!found) fail_on_time();
+  const RrePoint& widest = found->points.back();
+  Json json = {{"rre", widest.rre},
+               {"std_error", widest.std_error},
+               {"truncated", widest.ledger[raytrace::Account::truncated]},
+               {"engine", widest.engine},
+               {"acceptance_half_angle_deg", widest.acceptance_half_angle_deg},
+               {"ledger", widest.ledger.power},
+               {"beams", widest.beams},
+               {"depth", widest.depth},
+               {"stokes", widest.stokes.values()},
+               {"cones", cones_json(found->points)}};
+  if (found->footprint) json["footprint"] = footprint_json(*found->footprint);
+  if (found->far_field) json["far_field"] = far_field_json(*found->far_field, found->at_middle);
+  if (!widest.by_wavelength.empty()) json["by_wavelength"] = by_wavelength_json(widest);
+  return json;
+}
+
+Json rre_json(const OpenedDesign& opened, const Json& request, const TimeLimit& limit) {
+  const Way way = way_of(request);
+  const auto directions = get<std::vector<std::vector<double>>>(request, "directions");
+  Json points = Json::array();
+  for (const std::vector<double>& direction : directions) {
+    if (direction.size() != 2) throw InputError({"", 0, "directions"}, "must be pairs [incidence_deg, azimuth_deg]");
+    // The first is always finished, so that every request gets on.
+    const std::optional<Found> found =
+        traced(opened, checked(direction[0], direction[1]), way, points.empty() ? nullptr : &limit);
+    if (!found) break;
+    const RrePoint& widest = found->points.back();
+    points.push_back({widest.rre, widest.ledger[raytrace::Account::truncated], widest.std_error});
+    if (limit.is_over()) break;
+  }
+  const bool is_complete = points.size() == directions.size();
+  return {{"points", std::move(points)}, {"complete", is_complete}};
+}
+
+}  // namespace retrace::live

@@ -1,0 +1,56 @@
+#include "live/engine/opened_design.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/design/io/file_names.h"
+
+namespace retrace::live {
+namespace {
+
+std::string why_not(const studies::Design& design, const raytrace::Optics* optics) {
+  if (design.balls()) return "balls are traced by Monte Carlo, which the live page has not";
+  if (!optics->is_smooth()) return "rough facets are traced by Monte Carlo, which the live page has not";
+  if (!optics->facet_form.is_plane())
+    return "facets with a form are traced by Monte Carlo, which the live page has not";
+  if (!optics->has_one_back())
+    return "backs that are not all alike are traced by Monte Carlo, which the live page has not";
+  if (optics->entrance.scatters())
+    return "an entrance face that scatters is traced by Monte Carlo, which the live page has not";
+  return {};
+}
+
+}  // namespace
+
+OpenedDesign::OpenedDesign(std::string toml, const std::string& source, const materials::MaterialLibrary& library)
+    : toml_(std::move(toml)), design_(studies::parse_design(toml_, source)), library_(library) {
+  studies::check_names_no_file(design_, "which the live page cannot read: use the program retrace");
+  if (!design_.balls()) model_ = studies::make_model(design_, library_);
+  why_not_ = live::why_not(design_, model_ ? &model_->optics : nullptr);
+  if (why_not_.empty()) tracer_.emplace(model_->part);
+}
+
+std::string OpenedDesign::command() const {
+  return "retrace rre DESIGN --incidence=-40:40:5";
+}
+
+const studies::OpticalModel& OpenedDesign::require_model() const {
+  if (!model_) throw InputError(design_.where("element.kind"), "balls are not shown on the live page");
+  return *model_;
+}
+
+const raytrace::BeamTracer& OpenedDesign::require_tracer() const {
+  if (!tracer_) throw InputError({design_.source_name(), 0, ""}, why_not_);
+  return *tracer_;
+}
+
+const studies::Piece& OpenedDesign::piece() const {
+  if (!piece_) {
+    require_model();
+    piece_ = std::make_unique<const studies::Piece>(design_, library_, studies::kLiveElements);
+  }
+  return *piece_;
+}
+
+}  // namespace retrace::live

@@ -1,0 +1,50 @@
+#pragma once
+
+// Values of a request, checked.
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/error.h"
+#include "geometry/vec.h"
+#include "studies/scene/piece.h"
+
+namespace retrace::live {
+
+using Json = nlohmann::ordered_json;
+
+/// \throw InputError naming the key where it is missing or of another type
+template <class Type>
+Type get(const Json& request, const char* key) {
+  const auto found = request.find(key);
+  if (found == request.end()) throw InputError({"", 0, key}, "is missing in the request");
+  try {
+    return found->template get<Type>();
+  } catch (const Json::exception&) {
+    throw InputError({"", 0, key}, "is of another type than the request needs");
+  }
+}
+template <class Type>
+Type get(const Json& request, const char* key, const Type& otherwise) {
+  return request.contains(key) ? get<Type>(request, key) : otherwise;
+}
+
+/// \throw InputError for one that does not lie between
+inline double share_of(const Json& request, const char* key, double otherwise) {
+  const double value = get<double>(request, key, otherwise);
+  if (!(value > 0.0 && value < 1.0)) throw InputError({"", 0, key}, "must lie between 0 and 1");
+  return value;
+}
+
+inline studies::SceneLight checked(double incidence_deg, double azimuth_deg) {
+  if (!(std::abs(incidence_deg) < 90.0)) throw InputError({"", 0, "incidence_deg"}, "must lie between -90 and 90");
+  if (!std::isfinite(azimuth_deg)) throw InputError({"", 0, "azimuth_deg"}, "must be finite");
+  return {incidence_deg, azimuth_deg};
+}
+
+inline studies::SceneLight light_of(const Json& request) {
+  return checked(get<double>(request, "incidence_deg"), get<double>(request, "azimuth_deg", 0.0));
+}
+
+}  // namespace retrace::live

@@ -1,0 +1,27 @@
+// In place of FFTW: maps of measured surfaces are files, which the live page does not have.
+#include "surface_models/fft.h"
+
+#include "live/engine/stand_ins/absent.h"
+
+namespace retrace::surface_models {
+
+struct RealFft::Hidden {};
+
+std::size_t fast_length(std::size_t least) {
+  return least;
+}
+
+RealFft::RealFft(std::size_t rows, std::size_t columns) : rows_(rows), columns_(columns) {
+  live::fail_as_absent("no maps of surfaces");
+}
+RealFft::~RealFft() = default;
+std::span<double> RealFft::field() {
+  return {};
+}
+std::span<std::complex<double>> RealFft::spectrum() {
+  return {};
+}
+void RealFft::forward() {}
+void RealFft::inverse() {}
+
+}  // namespace retrace::surface_models

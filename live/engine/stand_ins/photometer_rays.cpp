@@ -1,0 +1,12 @@
+// In place of Monte Carlo.
+#include "live/engine/stand_ins/absent.h"
+#include "studies/photometry/photometer.h"
+
+namespace retrace::studies {
+
+bool Photometer::measure_by_rays(const std::vector<PhotometerSetting>&, Progress*, const Cancellation*,
+                                 std::vector<std::vector<Piece>>&) const {
+  live::fail_as_absent("no Monte Carlo");
+}
+
+}  // namespace retrace::studies

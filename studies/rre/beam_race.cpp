@@ -1,0 +1,77 @@
+#include "studies/rre/beam_race.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace retrace::studies {
+namespace {
+
+// What the counts of work stand for, as benchmarks/engine_choice.cpp measured them.
+constexpr double kNsPerLook = 30.0;
+/// Of stochastic beams, which are fewer and wider.
+constexpr double kNsPerStochasticLook = 15.0;
+/// Looks that stochastic beams take to the usual error, before there was a round. Light that enters prisms askew
+/// wanders far, and little of it comes back.
+constexpr double kLooksForCubes = 300'000.0;
+constexpr double kLooksForPrisms = 1'000'000.0;
+/// Facets of a cell beyond which they take more, as measured with rounded edges: 300 times as many at 24.
+constexpr double kFewFacets = 4.0;
+constexpr double kGrowthWithFacets = 3.0;
+/// Share of what rays are expected to take that beams may take, however long they are expected to.
+constexpr double kHedge = 0.2;
+/// Work after which the engines are compared for the first time: a millisecond.
+constexpr double kFirstLook = 30'000.0;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+double looks_of_stochastic(const geometry::Part& part) {
+  const double looks =
+      std::holds_alternative<geometry::RtpElement>(part.spec.element) ? kLooksForPrisms : kLooksForCubes;
+  return looks * std::max(1.0, std::pow(facets_of_cell(part) / kFewFacets, kGrowthWithFacets));
+}
+
+}  // namespace
+
+double facets_of_cell(const geometry::Part& part) {
+  const geometry::SurfacePatch& patch = part.patches.front();
+  return static_cast<double>(patch.facets.size()) / static_cast<double>(patch.cells.size());
+}
+
+BeamRace::BeamRace(const raytrace::BeamTracer& tracer, const raytrace::ScatteredLight* scattered,
+                   const raytrace::Optics& optics, const raytrace::Illumination& illumination,
+                   const std::vector<double>& cones_deg, const raytrace::BeamPolicy& policy,
+                   const raytrace::Sampling& sampling, Options options, const Cancellation* cancel)
+    : cancel_(cancel), first_looks_(looks_of_stochastic(tracer.part())), may_resample_(options.may_resample) {
+  if (optics.is_smooth()) beams_.emplace(tracer, optics, illumination, cones_deg, policy);
+  make_stochastic_ = [&tracer, scattered, optics, illumination, cones_deg, sampling, cancel,
+                      observer = std::move(options.observer)] {
+    return std::make_unique<raytrace::StochasticBeams>(tracer, scattered, optics, illumination, cones_deg, sampling,
+                                                       cancel, observer);
+  };
+}
+
+double BeamRace::beams_ns() const {
+  return beams_ ? kNsPerLook * std::min(beams_->expected_work(), beams_->work() / kHedge) : kNever;
+}
+
+double BeamRace::stochastic_ns() const {
+  if (!may_resample_) return kNever;
+  return kNsPerStochasticLook * (stochastic_ ? stochastic_->expected_work() : first_looks_);
+}
+
+double BeamRace::expected_ns() const {
+  return std::min(beams_ns(), stochastic_ns());
+}
+
+bool BeamRace::advance() {
+  if (beams_ns() <= stochastic_ns()) {
+    const double look = std::max(kFirstLook, 1.1 * beams_->work());
+    return is_exact_ = beams_->advance(static_cast<std::uint64_t>(look), cancel_);
+  }
+  if (!stochastic_) stochastic_ = make_stochastic_();
+  may_resample_ = !stochastic_->advance();
+  return stochastic_->result().reached_target;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,47 @@
+// The words and numbers of requests for RRE, as options have them.
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "core/error.h"
+#include "studies/rre/rre.h"
+
+namespace retrace::studies {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Engine>, 6> kEngines = {{{"auto", Engine::automatic},
+                                                                          {"exact", Engine::exact},
+                                                                          {"stochastic", Engine::stochastic},
+                                                                          {"montecarlo", Engine::montecarlo},
+                                                                          {"cell", Engine::cell},
+                                                                          {"embree", Engine::embree}}};
+
+}  // namespace
+
+void check_share(double value, bool zero_allowed, const char* option) {
+  if (!(value > 0.0 && value < 1.0) && !(zero_allowed && value == 0.0))
+    throw InputError({"", 0, option},
+                     fmt::format("must lie between 0 {}and 1, got {}", zero_allowed ? "(included) " : "", value));
+}
+
+Engine engine_from_name(std::string_view name) {
+  for (const auto& [known, engine] : kEngines)
+    if (known == name) return engine;
+  throw InputError({"", 0, "--engine"},
+                   fmt::format("must be auto, exact, stochastic, montecarlo, cell or embree, got {}", name));
+}
+
+raytrace::Sampling::Kind sampling_from_name(std::string_view name) {
+  if (name == "stratified") return raytrace::Sampling::Kind::stratified;
+  if (name == "plain") return raytrace::Sampling::Kind::plain;
+  throw InputError({"", 0, "--sampling"}, fmt::format("must be stratified or plain, got {}", name));
+}
+
+std::string_view engine_name(Engine engine) {
+  for (const auto& [name, known] : kEngines)
+    if (known == engine) return name;
+  return "";
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,61 @@
+#include "studies/scene/path_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/number_format.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::FacetRole, raytrace::PathEvent;
+
+std::string face_name(FacetRole role) {
+  switch (role) {
+    case FacetRole::entrance: return "the entrance face";
+    case FacetRole::retro_facet: return "a facet";
+    case FacetRole::flat_back: return "the flat back";
+    case FacetRole::inner_wall: return "a wall between elements";
+    case FacetRole::border_wall: return "a wall on the border";
+    case FacetRole::side: return "a side of the plate";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string words_of(const raytrace::PathStep& step) {
+  const std::string face = face_name(step.role);
+  const std::string at = fmt::format("at {} deg", fixed(step.incidence_deg, 1));
+  const std::string left = fmt::format("{} % goes on", fixed(100.0 * step.power, 1));
+  switch (step.event) {
+    case PathEvent::enters: return fmt::format("Enters {} {}; {}.", face, at, left);
+    case PathEvent::total_reflection: return fmt::format("Total reflection at {} {}.", face, at);
+    case PathEvent::reflection: return fmt::format("Reflected by {} {}; {}.", face, at, left);
+    case PathEvent::leaves:
+      return fmt::format("Leaves through {}; {} % of what fell in.", face, fixed(100.0 * step.power, 1));
+    case PathEvent::exits: return fmt::format("Leaves through {} {}, no total reflection; {}.", face, at, left);
+    case PathEvent::enters_again: return fmt::format("Enters again through {} {}; {}.", face, at, left);
+    case PathEvent::leaves_side:
+      return fmt::format("Leaves through {}; {} % of what fell in.", face, fixed(100.0 * step.power, 1));
+    case PathEvent::escapes: return "Is lost behind the part.";
+    case PathEvent::ends: break;
+  }
+  return "Ends: what is left is faint.";
+}
+
+std::string fate_of(const raytrace::LightPath& path) {
+  const auto reflections = std::count_if(path.steps.begin(), path.steps.end(), [](const raytrace::PathStep& s) {
+    return s.event == PathEvent::total_reflection;
+  });
+  const PathEvent last = path.steps.empty() ? PathEvent::ends : path.steps.back().event;
+  if (path.is_returned)
+    return fmt::format("comes back after {} total reflection{}", reflections, reflections == 1 ? "" : "s");
+  if (last == PathEvent::leaves)
+    return fmt::format("leaves the face {} deg off the way back", fixed(path.deviation_deg, 1));
+  if (last == PathEvent::leaves_side) return "leaves through a side";
+  return last == PathEvent::escapes ? "is lost behind the part" : "fades inside";
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,3 @@
+retrace_test(studies_tests
+  SOURCES live/engine_test.cpp
+  LIBRARIES retrace::live_engine retrace::rre nlohmann_json::nlohmann_json)

@@ -1,0 +1,94 @@
+"""Which sources the checked-in engine of the live page was made of, and whether it still is that of the sources.
+
+    python3 live_sources.py record SOURCE BUILD    after a build by emscripten: writes data/live_page/engine.*
+    python3 live_sources.py check SOURCE           exit code 1 and a line for each file that has changed
+
+Every file that the compiler read goes in, and what says how it is built; of the root's CMakeLists.txt the version alone.
+"""
+
+import gzip
+import hashlib
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+LISTS = ["cmake/RetraceLivePage.cmake", "cmake/RetraceTargets.cmake", "live/engine/bundle.js", "live/engine/LICENCES.txt"]
+
+
+def hash_of(content):
+    return hashlib.sha256(content).hexdigest()
+
+
+def version_of(source):
+    return re.search(r"project\(retrace VERSION (\S+)", (source / "CMakeLists.txt").read_text())[1]
+
+
+def compiled(source, build):
+    """What the compiler read of the tree, by the dependencies that it told ninja."""
+    told = subprocess.run(["ninja", "-C", build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
+    files = set()
+    for line in told.splitlines():
+        path = pathlib.Path(build, line.strip())
+        if not line.startswith("    ") or not path.resolve().is_relative_to(source):
+            continue
+        name = path.resolve().relative_to(source).as_posix()
+        if not name.startswith("build/"):
+            files.add(name)
+    return files
+
+
+def list_of(source, file):
+    """The CMakeLists.txt that says how a file is compiled: of its folder or of the next above that has one."""
+    folder = next(folder for folder in file.parents if (source / folder / "CMakeLists.txt").is_file())
+    return (folder / "CMakeLists.txt").as_posix()
+
+
+def sources_of(source, build):
+    files = compiled(source, build)
+    files |= {list_of(source, pathlib.PurePath(name)) for name in files}
+    embedded = re.findall(r"foreach\(file IN ITEMS ([^)]*)\)", (source / "live/engine/CMakeLists.txt").read_text())
+    return sorted((files - {"CMakeLists.txt"}) | set(LISTS) | {f"data/{name}" for name in embedded[0].split()})
+
+
+def record(source, build):
+    data = source / "data/live_page"
+    wasm = (build / "live/engine/engine.wasm").read_bytes()
+    packed = gzip.compress(wasm, 9, mtime=0)
+    files = {name: hash_of((source / name).read_bytes()) for name in sources_of(source, build)}
+    script = (build / "live/engine/engine.js").read_text().replace("</script", "<\\/script")
+    data.mkdir(parents=True, exist_ok=True)
+    (data / "engine.wasm.gz").write_bytes(packed)
+    (data / "ENGINE_LICENCES.txt").write_bytes((source / "live/engine/LICENCES.txt").read_bytes())
+    (data / "engine.js").write_text(
+        f"/* made by tools/live_page; engine.wasm.gz {hash_of(packed)} */\n{script}")
+    (data / "engine.sources.json").write_text(json.dumps(
+        {"version": version_of(source), "engine.wasm.gz": hash_of(packed), "sources": files}, indent=1) + "\n")
+    print(f"engine: {len(wasm)} bytes, {len(packed)} packed, {len(script)} of script, {len(files)} sources")
+
+
+def changes(source):
+    """What is not as it was when the engine was made, each in words."""
+    data = source / "data/live_page"
+    made = json.loads((data / "engine.sources.json").read_text())
+    packed = hash_of((data / "engine.wasm.gz").read_bytes())
+    if packed != made["engine.wasm.gz"] or packed not in (data / "engine.js").read_text()[:200]:
+        yield "engine.wasm.gz, engine.js and engine.sources.json are not of one build"
+    if made["version"] != version_of(source):
+        yield f"the version is {version_of(source)}, the engine's {made['version']}"
+    for name, wanted in made["sources"].items():
+        if not (source / name).is_file():
+            yield f"{name} is gone"
+        elif hash_of((source / name).read_bytes()) != wanted:
+            yield f"{name} has changed"
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "record":
+        record(pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve())
+    else:
+        stale = list(changes(pathlib.Path(sys.argv[2]).resolve()))
+        for change in stale:
+            print(f"live_page: {change}: run tools/live_page", file=sys.stderr)
+        sys.exit(1 if stale else 0)
