@@ -1,3 +1,12 @@
 retrace_test(studies_tests
   SOURCES live/engine_test.cpp
   LIBRARIES retrace::live_engine retrace::rre nlohmann_json::nlohmann_json)
+find_program(RETRACE_NODE node REQUIRED)
+add_test(NAME live/bundle_test
+         COMMAND "${RETRACE_PYTHON}" -B live/bundle_test.py "${PROJECT_SOURCE_DIR}" "$<TARGET_FILE:retrace_live>"
+         WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
+# Whether the engine is that of the sources matters to who can make it anew.
+find_program(RETRACE_EMXX em++)
+if(RETRACE_EMXX)
+  add_test(NAME live/sources_test COMMAND "${PROJECT_SOURCE_DIR}/tools/live_page" --check)
+endif()

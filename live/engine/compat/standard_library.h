@@ -52,7 +52,7 @@ constexpr auto adjacent_find(R&& r) {
 }
 template <class R, class Test>
 constexpr bool any_of(R&& r, Test test) {
-  return std::any_of(std::begin(r), std::end(r), std::move(test));
+  return std::any_of(std::begin(r), std::end(r), [&](const auto& x) { return std::invoke(test, x); });
 }
 template <class R, class Test>
 constexpr bool all_of(R&& r, Test test) {
@@ -61,6 +61,11 @@ constexpr bool all_of(R&& r, Test test) {
 template <class R, class Test>
 constexpr bool none_of(R&& r, Test test) {
   return std::none_of(std::begin(r), std::end(r), std::move(test));
+}
+template <class R, class Less = std::less<>, class Of = std::identity>
+constexpr auto min_element(R&& r, Less less = {}, Of of = {}) {
+  return std::min_element(std::begin(r), std::end(r),
+                          [&](const auto& a, const auto& b) { return less(std::invoke(of, a), std::invoke(of, b)); });
 }
 template <class R, class Less = std::less<>, class Of = std::identity>
 constexpr auto max_element(R&& r, Less less = {}, Of of = {}) {
