@@ -211,7 +211,9 @@ Arguments command_of(const std::string& text, const std::string& file) {
   if (has("retrace.turned_part/")) return {"turn", file};
   if (has("retrace.planed_part/")) return {"plane", file};
   if (!has("[[parameter]]")) return {"inspect", file};
-  return {has("[optimize]") ? "optimize" : has("[tolerance]") ? "tolerance" : "sweep", file};
+  for (const std::string command : {"optimize", "tolerance", "compose"})
+    if (text.find("[" + command + "]") != std::string::npos) return {command, file};
+  return {"sweep", file};
 }
 
 /// An example and every file that a text in it names, and so on.
