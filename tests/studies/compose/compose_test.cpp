@@ -264,6 +264,11 @@ std::string refusal(const std::string& keys, const std::string& parameters = kIn
   return {};
 }
 
+TEST(Compose, ReadsItsExample) {
+  const std::string file = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/compose_reflector.toml";
+  EXPECT_NO_THROW(read_compose(read_study(file, {})));
+}
+
 TEST(Compose, RefusesWhatMeansNothing) {
   const auto says = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;

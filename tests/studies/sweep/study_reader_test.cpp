@@ -237,9 +237,9 @@ TEST(StudyReader, ReadsEveryExample) {
     if (entry.path().extension() != ".toml") continue;
     std::ifstream file(entry.path());
     const std::string text(std::istreambuf_iterator<char>(file), {});
-    // Optimisations and tolerances have readers and tests of their own.
+    // Optimisations, tolerances and compositions have readers and tests of their own.
     if (text.find("retrace.study/1") == std::string::npos || text.find("[optimize]") != std::string::npos ||
-        text.find("[tolerance]") != std::string::npos)
+        text.find("[tolerance]") != std::string::npos || text.find("[compose]") != std::string::npos)
       continue;
     EXPECT_NO_THROW(read_sweep(read_study(entry.path().string(), {}))) << entry.path();
     ++read;
