@@ -1,5 +1,7 @@
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include "app/commands.h"
@@ -13,6 +15,7 @@
 #include "surface_models/io/height_map_reader.h"
 
 namespace retrace::app {
+namespace fs = std::filesystem;
 namespace {
 
 struct CorrectOptions {
@@ -56,6 +59,16 @@ studies::FacetMap place_of(const std::string& text) {
   return map;
 }
 
+/// The job for the corrected machine beside it. Its design stays where it is, and is named as seen from there.
+fabrication::Job corrected_job(fabrication::Job job, const fs::path& file, const fs::path& folder) {
+  job.machine = "machine.toml";
+  std::error_code error;
+  const fs::path design = file.parent_path() / job.design;
+  if (job.design.empty() || !fs::is_regular_file(design, error)) return job;
+  if (const fs::path seen = fs::relative(design, folder, error); !error) job.design = seen.string();
+  return job;
+}
+
 ExitCode run(const CorrectOptions& options, const CommonOptions& common) {
   std::vector<studies::FacetMap> maps;
   for (const std::string& text : options.maps) maps.push_back(place_of(text));
@@ -63,16 +76,12 @@ ExitCode run(const CorrectOptions& options, const CommonOptions& common) {
   request.job_file = options.job;
   const studies::FabricationResult plan = studies::fabricate(request);
   std::vector<std::string> inputs = {options.job};
-  if (std::filesystem::path(plan.job.machine).has_extension()) inputs.push_back(plan.job.machine);
+  if (fs::path(plan.job.machine).has_extension()) inputs.push_back(plan.job.machine);
   for (const studies::FacetMap& map : maps) inputs.push_back(map.file);
   ResultFiles files(common, inputs, "correction.json");
   std::optional<studies::Correction> result;
   files.add("machine.toml", [&] { return studies::calibrated_machine_toml(result->calibration); });
-  files.add("job.toml", [&] {
-    fabrication::Job job = plan.job;
-    job.machine = "machine.toml";
-    return fabrication::job_text(job);
-  });
+  files.add("job.toml", [&] { return fabrication::job_text(corrected_job(plan.job, options.job, common.out)); });
   files.add("residuals.csv", [&] { return studies::residuals_csv(result->calibration); });
   files.check();
   std::vector<std::string> warnings;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <random>
 #include <utility>
 
 #include "core/error.h"
@@ -111,13 +112,12 @@ std::vector<Vec3> points_of(const surface_models::HeightMap& map) {
   return points;
 }
 
+/// So many of the points at most, the same ones each time. Drawn: any fixed step may be one of the rows.
 std::vector<Vec3> thinned(const std::vector<Vec3>& points, std::size_t most) {
   if (points.size() <= most) return points;
   std::vector<Vec3> some;
-  // A step that is no divisor of the rows' length.
-  const double step = static_cast<double>(points.size()) / static_cast<double>(most);
-  for (std::size_t k = 0; k < most; ++k)
-    some.push_back(points[static_cast<std::size_t>(step * (static_cast<double>(k) + 0.5))]);
+  std::mt19937_64 bits(1);
+  for (std::size_t k = 0; k < most; ++k) some.push_back(points[bits() % points.size()]);
   return some;
 }
 
@@ -130,7 +130,11 @@ double median_of(std::vector<double> values) {
 /// Turns maps until they lie on the design.
 class Registration {
  public:
-  Registration(const FacetMap& map, const DesignSurface& surface) : surface_(surface), points_(points_of(map.heights)) {
+  Registration(const FacetMap& map, const DesignSurface& surface)
+      : surface_(surface),
+        points_(points_of(map.heights)),
+        coarse_(thinned(points_, kCoarsePoints)),
+        fine_(thinned(points_, kFinePoints)) {
     const Groove& groove = surface.grooves().front();
     margin_mm_ = std::max(kMargin * groove.facet_length_mm,
                           kMarginPixels * 1e-3 * std::max(map.heights.x_pixel_um, map.heights.y_pixel_um));
@@ -165,7 +169,6 @@ class Registration {
 
  private:
   std::vector<std::pair<double, RigidMotion>> coarse(const FacetMap& map) const {
-    const std::vector<Vec3> some = thinned(points_, kCoarsePoints);
     std::vector<std::pair<double, RigidMotion>> all;
     for (const double turn_deg : kTurnsDeg)
       for (int i = 0; i < kPlaces; ++i)
@@ -175,7 +178,7 @@ class Registration {
                            Vec3(map.middle_mm.x() + (i + 0.5) * step - reach_mm_,
                                 map.middle_mm.y() + (j + 0.5) * step - reach_mm_, 0.0)};
           std::vector<double> off;
-          for (const Vec3& p : some) {
+          for (const Vec3& p : coarse_) {
             const Vec3 at = pose.point(p);
             off.push_back(at.z() - surface_.z(at.x(), at.y()));
           }
@@ -193,7 +196,7 @@ class Registration {
   /// The median distance of points on facets off the design: a face fits itself wherever it lies.
   double off_mm(const RigidMotion& pose) const {
     std::vector<double> off;
-    for (const Vec3& p : thinned(points_, kFinePoints)) {
+    for (const Vec3& p : fine_) {
       const Vec3 at = pose.point(p);
       const Region region = surface_.region(at.x(), at.y());
       if (!region.is_face) off.push_back(std::abs(surface_.height_mm(region, at)));
@@ -204,12 +207,11 @@ class Registration {
   /// Steps of Gauss and Newton, each point drawn to the plane that it lies over; at first all, then only those that are
   /// clear of edges.
   void refine(RigidMotion& pose) const {
-    const std::vector<Vec3> some = thinned(points_, kFinePoints);
     for (int step = 0; step < kMostMoves; ++step) {
       std::vector<std::pair<Vec3, Region>> placed;
       std::vector<double> off;
       std::vector<double> off_facets;
-      for (const Vec3& p : some) {
+      for (const Vec3& p : fine_) {
         const Vec3 at = pose.point(p);
         const auto region =
             step < kMostMoves / 3 ? surface_.region(at.x(), at.y()) : surface_.clear_region(at, margin_mm_);
@@ -242,6 +244,8 @@ class Registration {
 
   const DesignSurface& surface_;
   std::vector<Vec3> points_;
+  std::vector<Vec3> coarse_;  ///< few of them, to try places with
+  std::vector<Vec3> fine_;    ///< more, to refine
   double margin_mm_ = 0.0;
   double reach_mm_ = 0.0;
 };
