@@ -53,10 +53,6 @@ Verification cut_on(const Made& made, const Machine& real) {
   return verify_programs(made.job, real, made.programs, {}, {});
 }
 
-Vec3 level_of(const Groove& groove, std::size_t f) {
-  return groove.is_cube() ? Vec3((groove.edges[(f + 1) % 3] - groove.edges[f]).normalized()) : groove.root_direction;
-}
-
 /// What a facet's figures and the derivatives say of an error: its height where its mean is told, and its slopes.
 struct Effect {
   double height_nm = 0.0;
@@ -67,7 +63,7 @@ struct Effect {
 Effect predicted(const Made& made, const Groove& groove, const FacetEdgeCut& cut, const FacetFigures& figures,
                  const SetupQuantity& quantity, double amount) {
   const DesignFacet& design = groove.facets[cut.facet];
-  const Vec3 level = level_of(groove, cut.facet);
+  const Vec3 level = groove.level_of(cut.facet);
   const Vec3 there = groove.root_mm + figures.mean_up_mm * design.up_slope + figures.mean_along_mm * level;
   const CutPlane plane = cut_plane(made.taken_for, cut.cut, design.normal);
   const PlaneChange change = plane_change(made.taken_for, cut.cut, quantity, design.normal);

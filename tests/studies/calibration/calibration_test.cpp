@@ -12,8 +12,8 @@
 
 #include "core/error.h"
 #include "fabrication/chisel/check/verify.h"
-#include "fabrication/post/post.h"
 #include "studies/calibration/io/measurement_reader.h"
+#include "tests/support/prism_jobs.h"
 
 // Machines that err in all that a set-up leaves uncertain cut test parts in the verifier, which shares nothing with the
 // derivatives that calibration uses; from what the verifier finds of the facets, with noise, calibration must find the
@@ -23,48 +23,14 @@ namespace retrace::studies::calibration_test {
 namespace {
 
 using namespace fabrication;
+using test::hidden_errors, test::planned, test::prism_job, test::programs_of;
 
-/// Four prisms, two of them turned, 10 mm apart: facets at C = 0, 90, 180 and 270, at the A of their apex angle.
+/// Facets at C = 0, 90, 180 and 270, at the A of their apex angle, on prisms 10 mm apart.
 std::string job_text(double apex_angle_deg) {
-  return fmt::format(R"(schema = "retrace.job/1"
-machine = "ideal"
-strategy = "two-step"
-[element]
-kind = "rtp"
-base_mm = 0.5
-width_mm = 0.5
-apex_angle_deg = {}
-[array]
-arrangement = "checker"
-x_length_mm = 10.5
-y_length_mm = 10.5
-x_gap_mm = 9.5
-y_gap_mm = 9.5
-[tool]
-width_mm = 0.5
-[process]
-name = "test"
-source = "a test"
-clearance_mm = 0.2
-roughing_depth_um = 50
-finishing_depth_um = 30
-finishing_cuts = 1
-plough_length_mm = 0.1
-roughing_feed_mm_per_min = 50
-finishing_feed_mm_per_min = 20
-retract_feed_mm_per_min = 200
-)",
-                     apex_angle_deg);
+  return prism_job({apex_angle_deg, 9.5, 30.0, 1});
 }
 
 const std::vector<double> kApexAngles = {90.0, 70.0, 105.0};
-
-FabricationResult planned(const std::string& job) {
-  FabricationRequest request;
-  request.job_file = "job.toml";
-  request.texts["job.toml"] = job;
-  return fabricate(request);
-}
 
 /// The three jobs with their programs as control files.
 struct TestCuts {
@@ -74,9 +40,7 @@ struct TestCuts {
   TestCuts() {
     for (const double angle : kApexAngles) {
       plans.push_back(planned(job_text(angle)));
-      programs.emplace_back();
-      for (const Program& program : plans.back().plan.programs)
-        programs.back().push_back(parse_nc(nc_text(program, plans.back().dialect), "p.ngc", NcDialect::rs274ngc));
+      programs.push_back(programs_of(plans.back()));
     }
   }
 };
@@ -136,15 +100,6 @@ MeasuredParts measured_on(const Machine& real, std::mt19937& bits) {
   return parts;
 }
 
-/// Up to a um, and up to 0.02 degrees. Of more the cuts of roughing would reach below what finishing leaves.
-std::vector<double> hidden_errors(std::mt19937& bits) {
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::vector<double> errors;
-  for (const SetupQuantity& quantity : setup_quantities(Tilt::table))
-    errors.push_back((quantity.is_angle() ? 72.0 : 1.0) * uniform(bits));
-  return errors;
-}
-
 std::vector<std::string> told(const Calibration& found) {
   std::vector<std::string> keys;
   for (const CalibratedQuantity& q : found.quantities)
@@ -184,10 +139,7 @@ TEST(Calibration, IntervalsHoldWhatIsHidden) {
 
 /// How far facets are turned against each other at most: tilts less those of a part that lies askew as a whole.
 double largest_tilt_arcsec(const FabricationResult& plan, const Machine& real) {
-  std::vector<NcProgram> programs;
-  for (const Program& program : plan.plan.programs)
-    programs.push_back(parse_nc(nc_text(program, plan.dialect), "p.ngc", NcDialect::rs274ngc));
-  const Verification v = verify_programs(plan.job, real, programs, {}, {});
+  const Verification v = verify_programs(plan.job, real, programs_of(plan), {}, {});
   const std::vector<Groove> grooves = designed_grooves(plan.job);
   std::vector<double> tilts;
   std::vector<geometry::Vec3> of_turn;

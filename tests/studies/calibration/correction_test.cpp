@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "fabrication/chisel/check/verify.h"
-#include "fabrication/post/post.h"
+#include "tests/support/prism_jobs.h"
 
 // Parts that the verifier cuts on machines with hidden errors, seen by a profiler with noise, at a place and askew as
 // nobody knows: correction must find the machine, and say how sure it is.
@@ -21,51 +21,12 @@ namespace {
 
 using namespace fabrication;
 using geometry::Vec3;
+using test::hidden_errors, test::programs_of;
 
-/// Four prisms in a checker, two turned, with land of 0.25 mm between them.
-constexpr const char* kJob = R"(schema = "retrace.job/1"
-machine = "ideal"
-strategy = "two-step"
-[element]
-kind = "rtp"
-base_mm = 0.5
-width_mm = 0.5
-[array]
-arrangement = "checker"
-x_length_mm = 1.25
-y_length_mm = 1.25
-x_gap_mm = 0.25
-y_gap_mm = 0.25
-[tool]
-width_mm = 0.5
-[process]
-name = "test"
-source = "a test"
-clearance_mm = 0.2
-roughing_depth_um = 50
-finishing_depth_um = 10
-finishing_cuts = 1
-plough_length_mm = 0.05
-roughing_feed_mm_per_min = 50
-finishing_feed_mm_per_min = 20
-retract_feed_mm_per_min = 200
-)";
-
+/// Four prisms with land of 0.25 mm between them.
 const FabricationResult& plan() {
-  static const FabricationResult made = [] {
-    FabricationRequest request;
-    request.job_file = "job.toml";
-    request.texts["job.toml"] = kJob;
-    return fabricate(request);
-  }();
+  static const FabricationResult made = test::planned(test::prism_job({90.0, 0.25, 10.0, 1}));
   return made;
-}
-
-std::vector<NcProgram> programs_of(const FabricationResult& made) {
-  std::vector<NcProgram> programs;
-  for (const Program& program : made.plan.programs)
-    programs.push_back(parse_nc(nc_text(program, made.dialect), "p.ngc", NcDialect::rs274ngc));
-  return programs;
 }
 
 /// The planes that the verifier finds of a part's facets, and the face, as a surface over the plane.
@@ -101,21 +62,20 @@ class CutSurface {
   std::vector<std::pair<Vec3, Vec3>> planes_;
 };
 
-/// What an instrument sees of all of the part: 6 um apart, with 5 nm of noise.
-FacetMap seen(const CutSurface& surface, std::mt19937& bits) {
+/// What an instrument sees of all of the part, with 5 nm of noise; 220 points a row are 6 um apart.
+FacetMap seen(const CutSurface& surface, std::mt19937& bits, std::size_t points = 220) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const Eigen::AngleAxisd turn(0.02 * uniform(bits), Vec3::UnitZ());
   const Eigen::AngleAxisd tip(0.003 * uniform(bits), Vec3(uniform(bits), uniform(bits), 0.0).normalized());
   const Eigen::Matrix3d part_from_map = (turn * tip).toRotationMatrix();
   const Vec3 shift(0.15 * uniform(bits), 0.15 * uniform(bits), 0.3 * uniform(bits));
-  constexpr std::size_t kPoints = 220;
-  constexpr double kPixelMm = 0.006;
-  FacetMap map{"map.txt", {kPoints, kPoints, 1e3 * kPixelMm, 1e3 * kPixelMm, {}}, {0.0, 0.0}, 0.0};
-  for (std::size_t row = 0; row < kPoints; ++row)
-    for (std::size_t column = 0; column < kPoints; ++column) {
-      const double x = kPixelMm * (static_cast<double>(column) - 0.5 * (kPoints - 1));
-      const double y = kPixelMm * (static_cast<double>(row) - 0.5 * (kPoints - 1));
+  const double pixel_mm = 1.32 / static_cast<double>(points);
+  FacetMap map{"map.txt", {points, points, 1e3 * pixel_mm, 1e3 * pixel_mm, {}}, {0.0, 0.0}, 0.0};
+  for (std::size_t row = 0; row < points; ++row)
+    for (std::size_t column = 0; column < points; ++column) {
+      const double x = pixel_mm * (static_cast<double>(column) - 0.5 * static_cast<double>(points - 1));
+      const double y = pixel_mm * (static_cast<double>(row) - 0.5 * static_cast<double>(points - 1));
       // The height at which the line of sight meets the part: it stands askew on it.
       double z = -shift.z();
       for (int step = 0; step < 60; ++step) {
@@ -125,14 +85,6 @@ FacetMap seen(const CutSurface& surface, std::mt19937& bits) {
       map.heights.heights_nm.push_back(1e6 * z + 5.0 * normal(bits));
     }
   return map;
-}
-
-std::vector<double> hidden_errors(std::mt19937& bits) {
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::vector<double> errors;
-  for (const SetupQuantity& quantity : setup_quantities(Tilt::table))
-    errors.push_back((quantity.is_angle() ? 72.0 : 1.0) * uniform(bits));
-  return errors;
 }
 
 /// Every interval of 95 % of what is told, over machines with hidden errors of 1 um and 0.02 degrees.
@@ -178,6 +130,16 @@ TEST(Correction, TheSecondPartIsAsPromised) {
     };
     EXPECT_LT(largest_apex_error(second), std::max(0.05 * largest_apex_error(plan()), 2.0 * found.after.tilt_arcsec))
         << seed;
+  }
+}
+
+/// 300 points of 90,000 are as many as rows: a fixed step would see one column.
+TEST(Correction, MapsOfAnySizeAreRegistered) {
+  for (const std::size_t points : {120U, 300U}) {
+    std::mt19937 bits(7);
+    const RegisteredMap map = registered(seen(CutSurface(plan().machine), bits, points), designed_grooves(plan().job));
+    EXPECT_EQ(map.figures.size(), 24U) << points;
+    EXPECT_LT(map.rms_nm, 6.0) << points;
   }
 }
 

@@ -10,10 +10,10 @@
 #include "core/error.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/machine/setup.h"
-#include "fabrication/post/post.h"
 #include "report/page/setup_page.h"
 #include "studies/setup/io/setup_files.h"
 #include "studies/setup/setup_sheet.h"
+#include "tests/support/prism_jobs.h"
 
 // The sheet for who sets up a machine: what an error costs is what the verifier finds of it, and the page says it all.
 
@@ -22,38 +22,10 @@ namespace {
 
 using namespace fabrication;
 
-constexpr const char* kJob = R"(schema = "retrace.job/1"
-title = "Four prisms"
-design = "design.toml"
-machine = "ideal"
-strategy = "two-step"
-[element]
-kind = "rtp"
-base_mm = 0.5
-width_mm = 0.5
-[array]
-arrangement = "checker"
-x_length_mm = 1
-y_length_mm = 1
-[tool]
-width_mm = 0.5
-[process]
-name = "test"
-source = "a test"
-clearance_mm = 0.2
-roughing_depth_um = 50
-finishing_depth_um = 5
-plough_length_mm = 0.1
-roughing_feed_mm_per_min = 50
-finishing_feed_mm_per_min = 20
-retract_feed_mm_per_min = 200
-)";
+const std::string kJob = test::prism_job();
 
 FabricationResult made(const std::string& job = kJob) {
-  FabricationRequest request;
-  request.job_file = "job.toml";
-  request.texts["job.toml"] = job;
-  return fabricate(request);
+  return test::planned(job);
 }
 
 const Sensitivity& row_of(const SetupSheet& sheet, const std::string& key) {
@@ -63,10 +35,7 @@ const Sensitivity& row_of(const SetupSheet& sheet, const std::string& key) {
 
 /// What the job's programs leave on a machine that errs.
 Verification cut_on(const FabricationResult& result, const Machine& real) {
-  std::vector<NcProgram> programs;
-  for (const Program& program : result.plan.programs)
-    programs.push_back(parse_nc(nc_text(program, result.dialect), "p.ngc", NcDialect::rs274ngc));
-  return verify_programs(result.job, real, programs, {}, {});
+  return verify_programs(result.job, real, test::programs_of(result), {}, {});
 }
 
 TEST(SetupSheet, TheLargestErrorsComeFirst) {
