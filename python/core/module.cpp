@@ -91,7 +91,7 @@ void bind_design(py::module_& module) {
       });
 }
 
-void bind_light(py::module_& module) {
+void bind_rre(py::module_& module) {
   py::class_<RreRequest>(module, "RreRequest")
       .def(py::init<>())
       .def_readwrite("incidence_deg", &RreRequest::incidence_deg)
@@ -126,6 +126,9 @@ void bind_light(py::module_& module) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       },
       "What the library alone takes, to tell what Python adds.");
+}
+
+void bind_photometry(py::module_& module) {
   py::class_<PhotometryRequest>(module, "PhotometryRequest")
       .def(py::init<>())
       .def_readwrite("standard", &PhotometryRequest::standard)
@@ -488,7 +491,8 @@ PYBIND11_MODULE(_core, module) {
   pybind11::register_exception_translator(translate);
   module.def("version", &retrace::version);
   bind_design(module);
-  bind_light(module);
+  bind_rre(module);
+  bind_photometry(module);
   bind_part(module);
   bind_making(module);
   bind_studies(module);
