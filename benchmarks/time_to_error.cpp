@@ -44,7 +44,7 @@ std::vector<Scene> scenes_of_all_sizes() {
 
 double stochastic_error(const geometry::Part& part, const raytrace::Optics& optics, const raytrace::Illumination& light,
                         const raytrace::Sampling& sampling) {
-  const raytrace::BeamTracer tracer(part);
+  const raytrace::BeamTracer tracer(part, raytrace::BeamTracer::Elements::equal_at_once);
   std::optional<raytrace::BackSurface> surface;
   std::optional<raytrace::ScatteredLightByRays> scattered;
   if (!optics.is_smooth()) {

@@ -28,7 +28,7 @@ OpenedDesign::OpenedDesign(std::string toml, const std::string& source, const ma
   studies::check_names_no_file(design_, "which the live page cannot read: use the program retrace");
   if (!design_.balls()) model_ = studies::make_model(design_, library_);
   why_not_ = live::why_not(design_, model_ ? &model_->optics : nullptr);
-  if (why_not_.empty()) tracer_.emplace(model_->part);
+  if (why_not_.empty()) tracer_.emplace(model_->part, raytrace::BeamTracer::Elements::equal_at_once);
 }
 
 std::string OpenedDesign::command() const {

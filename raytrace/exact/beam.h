@@ -3,6 +3,7 @@
 // Beams of the exact tracer: parallel light with a polygonal cross-section, its path length and where it entered.
 
 #include <Eigen/Geometry>
+#include <boost/container/deque.hpp>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <cstdint>
@@ -137,6 +138,10 @@ struct Beam {
   /// Of this beam and those like it.
   double total_power() const { return place_count() * power; }
 };
+
+/// Beams that wait. They are large and many, so that they stay where they are when more come.
+using WaitingBeams =
+    boost::container::deque<Beam, void, boost::container::deque_options_t<boost::container::block_size<32>>>;
 
 /// Where light of a beam meets a rough facet: the light before, and what the facet scatters of its power.
 struct ScatterSite {

@@ -9,13 +9,10 @@ namespace retrace::raytrace {
 
 using geometry::FacetRole, surface_models::Lobe;
 
-/// A piece of a beam where the beam starts.
-Beam BeamWalk::at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) {
-  Beam beam = from;
-  beam.share = share;
+/// Of a piece of a beam, where the beam starts.
+double BeamWalk::power_at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) const {
   const Plane start{from.start.normal, from.start.normal.dot(from.corners[0])};
-  beam.corners = lifted(piece, frame, Distance(frame, start));
-  return beam;
+  return transmission_of(from, lifted(piece, frame, Distance(frame, start)), share) * from.light.power();
 }
 
 /// A piece of a beam where it meets a plane, with what the material took on the way booked.
@@ -27,13 +24,13 @@ Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& 
   beam.level_steps = 0;
   beam.corners = lifted(piece, frame, Distance(frame, plane));
   if (from.inside && setup_.optics.absorption_per_mm > 0.0)
-    book(Account::absorbed, power_of(at_start(from, frame, piece, share)) - power_of(beam));
+    book(Account::absorbed, power_at_start(from, frame, piece, share) - power_of(beam));
   return beam;
 }
 
 /// Sends light on from an interface. \param ahead the plane's normal on the side it goes to
-void BeamWalk::send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,
-                    bool inside) {
+void BeamWalk::send(Beam&& beam, const Plane& plane, const Vec3& ahead, const Vec3& direction,
+                    const CoherentLight& light, bool inside) {
   // Fields are continuous on the plane: their wave vectors differ only along its normal.
   beam.phase_mm +=
       (index_at(beam.inside) * beam.direction - index_at(inside) * direction).dot(plane.normal) * plane.offset_mm;
@@ -83,11 +80,13 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
 
 /// \param beam as it arrives, its light along s and p of the facet
 void BeamWalk::book_scattered(const Beam& beam, const Plane& plane, double power) {
-  if (sites_ == nullptr)
+  if (sites_ == nullptr) {
     book(Account::truncated, power);
-  else
-    sites_->push_back(
-        {beam.corners, beam.direction, beam.light, beam.path_length, plane.normal, beam.share, power, beam.inside});
+    return;
+  }
+  // Of an endless part it is all the same at which of a beam's places its light goes on.
+  sites_->push_back({beam.corners, beam.direction, beam.light, beam.path_length, plane.normal,
+                     place_count_ * beam.share, place_count_ * power, beam.inside});
 }
 
 /// \param beam before it is sent on

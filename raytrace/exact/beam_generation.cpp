@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "core/random.h"
@@ -66,7 +67,7 @@ SortKey key_of(const Beam& beam, std::size_t number, std::size_t place, const Ve
 
 }  // namespace
 
-BeamGeneration::BeamGeneration(const geometry::Part& part, const std::vector<Beam>& beams) : beams_(beams) {
+BeamGeneration::BeamGeneration(const geometry::Part& part, const WaitingBeams& beams) : beams_(beams) {
   const Vec2 scale = scale_of(part);
   std::vector<SortKey> keys;
   keys.reserve(beams.size());
@@ -94,12 +95,12 @@ double BeamGeneration::survivor_count(double most_power) const {
   return std::ceil(power_ / most_power);
 }
 
-std::vector<Beam> BeamGeneration::survivors(double most_power, double offset, const BeamWalk& walk) const {
-  std::vector<Beam> chosen;
-  if (!counts()) return chosen;
+std::size_t BeamGeneration::survivors(double most_power, double offset, const BeamWalk& walk,
+                                      const std::function<void(const Beam&)>& follow) const {
+  if (!counts()) return 0;
+  std::size_t survivors = 0;
   const double count = survivor_count(most_power);
   const double each = power_ / count;
-  chosen.reserve(static_cast<std::size_t>(std::min(count, static_cast<double>(places_.size()))));
   double passed = 0.0;
   double taken = 0.0;
   for (const Place& place : places_) {
@@ -107,12 +108,14 @@ std::vector<Beam> BeamGeneration::survivors(double most_power, double offset, co
     const double until = &place == &places_.back() ? count : std::floor(passed + offset);
     if (until <= taken) continue;
     const Beam& beam = beams_[place.beam];
-    chosen.push_back(beam.places ? walk.at_place(beam, place.place) : beam);
-    chosen.back().share *= (until - taken) * each / beam.power;
-    chosen.back().power = (until - taken) * each;
+    Beam survivor = walk.at_place(beam, place.place);
+    survivor.share *= (until - taken) * each / beam.power;
+    survivor.power = (until - taken) * each;
     taken = until;
+    ++survivors;
+    follow(survivor);
   }
-  return chosen;
+  return survivors;
 }
 
 double Resampling::offset(std::uint32_t generation) const {
@@ -121,22 +124,22 @@ double Resampling::offset(std::uint32_t generation) const {
 
 bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGeneration& first, const Resampling& how,
                       const Cancellation* cancel, const std::function<void()>& after_each) {
-  std::vector<Beam> survivors = first.survivors(how.most_power, how.offset(0), walk);
-  double left = first.power();
-  for (std::uint32_t generation = 1; !survivors.empty(); ++generation) {
-    std::vector<Beam> next;
-    for (const Beam& beam : survivors) {
-      if (is_cancelled(cancel)) return false;
-      walk.step(beam, cancel, next);
+  WaitingBeams beams;
+  std::optional<BeamGeneration> parts;
+  for (std::uint32_t generation = 0;; ++generation) {
+    const BeamGeneration& now = parts ? *parts : first;
+    const std::size_t survivors = now.survivors(how.most_power, how.offset(generation), walk, [&](const Beam& beam) {
+      if (!is_cancelled(cancel)) walk.step(beam, cancel);
+    });
+    if (is_cancelled(cancel)) return false;
+    if (survivors == 0) {
+      walk.book_truncated(now.power());
+      return true;
     }
     if (after_each) after_each();
-    const BeamGeneration parts(part, next);
-    left = parts.power();
-    survivors = parts.survivors(how.most_power, how.offset(generation), walk);
+    walk.take_waiting(beams);
+    parts.emplace(part, beams);
   }
-  if (is_cancelled(cancel)) return false;
-  walk.book_truncated(left);
-  return true;
 }
 
 }  // namespace retrace::raytrace

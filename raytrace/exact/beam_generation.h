@@ -21,7 +21,7 @@ class BeamWalk;
 class BeamGeneration {
  public:
   /// \param part whose periods or outline places are compared by \param beams outlive this
-  BeamGeneration(const geometry::Part& part, const std::vector<Beam>& beams);
+  BeamGeneration(const geometry::Part& part, const WaitingBeams& beams);
 
   double power() const { return power_; }
   std::size_t size() const { return places_.size(); }
@@ -32,8 +32,10 @@ class BeamGeneration {
   /// Chosen by systematic resampling: each stands for `most_power` or less, and all together for what the generation
   /// has. None if it does not count.
   /// \param offset in [0, 1): where the first of equally spaced marks falls
+  /// \param follow is called for each, in their order, with a beam that is good until it returns \return their number
   /// \param walk knows beams at other places
-  std::vector<Beam> survivors(double most_power, double offset, const BeamWalk& walk) const;
+  std::size_t survivors(double most_power, double offset, const BeamWalk& walk,
+                        const std::function<void(const Beam&)>& follow) const;
 
  private:
   struct Place {
@@ -41,7 +43,7 @@ class BeamGeneration {
     std::size_t place;  ///< of Beam::places
     double power;
   };
-  const std::vector<Beam>& beams_;
+  const WaitingBeams& beams_;
   std::vector<Place> places_;
   double power_ = 0.0;
 };

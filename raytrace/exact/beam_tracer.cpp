@@ -95,7 +95,7 @@ BeamResult BeamTracer::trace_with_weak(const Optics& optics, const Illumination&
     const auto end = strong.run(std::numeric_limits<std::uint64_t>::max(), cancel);
     is_done = end == BeamWalk::End::done;
     bool goes_on = is_done || end == BeamWalk::End::paused;
-    const std::vector<Beam> kept = strong.take_kept();
+    const WaitingBeams kept = strong.take_kept();
     const BeamGeneration first(part_, kept);
     if (first.counts()) power += first.power();
     for (std::uint32_t k = 0; k < weak.replicates && goes_on; ++k)

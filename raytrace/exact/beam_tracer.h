@@ -111,8 +111,9 @@ using BeamObserver = std::function<void(const ReturnedBeam&)>;
 class BeamTracer {
  public:
   enum class Elements { each_by_itself, equal_at_once };
-  /// \param elements `equal_at_once`: trace() and BeamTrace follow beams of elements that are alike once, until a
-  /// border tells them apart, and tell of them once (ReturnedBeam::places) \pre `part` outlives the tracer
+  /// \param elements `equal_at_once`: beams of elements that are alike are followed once, until a border tells them
+  /// apart, and told of once (ReturnedBeam::places), but by StochasticBeams not in finite parts with rough facets \pre
+  /// `part` outlives the tracer
   explicit BeamTracer(const geometry::Part& part, Elements elements = Elements::each_by_itself);
 
   /// Of beams above the cut-off, and of weak ones where BeamPolicy::weak asks for them, which the mean over replicates

@@ -77,7 +77,7 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
   else if (equal_ != nullptr)
     enter_at_places(whole, parts);
   else if (setup_.infinite() && parts == 1.0)
-    pend(whole);
+    pend(std::move(whole));
   else
     enter_in_pieces(whole, step_of_entrance(parts));
   pass_ = {0.0, pending_power_};
@@ -86,7 +86,7 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
     cutoff_ *= pending_power_ / static_cast<double>(pending_.size());
 }
 
-void BeamWalk::pend(Beam beam) {
+void BeamWalk::pend(Beam&& beam) {
   beam.power = power_of(beam);
   pending_power_ += beam.total_power();
   pending_.push_back(std::move(beam));
@@ -140,8 +140,8 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
       Beam beam = std::move(pending_.back());
       pending_.pop_back();
       pending_power_ -= beam.total_power();
-      if ((setup_.infinite() ? beam.power : beam.total_power()) < cutoff_) {
-        defer(beam);
+      if (strength_of(beam) < cutoff_) {
+        defer(std::move(beam));
         if (deferred_places_ >= most_kept_) return End::paused;
         continue;
       }
@@ -218,24 +218,27 @@ BeamResult BeamWalk::result() const {
 }
 
 /// Beams below the cut-off are kept for a lower one, unless they are so many that they are better found again.
-void BeamWalk::defer(const Beam& beam) {
+void BeamWalk::defer(Beam&& beam) {
   deferred_power_ += beam.total_power();
   deferred_places_ += static_cast<std::size_t>(beam.place_count());
-  if (approach_ == Approach::kept || deferred_.size() <= kMostDeferred) deferred_.push_back(beam);
+  if (approach_ == Approach::kept || deferred_.size() <= kMostDeferred) deferred_.push_back(std::move(beam));
 }
 
-std::vector<Beam> BeamWalk::take_kept() {
+WaitingBeams BeamWalk::take_kept() {
   deferred_power_ = 0.0;
   deferred_places_ = 0;
   return std::exchange(deferred_, {});
 }
 
-void BeamWalk::step(const Beam& beam, const Cancellation* cancel, std::vector<Beam>& next) {
+void BeamWalk::step(const Beam& beam, const Cancellation* cancel) {
   cancel_ = cancel;
   ++beams_;
   advance(beam);
-  std::move(pending_.begin(), pending_.end(), std::back_inserter(next));
-  pending_.clear();
+}
+
+void BeamWalk::take_waiting(WaitingBeams& into) {
+  into.clear();
+  pending_.swap(into);
 }
 
 void BeamWalk::advance(const Beam& beam) {
@@ -257,21 +260,32 @@ void BeamWalk::advance(const Beam& beam) {
     used += share;
     return share;
   };
-  FlatPolygons rest;
-  rest.push_back(whole);
+  double met_area = 0.0;
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     if (is_cancelled(cancel_)) return;
-    for (const FlatPolygon& piece : visible_on_plane_of(k))
+    for (const FlatPolygon& piece : visible_on_plane_of(k)) {
+      met_area += area(piece);
       meet_facet(beam, frame, candidates_[k], piece, share_of(piece));
+    }
+  }
+  if (whole_area - met_area > least_area_)
+    for (const FlatPolygon& piece : what_passes(whole)) pass_by(beam, frame, piece, share_of(piece), horizon);
+  book_rest(beam, beam.share - used);
+}
+
+/// What of a beam's cross-section no candidate stands in.
+FlatPolygons BeamWalk::what_passes(const FlatPolygon& whole) {
+  FlatPolygons rest;
+  rest.push_back(whole);
+  for (const Candidate& candidate : candidates_) {
     FlatPolygons left;
     work_ += kWorkOfCut * rest.size();
-    for (const FlatPolygon& piece : rest) subtract(piece, candidates_[k].piece, least_area_, merge_mm_, left);
+    for (const FlatPolygon& piece : rest) subtract(piece, candidate.piece, least_area_, merge_mm_, left);
     rest = std::move(left);
   }
   if (rest.size() > 1) work_ += kWorkOfCut * rest.size() * (rest.size() - 1) / 4;
   join_convex(rest, join_area_);
-  for (const FlatPolygon& piece : rest) pass_by(beam, frame, piece, share_of(piece), horizon);
-  book_rest(beam, beam.share - used);
+  return rest;
 }
 
 /// To where the whole beam has left the layer of the elements, -depth <= z <= top.
@@ -337,9 +351,9 @@ void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatP
   cells_.visit(
       plan.lower, plan.upper,
       [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset, double height_mm) {
+        const Vec3 shift(offset.x(), offset.y(), height_mm);
         const CellPlace place =
             equal_ != nullptr ? equal_->place_of(patch, cell, offset) : CellPlace{part_.number_of(patch, cell), offset};
-        const Vec3 shift(offset.x(), offset.y(), height_mm);
         for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
           consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f], shift, place);
       });
@@ -376,6 +390,12 @@ void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon&
       {plane, facet.role, cell, Distance(frame, plane), std::move(piece), piece_box, false, middle_mm});
 }
 
+/// Whether all of a candidate's piece is nearer than where the plane of another would be met.
+bool BeamWalk::is_nearer(const Candidate& own, const Candidate& other) const {
+  const auto is_before = [&](const Vec2& p) { return own.distance.at(p) < other.distance.at(p) - merge_mm_; };
+  return std::all_of(own.piece.begin(), own.piece.end(), is_before);
+}
+
 /// What of a candidate's piece no nearer candidate covers.
 FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
   const Candidate& own = candidates_[k];
@@ -383,7 +403,7 @@ FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
   visible.push_back(own.piece);
   for (std::size_t j = 0; j < candidates_.size() && !visible.empty(); ++j) {
     const Candidate& other = candidates_[j];
-    if (j == k || !own.box.overlaps(other.box)) continue;
+    if (j == k || !own.box.overlaps(other.box) || is_nearer(own, other)) continue;
     work_ += kWorkOfCut;
     const FlatPolygon common = intersection(own.piece, other.piece, merge_mm_);
     if (common.size() < 3 || area(common) <= least_area_) continue;
@@ -443,7 +463,7 @@ void BeamWalk::pass_by(const Beam& from, const Frame& frame, const FlatPolygon& 
     return;
   }
   const bool rises_through_plate = setup_.infinite() && from.direction.z() > 0.0;
-  const double power = power_of(at_start(from, frame, piece, share));
+  const double power = power_at_start(from, frame, piece, share);
   book(rises_through_plate ? Account::truncated : account_of_exit(from.left_through), power);
 }
 

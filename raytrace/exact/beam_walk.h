@@ -75,22 +75,26 @@ class BeamWalk {
   End run(std::uint64_t most_work, const Cancellation* cancel);
 
   /// Beams below the cut-off, in the order in which they were found. \pre Approach::kept, and run() is done
-  const std::vector<Beam>& kept() const { return deferred_; }
+  const WaitingBeams& kept() const { return deferred_; }
   /// From now on run() pauses where so many are kept, for take_kept().
   void pause_at_kept(std::size_t most) { most_kept_ = most; }
-  std::vector<Beam> take_kept();
+  WaitingBeams take_kept();
   /// What is below the old cut-off and not below this one is for the next run() to follow. \pre likewise
   void lower_cutoff_to(double cutoff);
-  /// Follows a beam that is alone to the next faces that it meets. \param next its parts that go on from there are
-  /// added to these
-  void step(const Beam& beam, const Cancellation* cancel, std::vector<Beam>& next);
+  /// Follows a beam that is alone to the next faces that it meets; its parts that go on from there wait.
+  void step(const Beam& beam, const Cancellation* cancel);
+  /// Those that wait after steps, in place of what the list holds.
+  void take_waiting(WaitingBeams& into);
   /// Beams that it tells of belong to this replicate.
   void serve_replicate(std::uint32_t replicate) { replicate_ = replicate; }
   /// Where rough facets take from the beams that are followed from here on is added to these, in place of `truncated`.
+  /// \pre beams stand for several places of endless parts alone
   void collect(std::vector<ScatterSite>& sites) { sites_ = &sites; }
   /// Power that is given up.
   void book_truncated(double power) { tally_.other[Account::truncated] += power; }
   const Tally& tally() const { return tally_; }
+  /// What is compared with the cut-off.
+  double strength_of(const Beam& beam) const { return setup_.infinite() ? beam.power : beam.total_power(); }
   /// One of the beams that a beam stands for, by itself.
   Beam at_place(const Beam& beam, std::size_t place) const;
 
@@ -106,8 +110,10 @@ class BeamWalk {
 
  private:
   /// Share of the power of its light that a beam brings here: by its area, less what was absorbed.
-  double transmission_of(const Beam& beam) const {
-    return beam.share * mean_transmission(beam.corners, beam.path_length, setup_.optics.absorption_per_mm);
+  double transmission_of(const Beam& beam) const { return transmission_of(beam, beam.corners, beam.share); }
+  /// Of a piece of it that lies elsewhere along it.
+  double transmission_of(const Beam& beam, const Corners& corners, double share) const {
+    return share * mean_transmission(corners, beam.path_length, setup_.optics.absorption_per_mm);
   }
   double power_of(const Beam& beam) const { return transmission_of(beam) * beam.light.power(); }
   double parts_of_element() const;
@@ -115,9 +121,9 @@ class BeamWalk {
   void enter_in_pieces(const Beam& whole, const Vec2& step);
   void enter_at_places(const Beam& whole, double parts);
   void enter_within_period(const Beam& whole, double parts);
-  void pend(Beam beam);
+  void pend(Beam&& beam);
   void keep_equal_places(Beam& beam);
-  void defer(const Beam& beam);
+  void defer(Beam&& beam);
   /// Power of beams that wait, in this pass or below its cut-off.
   double open_power() const { return pending_power_ + deferred_power_; }
   bool may_stop() const;
@@ -133,11 +139,13 @@ class BeamWalk {
   void consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const PlanBox& box, const Plane* far,
                 const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet, const Vec3& shift,
                 const CellPlace& cell);
+  bool is_nearer(const Candidate& own, const Candidate& other) const;
   FlatPolygons visible_pieces(std::size_t k) const;
   FlatPolygons visible_on_plane_of(std::size_t k);
+  FlatPolygons what_passes(const FlatPolygon& whole);
   void pass_by(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share, const Horizon& horizon);
   void leave_hull(const Beam& beam, const Frame& frame, const FlatPolygon& piece, double share);
-  static Beam at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share);
+  double power_at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) const;
   Beam arrived(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane);
   void meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
                   double share);
@@ -150,7 +158,7 @@ class BeamWalk {
                    double cos_incidence, surface_models::Lobe lobe) const;
   void meet_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane,
                  geometry::FacetRole role);
-  void send(Beam beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,
+  void send(Beam&& beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,
             bool inside);
   /// Light of a beam that found no facet for want of digits. Signed: pieces may overlap by rounding as well.
   void book_rest(const Beam& beam, double share) { book(Account::truncated, share / beam.share * power_of(beam)); }
@@ -172,9 +180,9 @@ class BeamWalk {
   std::vector<ScatterSite>* sites_ = nullptr;
   std::optional<std::uint32_t> replicate_;
   Tally tally_;
-  std::vector<Beam> pending_;
+  WaitingBeams pending_;
   double pending_power_ = 0.0;
-  std::vector<Beam> deferred_;  ///< below the cut-off
+  WaitingBeams deferred_;  ///< below the cut-off
   double deferred_power_ = 0.0;
   std::size_t deferred_places_ = 0;  ///< Beam::places of all of them
   std::size_t most_kept_ = std::numeric_limits<std::size_t>::max();

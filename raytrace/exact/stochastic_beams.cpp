@@ -64,7 +64,8 @@ StochasticBeams::StochasticBeams(const BeamTracer& tracer, const ScatteredLight*
       sampling_(sampling),
       cancel_(cancel),
       strong_(std::make_unique<BeamWalk>(tracer.part_, tracer.centre_mm_, tracer.cells_, setup_, policy_,
-                                         std::move(observer))),
+                                         std::move(observer),
+                                         scattered == nullptr || setup_.infinite() ? tracer.equal_places() : nullptr)),
       threshold_(kFirstThreshold),
       ray_power_(kFirstRayPower) {
   if (scattered_ != nullptr) strong_->collect(strong_sites_);
@@ -143,7 +144,7 @@ double StochasticBeams::expected_work() const {
   // many more survivors as that is lower.
   double still_weak = 0.0;
   for (const Beam& beam : strong_->kept())
-    if (beam.power < next) still_weak += beam.power;
+    if (strong_->strength_of(beam) < next) still_weak += beam.total_power();
   const double more =
       std::max(std::pow(threshold_ / next, kWorkSlope), still_weak / (kThinning * next) / first_survivors_);
   if (more * static_cast<double>(strong_->kept().size()) > static_cast<double>(kMostKept))

@@ -34,7 +34,7 @@ void FarFieldBuilder::add(const raytrace::ReturnedBeam& beam) {
     spots_.push_back({beam.direction, {}, beam.depth});
     places_.insert(beam.direction, index);
   }
-  spots_[index].stokes += beam.stokes;
+  spots_[index].stokes += beam.place_count() * beam.stokes;
   spots_[index].least_depth = std::min(spots_[index].least_depth, beam.depth);
 }
 

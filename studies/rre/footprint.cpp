@@ -13,6 +13,8 @@ using geometry::Polygon, geometry::Vec2;
 
 // Neighbours whose efficiencies differ by less are one region.
 constexpr double kEqualEfficiency = 1e-9;
+// Corners nearer than this share of an element are one.
+constexpr double kMergeShare = 1e-11;
 // Facets steeper than this are walls, seen as lines.
 constexpr double kWall = 1e-6;
 
@@ -50,12 +52,47 @@ double Footprint::rre_shown() const {
 }
 
 FootprintBuilder::FootprintBuilder(const geometry::Part& part, std::size_t cones)
-    : entrance_area_mm2_(part.entrance_area_mm2), size_mm_(part.size_mm), cones_(cones), overlay_(part.size_mm) {}
+    : entrance_area_mm2_(part.entrance_area_mm2),
+      size_mm_(part.size_mm),
+      period_mm_(part.period_mm),
+      cones_(cones),
+      overlay_(part.size_mm) {}
 
 void FootprintBuilder::add(const raytrace::ReturnedBeam& beam) {
   const bool is_shown = beam.depth > 0 && beam.cone < cones_ && beam.efficiency >= Footprint::kLeastEfficiency;
   if (!is_shown) return;
-  overlay_.insert({beam.entered_mm.begin(), beam.entered_mm.end()}, beam.efficiency);
+  const raytrace::FlatPolygon entered(beam.entered_mm.begin(), beam.entered_mm.end());
+  if (!beam.places) {
+    overlay_.insert(entered, beam.efficiency);
+    return;
+  }
+  for (const Vec2& by : *beam.places) {
+    raytrace::FlatPolygon there = entered;
+    for (Vec2& p : there) p += by;
+    insert(there, beam.efficiency);
+  }
+}
+
+/// Where light entered, at one of several places: what lies beyond the period of an endless part comes in again from
+/// its other side.
+void FootprintBuilder::insert(const raytrace::FlatPolygon& entered, double efficiency) {
+  if (!period_mm_) {
+    overlay_.insert(entered, efficiency);
+    return;
+  }
+  const double merge_mm = kMergeShare * size_mm_;
+  for (const double i : {0.0, 1.0})
+    for (const double j : {0.0, 1.0}) {
+      const Vec2 from = Vec2(i, j).cwiseProduct(*period_mm_);
+      const Vec2 to = from + *period_mm_;
+      raytrace::FlatPolygon piece = entered;
+      for (const raytrace::HalfPlane& side :
+           {raytrace::HalfPlane{-1.0, 0.0, -from.x()}, raytrace::HalfPlane{1.0, 0.0, to.x()},
+            raytrace::HalfPlane{0.0, -1.0, -from.y()}, raytrace::HalfPlane{0.0, 1.0, to.y()}})
+        if (!piece.empty()) raytrace::clip(piece, side, merge_mm);
+      for (Vec2& p : piece) p -= from;
+      overlay_.insert(piece, efficiency);
+    }
 }
 
 Footprint FootprintBuilder::finish() const {

@@ -3,6 +3,7 @@
 // The active regions of the entrance face, gathered from the beams of the exact engine.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "geometry/part/part.h"
@@ -41,8 +42,11 @@ class FootprintBuilder {
   Footprint finish() const;
 
  private:
+  void insert(const raytrace::FlatPolygon& entered, double efficiency);
+
   double entrance_area_mm2_;
   double size_mm_;
+  std::optional<geometry::Vec2> period_mm_;
   std::size_t cones_;
   raytrace::Overlay overlay_;
 };

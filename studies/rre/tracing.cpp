@@ -111,7 +111,8 @@ class DesignTracing {
     paths_.cutoff = request.cutoff.value_or(paths_.cutoff);
     if (design.balls()) return;
     if (!may_follow_beams(design, model, request)) return;
-    beam_tracer_.emplace(model.part);
+    using Elements = raytrace::BeamTracer::Elements;
+    beam_tracer_.emplace(model.part, must_be_exact(request) ? Elements::each_by_itself : Elements::equal_at_once);
     if (!model.optics.is_smooth()) scattering_.emplace(model.part, beam_tracer_->centre_mm());
   }
 

@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
         LongRun{"sweep", {"sweep", example("studies/incline_photometry.toml"), "--threads=1", "-o", "s"}},
         LongRun{
             "tolerance", {"tolerance", example("studies/tolerance_reflector.toml"), "--threads=1", "-o", "t"}, SIGTERM},
-        LongRun{"optimize", {"optimize", example("studies/element_base.toml"), "--threads=1", "-o", "o"}},
+        LongRun{"optimize", {"optimize", example("studies/element_base.toml"), "--threads=1", "-o", "o"}, SIGINT, 0.3},
         LongRun{"inspect", {"inspect", "wide.toml", "--set=array.x_length_mm=40000", "-o", "i"}},
         LongRun{"export", {"export", "wide.toml", "e.stl"}, SIGTERM},
         LongRun{"turn", {"turn", example("turning/lenslet_array.toml"), "-o", "t"}},

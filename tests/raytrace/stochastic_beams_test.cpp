@@ -21,6 +21,7 @@ namespace {
 
 using namespace geometry;
 using namespace raytrace;
+using Elements = BeamTracer::Elements;
 
 Sampling until(double target_error, std::uint32_t seed = 1) {
   Sampling sampling;
@@ -55,31 +56,33 @@ std::vector<Question> questions() {
       {"finite cubes", build_part(finite_cubes), from(15, 40)}};
 }
 
+/// Elements that are alike may be followed once: the same light.
 TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
   Optics optics = pmma();
   optics.absorption_per_mm = 0.01;
-  for (const Question& question : questions()) {
-    const BeamTracer tracer(question.part);
-    BeamPolicy policy;
-    policy.truncated_goal = 1e-5;
-    const std::vector<double> cones = {0.5, 60.0};
-    const BeamResult exact = tracer.trace(optics, question.light, cones, policy);
-    const MonteCarloResult result = traced(tracer, optics, question.light, cones, until(2e-5));
-    EXPECT_TRUE(result.reached_target && result.complete) << question.name;
-    for (std::size_t cone = 0; cone < cones.size(); ++cone) {
-      const ConeResult& own = result.cones[cone];
-      EXPECT_LE(own.std_error, 2e-5) << question.name;
-      EXPECT_NEAR(own.rre, exact.ledgers[cone][Account::retroreflected],
-                  student_bound(8, StochasticBeams::kReplicates) * own.std_error + 1e-5)
-          << question.name;
-      EXPECT_NEAR(own.ledger.total(), 1.0, 1e-13) << question.name;
-      EXPECT_NEAR(own.ledger[Account::truncated], 0.0, 1e-12) << question.name;
-      // No other account has more than a few times the error of RRE, and here it is a matter of bias, not of noise.
-      for (const Account account : {Account::transmitted, Account::absorbed, Account::side_exit})
-        EXPECT_NEAR(own.ledger[account], exact.ledgers[cone][account], 3e-4)
-            << question.name << ", " << static_cast<int>(account);
+  const std::vector<double> cones = {0.5, 60.0};
+  for (const Question& question : questions())
+    for (const Elements elements : {Elements::each_by_itself, Elements::equal_at_once}) {
+      BeamPolicy policy;
+      policy.truncated_goal = 1e-5;
+      const BeamResult exact = BeamTracer(question.part).trace(optics, question.light, cones, policy);
+      const MonteCarloResult result =
+          traced(BeamTracer(question.part, elements), optics, question.light, cones, until(2e-5));
+      EXPECT_TRUE(result.reached_target && result.complete) << question.name;
+      for (std::size_t cone = 0; cone < cones.size(); ++cone) {
+        const ConeResult& own = result.cones[cone];
+        EXPECT_LE(own.std_error, 2e-5) << question.name;
+        EXPECT_NEAR(own.rre, exact.ledgers[cone][Account::retroreflected],
+                    student_bound(8, StochasticBeams::kReplicates) * own.std_error + 1e-5)
+            << question.name;
+        EXPECT_NEAR(own.ledger.total(), 1.0, 1e-13) << question.name;
+        EXPECT_NEAR(own.ledger[Account::truncated], 0.0, 1e-12) << question.name;
+        // No other account has more than a few times the error of RRE, and here it is a matter of bias, not of noise.
+        for (const Account account : {Account::transmitted, Account::absorbed, Account::side_exit})
+          EXPECT_NEAR(own.ledger[account], exact.ledgers[cone][account], 3e-4)
+              << question.name << ", " << static_cast<int>(account);
+      }
     }
-  }
 }
 
 Optics rough(double sq_nm, double correlation_length_um) {
@@ -91,7 +94,7 @@ Optics rough(double sq_nm, double correlation_length_um) {
 /// The answers of 200 seeds.
 std::vector<ConeResult> answers(const Question& question, const Optics& optics, double target_error, bool one_round) {
   constexpr std::uint32_t kSeeds = 200;
-  const BeamTracer tracer(question.part);
+  const BeamTracer tracer(question.part, Elements::equal_at_once);
   const BackSurface surface(question.part, tracer.centre_mm());
   const ScatteredLightByRays scattered(tracer, surface, optics, question.light, {0.5});
   std::vector<ConeResult> found(kSeeds);
@@ -152,7 +155,7 @@ TEST(StochasticBeams, IntervalsHoldOverSeedsForRoughFacets) {
 
 TEST(StochasticBeams, SameAtAnyNumberOfThreads) {
   const Question question = questions()[1];
-  const BeamTracer tracer(question.part);
+  const BeamTracer tracer(question.part, Elements::equal_at_once);
   std::vector<MonteCarloResult> results;
   for (const unsigned threads : {1U, 2U, 5U})
     run_with_threads(threads, [&] { results.push_back(traced(tracer, pmma(), question.light, {0.5}, until(1e-4))); });
@@ -173,7 +176,7 @@ TEST(StochasticBeams, RoughFacetsAgreeWithRays) {
     const auto engine = question.part.period_mm ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
     const MonteCarloResult sampled =
         MonteCarlo(question.part, engine).trace(optics, question.light, cones, until(1e-3, 7), {});
-    const BeamTracer tracer(question.part);
+    const BeamTracer tracer(question.part, Elements::equal_at_once);
     const BackSurface scattering(question.part, tracer.centre_mm());
     const MonteCarloResult result = traced(tracer, optics, question.light, cones, until(5e-4), &scattering);
     EXPECT_TRUE(result.reached_target && result.complete) << question.name;
@@ -199,6 +202,17 @@ TEST(StochasticBeams, NothingIsLeftToChanceWhereBeamsEnd) {
   const ConeResult cone = traced(tracer, ideal(), from(0.0), {0.5}, until(1e-6)).cones[0];
   EXPECT_NEAR(cone.rre, 1.0, 1e-12);
   EXPECT_EQ(cone.std_error, 0.0);
+}
+
+TEST(StochasticBeams, EqualElementsTakeHalfTheWork) {
+  const Question question = questions()[0];
+  const auto beams = [&](Elements elements) {
+    const BeamTracer tracer(question.part, elements);
+    StochasticBeams traced(tracer, nullptr, pmma(), question.light, {0.5}, until(1e-9));
+    for (int round = 0; round < 3; ++round) traced.advance();
+    return static_cast<double>(traced.beams());
+  };
+  EXPECT_LT(beams(Elements::equal_at_once), 0.75 * beams(Elements::each_by_itself));
 }
 
 TEST(StochasticBeams, StopWhenCancelled) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "raytrace/sampling/threads.h"
+#include "studies/rre/beam_tracing.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 #include "tests/support/closed_forms.h"
@@ -129,6 +130,53 @@ TEST(Footprint, HalvesAreDeadOffTheNormal) {
   }
   EXPECT_LE(footprint.active_share(), 0.88);
   EXPECT_GT(footprint.active_share(), 0.85);
+}
+
+/// The efficiency at a place of the face.
+double efficiency_at(const Footprint& footprint, const geometry::Vec2& at) {
+  for (const ActiveRegion& region : footprint.regions) {
+    bool is_inside = true;
+    const geometry::Polygon& outline = region.outline_mm;
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const geometry::Vec2 along = outline[(k + 1) % outline.size()] - outline[k];
+      const geometry::Vec2 to = at - outline[k];
+      is_inside = is_inside && along.x() * to.y() - along.y() * to.x() >= 0.0;
+    }
+    if (is_inside) return region.efficiency;
+  }
+  return 0.0;
+}
+
+// Elements that are alike are followed once, and shown at all their places: those of an endless part within its period.
+TEST(Footprint, OfElementsFollowedOnceIsThatOfAll) {
+  using Elements = raytrace::BeamTracer::Elements;
+  const std::vector<geometry::PartSpec> specs = {
+      honeycomb(), infinite(geometry::TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0),
+      finite(geometry::HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 8.0, 8.0, 1.0)};
+  for (const geometry::PartSpec& spec : specs) {
+    const geometry::Part part = geometry::build_part(spec);
+    const raytrace::Illumination light = from(14.0, 35.0);
+    const std::vector<double> cones = {0.5};
+    raytrace::BeamPolicy policy;
+    policy.cutoff = 1e-5;
+    const auto answer = [&](Elements elements) {
+      return follow_beams(raytrace::BeamTracer(part, elements), part, pmma(), light, cones, policy, {true, true},
+                          nullptr);
+    };
+    const BeamAnswer each = answer(Elements::each_by_itself);
+    const BeamAnswer once = answer(Elements::equal_at_once);
+    EXPECT_LT(once.traced.beams, 0.7 * static_cast<double>(each.traced.beams));
+    EXPECT_NEAR(once.footprint->active_share(), each.footprint->active_share(), 1e-4);
+    EXPECT_NEAR(once.footprint->rre_shown(), each.footprint->rre_shown(), 1e-4);
+    EXPECT_NEAR(once.far_field->total_power, each.far_field->total_power, 1e-4);
+    const geometry::Rectangle face = geometry::bounding_box(
+        part.period_mm ? geometry::to_polygon({geometry::Vec2::Zero(), *part.period_mm}) : part.outline);
+    for (int k = 0; k < 200; ++k) {
+      const geometry::Vec2 share(std::fmod(0.754877 * k, 1.0), std::fmod(0.569840 * k, 1.0));
+      const geometry::Vec2 at = face.lower + share.cwiseProduct(face.size());
+      EXPECT_NEAR(efficiency_at(*once.footprint, at), efficiency_at(*each.footprint, at), 2e-3);
+    }
+  }
 }
 
 TEST(Footprint, AddsUpToWhatIsReturnedAndStaysOnTheFace) {
