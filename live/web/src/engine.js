@@ -1,9 +1,9 @@
 // The engine's workers, and the order in which what the page wants is asked of them.
 //
-// A lane has at most one thing that it wants: a later wish takes the place of an earlier one that has not begun. Lanes
-// are served by their rank; one that has just been served lets the others go first once, so that a drag, which wants a new
-// picture all the time, does not keep the curve from ever being finished. Their jobs take some 10 ms, so none waits long.
-// What takes seconds has a worker of its own, which is ended where its answer is no longer wanted.
+// A lane has at most one job under way, with the worker that has fewest: what it wants meanwhile, it is asked for when that
+// is done. Jobs of many directions are done in pieces of some 10 ms, by turns, so that none waits long, and go on without
+// the page, which may be drawing; the direction that is pointed at comes before all of them. What takes seconds has a
+// worker of its own, which is ended where its answer is no longer wanted.
 
 function bytesOf(base64) {
   return Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
@@ -29,7 +29,7 @@ function countOfWorkers() {
 
 export class Engine {
   constructor() {
-    this.idle = { quick: [], slow: [] };
+    this.workers = { quick: [], slow: [] }; // and how many jobs each has: {worker, jobs}
     this.lanes = { quick: [], slow: [] };
     this.waiting = new Map(); // what is being worked on, by the job's number
     this.count = 0;
@@ -59,7 +59,7 @@ export class Engine {
         if (data.id != null) this.take(data);
         else if (!data.ready) reject(new Error(data.fault));
         else {
-          this.idle[speed].push(worker);
+          this.workers[speed].push({ worker, jobs: 0 });
           resolve();
         }
         this.pump();
@@ -68,9 +68,9 @@ export class Engine {
     });
   }
 
-  /** \param next gives the job that the lane wants now, or nothing \param done takes a job and its answer */
+  /** \param next gives the job that the lane wants now, or nothing \param done takes a job and its answer, or a piece of it */
   lane({ next, done, speed = "quick" }) {
-    const lane = { next, done, speed, running: 0, served: false };
+    const lane = { next, done, speed, running: 0 };
     this.lanes[speed].push(lane);
     return lane;
   }
@@ -96,51 +96,55 @@ export class Engine {
   }
 
   take(data) {
-    const { lane, job, worker } = this.waiting.get(data.id);
-    this.waiting.delete(data.id);
-    lane.running -= 1;
-    this.idle[lane.speed].push(worker);
-    lane.done(job, data);
+    const found = this.waiting.get(data.id);
+    if (!found) return; // withdrawn
+    if (!data.isMore) this.end(data.id);
+    found.lane.done(found.job, data);
   }
 
-  /** Gives idle workers what the lanes want. */
+  end(id) {
+    const { lane, at } = this.waiting.get(id);
+    this.waiting.delete(id);
+    lane.running -= 1;
+    at.jobs -= 1;
+  }
+
+  /** Gives workers what the lanes want; slow ones one thing at a time. */
   pump() {
     for (const speed of ["quick", "slow"])
-      while (this.idle[speed].length > 0) {
-        const found = this.choose(speed, false) || this.choose(speed, true);
-        if (!found) break;
-        this.send(...found);
+      for (const lane of this.lanes[speed]) {
+        const [at] = [...this.workers[speed]].sort((a, b) => a.jobs - b.jobs);
+        if (!at || lane.running > 0 || (speed === "slow" && at.jobs > 0)) continue;
+        const job = lane.next();
+        if (job) this.send(lane, job, at);
       }
   }
 
-  choose(speed, again) {
-    for (const lane of this.lanes[speed]) {
-      if (lane.running > 0 || (lane.served && !again)) continue;
-      const job = lane.next();
-      if (!job) continue;
-      if (again) this.lanes[speed].forEach((other) => (other.served = false));
-      lane.served = true;
-      return [lane, job];
-    }
-    return null;
+  send(lane, job, at) {
+    const id = (this.count += 1);
+    this.waiting.set(id, { lane, job, at });
+    lane.running += 1;
+    at.jobs += 1;
+    const { toml, source, changes, adapt, asks, long = false, urgent = false } = job;
+    at.worker.postMessage({ id, toml, source, changes, adapt, asks, long, urgent });
   }
 
-  send(lane, job) {
-    const id = (this.count += 1);
-    const worker = this.idle[lane.speed].pop();
-    this.waiting.set(id, { lane, job, worker });
-    lane.running += 1;
-    const { toml, source, changes, adapt, asks } = job;
-    worker.postMessage({ id, toml, source, changes, adapt, asks });
+  /** What is under way for a lane is of no use any more. */
+  withdraw(lane) {
+    for (const [id, found] of this.waiting) {
+      if (found.lane !== lane) continue;
+      found.at.worker.postMessage({ withdrawn: id });
+      this.end(id);
+    }
   }
 
   /** Slow work that is under way is of no use any more: its worker is ended, and another started. */
   drop() {
-    for (const [id, { lane, worker }] of this.waiting) {
+    for (const [id, { lane, at }] of this.waiting) {
       if (lane.speed !== "slow") continue;
-      worker.terminate();
-      this.waiting.delete(id);
-      lane.running -= 1;
+      at.worker.terminate();
+      this.end(id);
+      this.workers.slow = this.workers.slow.filter((other) => other !== at);
       this.add("slow").catch(this.failed);
     }
   }

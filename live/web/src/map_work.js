@@ -1,29 +1,13 @@
 // RRE over all directions: rings of incidence with more places the wider they are, from coarse to fine. Where the engine
 // knows that directions are alike by symmetry, one of them is traced.
+import { directionOf, nameOf } from "./directions.js";
 import { AT_ONCE } from "./session.js";
 
-const CHUNK_S = 0.014;
+const PIECE_S = 0.004;
 const RING_STEPS_DEG = [20, 10, 5, 2.5];
 const WHILE_MOVING = 1; // the level that is waited for before another design is begun,
 const PATIENCE_MS = 700; // unless that takes longer
 const PLACES = 6; // of the first ring; the k-th has k times as many
-
-function turned(azimuth_deg) {
-  return ((azimuth_deg % 360) + 360) % 360;
-}
-
-/** The one direction that stands for all that are alike. */
-function representative(azimuth_deg, symmetry) {
-  let azimuth = turned(azimuth_deg);
-  if (!symmetry) return azimuth;
-  const period = symmetry.period_deg || 360;
-  azimuth = azimuth % period;
-  if (symmetry.mirror_deg != null) {
-    const across = (((2 * symmetry.mirror_deg - azimuth) % period) + period) % period;
-    azimuth = Math.min(azimuth, across);
-  }
-  return azimuth;
-}
 
 export class MapPass {
   constructor(design, most_deg, stamp) {
@@ -36,17 +20,12 @@ export class MapPass {
     this.advance();
   }
 
-  nameOf(incidence, azimuth) {
-    const at = incidence === 0 ? 0 : representative(azimuth, this.design.azimuth_symmetry);
-    return `${incidence} ${Number(at.toFixed(6))}`;
-  }
-
   places(level) {
     const step = RING_STEPS_DEG[level];
     const rings = [];
     for (let k = 0; k * step <= this.most_deg + 1e-9; ++k) {
       const count = k === 0 ? 1 : PLACES * k;
-      rings.push({ incidence_deg: k * step, names: Array.from({ length: count }, (_, i) => this.nameOf(k * step, (360 * i) / count)) });
+      rings.push({ incidence_deg: k * step, names: Array.from({ length: count }, (_, i) => nameOf(k * step, (360 * i) / count, this.design.azimuth_symmetry)) });
     }
     return rings;
   }
@@ -70,9 +49,9 @@ export class MapPass {
 
   job() {
     const asked = this.queue;
-    const directions = asked.map((name) => name.split(" ").map(Number));
+    const directions = asked.map(directionOf);
     const { toml, source } = this.design;
-    return { toml, source, pass: this, asks: [{ ask: "rre", directions, target_error: AT_ONCE, seconds: CHUNK_S }] };
+    return { toml, source, pass: this, long: true, asks: [{ ask: "rre", directions, target_error: AT_ONCE, seconds: PIECE_S }] };
   }
 
   take(answer) {
@@ -92,14 +71,27 @@ export class DirectionMap {
     this.most_deg = 60;
     this.pass = null;
     this.shown = null;
-    session.engine.lane({ next: () => this.next(), done: (job, data) => this.take(job, data) });
+    this.lane = session.engine.lane({ next: () => this.next(), done: (job, data) => this.take(job, data) });
+    for (const event of ["moving", "design"]) session.on(event, () => this.review());
+  }
+
+  wanted() {
+    const { base, measure } = this.session;
+    return new MapPass(base, this.most_deg, measure.drawn.point);
+  }
+
+  /** A map of what has changed since is left, unless it is too coarse yet. */
+  review() {
+    if (this.lane.running === 0 || !this.pass.isEnough() || this.wanted().key === this.pass.key) return;
+    this.session.engine.withdraw(this.lane);
+    this.pass = null;
   }
 
   next() {
-    const { base, measure, isMoving } = this.session;
+    const { base, isMoving } = this.session;
     if (!base || !base.traces) return null;
     if (!this.pass || this.pass.isEnough() || this.pass.failed) {
-      const wanted = new MapPass(base, this.most_deg, measure.drawn.point);
+      const wanted = this.wanted();
       if (!this.pass || wanted.key !== this.pass.key) this.pass = wanted;
     }
     const { pass } = this;

@@ -18,7 +18,7 @@ export class Rest {
     });
     session.on("moving", (moving) => moving && this.stop());
     session.engine.lane({ speed: "slow", next: () => this.nextDirection(), done: (job, data) => this.takeDirection(job, data) });
-    session.engine.lane({ next: () => this.nextPin(), done: (job, data) => this.takePin(job, data) });
+    this.pinned = session.engine.lane({ next: () => this.nextPin(), done: (job, data) => this.takePin(job, data) });
     session.engine.lane({ speed: "slow", next: () => this.nextPhotometry(), done: (job, data) => this.takePhotometry(job, data) });
   }
 
@@ -27,6 +27,7 @@ export class Rest {
     if (this.isJudging) this.judged = null; // to be asked again
     this.isJudging = false;
     this.session.engine.drop();
+    this.session.engine.withdraw(this.pinned);
   }
 
   /** What a job is of: its answer is of no use once that has changed. */

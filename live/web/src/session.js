@@ -11,6 +11,9 @@ export const RESTING = 1e-6; // at rest
 export const AT_ONCE = 1e-3; // of the many directions of curves and maps, at first
 const REST_MS = 260; // without a change, until the picture is traced in full
 const MOST_S = 1.5; // for one direction while moving
+const PACE_MS = 66; // between directions while something moves, which leaves time to draw
+const SOON_MS = 30; // within which the next change comes while something is dragged
+const FRESH_MS = 3; // within which a change has just been made
 const QUICK_MS = 45; // that a direction may take while something moves; what takes longer is first traced to AT_ONCE,
 const RATIO = 4; // which is so many times quicker
 
@@ -28,7 +31,10 @@ export class Session {
     this.answer = null; // of the direction, while moving
     this.part = null;
     this.isDue = false;
+    this.sent = -Infinity;
     this.isMoving = false;
+    this.sent = -Infinity; // when the last direction was asked for
+    this.touched = -Infinity; // when something moved last
     this.isSlow = false; // whether a direction to MOVING takes too long to follow the hand
     this.target_error = MOVING; // of the next direction
     this.revision = 0;
@@ -82,6 +88,7 @@ export class Session {
     this.isDue = true;
     this.isMoving = true;
     this.target_error = this.isSlow ? AT_ONCE : MOVING;
+    this.touched = performance.now();
     this.measure.touched();
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.settle(), REST_MS);
@@ -110,8 +117,25 @@ export class Session {
 
   // --- the lane of the direction that is pointed at
 
+  /** How long the next direction is to wait while something moves, so that there is time to draw the last one; then for
+   * the next change, if one comes soon, rather than for one that is old when it is shown. */
+  pace() {
+    const now = performance.now();
+    const early_ms = this.sent + PACE_MS - now;
+    const age_ms = now - this.touched;
+    if (early_ms > 0) return early_ms + SOON_MS;
+    return age_ms < FRESH_MS ? 0 : SOON_MS - age_ms;
+  }
+
   nextPoint() {
     if (!this.isDue || (!this.base && !this.wanted)) return null;
+    const wait_ms = this.pace();
+    if (wait_ms > 0) {
+      clearTimeout(this.later);
+      this.later = setTimeout(() => this.engine.pump(), wait_ms);
+      return null;
+    }
+    this.sent = performance.now();
     this.isDue = false;
     const job = this.wanted
       ? { ...this.wanted, wanted: this.wanted }
@@ -123,7 +147,7 @@ export class Session {
       this.spot ? { ask: "path", ...at, at_mm: this.spot } : { ask: "stories", ...at },
     ];
     if (job.changes || job.wanted || !this.part) job.asks.push({ ask: "part" });
-    return Object.assign(job, { at, spot: this.spot, stamp: this.measure.stamp, target_error: this.target_error });
+    return Object.assign(job, { urgent: true, at, spot: this.spot, stamp: this.measure.stamp, target_error: this.target_error });
   }
 
   takePoint(job, data) {
@@ -139,6 +163,7 @@ export class Session {
     this.isSlow = direction.ms > (job.target_error > MOVING ? QUICK_MS / RATIO : QUICK_MS);
     this.why = direction.ok ? null : direction;
     this.paths = !paths.ok ? [] : job.spot ? [{ ...paths, spot: job.spot }] : paths.paths;
+    this.engine.pump(); // the next is worked on while this is drawn
     this.tell("answer", { isNewPart: Boolean(part && part.ok), stamp: job.stamp });
   }
 

@@ -1,5 +1,6 @@
 // Runs in the worker: the engine, and the designs that it has open. A job is a design - a text, and keys that are changed -
-// and what is asked of it; each answer goes back with the time it took.
+// and what is asked of it; each answer goes back with the time it took. Jobs that are `long` are done piece by piece, each
+// of which goes back, so that others come between; `urgent` ones before all that wait.
 import { edited } from "./toml_edit.js";
 
 const MOST_OPEN = 40;
@@ -62,15 +63,58 @@ function run(job) {
   return { design, answers: job.asks.map((request) => ask({ ...request, design: design.design })) };
 }
 
-self.onmessage = async ({ data }) => {
-  try {
-    if (data.wasm) {
-      call = await self.retraceEngine(data.wasm);
-      self.postMessage({ ready: true });
-      return;
+const waiting = [];
+let isAtWork = false;
+
+/** Lets messages in that have come meanwhile. */
+function breath() {
+  const { port1, port2 } = new MessageChannel();
+  return new Promise((resolve) => {
+    port1.onmessage = () => (port1.close(), resolve());
+    port2.postMessage(null);
+  });
+}
+
+/** One piece of a job. \return whether there is more of it */
+function work(job) {
+  const result = run(job);
+  const answer = job.long && !result.error ? result.answers[0] : null;
+  const isMore = Boolean(answer && answer.ok && !answer.complete);
+  if (isMore) job.asks[0].directions = job.asks[0].directions.slice(answer.points.length);
+  self.postMessage({ id: job.id, ...result, isMore });
+  return isMore;
+}
+
+async function workOn() {
+  if (isAtWork) return;
+  isAtWork = true;
+  for (; waiting.length > 0; await breath()) {
+    const job = waiting.shift();
+    try {
+      if (work(job)) waiting.push(job);
+    } catch (fault) {
+      self.postMessage({ id: job.id, fault: String(fault && fault.message ? fault.message : fault) });
     }
-    self.postMessage({ id: data.id, ...run(data) });
+  }
+  isAtWork = false;
+}
+
+async function start(wasm) {
+  try {
+    call = await self.retraceEngine(wasm);
+    self.postMessage({ ready: true });
   } catch (fault) {
-    self.postMessage({ id: data.id, fault: String(fault && fault.message ? fault.message : fault) });
+    self.postMessage({ fault: String(fault && fault.message ? fault.message : fault) });
+  }
+}
+
+self.onmessage = ({ data }) => {
+  const isOther = (job) => job.id !== data.withdrawn;
+  if (data.wasm) start(data.wasm);
+  else if (data.withdrawn != null) waiting.splice(0, waiting.length, ...waiting.filter(isOther));
+  else {
+    if (data.urgent) waiting.unshift(data);
+    else waiting.push(data);
+    workOn();
   }
 };

@@ -15,7 +15,8 @@ from selenium.webdriver.support.ui import WebDriverWait
 BLUR_PX = 3
 DIFFERENT = 24  # of 255, after blurring
 MOST_DIFFERENT = 0.02  # of the pixels
-SOFTWARE_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+# As Chromium does where there is no graphics card: WebGL by the processor, and pages put together without it.
+SOFTWARE_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing")
 
 
 def browser(profile, *more):

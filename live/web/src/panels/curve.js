@@ -132,7 +132,7 @@ export class CurvePanel {
     this.plot.setData(aligned(this.all(pass)));
     this.tellPins();
     if (pass.level >= 0) this.session.measure.shown("curve", pass.stamp);
-    this.element.dataset.points = pass.points.size;
+    this.element.dataset.points = pass.rows().length;
   }
 
   drawPointer(plot) {

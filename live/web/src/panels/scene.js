@@ -49,7 +49,7 @@ export class ScenePanel {
   }
 
   start() {
-    this.view = openView(this.element);
+    this.view = openView(this.element, { follows: true });
     this.session.on("answer", ({ isNewPart }) => this.show(isNewPart));
     this.session.on("rested", () => this.show(false));
     this.session.on("path", (index) => this.choose(index));

@@ -159,9 +159,18 @@ class Paths {
   }
 }
 
-function webglOf(element) {
+/** \param follows whether it is drawn anew many times a second: where WebGL is the processor's, smooth edges are too dear */
+function rendererOf(follows) {
+  const how = { antialias: true, alpha: true, preserveDrawingBuffer: true };
+  if (!follows) return new WebGLRenderer(how);
+  const canvas = document.createElement("canvas");
+  const context = canvas.getContext("webgl2", { ...how, failIfMajorPerformanceCaveat: true });
+  return context ? new WebGLRenderer({ ...how, canvas, context }) : new WebGLRenderer({ ...how, antialias: false });
+}
+
+function webglOf(element, follows) {
   try {
-    const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    const renderer = rendererOf(follows);
     renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     element.append(renderer.domElement);
     return renderer;
@@ -294,8 +303,8 @@ class WebglView {
 }
 
 /** \return what shows scenes in that element: show(scene, path), choose(path), draw() */
-export function openView(element) {
-  const renderer = webglOf(element);
+export function openView(element, { follows = false } = {}) {
+  const renderer = webglOf(element, follows);
   if (!renderer) return stillView(element);
   const view = new WebglView(element, renderer);
   view.fit();
