@@ -181,12 +181,14 @@ class Costs(unittest.TestCase):
         self.assertLess(more, 1e-3)
 
     def test_import(self):
-        """By the processor's time, which does not depend on what else the machine does."""
+        """By the processor's time, beside that of numpy, which it needs, as machines differ."""
         code = (
             "import sys, time\n"
             "begin = time.process_time()\n"
+            "import numpy\n"
+            "middle = time.process_time()\n"
             "import retrace\n"
-            "print(time.process_time() - begin)\n"
+            "print(middle - begin, time.process_time() - middle)\n"
             "asked_for = ('matplotlib', 'pandas', 'xarray', 'scipy', 'tqdm', 'trimesh')\n"
             "print([name for name in asked_for if name in sys.modules])\n"
         )
@@ -196,10 +198,11 @@ class Costs(unittest.TestCase):
             ended = python(code)
             self.assertEqual(ended.returncode, 0, ended.stderr)
             lines = ended.stdout.split("\n")
-            times.append(float(lines[0]))
+            times.append([float(word) for word in lines[0].split()])
             self.assertEqual(lines[1], "[]")
-        print(f"import: {1e3 * min(times):.0f} ms")
-        self.assertLess(min(times), 0.15)
+        of_numpy, own = map(min, zip(*times))
+        print(f"import: {1e3 * (of_numpy + own):.0f} ms, of which numpy {1e3 * of_numpy:.0f} ms")
+        self.assertLess(own, 2 * of_numpy)
 
 
 if __name__ == "__main__":
