@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 469ab9933db19fd93ef7d02ae1fcac8ce3962fb52adc2a9a9f903aa25fbfb1ee */
+/* made by tools/live_page; engine.wasm.gz 2b4b7bb33dedffc39df3caabae526a40f8462f564e43901c674c88469884b16a */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

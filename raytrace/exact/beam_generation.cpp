@@ -95,8 +95,8 @@ double BeamGeneration::survivor_count(double most_power) const {
   return std::ceil(power_ / most_power);
 }
 
-std::size_t BeamGeneration::survivors(double most_power, double offset, const BeamWalk& walk,
-                                      const std::function<void(const Beam&)>& follow) const {
+std::size_t BeamGeneration::for_each_survivor(double most_power, double offset, const BeamWalk& walk,
+                                              const std::function<void(const Beam&)>& follow) const {
   if (!counts()) return 0;
   std::size_t survivors = 0;
   const double count = survivor_count(most_power);
@@ -128,9 +128,10 @@ bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGene
   std::optional<BeamGeneration> parts;
   for (std::uint32_t generation = 0;; ++generation) {
     const BeamGeneration& now = parts ? *parts : first;
-    const std::size_t survivors = now.survivors(how.most_power, how.offset(generation), walk, [&](const Beam& beam) {
-      if (!is_cancelled(cancel)) walk.step(beam, cancel);
-    });
+    const std::size_t survivors =
+        now.for_each_survivor(how.most_power, how.offset(generation), walk, [&](const Beam& beam) {
+          if (!is_cancelled(cancel)) walk.step(beam, cancel);
+        });
     if (is_cancelled(cancel)) return false;
     if (survivors == 0) {
       walk.book_truncated(now.power());

@@ -32,10 +32,10 @@ class BeamGeneration {
   /// Chosen by systematic resampling: each stands for `most_power` or less, and all together for what the generation
   /// has. None if it does not count.
   /// \param offset in [0, 1): where the first of equally spaced marks falls
-  /// \param follow is called for each, in their order, with a beam that is good until it returns \return their number
   /// \param walk knows beams at other places
-  std::size_t survivors(double most_power, double offset, const BeamWalk& walk,
-                        const std::function<void(const Beam&)>& follow) const;
+  /// \param follow is called for each, in their order, with a beam that is good until it returns \return their number
+  std::size_t for_each_survivor(double most_power, double offset, const BeamWalk& walk,
+                                const std::function<void(const Beam&)>& follow) const;
 
  private:
   struct Place {

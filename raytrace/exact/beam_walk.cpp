@@ -227,7 +227,9 @@ void BeamWalk::defer(Beam&& beam) {
 WaitingBeams BeamWalk::take_kept() {
   deferred_power_ = 0.0;
   deferred_places_ = 0;
-  return std::exchange(deferred_, {});
+  WaitingBeams kept;
+  kept.swap(deferred_);
+  return kept;
 }
 
 void BeamWalk::step(const Beam& beam, const Cancellation* cancel) {
@@ -237,7 +239,7 @@ void BeamWalk::step(const Beam& beam, const Cancellation* cancel) {
 }
 
 void BeamWalk::take_waiting(WaitingBeams& into) {
-  into.clear();
+  WaitingBeams().swap(into);  // clear() of an empty deque of boost adds to a null pointer
   pending_.swap(into);
 }
 
@@ -351,9 +353,9 @@ void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatP
   cells_.visit(
       plan.lower, plan.upper,
       [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset, double height_mm) {
-        const Vec3 shift(offset.x(), offset.y(), height_mm);
         const CellPlace place =
             equal_ != nullptr ? equal_->place_of(patch, cell, offset) : CellPlace{part_.number_of(patch, cell), offset};
+        const Vec3 shift(offset.x(), offset.y(), height_mm);
         for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
           consider(beam, frame, whole, box, horizon.limited ? &far : nullptr, patch, patch.facets[f], shift, place);
       });

@@ -84,12 +84,8 @@ void FootprintBuilder::insert(const raytrace::FlatPolygon& entered, double effic
   for (const double i : {0.0, 1.0})
     for (const double j : {0.0, 1.0}) {
       const Vec2 from = Vec2(i, j).cwiseProduct(*period_mm_);
-      const Vec2 to = from + *period_mm_;
-      raytrace::FlatPolygon piece = entered;
-      for (const raytrace::HalfPlane& side :
-           {raytrace::HalfPlane{-1.0, 0.0, -from.x()}, raytrace::HalfPlane{1.0, 0.0, to.x()},
-            raytrace::HalfPlane{0.0, -1.0, -from.y()}, raytrace::HalfPlane{0.0, 1.0, to.y()}})
-        if (!piece.empty()) raytrace::clip(piece, side, merge_mm);
+      const Polygon period = geometry::to_polygon({from, from + *period_mm_});
+      raytrace::FlatPolygon piece = raytrace::intersection(entered, {period.begin(), period.end()}, merge_mm);
       for (Vec2& p : piece) p -= from;
       overlay_.insert(piece, efficiency);
     }
