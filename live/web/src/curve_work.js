@@ -5,7 +5,7 @@ import { AT_ONCE, MOVING } from "./session.js";
 
 const PIECE_S = 0.012;
 const PATIENCE_MS = 700; // after which a coarse curve is shown that is not whole
-const QUICK_MS = 60; // of the engine's time, that a curve may take while the design moves
+const QUICK_MS = 60; // of the engine's time: a curve that takes longer begins with wider steps
 export const CURVE_STEPS_DEG = [10, 5, 2.5, 1];
 
 /** From -`to` to `to`, those first that stand farther apart, so that a few say something of the whole. */
@@ -70,8 +70,8 @@ export class CurvePass {
     if (this.target_error === AT_ONCE) this.ms += answer.ms;
   }
 
-  /** With which level the next curve is to begin. */
-  pace() {
+  /** The level that the next curve is to begin with, by what this one took. */
+  firstLevel() {
     const directions = 2 * Math.floor(this.half_range_deg / CURVE_STEPS_DEG[1]) + 1;
     return (this.ms / this.incidences.size) * directions > QUICK_MS ? 0 : 1;
   }
@@ -129,7 +129,7 @@ export class Curve {
       return;
     }
     this.pass.take(answer);
-    if (this.pass.level === this.pass.first && this.pass.isWhole()) this.level = this.pass.pace();
+    if (this.pass.level === this.pass.first && this.pass.isWhole()) this.level = this.pass.firstLevel();
     if (this.pass.level === this.pass.first && !this.pass.isWhole() && performance.now() - this.pass.begun < PATIENCE_MS) return;
     this.shown = this.pass;
     this.session.tell("curve", this.pass);

@@ -1,9 +1,9 @@
 // The engine's workers, and the order in which what the page wants is asked of them.
 //
-// A lane has at most one job under way, with the worker that has fewest: what it wants meanwhile, it is asked for when that
-// is done. Jobs of many directions are done in pieces of some 10 ms, by turns, so that none waits long, and go on without
-// the page, which may be drawing; the direction that is pointed at comes before all of them. What takes seconds has a
-// worker of its own, which is ended where its answer is no longer wanted.
+// A lane has at most one job under way; it goes to the worker that has the fewest. When it is done the lane is asked what it
+// wants by then. A worker does jobs of many directions by turns, in pieces of some 10 ms, and goes on with them while the
+// page draws; the direction that is pointed at comes before all of them. What takes seconds has a worker of its own, which
+// is ended when its answer is no longer wanted.
 
 function bytesOf(base64) {
   return Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
@@ -29,7 +29,7 @@ function countOfWorkers() {
 
 export class Engine {
   constructor() {
-    this.workers = { quick: [], slow: [] }; // and how many jobs each has: {worker, jobs}
+    this.workers = { quick: [], slow: [] }; // each with the number of its jobs: {worker, jobs}
     this.lanes = { quick: [], slow: [] };
     this.waiting = new Map(); // what is being worked on, by the job's number
     this.count = 0;
@@ -113,8 +113,9 @@ export class Engine {
   pump() {
     for (const speed of ["quick", "slow"])
       for (const lane of this.lanes[speed]) {
+        if (lane.running > 0) continue;
         const [at] = [...this.workers[speed]].sort((a, b) => a.jobs - b.jobs);
-        if (!at || lane.running > 0 || (speed === "slow" && at.jobs > 0)) continue;
+        if (!at || (speed === "slow" && at.jobs > 0)) continue;
         const job = lane.next();
         if (job) this.send(lane, job, at);
       }

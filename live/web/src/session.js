@@ -11,9 +11,9 @@ export const RESTING = 1e-6; // at rest
 export const AT_ONCE = 1e-3; // of the many directions of curves and maps, at first
 const REST_MS = 260; // without a change, until the picture is traced in full
 const MOST_S = 1.5; // for one direction while moving
-const PACE_MS = 66; // between directions while something moves, which leaves time to draw
-const SOON_MS = 30; // within which the next change comes while something is dragged
-const FRESH_MS = 3; // within which a change has just been made
+const PACE_MS = 66; // between two directions while something moves: the page needs the time in between to draw
+const SOON_MS = 30; // a change that is this old is the last one for now: a drag would have brought the next
+const FRESH_MS = 3; // a change that is no older has just been made
 const QUICK_MS = 45; // that a direction may take while something moves; what takes longer is first traced to AT_ONCE,
 const RATIO = 4; // which is so many times quicker
 
@@ -31,7 +31,6 @@ export class Session {
     this.answer = null; // of the direction, while moving
     this.part = null;
     this.isDue = false;
-    this.sent = -Infinity;
     this.isMoving = false;
     this.sent = -Infinity; // when the last direction was asked for
     this.touched = -Infinity; // when something moved last
@@ -117,8 +116,8 @@ export class Session {
 
   // --- the lane of the direction that is pointed at
 
-  /** How long the next direction is to wait while something moves, so that there is time to draw the last one; then for
-   * the next change, if one comes soon, rather than for one that is old when it is shown. */
+  /** How long to wait before the next direction is asked for, in ms; 0 or less: not at all. First until PACE_MS have gone
+   * since the last one, then for the next change of a drag, so that what is shown is as new as can be. */
   pace() {
     const now = performance.now();
     const early_ms = this.sent + PACE_MS - now;

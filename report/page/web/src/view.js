@@ -159,7 +159,7 @@ class Paths {
   }
 }
 
-/** \param follows whether it is drawn anew many times a second: where WebGL is the processor's, smooth edges are too dear */
+/** \param follows whether it is drawn anew many times a second: without a graphics card it then has no smooth edges */
 function rendererOf(follows) {
   const how = { antialias: true, alpha: true, preserveDrawingBuffer: true };
   if (!follows) return new WebGLRenderer(how);
@@ -302,7 +302,8 @@ class WebglView {
   }
 }
 
-/** \return what shows scenes in that element: show(scene, path), choose(path), draw() */
+/** \param follows whether what is shown changes many times a second \return what shows scenes in that element: show(scene,
+ * path), choose(path), draw() */
 export function openView(element, { follows = false } = {}) {
   const renderer = webglOf(element, follows);
   if (!renderer) return stillView(element);
