@@ -65,7 +65,7 @@ class LiveCase(BrowserCase):
     def rest(self):
         """Until nothing moves and the direction is traced in full."""
         self.wait(lambda d: self.script("return !retraceLive.isMoving && !retraceLive.isDue"))
-        self.wait(lambda d: not self.all(".accuracy.resting.old") and self.one(".accuracy.resting output").text != "–")
+        self.wait(lambda d: not self.all(".accuracy.resting.old") and self.text(".accuracy.resting output") != "–")
 
     def open(self, toml):
         self.script("retraceLive.open(arguments[0], 'design.toml')", toml)
@@ -84,7 +84,7 @@ class LiveCase(BrowserCase):
 
     def bounds(self, selector):
         """Between what RRE lies, as a share: of "72.1 … 72.2 %" or "72.15 ± 0.05 %"."""
-        text = self.one(selector).text.removesuffix(" %")
+        text = self.text(selector).removesuffix(" %")
         if "±" in text:
             middle, half = map(float, text.split(" ± "))
             return (middle - half) / 100, (middle + half) / 100
@@ -102,8 +102,8 @@ class PageWorks(LiveCase):
         self.assertLess(self.page.stat().st_size, 3e6)
 
     def test_structure(self):
-        self.assertEqual([heading.text for heading in self.all("h1")], ["retrace live"])
-        titles = [heading.text for heading in self.all("section > .panel-head h2")]
+        self.assertEqual(self.texts("h1"), ["retrace live"])
+        titles = self.texts("section > .panel-head h2")
         self.assertEqual(len(titles), 7)
         for control in self.all("input:not([type=file]), select, textarea, button"):
             name = self.script("const e = arguments[0]; return e.getAttribute('aria-label') || e.textContent.trim() || "
@@ -136,7 +136,7 @@ class PageWorks(LiveCase):
     def test_a_direction_of_the_map_moves_all(self):
         self.rest()
         before = {name: self.canvas_of(f".{name} canvas") for name in ("plan-view", "scene-view")}
-        ledger = self.one(".ledger-list").text
+        ledger = self.text(".ledger-list")
         over = self.one(".map-view canvas")
         self.script("arguments[0].scrollIntoView({block: 'center'})", over)
         ActionChains(self.driver).move_to_element_with_offset(over, 60, -30).click().perform()
@@ -145,7 +145,7 @@ class PageWorks(LiveCase):
         self.assertTrue(0 < direction["azimuth_deg"] < 90 and direction["incidence_deg"] > 5)
         for name, picture in before.items():
             self.assertNotEqual(self.canvas_of(f".{name} canvas"), picture)
-        self.assertNotEqual(self.one(".ledger-list").text, ledger)
+        self.assertNotEqual(self.text(".ledger-list"), ledger)
         over = self.one(".curve-view .u-over")
         self.script("arguments[0].scrollIntoView({block: 'center'})", over)
         ActionChains(self.driver).move_to_element_with_offset(over, -60, 0).click().perform()
@@ -155,12 +155,12 @@ class PageWorks(LiveCase):
         plan = self.one(".plan-view canvas")
         ActionChains(self.driver).move_to_element_with_offset(plan, 14, 9).click().perform()
         self.wait(lambda d: self.session("spot") and len(self.session("paths")) == 1)
-        steps = self.all(".ray tbody tr")
+        steps = self.texts(".ray tbody tr")
         self.assertGreater(len(steps), 2)
-        self.assertIn("°", steps[1].text)
+        self.assertIn("°", steps[1])
         critical = math.degrees(math.asin(1 / 1.4917))
-        self.assertTrue(any(abs(float(cell.text.rstrip("°")) - critical) < 0.2
-                            for cell in self.all(".ray tbody td.n:nth-of-type(3)") if cell.text))
+        self.assertTrue(any(abs(float(text.rstrip("°")) - critical) < 0.2
+                            for text in self.texts(".ray tbody td.n:nth-of-type(3)") if text))
         self.one(".plan-view").send_keys(Keys.ESCAPE)
         self.wait(lambda d: self.session("spot") is None and len(self.session("paths")) > 1)
 
@@ -172,16 +172,16 @@ class PageWorks(LiveCase):
         line = text.splitlines().index("[element]") + 2
         wrong = text.replace('kind = "rtp"', 'kind = "rtq"')
         self.type_text(wrong)
-        self.wait(lambda d: self.one("#live-text-error").text)
+        self.wait(lambda d: self.text("#live-text-error"))
         design = pathlib.Path(self.folder.name) / "design.toml"
         design.write_bytes(wrong.encode())
         done = subprocess.run([str(PROGRAM), "inspect", design.name], cwd=design.parent, capture_output=True, text=True, check=False)
-        told = self.one("#live-text-error").text.replace("rtp.toml:", "design.toml:", 1)
+        told = self.text("#live-text-error").replace("rtp.toml:", "design.toml:", 1)
         self.assertEqual(done.stderr.strip().removeprefix("retrace: "), told)
-        self.assertEqual(self.one(".numbers .wrong").text, str(line))
+        self.assertEqual(self.text(".numbers .wrong"), str(line))
         self.assertEqual(self.canvas_of(".plan-view canvas"), shown)
         self.type_text(text)
-        self.wait(lambda d: not self.one("#live-text-error").text)
+        self.wait(lambda d: not self.text("#live-text-error"))
 
     def test_a_value_that_cannot_be_leaves_the_last_picture(self):
         self.template("rtp")
@@ -252,8 +252,8 @@ class PageWorks(LiveCase):
         for _ in range(5):
             pin.click()
         self.assertEqual(len(self.all(".pins .ghost")), 4)
-        self.assertIn("Four", self.one(".done").text)
-        self.wait(lambda d: all("%" in output.text for output in self.all(".pins .ghost output")))
+        self.assertIn("Four", self.text(".done"))
+        self.wait(lambda d: all("%" in text for text in self.texts(".pins .ghost output")))
         self.template("hexagonal_icc")
         self.all(".pins .ghost button")[0].click()
         self.wait(lambda d: '"rtp"' in self.session("base.toml"))
@@ -263,14 +263,14 @@ class PageWorks(LiveCase):
     def test_judges_test_points(self):
         self.script("const s = document.querySelector('.programme select'); s.value = 'r150'; s.dispatchEvent(new Event('change'))")
         self.wait(lambda d: self.all(".test tbody tr"))
-        verdicts = {chip.text for chip in self.all(".test tbody .chip")}
+        verdicts = set(self.texts(".test tbody .chip"))
         self.assertLessEqual(verdicts, {"pass", "fail", "unconfirmed", "undetermined"})
         self.assertTrue(verdicts)
 
     def test_says_what_it_cannot_and_what_does(self):
         self.open(ODD.replace("[body]", "[surface]\nroughness_sq_nm = 20\ncorrelation_length_um = 2\n[body]"))
         self.wait(lambda d: self.all(".notice .command code"))
-        self.assertTrue(self.one(".notice .command code").text.startswith("retrace "))
+        self.assertTrue(self.text(".notice .command code").startswith("retrace "))
 
     def test_answers_to_the_keyboard(self):
         self.rest()

@@ -79,6 +79,14 @@ class BrowserCase(unittest.TestCase):
     def one(self, selector):
         return self.driver.find_element(By.CSS_SELECTOR, selector)
 
+    def texts(self, selector):
+        """What is read in each of them, all at one moment: the page may draw them anew between two questions."""
+        return self.driver.execute_script(
+            "return [...document.querySelectorAll(arguments[0])].map(e => e.innerText.trim())", selector)
+
+    def text(self, selector):
+        return self.texts(selector)[0]
+
     def downloads_to(self, name):
         """A folder of that name for what the page saves."""
         target = pathlib.Path(self.folder.name) / name

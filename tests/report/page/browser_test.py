@@ -36,8 +36,8 @@ class PageCase(BrowserCase):
 
 class PageWorks(PageCase):
     def test_structure(self):
-        self.assertEqual(self.one("h1").text, "Study of a prism")
-        titles = [heading.text for heading in self.all("section > h2")]
+        self.assertEqual(self.text("h1"), "Study of a prism")
+        titles = self.texts("section > h2")
         for title in ("Summary", "In three dimensions", "Design", "Efficiency", "Footprint", "Far field", "Tool path",
                       "Verification", "Provenance"):
             self.assertIn(title, titles)
@@ -121,13 +121,13 @@ class PageWorks(PageCase):
         before = view.get_attribute("data-camera")
         view.send_keys(Keys.ARROW_LEFT)
         self.wait(lambda d: view.get_attribute("data-camera") != before)
-        steps = [step.text for step in self.all("#scene-steps li")]
+        steps = self.texts("#scene-steps li")
         self.assertTrue(steps[0].startswith("Enters the entrance face"))
         self.assertTrue(any(step.startswith("Total reflection at a facet") for step in steps))
         choices = self.all("#scene-paths input")
         self.assertGreater(len(choices), 2)
         choices[1].click()
-        self.wait(lambda d: [step.text for step in self.all("#scene-steps li")] != steps)
+        self.wait(lambda d: self.texts("#scene-steps li") != steps)
 
     def test_tables_are_saved_as_csv(self):
         target = self.downloads_to("saved")
