@@ -121,7 +121,7 @@ void ControlCheck::spindle(const NcSettings& settings, const NcPlace& place) {
   const double rpm = settings.spindle_rpm.value_or(0.0);
   const bool stands = is == NcSpindle::stopped || is == NcSpindle::stopped_by_text;
   std::string message;
-  if (rule.turns == NcSpindle::stopped && !settings.spindle && dialect_ != NcDialect::pmac)
+  if (rule.turns == NcSpindle::stopped && !settings.spindle && !has_own_texts(dialect_))
     message = "the program does not say that the spindle stands still";
   else if (rule.turns == NcSpindle::stopped && !stands)
     message = "the spindle turns, which must stand still";

@@ -27,13 +27,14 @@ struct Control {
   bool has_mirror = false;                                ///< of a Fanuc: G51.1 mirrors them, G50.1 cancels it
   std::string modulo_axes = "C";  ///< letters of rotary axes that a Sinumerik counts within a turn
   int coordinate_system = 1;      ///< of a Power PMAC
-  std::string mist_on;            ///< lines of a Power PMAC; empty: it has none
+  std::string mist_on;            ///< lines of a Power PMAC or an Aerotech control; empty: it has none
   std::string mist_off;
   std::string optional_stop;
   bool rapids_are_straight = false;  ///< axes arrive together; otherwise each goes at its own speed
 };
 
-/// A line of a Power PMAC's program that an integrator has given a meaning, written and read letter by letter.
+/// A line of a Power PMAC's or an Aerotech control's program that an integrator has given a meaning, written and read
+/// letter by letter.
 /// \return what is wrong with it: not 1 to 200 printable ASCII characters without // and blanks at its ends, or a
 /// statement that moves axes or belongs to the program's own frame; empty if nothing is
 std::string unfit_line(std::string_view text);

@@ -116,7 +116,74 @@ constexpr DialectWords kPmac = {
     .optional_stop = "{0}\n",
     .has_own_texts = true};
 
-constexpr std::array kDialects = {kRs274ngc, kSinumerik, kFanuc, kPmac};
+/// Aerotech A3200 with its CNC option: G codes and AeroBasic. What they rest on stands in docs/nc_dialects.md. Blending
+/// keeps the speed from line to line and leaves no path; the speed is that of all axes together, so that it says how
+/// long a line takes. Codes for coolant and the spindle are those of the machine's builder.
+constexpr DialectWords kA3200 = {
+    .dialect = {"a3200", ".pgm", "Aerotech A3200"},
+    .subroutines_first = false,
+    .file_ends = "",
+    .main_begin = "",
+    .main_end = "END PROGRAM\n",
+    .needs =
+        "Needs: the CNC option, all axes dominant, rotary axes in degrees without rollover,\n"
+        "no G98, no rounding of corners, coordinates neither turned nor mirrored,\n"
+        "the zero of the workpiece set, the spindle stopped",
+    .prepare = "G71 G75 G90 G94 G109\nG40 G149\nWAIT MODE INPOS\n",
+    .spindle_start = "{2}\n",
+    .spindle_stop = "{}\n",
+    .comment = "' {}\n",
+    .message = "' {}\n",
+    .subroutine_begin = "' {1}\nDFS RT{0}\nG91\n",
+    .subroutine_end = "G90\nENDDFS\n",
+    .call = "CALL RT{}\n",
+    .rapid = "G0",
+    .linear = "G1",
+    .dwell = "G4 P{0:.3f}\n",
+    .path_begin = "G108\n",
+    .path_time = " F{2:.6f}",
+    .path_end = "G109\n",
+    .mist_on = "{0}\n",
+    .mist_off = "{0}\n",
+    .optional_stop = "{0}\n",
+    .has_own_texts = true,
+    .has_paths_by_speed = true};
+
+/// Aerotech Automation1: AeroScript, its G codes where they are published (help.aerotech.com/automation1) and its
+/// functions where those are not. Feeds as of the A3200.
+constexpr DialectWords kAutomation1 = {
+    .dialect = {"automation1", ".ascript", "Aerotech Automation1"},
+    .subroutines_first = false,
+    .file_ends = "",
+    .main_begin = "program\n",
+    .main_end = "end\n",
+    .needs =
+        "Needs: primary units of mm and degrees, all axes dominant, rotary axes without rollover,\n"
+        "no G98, no transformations, the zero of the workpiece set, the spindle stopped",
+    .prepare =
+        "SetupTaskDistanceUnits(DistanceUnits.Primary)\nSetupTaskTimeUnits(TimeUnits.Minutes)\n"
+        "SetupTaskTargetMode(TargetMode.Absolute)\nSetupTaskWaitMode(WaitMode.InPosition)\n"
+        "VelocityBlendingOff()\nCornerRoundingOff()\nG94\nG40 G149\n",
+    .spindle_start = "{2}\n",
+    .spindle_stop = "{}\n",
+    .comment = "// {}\n",
+    .message = "// {}\n",
+    .subroutine_begin = "// {1}\nfunction RT{0}()\nG91\n",
+    .subroutine_end = "G90\nend\n",
+    .call = "RT{}()\n",
+    .rapid = "G0",
+    .linear = "G1",
+    .dwell = "Dwell({0:.3f})\n",
+    .path_begin = "VelocityBlendingOn()\n",
+    .path_time = " F{2:.6f}",
+    .path_end = "VelocityBlendingOff()\n",
+    .mist_on = "{0}\n",
+    .mist_off = "{0}\n",
+    .optional_stop = "{0}\n",
+    .has_own_texts = true,
+    .has_paths_by_speed = true};
+
+constexpr std::array kDialects = {kRs274ngc, kSinumerik, kFanuc, kPmac, kA3200, kAutomation1};
 
 }  // namespace
 

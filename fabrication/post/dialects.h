@@ -32,7 +32,8 @@ struct DialectWords {
   std::string_view linear;
   std::string_view dwell;       ///< seconds; milliseconds
   std::string_view path_begin;  ///< a path without stops, its moves timed; mm that it may be left by; control
-  std::string_view path_time;   ///< moves like this in a minute; milliseconds
+  std::string_view path_time;   ///< moves like this in a minute; milliseconds; speed of all axes together, in mm and
+                                ///< degrees per minute
   std::string_view path_end;    ///< exact stop and feeds per minute again; control
   std::string_view mist_on = "M7\n";
   std::string_view mist_off = "M9\n";
@@ -42,6 +43,7 @@ struct DialectWords {
   bool has_own_texts = false;       ///< mist and stops are lines of the machine's file
   bool has_increment_systems = false;
   bool has_incremental_paths = false;  ///< all words of a path are increments
+  bool has_paths_by_speed = false;     ///< times of a path follow from speeds alone
 };
 
 /// All dialects, the reference first.

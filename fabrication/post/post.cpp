@@ -134,10 +134,30 @@ class FileWriter {
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (move.to[axis]) word(axis, letters[axis], *move.to[axis]);
     if (move.seconds > 0.0)
-      add(dialect_.path_time, 60.0 / move.seconds, 1e3 * move.seconds);
+      time_of(move);
     else if (move.motion != Motion::rapid)
       feed(move.feed_mm_per_min);
     text_ += '\n';
+  }
+
+  void time_of(const Move& move) {
+    const double way = way_of(move);
+    if (dialect_.has_paths_by_speed && way == 0.0)
+      throw InputError({"", 0, "--dialect"},
+                       fmt::format("{} cannot say how long a move of a path takes that goes nowhere: its time is "
+                                   "that of its way",
+                                   dialect_.dialect.name));
+    add(dialect_.path_time, 60.0 / move.seconds, 1e3 * move.seconds, 60.0 * way / move.seconds);
+  }
+
+  /// How far all axes go together, in mm and degrees alike.
+  double way_of(const Move& move) const {
+    double way = 0.0;
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      const double by = static_cast<double>(move.to[axis].value_or(0) - at_[axis].value_or(0));
+      if (move.to[axis]) way = std::hypot(way, by / (axis >= kTilt ? kRotaryUnitsPerDeg : kNanometresPerMm));
+    }
+    return way;
   }
 
   /// A word of an axis, in one of the ways that the dialect has.

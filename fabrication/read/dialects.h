@@ -1,7 +1,7 @@
 #pragma once
 
-// The readers of NC text by dialect (RS274NGC, Sinumerik, Fanuc, Power PMAC), each written from its published rules and
-// apart from the writers in post/.
+// The readers of NC text by dialect (RS274NGC, Sinumerik, Fanuc, Power PMAC, Aerotech), each written from its published
+// rules and apart from the writers in post/.
 
 #include <string>
 #include <string_view>
@@ -25,6 +25,14 @@ NcProgram parse_fanuc(NcLines lines, const NcTexts&);
 /// Omron/Delta Tau Power PMAC: open prog ... close, rapid, linear, abs, inc, dwell in ms, call.
 /// (Power PMAC User's Manual; Software Reference)
 NcProgram parse_pmac(NcLines lines, const NcTexts& texts);
+
+/// Aerotech A3200: AeroBasic statements and the G codes of its CNC option; END PROGRAM, DFS ... ENDDFS, CALL. (A3200.h
+/// of the C library; what public programs for it say)
+NcProgram parse_a3200(NcLines lines, const NcTexts& texts);
+
+/// Aerotech Automation1: AeroScript's program ... end, function ... end, its functions for settings and moves, and its
+/// G codes. (help.aerotech.com/automation1)
+NcProgram parse_automation1(NcLines lines, const NcTexts& texts);
 
 /// What a text that stopped in the middle of its last line leaves: the error that this gave, as a remark.
 /// Runs `read`, and turns an InputError in an open last line into NcProgram::truncated.

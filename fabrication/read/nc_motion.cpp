@@ -166,21 +166,38 @@ class Runner {
     for (std::size_t axis = 0; axis < kNcAxes; ++axis)
       if ((block.axes >> axis & 1U) != 0) move_axis(block, axis, motion);
     motion.to = axes_of(position_);
-    // Without a setting a feed counts mm/min, but for PMAC, which starts with mm/s.
-    const double default_time_s = program_.dialect == NcDialect::pmac ? 1.0 : 60.0;
-    const double unit_mm = settings_.unit_mm.value_or(1.0);
-    if (motion.move == NcMove::linear) motion.duration_s = duration_of(block);
-    if (motion.move == NcMove::linear && motion.duration_s == 0.0)
-      motion.feed_mm_per_min = feed_ * unit_mm * 60.0 / settings_.feed_time_s.value_or(default_time_s);
+    if (motion.move == NcMove::linear) motion.duration_s = duration_of(block, motion);
+    if (motion.move == NcMove::linear && motion.duration_s == 0.0) motion.feed_mm_per_min = feed_mm_per_min();
     motion.is_exact_stop = settings_.exact_stop.value_or(true);
     sink_.motion(motion, settings_);
   }
 
+  /// Without a setting a feed counts mm/min, but for PMAC, which starts with mm/s.
+  double feed_mm_per_min() const {
+    const double default_time_s = program_.dialect == NcDialect::pmac ? 1.0 : 60.0;
+    return feed_ * settings_.unit_mm.value_or(1.0) * 60.0 / settings_.feed_time_s.value_or(default_time_s);
+  }
+
   /// Of a linear move; 0 where a feed says how fast it is.
-  double duration_of(const NcBlock& block) const {
+  double duration_of(const NcBlock& block, const NcMotion& motion) const {
+    if (has_feeds_of_all_axes(program_.dialect)) return duration_by_way(block, motion);
     if (!inverse_time_.value_or(false)) return move_time_s_;
     if (!block.feed || !(*block.feed > 0.0)) fail(block, "under inverse time every linear move needs its own F > 0");
     return 60.0 / *block.feed;
+  }
+
+  /// Where a feed is the speed of all axes together it is none of the linear ones alone if others move too. Moves that
+  /// are blended follow each other at that speed, so that it says when each of them ends.
+  double duration_by_way(const NcBlock& block, const NcMotion& motion) const {
+    const bool is_known = (block.axes & ~motion.known) == 0;
+    const bool turns = block.axes >> kFirstRotaryAxis != 0;
+    if (!is_known || !(turns || settings_.exact_stop == false)) return 0.0;
+    const AxisPositions& from = motion.from;
+    const AxisPositions& to = motion.to;
+    const double way = std::hypot(std::hypot(to.x_mm - from.x_mm, to.y_mm - from.y_mm, to.z_mm - from.z_mm),
+                                  std::hypot(to.a_deg - from.a_deg, to.b_deg - from.b_deg, to.c_deg - from.c_deg));
+    const double feed = feed_mm_per_min();
+    return feed > 0.0 ? 60.0 * way / feed : 0.0;
   }
 
   void move_axis(const NcBlock& block, std::size_t axis, NcMotion& motion) {

@@ -54,6 +54,31 @@ constexpr std::array kPmac = {
     NcNeed{nc_said::kTransformationOff, "Coord[1].SegMoveTime=0", "that the control transforms no axes"},
     NcNeed{nc_said::kExactStop, "Coord[1].NoBlend=1", kStopText}};
 
+/// Modes of a task persist between programs (Aerotech's knowledge base, Introduction to Tasks).
+constexpr NcNeed kFeedModeNeed = {nc_said::kFeedMode, "G94", "that feeds are speeds: not G93, not G95"};
+constexpr NcNeed kToolOffsetNeed = {nc_said::kLengthOff, "G149", "that no offset of the tool holds"};
+constexpr std::string_view kFineStopText = "that stops wait for the axes' exact positions";
+
+constexpr std::array kA3200 = {NcNeed{nc_said::kUnit, "G71 or METRIC", "the unit of lengths"},
+                               NcNeed{nc_said::kFeedTime, "G75 or MINUTES", "what time feeds are per"},
+                               kDistanceNeed,
+                               kFeedModeNeed,
+                               kRadiusNeed,
+                               kToolOffsetNeed,
+                               NcNeed{nc_said::kExactStop, "G109 or VELOCITY OFF", kStopText},
+                               NcNeed{nc_said::kFineStop, "WAIT MODE INPOS", kFineStopText}};
+
+constexpr std::array kAutomation1 = {
+    NcNeed{nc_said::kUnit, "SetupTaskDistanceUnits(DistanceUnits.Primary)", "the unit of lengths"},
+    NcNeed{nc_said::kFeedTime, "SetupTaskTimeUnits(TimeUnits.Minutes)", "what time feeds are per"},
+    kDistanceNeed,
+    kFeedModeNeed,
+    kRadiusNeed,
+    kToolOffsetNeed,
+    NcNeed{nc_said::kExactStop, "VelocityBlendingOff() or G109", kStopText},
+    NcNeed{nc_said::kRoundingOff, "CornerRoundingOff()", "that no arcs are put between lines"},
+    NcNeed{nc_said::kFineStop, "SetupTaskWaitMode(WaitMode.InPosition)", kFineStopText}};
+
 }  // namespace
 
 std::span<const NcNeed> needs_of(NcDialect dialect) {
@@ -61,9 +86,11 @@ std::span<const NcNeed> needs_of(NcDialect dialect) {
     case NcDialect::rs274ngc: return kRs274ngc;
     case NcDialect::sinumerik: return kSinumerik;
     case NcDialect::fanuc: return kFanuc;
-    case NcDialect::pmac: break;
+    case NcDialect::pmac: return kPmac;
+    case NcDialect::a3200: return kA3200;
+    case NcDialect::automation1: break;
   }
-  return kPmac;
+  return kAutomation1;
 }
 
 }  // namespace retrace::fabrication

@@ -2,13 +2,15 @@
 
 #include <array>
 
+#include "core/text.h"
 #include "fabrication/read/dialects.h"
 
 namespace retrace::fabrication {
 namespace {
 
 /// In the order of the enumerators.
-constexpr std::array kReaders = {parse_rs274ngc, parse_sinumerik, parse_fanuc, parse_pmac};
+constexpr std::array kReaders = {parse_rs274ngc, parse_sinumerik, parse_fanuc,
+                                 parse_pmac,     parse_a3200,     parse_automation1};
 
 }  // namespace
 
@@ -24,6 +26,9 @@ NcDialect recognise_dialect(std::string_view text, const std::string& file) {
   while (lines.next(line)) {
     const std::string packed = without_blanks(line);
     if (packed.starts_with("OPENPROG") || packed.starts_with("OPENSUBPROG")) return NcDialect::pmac;
+    if (packed.starts_with("WAITMODE") || packed == "ENDPROGRAM" || packed == "VELOCITYON" || packed == "VELOCITYOFF")
+      return NcDialect::a3200;
+    if (trimmed(line) == "program" || packed.starts_with("SETUPTASK")) return NcDialect::automation1;
     if (packed == "%") has_percent = true;
     if (packed.starts_with("MSG(") || packed.starts_with("CALLBLOCK") || packed.find("TRAFOOF") != std::string::npos)
       return NcDialect::sinumerik;
@@ -35,7 +40,8 @@ NcDialect recognise_dialect(std::string_view text, const std::string& file) {
   if (has_percent) return NcDialect::rs274ngc;
   throw InputError(
       {file, 0, ""},
-      "no word of rs274ngc (o101 sub), sinumerik (MSG), fanuc (O0001) or pmac (open prog) was found in it");
+      "no word of rs274ngc (o101 sub), sinumerik (MSG), fanuc (O0001), pmac (open prog), a3200 (END PROGRAM) or "
+      "automation1 (program) was found in it");
 }
 
 }  // namespace retrace::fabrication

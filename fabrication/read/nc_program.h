@@ -13,10 +13,21 @@
 namespace retrace::fabrication {
 
 /// The languages of controllers that can be read.
-enum class NcDialect { rs274ngc, sinumerik, fanuc, pmac };
+enum class NcDialect { rs274ngc, sinumerik, fanuc, pmac, a3200, automation1 };
 
 /// Words of the command line, in the order of the enumerators.
-inline constexpr std::string_view kNcDialectWords[] = {"rs274ngc", "sinumerik", "fanuc", "pmac"};
+inline constexpr std::string_view kNcDialectWords[] = {"rs274ngc", "sinumerik", "fanuc",
+                                                       "pmac",     "a3200",     "automation1"};
+
+/// Whether mist, stops and the spindle of a lathe are lines that the files of machine and part give (NcTexts).
+constexpr bool has_own_texts(NcDialect dialect) {
+  return dialect == NcDialect::pmac || dialect == NcDialect::a3200 || dialect == NcDialect::automation1;
+}
+
+/// Whether a feed is the speed of all axes of a line together, mm and degrees alike, where rotary axes move too.
+constexpr bool has_feeds_of_all_axes(NcDialect dialect) {
+  return dialect == NcDialect::a3200 || dialect == NcDialect::automation1;
+}
 
 /// Axes in the order of words here: X, Y, Z, A, C, B. Which of A and B there is, the machine says.
 inline constexpr std::size_t kNcAxes = 6;
@@ -28,7 +39,8 @@ enum class NcMove : std::uint8_t { rapid, linear };
 /// What a program asks of the spindle: M5, M3, M4, or the lines of an NcTexts.
 enum class NcSpindle : std::uint8_t { stopped, clockwise, counterclockwise, started_by_text, stopped_by_text };
 
-/// Lines of a Power PMAC's program that the integrator of the machine has given a meaning. Empty: there is none.
+/// Lines of a program that the integrator of the machine has given a meaning, for dialects that has_own_texts() names.
+/// Empty: there is none.
 struct NcTexts {
   std::string spindle_start;
   std::string spindle_stop;
@@ -53,6 +65,9 @@ inline constexpr std::uint16_t kUnit = 1U << 9U;
 inline constexpr std::uint16_t kDistance = 1U << 10U;  ///< absolute or incremental
 inline constexpr std::uint16_t kFeedTime = 1U << 11U;
 inline constexpr std::uint16_t kExactStop = 1U << 12U;
+// Of controls whose feeds have a mode and a time each, and whose rounding of corners is no part of blending.
+inline constexpr std::uint16_t kFeedMode = 1U << 13U;     ///< feeds are speeds, neither times nor per turn
+inline constexpr std::uint16_t kRoundingOff = 1U << 14U;  ///< no arcs between lines
 }  // namespace nc_said
 
 /// A setting that a block may make. Nothing: the block does not say.
@@ -118,7 +133,7 @@ inline constexpr std::size_t kLongestNcLine = 1024;
 inline constexpr std::size_t kLongestNcBytes = std::size_t{1} << 30;
 
 /// Reads the text of a program. Whatever the dialect's rules do not cover here is refused, never skipped.
-/// \param file names it in messages \param texts lines of a Power PMAC, letter by letter
+/// \param file names it in messages \param texts lines of such dialects, letter by letter
 /// \throw InputError naming file and line: a word that is not understood, a line that is too long, text that is none
 NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect, const NcTexts& texts = {});
 

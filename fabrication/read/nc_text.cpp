@@ -120,6 +120,21 @@ void skip_comment_marks(std::string_view& text) {
   while (text.ends_with(kNcCommentMark)) text.remove_suffix(1);
 }
 
+bool set_text(std::string_view line, const NcTexts& texts, NcBlock& block) {
+  if (line.empty()) return false;
+  if (line == texts.spindle_start)
+    block.spindle = NcSpindle::started_by_text;
+  else if (line == texts.spindle_stop)
+    block.spindle = NcSpindle::stopped_by_text;
+  else if (line == texts.mist_on || line == texts.mist_off)
+    block.mist_on = line == texts.mist_on;
+  else if (line == texts.optional_stop)
+    block.stops = true;
+  else
+    return false;
+  return true;
+}
+
 bool starts_with_word(std::string_view text, std::string_view word) {
   if (!text.starts_with(word)) return false;
   return text.size() == word.size() || text[word.size()] == ' ' || text[word.size()] == '\t';

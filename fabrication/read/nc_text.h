@@ -62,6 +62,9 @@ inline constexpr char kNcCommentMark = '(';
 /// Words may have comments between them, and at both ends of the line.
 void skip_comment_marks(std::string_view& text);
 
+/// Takes a line that the integrator has given a meaning. False for any other.
+bool set_text(std::string_view line, const NcTexts& texts, NcBlock& block);
+
 bool starts_with_word(std::string_view text, std::string_view word);
 
 /// A code of a dialect.

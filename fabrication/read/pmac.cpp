@@ -39,19 +39,9 @@ class PmacReader {
  private:
   /// A line that the integrator has given a meaning.
   bool read_text(std::string_view text) {
-    if (text.empty()) return false;
     NcBlock block;
     block.line = lines_.number();
-    if (text == texts_.spindle_start)
-      block.spindle = NcSpindle::started_by_text;
-    else if (text == texts_.spindle_stop)
-      block.spindle = NcSpindle::stopped_by_text;
-    else if (text == texts_.mist_on || text == texts_.mist_off)
-      block.mist_on = text == texts_.mist_on;
-    else if (text == texts_.optional_stop)
-      block.stops = true;
-    else
-      return false;
+    if (!set_text(text, texts_, block)) return false;
     if (!is_in_main_) lines_.fail("stands outside of open prog ... close");
     program_.blocks.push_back(block);
     return true;

@@ -24,9 +24,9 @@ struct ProgramName {
 /// A file that has an @ and a number in its name is that file, if it is there.
 ProgramName program_name(const std::string& given);
 
-/// Reads programs, in their order. \param names as program_name() takes them \param texts lines that a PMAC is to take
-/// as they are \param given programs in place of files that would be read \throw InputError for a file that cannot be
-/// read or understood, with its line, and for a line that it does not have
+/// Reads programs, in their order. \param names as program_name() takes them \param texts lines that a control is to
+/// take as they are \param given programs in place of files that would be read \throw InputError for a file that cannot
+/// be read or understood, with its line, and for a line that it does not have
 std::vector<NcProgram> read_programs(const std::vector<std::string>& names, const std::string& dialect,
                                      const NcTexts& texts = {}, const FileTexts& given = {});
 

@@ -45,7 +45,7 @@ struct PlaningText {
   std::string text;
 };
 
-/// The lines of a part's file that start and stop the spindle of a PMAC.
+/// The lines of a part's file that start and stop the spindle, for dialects that have no words of their own for it.
 NcTexts spindle_texts_of(const PlanedPart& part);
 
 /// Judges programs, in the order in which they run, as they were read.

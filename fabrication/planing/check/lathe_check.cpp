@@ -51,7 +51,7 @@ constexpr std::uint8_t kAxesXz = 0b101;
 constexpr double kFeedRounding = 5e-4;
 constexpr double kWordsMm = 2e-6;  // of positions that words of a nanometre give
 
-/// A PMAC is told by lines of the part's file, which say nothing of sense and speed that could be read.
+/// Some dialects are told by lines of the part's file, which say nothing of sense and speed that could be read.
 ControlRule rule_of(const PlaningLathe& lathe, NcDialect dialect) {
   ControlRule rule;
   rule.axes = kAxesXz;
@@ -60,7 +60,7 @@ ControlRule rule_of(const PlaningLathe& lathe, NcDialect dialect) {
   const bool is_clockwise = lathe.spindle_direction == SpindleDirection::clockwise;
   rule.spindle.rpm = static_cast<double>(lathe.spindle_rpm);
   rule.spindle.turns = is_clockwise ? NcSpindle::clockwise : NcSpindle::counterclockwise;
-  if (dialect == NcDialect::pmac) rule.spindle.turns = NcSpindle::started_by_text;
+  if (has_own_texts(dialect)) rule.spindle.turns = NcSpindle::started_by_text;
   return rule;
 }
 

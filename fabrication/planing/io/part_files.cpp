@@ -58,9 +58,8 @@ constexpr Row kMillRows[] = {
     {"run_out_mm", kLength, 20.0, "By which strokes begin and end beside the part."},
     {"clear_mm", kLength, 14.0, "Height of moves over the blank, at least the least move of Z."}};
 constexpr std::string_view kSpindleText =
-    "A line of a PMAC program, of up to 200 printable ASCII characters without `//`; required for `--dialect pmac`, "
-    "and "
-    "not that of the other.";
+    "A line of a program of a Power PMAC or an Aerotech control, of up to 200 printable ASCII characters without `//`; "
+    "required for `--dialect pmac`, `a3200` and `automation1`, and not that of the other.";
 constexpr Row kLatheRows[] = {
     {"feed_mm_per_min", kFeed, kRequired, "Of all cuts."},
     {"depth_of_cut_mm", Number{{.low = 0.01, .high = 100.0}}, 1.0, "Of a pass."},

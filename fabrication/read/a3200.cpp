@@ -1,0 +1,171 @@
+#include <algorithm>
+
+#include "core/message_text.h"
+#include "fabrication/read/aerotech_codes.h"
+#include "fabrication/read/dialects.h"
+#include "fabrication/read/subroutine_table.h"
+
+namespace retrace::fabrication {
+namespace {
+
+/// Statements of AeroBasic that stand alone and say what a G code says.
+struct A3200Statement {
+  std::string_view words;
+  void (*effect)(NcBlock&) = nullptr;
+};
+constexpr A3200Statement kA3200Statements[] = {
+    {"ABSOLUTE", nc_effects::kAbsolute},
+    {"INCREMENTAL", nc_effects::kIncremental},
+    {"METRIC", nc_effects::kMillimetre},
+    {"ENGLISH", nc_effects::kInch},
+    {"MINUTES", kAerotechFeedTime<60>},
+    {"SECONDS", kAerotechFeedTime<1>},
+    {"VELOCITY ON", nc_effects::kBlending},
+    {"VELOCITY OFF", nc_effects::kExactStop},
+    {"WAIT MODE INPOS", nc_effects::kSays<nc_said::kFineStop>},
+};
+
+/// The line without its comment, which stands behind //, ' or ;.
+std::string_view without_a3200_comment(std::string_view line) {
+  return line.substr(0, std::min({line.find("//"), line.find('\''), line.find(';')}));
+}
+
+/// In capitals, with one blank for each gap.
+std::string with_single_blanks(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool is_blank = c == ' ' || c == '\t';
+    if (is_blank && (result.empty() || result.back() == ' ')) continue;
+    result += is_blank ? ' ' : c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  }
+  if (!result.empty() && result.back() == ' ') result.pop_back();
+  return result;
+}
+
+class A3200Reader {
+ public:
+  A3200Reader(NcLines lines, const NcTexts& texts) : lines_(std::move(lines)), texts_(texts), table_(program_) {
+    program_.file = lines_.file();
+    program_.dialect = NcDialect::a3200;
+  }
+
+  NcProgram run() {
+    std::string_view line;
+    while (lines_.next(line))
+      if (!read_text(trimmed(line)))
+        read_line_that_may_be_cut(lines_, program_, [&] { read(with_single_blanks(without_a3200_comment(line))); });
+    program_.lines = lines_.number();
+    if (!is_over_) program_.main_last = program_.blocks.size();
+    if (!is_over_ && !program_.truncated) program_.truncated = "END PROGRAM is missing";
+    if (table_.is_open() && !program_.truncated) program_.truncated = "a subroutine has no ENDDFS";
+    return std::move(program_);
+  }
+
+ private:
+  /// A line that the integrator has given a meaning.
+  bool read_text(std::string_view text) {
+    NcBlock block;
+    block.line = lines_.number();
+    if (!set_text(text, texts_, block)) return false;
+    if (is_over_) lines_.fail("stands behind the end of the program");
+    program_.blocks.push_back(block);
+    return true;
+  }
+
+  void read(std::string_view text) {
+    skip_line_number(text);
+    if (text.empty()) return;
+    if (text == "PROGRAM" && program_.blocks.empty()) return;
+    if (text == "END PROGRAM") return end_program();
+    if (text == "ENDDFS") return end_subroutine();
+    if (starts_with_word(text, "DFS")) return begin_subroutine(trimmed(text.substr(3)));
+    if (is_over_ && !table_.is_open()) lines_.fail("stands behind the end of the program");
+    NcBlock block;
+    block.line = lines_.number();
+    if (starts_with_word(text, "CALL"))
+      block.call = table_.index_of(name_in(trimmed(text.substr(4))));
+    else
+      read_statement(text, block);
+    program_.blocks.push_back(block);
+    if (block.ends && !table_.is_open()) end_main();
+  }
+
+  void skip_line_number(std::string_view& text) {
+    if (text.size() < 2 || text[0] != 'N' || text[1] < '0' || text[1] > '9') return;
+    text.remove_prefix(1);
+    if (!take_number(text, lines_).is_whole()) lines_.fail("a line number must be whole");
+    text = trimmed(text);
+  }
+
+  void read_statement(std::string_view text, NcBlock& block) {
+    for (const A3200Statement& statement : kA3200Statements)
+      if (text == statement.words) return statement.effect(block);
+    if (starts_with_word(text, "WAIT")) lines_.fail("must be WAIT MODE INPOS");
+    IsoBlock iso(lines_, block);
+    if (starts_with_word(text, "DWELL")) {
+      text = trimmed(text.substr(5));
+      iso.set_dwell(take_number(text, lines_).value);
+      if (!text.empty()) lines_.fail("DWELL must have one time, in seconds");
+      return;
+    }
+    const bool is_rapid = starts_with_word(text, "RAPID");
+    if (is_rapid || starts_with_word(text, "LINEAR")) {
+      block.move = is_rapid ? NcMove::rapid : NcMove::linear;
+      text = text.substr(is_rapid ? 5 : 6);
+    }
+    const std::string packed = without_blanks(text);
+    for (std::string_view rest = packed; !rest.empty();) take_aerotech_word(take_word(rest, lines_), iso, lines_);
+    iso.finish();
+  }
+
+  std::string name_in(std::string_view text) const {
+    if (!is_aerotech_name(text)) lines_.fail("needs the name of a subroutine, got " + in_quotes(text));
+    return std::string(text);
+  }
+
+  void begin_subroutine(std::string_view text) {
+    if (table_.is_open()) lines_.fail("a subroutine must end before another begins");
+    if (!is_over_) lines_.fail("a subroutine must stand behind END PROGRAM");
+    const std::string name = name_in(text);
+    if (!table_.begin(name)) lines_.fail("there is a subroutine of that name already: " + name);
+  }
+
+  void end_subroutine() {
+    if (!table_.is_open()) lines_.fail("ENDDFS without DFS");
+    NcBlock& block = program_.blocks.emplace_back();
+    block.line = lines_.number();
+    block.returns = true;
+    table_.end();
+  }
+
+  void end_program() {
+    if (table_.is_open() || has_end_program_)
+      lines_.fail("END PROGRAM must stand once, at the end of the main program");
+    has_end_program_ = true;
+    if (is_over_) return;
+    NcBlock& block = program_.blocks.emplace_back();
+    block.line = lines_.number();
+    block.ends = true;
+    end_main();
+  }
+
+  void end_main() {
+    is_over_ = true;
+    program_.main_last = program_.blocks.size();
+  }
+
+  NcLines lines_;
+  const NcTexts& texts_;
+  NcProgram program_;
+  SubroutineTable table_;
+  bool is_over_ = false;  ///< the main program is
+  bool has_end_program_ = false;
+};
+
+}  // namespace
+
+NcProgram parse_a3200(NcLines lines, const NcTexts& texts) {
+  return A3200Reader(std::move(lines), texts).run();
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include "core/message_text.h"
+#include "fabrication/read/aerotech_codes.h"
+#include "fabrication/read/dialects.h"
+#include "fabrication/read/subroutine_table.h"
+
+namespace retrace::fabrication {
+namespace {
+
+/// Calls of AeroScript's functions for settings, which it tells capitals apart in.
+struct AeroScriptSetting {
+  std::string_view call;
+  void (*effect)(NcBlock&) = nullptr;
+};
+constexpr AeroScriptSetting kAeroScriptSettings[] = {
+    {"SetupTaskDistanceUnits(DistanceUnits.Primary)", nc_effects::kMillimetre},
+    {"SetupTaskTimeUnits(TimeUnits.Minutes)", kAerotechFeedTime<60>},
+    {"SetupTaskTimeUnits(TimeUnits.Seconds)", kAerotechFeedTime<1>},
+    {"SetupTaskTargetMode(TargetMode.Absolute)", nc_effects::kAbsolute},
+    {"SetupTaskTargetMode(TargetMode.Incremental)", nc_effects::kIncremental},
+    {"SetupTaskWaitMode(WaitMode.InPosition)", nc_effects::kSays<nc_said::kFineStop>},
+    {"VelocityBlendingOn()", nc_effects::kBlending},
+    {"VelocityBlendingOff()", nc_effects::kExactStop},
+    {"CornerRoundingOff()", nc_effects::kSays<nc_said::kRoundingOff>},
+};
+
+std::string without_gaps(std::string_view text) {
+  std::string result;
+  for (const char c : text)
+    if (c != ' ' && c != '\t') result += c;
+  return result;
+}
+
+class Automation1Reader {
+ public:
+  Automation1Reader(NcLines lines, const NcTexts& texts) : lines_(std::move(lines)), texts_(texts), table_(program_) {
+    program_.file = lines_.file();
+    program_.dialect = NcDialect::automation1;
+  }
+
+  NcProgram run() {
+    std::string_view line;
+    while (lines_.next(line))
+      if (!read_text(trimmed(line)))
+        read_line_that_may_be_cut(lines_, program_, [&] { read(trimmed(line.substr(0, line.find("//")))); });
+    program_.lines = lines_.number();
+    if (is_in_main_) program_.main_last = program_.blocks.size();
+    if ((is_in_main_ || table_.is_open() || !has_main_) && !program_.truncated) program_.truncated = "end is missing";
+    return std::move(program_);
+  }
+
+ private:
+  /// A line that the integrator has given a meaning.
+  bool read_text(std::string_view text) {
+    NcBlock block;
+    block.line = lines_.number();
+    if (!set_text(text, texts_, block)) return false;
+    if (!is_in_main_) lines_.fail("stands outside of program ... end");
+    program_.blocks.push_back(block);
+    return true;
+  }
+
+  void read(std::string_view text) {
+    if (text.empty()) return;
+    if (text.find("/*") != std::string_view::npos) lines_.fail("a comment /* ... */ is not understood");
+    if (text == "program") return begin_main();
+    if (starts_with_word(text, "function")) return begin_function(trimmed(text.substr(8)));
+    if (text == "end") return end();
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("stands outside of program ... end and function ... end");
+    NcBlock block;
+    block.line = lines_.number();
+    const std::size_t bracket = text.find('(');
+    if (bracket != std::string_view::npos && is_aerotech_name(trimmed(text.substr(0, bracket))))
+      read_call(without_gaps(text), block);
+    else
+      read_words(text, block);
+    program_.blocks.push_back(block);
+  }
+
+  void begin_main() {
+    if (is_in_main_ || table_.is_open()) lines_.fail("program within a block that has not ended");
+    if (has_main_) lines_.fail("there is a program already; one file is one program");
+    has_main_ = is_in_main_ = true;
+    program_.main_first = program_.blocks.size();
+  }
+
+  void begin_function(std::string_view text) {
+    if (is_in_main_ || table_.is_open()) lines_.fail("function within a block that has not ended");
+    const std::string whole = without_gaps(text);
+    const std::string name = whole.substr(0, whole.find('('));
+    if (!is_aerotech_name(name) || whole != name + "()") lines_.fail("must be function NAME(), without arguments");
+    if (!table_.begin(name)) lines_.fail("there is a function of that name already: " + name);
+  }
+
+  void end() {
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("end without program or function");
+    NcBlock& block = program_.blocks.emplace_back();
+    block.line = lines_.number();
+    block.ends = is_in_main_;
+    block.returns = !is_in_main_;
+    if (!is_in_main_) return table_.end();
+    program_.main_last = program_.blocks.size();
+    is_in_main_ = false;
+  }
+
+  void read_call(std::string_view text, NcBlock& block) {
+    for (const AeroScriptSetting& setting : kAeroScriptSettings)
+      if (text == setting.call) return setting.effect(block);
+    const std::size_t bracket = text.find('(');
+    const std::string name(text.substr(0, bracket));
+    const std::string_view whole = text;
+    text.remove_prefix(bracket + 1);
+    if (!text.ends_with(')')) lines_.fail("has a ( that does not end");
+    text.remove_suffix(1);
+    IsoBlock iso(lines_, block);
+    if (name == "Dwell") {
+      iso.set_dwell(take_number(text, lines_).value);
+    } else if (name == "SetupCoordinatedSpeed") {
+      iso.set_feed({'F', take_number(text, lines_)});
+    } else if (name == "MoveLinear" || name == "MoveRapid") {
+      block.move = name == "MoveLinear" ? NcMove::linear : NcMove::rapid;
+      read_axes(text, iso);
+    } else if (text.empty()) {
+      block.call = table_.index_of(name);
+    }
+    if (!text.empty()) lines_.fail("is not understood: " + in_quotes(whole));
+  }
+
+  /// X,1.5 or [X,Y],[1.5,2]: axes and their places. Speeds of a move of its own are not understood.
+  void read_axes(std::string_view& text, IsoBlock& iso) {
+    const bool is_list = text.starts_with('[');
+    const std::size_t end = is_list ? text.find("],[") : text.find(',');
+    if (end == std::string_view::npos) lines_.fail("needs axes and as many places");
+    std::string_view axes = text.substr(is_list ? 1 : 0, end - (is_list ? 1 : 0));
+    text.remove_prefix(end + (is_list ? 3 : 1));
+    for (; !axes.empty(); axes.remove_prefix(axes.size() > 1 ? 2 : 1)) {
+      const std::size_t axis = axis_index(axes.front());
+      const bool is_one = axes.size() == 1 || axes[1] == ',';
+      if (axis == kNcAxes || !is_one) lines_.fail("has an axis that is not understood, " + in_quotes(axes));
+      iso.set_axis(axis, take_number(text, lines_).value);
+      if (axes.size() > 1 && !text.starts_with(',')) lines_.fail("needs axes and as many places");
+      if (axes.size() > 1) text.remove_prefix(1);
+    }
+    if (is_list && !text.starts_with(']')) lines_.fail("needs axes and as many places");
+    if (is_list) text.remove_prefix(1);
+  }
+
+  /// G codes may be small letters; names of axes may not, for it tells capitals apart in them.
+  void read_words(std::string_view text, NcBlock& block) {
+    IsoBlock iso(lines_, block);
+    const std::string packed = without_gaps(text);
+    bool is_first = true;
+    for (std::string_view rest = packed; !rest.empty(); is_first = false) {
+      const char letter = rest.front();
+      const NcWord word = take_word(rest, lines_);
+      if (word.letter == 'N' && is_first) continue;
+      if (axis_index(word.letter) < kNcAxes && letter != word.letter)
+        lines_.fail(fmt::format("names of axes are capitals, got {}", letter));
+      const bool is_unit = word.letter == 'G' && (word.number.value == 70 || word.number.value == 71);
+      if (is_unit) lines_.fail(fmt::format("G{} is not understood: say SetupTaskDistanceUnits()", word.number.value));
+      take_aerotech_word(word, iso, lines_);
+    }
+    iso.finish();
+  }
+
+  NcLines lines_;
+  const NcTexts& texts_;
+  NcProgram program_;
+  SubroutineTable table_;
+  bool is_in_main_ = false;
+  bool has_main_ = false;
+};
+
+}  // namespace
+
+NcProgram parse_automation1(NcLines lines, const NcTexts& texts) {
+  return Automation1Reader(std::move(lines), texts).run();
+}
+
+}  // namespace retrace::fabrication
