@@ -32,7 +32,7 @@ Argument part_argument(std::string& part) {
 }
 
 Argument dialect_argument(std::string& dialect) {
-  return {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc or pmac", &dialect,
+  return {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1", &dialect,
           one_of(words_of(fabrication::kNcDialectWords))};
 }
 

@@ -47,7 +47,7 @@ std::vector<Argument> arguments(VerifyOptions& options) {
            &options.request.programs, files("")},
           {"--standing STAGE", "of a job: all before that stage has been cut, such as finishing-1-facet-1",
            &options.request.standing},
-          {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc or pmac, or auto: told from the text",
+          {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto: told from the text",
            &options.request.dialect, one_of(dialects)},
           {"--tolerance-nm T",
            "of a job: that facet planes may differ from the design by; 10, or what a Fanuc's increments leave, unless "

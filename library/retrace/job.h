@@ -37,7 +37,7 @@ RETRACE_API Job make_job(const Design& design, const JobRequest& request);
 
 /// How a job is written as NC programs, as the options of `retrace fabricate`.
 struct FabricationRequest {
-  std::string dialect = "rs274ngc";  ///< rs274ngc, sinumerik, fanuc or pmac
+  std::string dialect = "rs274ngc";  ///< rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1
   std::string phase = "all";
   std::optional<std::uint64_t> from_element = {};
   std::optional<std::uint64_t> stop_every = {};

@@ -20,7 +20,7 @@ struct VerificationRequest {
   std::filesystem::path job = {};  ///< file
   std::vector<std::string> programs =
       {};                        ///< files in the order in which they run; FILE@LINE: stopped behind that line
-  std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc or pmac, or told from the text
+  std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or told from the text
   /// That facet planes may differ from the design by. By default 10, or what a Fanuc's increments leave if that is
   /// more.
   std::optional<double> tolerance_nm = {};

@@ -30,7 +30,7 @@ from ._results import Columns, Result, html_table, write_file
 
 __all__ = ["Fabrication", "Job", "Verification", "fabricate", "job", "verify"]
 
-_DIALECTS = ("rs274ngc", "sinumerik", "fanuc", "pmac")
+_DIALECTS = ("rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1")
 _MOST_NUMBER = 2**31 - 1
 _IN_MEMORY = "job.toml"  # stands for the file of a job that is in memory
 
