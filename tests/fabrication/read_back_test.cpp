@@ -160,6 +160,29 @@ TEST(ReadBack, ModuloAxesOfASinumerik) {
   EXPECT_NE(nc_text(program, "sinumerik").find("G0 A-1.0000000 C-0.1192463\n"), std::string::npos);
 }
 
+/// Times of an Aerotech's path are those of its ways, mm and degrees together, at the speed that is written.
+TEST(ReadBack, TimesOfAnAerotechsPathAreThoseOfItsWays) {
+  Program program;
+  Move up, over, cut;
+  up.to[kZ] = 5'000'000;
+  over.to[kX] = over.to[kY] = over.to[kC] = 0;
+  cut.motion = Motion::plough;
+  cut.seconds = 2.0;
+  cut.to[kX] = 3'000'000;
+  cut.to[kC] = 40'000'000;
+  program.items = {up, over, Path{{cut}}};
+  EXPECT_NE(nc_text(program, "a3200").find("G108\nG1 X3.000000 C4.0000000 F150.000000\nG109\n"), std::string::npos);
+  for (const NcDialect dialect : {NcDialect::a3200, NcDialect::automation1}) {
+    const std::string text = nc_text(program, kNcDialectWords[static_cast<std::size_t>(dialect)]);
+    EXPECT_DOUBLE_EQ(record_of(text, dialect).motions.back().duration_s, 2.0) << text;
+  }
+  program.items.emplace_back(Path{{cut}});
+  EXPECT_EQ(refusal_of([&] { nc_text(program, "a3200"); }),
+            "--dialect: a3200 cannot say how long a move of a path takes that goes nowhere: its time is that of its "
+            "way");
+  EXPECT_NE(nc_text(program, "pmac"), "");
+}
+
 /// The least feed that a job may have is the least that every dialect can say.
 TEST(ReadBack, TheLeastFeedIsNoneOfZero) {
   Job job = square_job(1);
