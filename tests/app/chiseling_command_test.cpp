@@ -50,7 +50,7 @@ class ChiselingCommand : public ::testing::Test {
 TEST_F(ChiselingCommand, EveryDialectVerifiesAndTakesItsTime) {
   make(false);
   give_mist_lines(folder_, "job.toml");
-  for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"}) {
+  for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"}) {
     const Json made = fabricated(dialect);
     EXPECT_EQ(made["strategy"], "dmc");
     EXPECT_EQ(made["elements"], 9);

@@ -90,7 +90,8 @@ TEST(Fabricate, EveryDialectHasItsEnding) {
   EXPECT_NE(refused.err.find("the machine file must give control.mist_on"), std::string::npos) << refused.err;
   give_mist_lines(folder, "j.toml");
   const std::pair<std::string, std::string> dialects[] = {
-      {"rs274ngc", "program.ngc"}, {"sinumerik", "program.mpf"}, {"fanuc", "program.nc"}, {"pmac", "program.pmc"}};
+      {"rs274ngc", "program.ngc"}, {"sinumerik", "program.mpf"}, {"fanuc", "program.nc"},
+      {"pmac", "program.pmc"},     {"a3200", "program.pgm"},     {"automation1", "program.ascript"}};
   for (const auto& [dialect, file] : dialects) {
     const Json json = retrace_json(folder, {"fabricate", "j.toml", "--dialect", dialect, "-o", dialect});
     EXPECT_EQ(json["programs"], Json::array({file}));
@@ -255,7 +256,8 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
       {{"job", "mask_none.png.toml", "--tool-width-mm", "0.451"},
        "mask_none.png.toml:9: array.mask: none.png: cannot be read as a picture"},
       {{"fabricate", "j.toml", "--dialect", "kugler"},
-       "--dialect: must be \"rs274ngc\", \"sinumerik\", \"fanuc\" or \"pmac\", got \"kugler\""},
+       "--dialect: must be \"rs274ngc\", \"sinumerik\", \"fanuc\", \"pmac\", \"a3200\" or \"automation1\", got "
+       "\"kugler\""},
       {{"fabricate", "missing.toml"}, "missing.toml: cannot be read"},
       {{"fabricate", "d.toml"}, "d.toml: schema: missing"},
       {{"fabricate", "doc0.toml"}, "doc0.toml:42: process.roughing_depth_um: must be > 0 and <= 1000, got 0"},

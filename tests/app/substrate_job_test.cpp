@@ -40,7 +40,7 @@ TEST_F(SubstrateJob, OfTheExampleVerifiesInEveryDialect) {
       retrace(folder_, {"job", example(kExample), "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet"});
   ASSERT_EQ(job.code, 0) << job.err;
   give_mist_lines(folder_, "job.toml");
-  for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"}) {
+  for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"}) {
     const Json json = verified(dialect);
     EXPECT_EQ(json["verdict"], "pass") << json.dump().substr(0, 1000);
     EXPECT_EQ(json["elements"], json["elements_cut"]);

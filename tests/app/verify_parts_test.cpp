@@ -10,7 +10,7 @@
 namespace retrace::test::verify_parts_test {
 namespace {
 
-const Arguments kDialects = {"rs274ngc", "sinumerik", "fanuc", "pmac"};
+const Arguments kDialects = {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"};
 
 class VerifyParts : public ::testing::Test {
  protected:

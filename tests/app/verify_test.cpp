@@ -51,7 +51,7 @@ class VerifyCommand : public ::testing::Test {
 TEST_F(VerifyCommand, CorrectProgramsOfEveryDialectPass) {
   make("paper", "two-step");
   give_mist_lines(folder_, "job.toml");
-  for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"}) {
+  for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"}) {
     const std::string file = program(dialect);
     const Json json = verified({file}, 0);
     EXPECT_EQ(json["schema"], "retrace.verification/1");

@@ -309,7 +309,8 @@ TEST(Chiseling, TheMapOfErrorsHoldsFlares) {
 
 TEST(Chiseling, EveryDialectCutsTheSame) {
   const Job job = cube_job(false, 0.15);
-  for (const auto dialect : {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac}) {
+  for (const auto dialect : {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac,
+                             NcDialect::a3200, NcDialect::automation1}) {
     const std::string_view word = kNcDialectWords[static_cast<std::size_t>(dialect)];
     const Verification v = verified(job, machine(), text_of(job, machine(), word), dialect);
     EXPECT_TRUE(v.passes()) << word << "\n" << listed(v);

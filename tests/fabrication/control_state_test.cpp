@@ -52,6 +52,7 @@ class ControlState : public ::testing::TestWithParam<NcDialect> {
   }
 
   bool is_pmac() const { return GetParam() == NcDialect::pmac; }
+  bool has_texts() const { return has_own_texts(GetParam()); }
 
   /// Kinds of what is found, each once; "error" for a text that cannot be carried out.
   std::string kinds_in(const Lines& lines) const {
@@ -86,7 +87,9 @@ class ControlState : public ::testing::TestWithParam<NcDialect> {
       case NcDialect::pmac: return "dwell 100";
       case NcDialect::sinumerik: return "G4 F0.100";
       case NcDialect::fanuc: return "G4 P100";
-      case NcDialect::rs274ngc: break;
+      case NcDialect::automation1: return "Dwell(0.100)";
+      case NcDialect::rs274ngc:
+      case NcDialect::a3200: break;
     }
     return "G4 P0.100";
   }
@@ -117,7 +120,8 @@ TEST_P(ControlState, EveryWordOfThePreparationIsAskedFor) {
   std::size_t begin = first_move();
   const auto is_prepared = [&](const std::string& line) {
     return line.starts_with("G") || line.starts_with("M5") || line.starts_with("T") || line.starts_with("Coord") ||
-           line.starts_with("frax") || line.starts_with("ccmode") || line == "abs";
+           line.starts_with("frax") || line.starts_with("ccmode") || line == "abs" || line.starts_with("WAIT") ||
+           line.starts_with("SetupTask") || line.ends_with("Off()");
   };
   while (begin > 0 && is_prepared(lines_[begin - 1])) --begin;
   for (std::size_t i = begin; i < first_move(); ++i)
@@ -139,11 +143,12 @@ TEST_P(ControlState, EveryWordOfThePreparationIsAskedFor) {
 }
 
 TEST_P(ControlState, WhatChangesInTheMiddleIsFound) {
-  const std::vector<std::pair<std::string, std::string>> changes =
-      is_pmac()
-          ? std::vector<std::pair<std::string, std::string>>{{"Coord[1].NoBlend=0", "blending"}, {"M3", "spindle"}}
-          : std::vector<std::pair<std::string, std::string>>{
-                {"M3 S3000", "spindle"}, {"M4 S3000", "spindle"}, {"G64", "blending"}, {"M9", "mist"}};
+  using Changes = std::vector<std::pair<std::string, std::string>>;
+  Changes changes = {{"M3 S3000", "spindle"}, {"M4 S3000", "spindle"}, {"G64", "blending"}, {"M9", "mist"}};
+  if (is_pmac()) changes = {{"Coord[1].NoBlend=0", "blending"}, {"M3", "spindle"}};
+  if (GetParam() == NcDialect::a3200)
+    changes = {{"M3 S3000", "spindle"}, {"M4 S3000", "spindle"}, {"G108", "blending"}, {"VELOCITY ON", "blending"}};
+  if (GetParam() == NcDialect::automation1) changes = {{"M3 S3000", "spindle"}, {"VelocityBlendingOn()", "blending"}};
   int tried = 0;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     if (!is_feed(lines_[i])) continue;
@@ -161,7 +166,7 @@ TEST_P(ControlState, WhatChangesInTheMiddleIsFound) {
 
 TEST_P(ControlState, MistThatNeverComesOn) {
   Lines spoilt = lines_;
-  const std::string on = is_pmac() ? machine_.control.mist_on : "M7";
+  const std::string on = has_texts() ? machine_.control.mist_on : "M7";
   std::erase(spoilt, on);
   EXPECT_EQ(kinds_in(spoilt), "mist");
 }
@@ -222,9 +227,11 @@ TEST_P(ControlState, DwellsInTheMaterial) {
   const std::string dwell = dwell_line();
   const auto as_long_as = [&](const std::string& text, double factor) {
     const std::size_t digits = text.find_first_of("0123456789", 3);
+    const std::size_t end = std::min(text.find_first_not_of("0123456789.", digits), text.size());
     const double value = factor * std::stod(text.substr(digits));
     return text.substr(0, digits) +
-           (text.find('.') == std::string::npos ? fmt::format("{:.0f}", value) : fmt::format("{:.3f}", value));
+           (text.find('.') == std::string::npos ? fmt::format("{:.0f}", value) : fmt::format("{:.3f}", value)) +
+           text.substr(end);
   };
   int tried = 0;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
@@ -241,9 +248,9 @@ TEST_P(ControlState, DwellsInTheMaterial) {
     EXPECT_EQ(kinds_in(spoilt), "");
     spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), 5, spoilt[i]);
     EXPECT_EQ(kinds_in(spoilt), "dwell_too_long");
-    const std::string stop = is_pmac() ? machine_.control.optional_stop : "M0";
-    // Texts of a Power PMAC stand in the main program alone, and cuts in subprograms.
-    for (const std::size_t at : {i, i + 1}) EXPECT_EQ(kinds_with(at, {stop}), is_pmac() ? "error" : "dwell_too_long");
+    const std::string stop = has_texts() ? machine_.control.optional_stop : "M0";
+    // Lines that an integrator gave stand in the main program alone, and cuts in subprograms.
+    for (const std::size_t at : {i, i + 1}) EXPECT_EQ(kinds_with(at, {stop}), has_texts() ? "error" : "dwell_too_long");
     ++tried;
   }
   EXPECT_GE(tried, 3);
@@ -267,16 +274,16 @@ TEST_P(ControlState, TheSpindleNeverTurns) {
 }
 
 TEST_P(ControlState, MistStaysOnWhileTheToolIsInTheMaterial) {
-  const std::string on = is_pmac() ? machine_.control.mist_on : "M7";
-  const std::string off = is_pmac() ? machine_.control.mist_off : "M9";
+  const std::string on = has_texts() ? machine_.control.mist_on : "M7";
+  const std::string off = has_texts() ? machine_.control.mist_off : "M9";
   int tried = 0;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     if (lines_[i] != dwell_line()) continue;
-    EXPECT_EQ(kinds_with(i, {off, dwell_line(), on}), is_pmac() ? "error" : "mist");
+    EXPECT_EQ(kinds_with(i, {off, dwell_line(), on}), has_texts() ? "error" : "mist");
     ++tried;
   }
   EXPECT_GE(tried, 3);
-  if (is_pmac()) return;
+  if (has_texts()) return;
   Lines flooded = lines_;
   std::replace(flooded.begin(), flooded.end(), std::string("M7"), std::string("M8"));
   EXPECT_EQ(kinds_in(flooded), "mist");
@@ -429,8 +436,8 @@ TEST_P(ControlState, WideTolerancesPassToo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, ControlState,
-                         ::testing::Values(NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc,
-                                           NcDialect::pmac),
+                         ::testing::Values(NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac,
+                                           NcDialect::a3200, NcDialect::automation1),
                          [](const auto& dialect) {
                            return std::string(kNcDialectWords[static_cast<std::size_t>(dialect.param)]);
                          });

@@ -11,7 +11,7 @@
 
 namespace retrace::fabrication::test {
 
-/// Lines of a Power PMAC.
+/// Lines of a control without words of its own.
 inline NcTexts control_texts() {
   return {"", "", "P100=1", "P100=0", "P101=1"};
 }

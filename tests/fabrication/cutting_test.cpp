@@ -312,7 +312,7 @@ TEST_P(Mutations, NoneThatMovesTheSurfaceGoesUnreported) {
   bool is_comment = false;
   for (std::size_t i = 0, depth = 0; i < text.size(); ++i) {
     if (text[i] == '(') ++depth;
-    if (text[i] == ';' || text.compare(i, 2, "//") == 0) is_comment = true;
+    if (text[i] == ';' || text[i] == '\'' || text.compare(i, 2, "//") == 0) is_comment = true;
     if (text[i] == '\n') is_comment = false;
     if (depth == 0 && !is_comment && text[i] != '\n' && text[i] != ' ' && text[i] != '%') places.push_back(i);
     if (text[i] == ')') --depth;
@@ -366,7 +366,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Mutated{Arrangement::checker, Strategy::two_step, "paper", NcDialect::rs274ngc, 12345},
                       Mutated{Arrangement::offset, Strategy::unidirectional, "thesis", NcDialect::sinumerik, 2},
                       Mutated{Arrangement::single, Strategy::bidirectional, "paper", NcDialect::fanuc, 3},
-                      Mutated{Arrangement::aligned, Strategy::two_step, "ideal", NcDialect::pmac, 4}));
+                      Mutated{Arrangement::aligned, Strategy::two_step, "ideal", NcDialect::pmac, 4},
+                      Mutated{Arrangement::checker, Strategy::unidirectional, "paper", NcDialect::a3200, 5},
+                      Mutated{Arrangement::single, Strategy::two_step, "thesis", NcDialect::automation1, 6}));
 
 }  // namespace
 }  // namespace retrace::fabrication::test::cutting_test

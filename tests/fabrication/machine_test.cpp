@@ -153,10 +153,11 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
             "m.toml:3: schema: must be \"retrace.machine/1\", got \"retrace.machine/2\"");
 }
 
-/// Lines of a Power PMAC are written as they are: none may move what the program does not know of.
+/// Lines of an integrator are written as they are: none may move what the program does not know of.
 TEST(MachineFile, LinesOfAnIntegratorMoveNothing) {
   for (const char* line : {"linear Z-3 F100", "X5", "rapid Z50", "close", "abs", "dwell 100", "x (P1)", "P1=2 Z-3",
-                           "call 900", "Coord[1].NoBlend=0"})
+                           "call 900", "Coord[1].NoBlend=0", "G91", "VELOCITY ON", "MoveLinear([X], [5])", "end",
+                           "SetupTaskTargetMode(TargetMode.Incremental)", "POSOFFSET SET X 0"})
     EXPECT_EQ(
         refusal("[z]", fmt::format("[control]\nmist_on = \"{}\"\n[z]", line)),
         fmt::format("m.toml:23: control.mist_on: must not move axes, wait, or lead out of the program, got \"{}\"",
@@ -164,7 +165,8 @@ TEST(MachineFile, LinesOfAnIntegratorMoveNothing) {
   EXPECT_EQ(refusal("[z]", "[control]\nmist_on = \"P1=1\"\noptional_stop = \"P1=1\"\n[z]"),
             "m.toml:23: control.mist_on: must be another line than those of mist_on, mist_off and optional_stop, got "
             "\"P1=1\"");
-  for (const char* line : {"P100=1", "M7", "Gate3[0].GpioData[0].16=1", "MistOn=1", "ccall 3"})
+  for (const char* line : {"P100=1", "M7", "Gate3[0].GpioData[0].16=1", "MistOn=1", "ccall 3", "$DO[0].X = 1",
+                           "DigitalOutputSet(X, 0, 1)"})
     EXPECT_EQ(refusal("[z]", fmt::format("[control]\nmist_on = \"{}\"\n[z]", line)), "accepted") << line;
 }
 

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "fabrication/read/nc_motion.h"
 #include "fabrication/read/nc_program.h"
+#include "tests/fabrication/controls.h"
 #include "tests/fabrication/nc_record.h"
 #include "tests/support/refusals.h"
 
@@ -19,13 +20,14 @@ namespace {
 using test::Record;
 using test::record_of;
 
-constexpr NcDialect kAll[] = {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac};
+constexpr NcDialect kAll[] = {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc,
+                              NcDialect::pmac,     NcDialect::a3200,     NcDialect::automation1};
 
 std::string word_of(NcDialect dialect) {
   return std::string(kNcDialectWords[static_cast<std::size_t>(dialect)]);
 }
 
-/// One and the same program in four languages, written by hand after their manuals: turn, approach, a subroutine
+/// One and the same program in every language, written by hand after their manuals: turn, approach, a subroutine
 /// that plunges, waits, ploughs and retracts, called at two places.
 std::string sample(NcDialect dialect) {
   switch (dialect) {
@@ -51,6 +53,19 @@ std::string sample(NcDialect dialect) {
              "rapid A45. C-0.1192463\n// half way\nrapid X1.5 Y-2.25\nrapid Z0.2\ncall 101\nrapid X1.7 Z1.0\nrapid "
              "Y0.\n"
              "rapid Z.2\ncall 101\nM9\nclose\n";
+    case NcDialect::a3200:
+      return "' a sample\nPROGRAM\nMETRIC ; mm\nMINUTES\nABSOLUTE\nG94 G40 G149\nVELOCITY OFF\nWAIT MODE INPOS\nM5\n"
+             "P100=1\nRAPID Z5.\nG0 A45. C-0.1192463 // remark\n'half way\nrapid X 1.5 Y-2.25\nG0 Z0.2\nCALL plunge\n"
+             "N10 G0 X1.7 Z1.0\ng0y0.\nG0 Z.2\nCALL PLUNGE\nEND PROGRAM\n"
+             "DFS PLUNGE\nG91\nLINEAR F50. Z-0.25\nDWELL 0.1\nG1 Y-0.1\nG1 F200. Z0.35\nG90\nENDDFS\n";
+    case NcDialect::automation1:
+      return "// a sample\nprogram\n  SetupTaskDistanceUnits(DistanceUnits.Primary)\n  SetupTaskTimeUnits( "
+             "TimeUnits.Minutes )\n  g90 G94 G40 G149 G109\n  CornerRoundingOff()\n  "
+             "SetupTaskWaitMode(WaitMode.InPosition)\n  M5\n  P100=1\n  MoveRapid(Z, 5.)\n  G0 A45. C-0.1192463\n"
+             "  G0 X 1.5 Y-2.25 // half way\n  MoveRapid([Z], [0.2])\n  Plunge()\n  N10 G0 X1.7 Z1.0\n  G0 Y0.\n  "
+             "G0 Z.2\n  Plunge()\nend\n"
+             "function Plunge()\n  SetupTaskTargetMode(TargetMode.Incremental)\n  SetupCoordinatedSpeed(50.)\n  "
+             "MoveLinear([Z], [-0.25])\n  Dwell(0.1)\n  G1 Y-0.1\n  G1 F200. Z0.35\n  G90\nend\n";
   }
   return {};
 }
@@ -61,7 +76,7 @@ struct Expected {
   double feed;
 };
 
-TEST(NcReader, OneProgramInFourLanguages) {
+TEST(NcReader, OneProgramInEveryLanguage) {
   using enum NcMove;
   const double c = -0.1192463;
   const std::vector<Expected> expected = {{rapid, {0, 0, 5, 0, 0}, 0},
@@ -78,7 +93,7 @@ TEST(NcReader, OneProgramInFourLanguages) {
                                           {linear, {1.7, -0.1, -0.05, 45, c}, 50},
                                           {linear, {1.7, -0.1, 0.3, 45, c}, 200}};
   for (const NcDialect dialect : kAll) {
-    const Record record = record_of(sample(dialect), dialect);
+    const Record record = record_of(sample(dialect), dialect, test::control_texts());
     EXPECT_TRUE(record.end.is_complete) << word_of(dialect) << ": " << record.end.reason;
     ASSERT_EQ(record.motions.size(), expected.size()) << word_of(dialect);
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -124,10 +139,11 @@ std::string number_of(const Step& step) {
 
 std::string text_of(const std::vector<Step>& steps, NcDialect dialect) {
   const bool is_pmac = dialect == NcDialect::pmac;
-  std::string text = dialect == NcDialect::rs274ngc ? "%\n"
-                     : dialect == NcDialect::fanuc  ? "%\nO1\n"
-                     : is_pmac                      ? "open prog 1\n"
-                                                    : "";
+  std::string text = dialect == NcDialect::rs274ngc      ? "%\n"
+                     : dialect == NcDialect::fanuc       ? "%\nO1\n"
+                     : is_pmac                           ? "open prog 1\n"
+                     : dialect == NcDialect::automation1 ? "program\n"
+                                                         : "";
   text += is_pmac ? "linear F10 abs X0. Y0. Z0. A0. C0.\n" : "G1 F10 G90 X0. Y0. Z0. A0. C0.\n";
   for (const Step& s : steps) {
     const bool rapid = s.move == NcMove::rapid;
@@ -137,6 +153,8 @@ std::string text_of(const std::vector<Step>& steps, NcDialect dialect) {
   }
   if (dialect == NcDialect::rs274ngc) text += "M2\n%\n";
   if (dialect == NcDialect::sinumerik) text += "M30\n";
+  if (dialect == NcDialect::a3200) text += "END PROGRAM\n";
+  if (dialect == NcDialect::automation1) text += "end\n";
   if (dialect == NcDialect::fanuc) text += "M30\n%\n";
   return is_pmac ? text + "close\n" : text;
 }
@@ -206,6 +224,71 @@ TEST(NcReader, WhatIsNotUnderstoodIsAnErrorWithItsLine) {
             "p:13: frax must name X, Y and Z");
   EXPECT_EQ(refusal(with_replaced(sample(NcDialect::pmac), "rapid Z5.", "spline Z5."), NcDialect::pmac),
             "p:17: is not understood from \"SPLINE Z5.\"");
+}
+
+TEST(NcReader, WhatIsNotUnderstoodOfAnA3200) {
+  const auto read = [](const std::string& from, const std::string& to) {
+    return refusal(with_replaced(with_replaced(sample(NcDialect::a3200), "P100=1\n", ""), from, to), NcDialect::a3200);
+  };
+  EXPECT_EQ(read("M5", "M5"), "accepted");
+  EXPECT_EQ(read("INPOS", "NOWAIT"), "p:8: must be WAIT MODE INPOS");
+  EXPECT_EQ(read("G94", "G93"), "p:6: G93 is not understood");
+  EXPECT_EQ(read("M5", "M7"), "p:9: M7 is not understood");
+  EXPECT_EQ(read("RAPID Z5.", "CW X1. Y1. R1."), "p:10: must have a number of at most 20 digits at \"WX1.Y1.R1.\"");
+  EXPECT_EQ(read("RAPID Z5.", "RAPID Z5. ZF25"), "p:10: must have a number of at most 20 digits at \"F25\"");
+  EXPECT_EQ(read("RAPID Z5.", "G1 Z5. E10"), "p:10: a word E is not understood");
+  EXPECT_EQ(read("DWELL 0.1", "G4"), "p:24: G4 needs a time");
+  EXPECT_EQ(read("DWELL 0.1", "G1 P0.1"), "p:24: has a time of dwell without G4");
+  EXPECT_EQ(read("END PROGRAM\n", ""), "p:20: a subroutine must stand behind END PROGRAM");
+  EXPECT_EQ(read("END PROGRAM\n", "M2\nEND PROGRAM\n"), "accepted");
+  EXPECT_EQ(read("ENDDFS\n", "ENDDFS\nG0 Z9.\n"), "p:29: stands behind the end of the program");
+  EXPECT_EQ(read("ENDDFS\n", ""), "cut off at 15: the file does not hold the whole of subroutine PLUNGE");
+  EXPECT_EQ(refusal("G90\nG0 Z5.\n", NcDialect::a3200), "cut off at 2: END PROGRAM is missing");
+  EXPECT_EQ(refusal("END PROGRAM\nDFS A\n", NcDialect::a3200), "cut off at 2: a subroutine has no ENDDFS");
+  EXPECT_EQ(read("DFS PLUNGE", "DFS 101"), "p:21: needs the name of a subroutine, got \"101\"");
+  EXPECT_EQ(read("CALL plunge", "CALL other"), "cut off at 15: the file does not hold the whole of subroutine OTHER");
+}
+
+TEST(NcReader, WhatIsNotUnderstoodOfAeroScript) {
+  const auto read = [](const std::string& from, const std::string& to) {
+    const std::string text = with_replaced(sample(NcDialect::automation1), "  P100=1\n", "");
+    return refusal(with_replaced(text, from, to), NcDialect::automation1);
+  };
+  EXPECT_EQ(read("M5", "M5"), "accepted");
+  EXPECT_EQ(read("InPosition", "Auto"), "p:7: is not understood: \"SetupTaskWaitMode(WaitMode.Auto)\"");
+  EXPECT_EQ(read("DistanceUnits.Primary", "DistanceUnits.Secondary"),
+            "p:3: is not understood: \"SetupTaskDistanceUnits(DistanceUnits.Secondary)\"");
+  EXPECT_EQ(read("g90", "g90 G71"), "p:5: G71 is not understood: say SetupTaskDistanceUnits()");
+  EXPECT_EQ(read("G0 Y0.", "G0 y0."), "p:15: names of axes are capitals, got y");
+  EXPECT_EQ(read("MoveLinear([Z], [-0.25])", "MoveLinear([Z], [-0.25], 5)"),
+            "p:22: is not understood: \"MoveLinear([Z],[-0.25],5)\"");
+  EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([Z, Y], [0.2])"), "p:12: needs axes and as many places");
+  EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([S], [0.2])"), "p:12: has an axis that is not understood, \"S\"");
+  EXPECT_EQ(read("Plunge()\n  N10", "Plunge(1)\n  N10"), "p:13: is not understood: \"Plunge(1)\"");
+  EXPECT_EQ(read("Plunge()\n  N10", "Plunge(\n  N10"), "p:13: has a ( that does not end");
+  EXPECT_EQ(read("Plunge()\n  N10", "plunge()\n  N10"),
+            "cut off at 13: the file does not hold the whole of subroutine plunge");
+  EXPECT_EQ(read("function Plunge()", "function Plunge($z as real)"),
+            "p:19: must be function NAME(), without arguments");
+  EXPECT_EQ(read("program\n", ""), "p:2: stands outside of program ... end and function ... end");
+  EXPECT_EQ(read("// half way", "/* half way */"), "p:11: a comment /* ... */ is not understood");
+  EXPECT_EQ(refusal("program\nG90\n", NcDialect::automation1), "cut off at 2: end is missing");
+  EXPECT_EQ(read("G90\nend\n", "G90\n"), "cut off at 13: the file does not hold the whole of subroutine Plunge");
+}
+
+/// A feed of an Aerotech is the speed of all axes together, so that it says how long a blended line takes.
+TEST(NcReader, FeedsOfAllAxesSayTimes) {
+  const auto move = [](const std::string& line, const std::string& mode) {
+    const Record record =
+        record_of("G71 G75 G90\n" + mode + "\nG0 X0. Y0. Z0. C0.\n" + line + "\nEND PROGRAM\n", NcDialect::a3200);
+    return record.motions.back();
+  };
+  EXPECT_DOUBLE_EQ(move("G1 X3. Z4. F10.", "G108").duration_s, 30.0);
+  EXPECT_DOUBLE_EQ(move("G1 X3. C4. F10.", "G108").duration_s, 30.0);
+  EXPECT_DOUBLE_EQ(move("G1 X3. C4. F10.", "G109").duration_s, 30.0) << "C turns too";
+  EXPECT_DOUBLE_EQ(move("G76 G1 X3. Z4. F10.", "G108").duration_s, 0.5) << "per second";
+  EXPECT_EQ(move("G1 X3. Z4. F10.", "G109").duration_s, 0.0) << "ramps at both ends";
+  EXPECT_EQ(move("G1 X3. Z4. F10.", "G109").feed_mm_per_min, 10.0);
 }
 
 struct NoSink : NcSink {

@@ -144,15 +144,19 @@ TEST_P(PartialPrograms, EveryLineStopsTheProgramOrIsRefused) {
   const std::string_view call = GetParam() == NcDialect::rs274ngc    ? " call\n"
                                 : GetParam() == NcDialect::sinumerik ? "\nREPEAT RT"
                                 : GetParam() == NcDialect::fanuc     ? "\nM98 P"
-                                                                     : "\ncall ";
-  const std::string_view end = GetParam() == NcDialect::rs274ngc ? "\nM2\n"
-                               : GetParam() == NcDialect::pmac   ? "\nclose\n"
-                                                                 : "\nM30\n";
+                                : GetParam() == NcDialect::pmac      ? "\ncall "
+                                : GetParam() == NcDialect::a3200     ? "\nCALL RT"
+                                                                     : "\nRT";
+  const std::string_view end = GetParam() == NcDialect::rs274ngc      ? "\nM2\n"
+                               : GetParam() == NcDialect::pmac        ? "\nclose\n"
+                               : GetParam() == NcDialect::a3200       ? "\nEND PROGRAM\n"
+                               : GetParam() == NcDialect::automation1 ? "\nend\n"
+                                                                      : "\nM30\n";
   const auto line_of = [&](std::size_t at) {
     return static_cast<std::int32_t>(1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
   };
   const std::int32_t last_call = line_of(text.rfind(call) + (call.front() == '\n' ? 1 : 0));
-  const std::int32_t last = line_of(text.rfind(end) + 1);
+  const std::int32_t last = line_of((GetParam() == NcDialect::automation1 ? text.find(end) : text.rfind(end)) + 1);
   int refused = 0;
   for (std::int32_t line = 1; line < line_of(text.size()); ++line) {
     std::string verdict = "refused";
@@ -170,8 +174,8 @@ TEST_P(PartialPrograms, EveryLineStopsTheProgramOrIsRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, PartialPrograms,
-                         ::testing::Values(NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc,
-                                           NcDialect::pmac),
+                         ::testing::Values(NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac,
+                                           NcDialect::a3200, NcDialect::automation1),
                          [](const auto& dialect) {
                            return std::string(kNcDialectWords[static_cast<std::size_t>(dialect.param)]);
                          });

@@ -72,7 +72,7 @@ ReadBack read_back(const Program& program, NcDialect dialect) {
   for (const Record::Dwell& dwell : record.dwells) dwell_s -= dwell.seconds;
   require(std::abs(dwell_s) < 1e-6, "dwells differ");
   require(record.settings.absolute && record.settings.exact_stop == true &&
-              (dialect == NcDialect::pmac || record.settings.spindle == NcSpindle::stopped),
+              (has_own_texts(dialect) || record.settings.spindle == NcSpindle::stopped),
           "a setting is missing");
   return result;
 }
@@ -90,7 +90,8 @@ RC_GTEST_PROP(ReadBack, EveryDialectToThePlannedPositions, ()) {
   job.process.dwell_s = *rc::gen::element(0.0, 0.1, 0.125);
   prism_of(job).apex_angle_deg = 85.0 + 1e-3 * *rc::gen::inRange(0, 10001);
   const Machine on = machine(*rc::gen::element(std::string("ideal"), std::string("paper"), std::string("thesis")));
-  for (const NcDialect dialect : {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac})
+  for (const NcDialect dialect : {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac,
+                                  NcDialect::a3200, NcDialect::automation1})
     for (const Program& program :
          make_plan(job, for_dialect(on, kNcDialectWords[static_cast<std::size_t>(dialect)])).programs) {
       const ReadBack result = read_back(program, dialect);
@@ -189,7 +190,7 @@ TEST(ReadBack, TheLeastFeedIsNoneOfZero) {
   for (const auto& [feed, is_said] : {std::pair{kLeastFeedMmPerMin, true}, {0.999 * kLeastFeedMmPerMin, false}}) {
     job.process.finishing_feed_mm_per_min = feed;
     const Plan plan = make_plan(job, for_dialect(machine("ideal"), ""));
-    for (const char* dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"})
+    for (const char* dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"})
       EXPECT_EQ(nc_text(plan.programs.front(), dialect).find(" F0.000\n") == std::string::npos, is_said)
           << dialect << ' ' << feed;
   }

@@ -256,8 +256,10 @@ TEST(OnSubstrate, EveryDialectCutsTheSame) {
   for (const Job& job : {prisms_on(cylinder_substrate(6.0, false, ElementAxes::normal)),
                          cubes_on(sphere_substrate(4.0, ElementAxes::normal), false)}) {
     const Verification first = verified(job, text_of(job));
-    for (const auto& [name, dialect] : {std::pair{"sinumerik", NcDialect::sinumerik},
-                                        std::pair{"fanuc", NcDialect::fanuc}, std::pair{"pmac", NcDialect::pmac}}) {
+    for (const auto& [name, dialect] :
+         {std::pair{"sinumerik", NcDialect::sinumerik}, std::pair{"fanuc", NcDialect::fanuc},
+          std::pair{"pmac", NcDialect::pmac}, std::pair{"a3200", NcDialect::a3200},
+          std::pair{"automation1", NcDialect::automation1}}) {
       const Verification v = verified(job, text_of(job, name), dialect);
       EXPECT_TRUE(v.passes()) << name << "\n" << listed(v);
       // A Fanuc's poses have a digit less; a modulo axis turns the shorter way, through sums of its words.

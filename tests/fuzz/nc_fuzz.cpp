@@ -35,7 +35,8 @@ void check_message(const retrace::InputError& error) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  for (const NcDialect dialect : {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac}) {
+  for (const NcDialect dialect : {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac,
+                                  NcDialect::a3200, NcDialect::automation1}) {
     try {
       CheckingSink sink;
       run_nc(parse_nc(text, "fuzz", dialect), sink);

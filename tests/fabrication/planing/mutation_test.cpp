@@ -287,7 +287,7 @@ TEST(PlaningMutants, OfALatheAreFound) {
 
 TEST(Planing, ATruncatedProgramIsAFinding) {
   for (const PlanedPart& part : {mill_part(), lathe_part(0.8)})
-    for (const char* dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac"}) {
+    for (const char* dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"}) {
       const auto word = std::find(std::begin(kNcDialectWords), std::end(kNcDialectWords), dialect);
       const auto read_as = static_cast<NcDialect>(word - std::begin(kNcDialectWords));
       const std::vector<PlaningText> texts = texts_of(part, dialect);

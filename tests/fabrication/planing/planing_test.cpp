@@ -260,17 +260,17 @@ TEST(Planing, TheExampleIsMadeInTwoHalves) {
               3600.0 * json["hours"].get<double>(), 1e-6 * 3600.0 * json["hours"].get<double>());
 }
 
-TEST(Planing, APmacIsToldHowItsSpindleStarts) {
-  try {
-    studies::plane(kExamples + "round_zone_lens.toml", "pmac");
-    FAIL();
-  } catch (const InputError& error) {
-    const std::string text = error.what();
-    EXPECT_EQ(
-        text.substr(text.rfind('/') + 1),
-        "round_zone_lens.toml:15: lathe.spindle_start: missing, must be the line that starts the spindle: dialect "
-        "pmac has no word for it that every control knows");
-  }
+TEST(Planing, ControlsWithoutWordsAreToldHowTheSpindleStarts) {
+  for (const std::string dialect : {"pmac", "a3200", "automation1"}) try {
+      studies::plane(kExamples + "round_zone_lens.toml", dialect);
+      FAIL();
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      EXPECT_EQ(
+          text.substr(text.rfind('/') + 1),
+          "round_zone_lens.toml:15: lathe.spindle_start: missing, must be the line that starts the spindle: dialect " +
+              dialect + " has no word for it that every control knows");
+    }
   EXPECT_TRUE(studies::plane(kExamples + "zone_lens_60ghz.toml", "pmac").check.passes()) << "a mill needs none";
 }
 

@@ -334,8 +334,11 @@ TEST(TurningKinematics, AShortSpiralNeverReachesItsSpeed) {
   plan.part.path.spin_deg_per_s2 = plan.part.machine.c_acceleration_deg_per_s2 = 10.0;
   const auto passes = make_path(plan.part.surface, plan.part.tool, plan.part.path, {"part.toml", 0, "path"});
   EXPECT_NEAR(path_seconds(passes), 2.0 * std::sqrt(passes.front().back().c_deg / 10.0), 1e-9);
-  const std::string text = nc_text(turning_program(passes, plan.part.path, "part", {}), "pmac");
-  EXPECT_EQ(listed(findings_of(plan.part, {text}, NcDialect::pmac)), "");
+  for (const NcDialect dialect : {NcDialect::pmac, NcDialect::a3200, NcDialect::automation1}) {
+    const std::string_view word = kNcDialectWords[static_cast<std::size_t>(dialect)];
+    const std::string text = nc_text(turning_program(passes, plan.part.path, "part", {}), word);
+    EXPECT_EQ(listed(findings_of(plan.part, {text}, dialect)), "") << word;
+  }
 }
 
 /// A program that holds the moves of another from one line to another, between its beginning and end.

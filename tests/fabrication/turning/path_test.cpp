@@ -233,8 +233,9 @@ TEST(TurningProgram, ReadsBackTheSameInAllDialects) {
   const PathOptions o = small_spiral();
   const auto passes = make_path(plain(formula_sag("0.05*x^2-0.02*y^3")), tool, o, kHere);
   const Program program = turning_program(passes, o, "part", {"a turned part"});
-  constexpr NcDialect dialects_read[] = {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac};
-  for (std::size_t d = 0; d < 4; ++d) {
+  constexpr NcDialect dialects_read[] = {NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc,
+                                         NcDialect::pmac,     NcDialect::a3200,     NcDialect::automation1};
+  for (std::size_t d = 0; d < std::size(dialects_read); ++d) {
     const std::string text = nc_text(program, kNcDialectWords[d]);
     EXPECT_EQ(recognise_dialect(text, "part"), dialects_read[d]);
     CutRecorder recorder;

@@ -41,7 +41,7 @@ TEST_F(Turn, WritesProgramsInAllDialectsAndInspectsThem) {
   EXPECT_GT(json["verification"]["scallop_ratio_low"].get<double>(), 0.98);
   EXPECT_LT(json["verification"]["scallop_ratio_high"].get<double>(), 1.02);
   EXPECT_TRUE(json["complete"].get<bool>());
-  ASSERT_EQ(json["programs"].size(), 4U);
+  ASSERT_EQ(json["programs"].size(), 6U);
   for (const Json& program : json["programs"])
     EXPECT_GT(folder_.read("out/" + program["file"].get<std::string>()).size(), 1000000U);
   EXPECT_EQ(folder_.json("out/turning.json"), json);
