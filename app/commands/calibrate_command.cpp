@@ -1,24 +1,48 @@
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/output.h"
+#include "app/shared_arguments.h"
+#include "core/error.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/post/post.h"
 #include "studies/calibration/io/calibration_files.h"
 #include "studies/calibration/io/measurement_reader.h"
+#include "studies/calibration/io/time_files.h"
+#include "studies/calibration/time_programs.h"
 
 namespace retrace::app {
 namespace {
 
 struct CalibrateOptions {
-  std::string measurements;
+  std::optional<std::string> measurements;
+  std::string times;  ///< machine whose programs' times the table has; empty: it has measurements of parts
+  std::string dialect = "rs274ngc";
 };
 
 std::vector<Argument> arguments(CalibrateOptions& options) {
-  return {{"MEASUREMENTS", "table of what was measured of parts that the machine cut", &options.measurements,
-           files(".csv")}};
+  const auto machines = [] {
+    Words names;
+    for (const fabrication::Machine& machine : fabrication::shipped_machines()) names.push_back(machine.name);
+    return names;
+  };
+  std::vector<Argument> all = {{"MEASUREMENTS", "table of what was measured of parts that the machine cut",
+                                &options.measurements, files(".csv")},
+                               {"--times MACHINE",
+                                "the table is of how long programs took on that machine (a shipped one or a file), for "
+                                "how its axes speed up and "
+                                "settle; without a table: write programs to be timed",
+                                &options.times, one_of(machines, ".toml")}};
+  all.push_back(dialect_argument(options.dialect));
+  all.back().traits.needs = "--times";
+  return all;
 }
 
 std::vector<std::string> inputs_of(const CalibrateOptions& options, const studies::MeasuredParts& parts) {
-  std::vector<std::string> inputs = {options.measurements};
+  std::vector<std::string> inputs = {*options.measurements};
   for (const studies::FabricationResult& plan : parts.plans) {
     inputs.push_back(plan.job.source);
     if (std::filesystem::path(plan.job.machine).has_extension()) inputs.push_back(plan.job.machine);
@@ -26,8 +50,44 @@ std::vector<std::string> inputs_of(const CalibrateOptions& options, const studie
   return inputs;
 }
 
+/// Programs that are to be timed, and the table of their times.
+ExitCode write_time_programs(const CalibrateOptions& options, const CommonOptions& common,
+                             const fabrication::Machine& machine) {
+  if (common.out.empty())
+    throw InputError({"", 0, "MEASUREMENTS"}, "must be given, or --out for programs that are to be timed");
+  const std::vector<fabrication::Program> programs = studies::time_programs(machine, options.dialect);
+  ResultFiles files(common, {options.times});
+  std::vector<std::string> names;
+  for (const fabrication::Program& program : programs) {
+    names.push_back(program.name + std::string(fabrication::ending_of(options.dialect)));
+    files.add(names.back(), [&] { return fabrication::nc_text(program, options.dialect); });
+  }
+  files.add("times.csv", [&] { return studies::times_csv(names); });
+  files.prepare();
+  return files.write(studies::time_programs_json(machine, names),
+                     "Programs to be timed, which cut nothing; times.csv takes their times\n");
+}
+
+/// How axes speed up and settle, from times of programs.
+ExitCode calibrate_times(const CalibrateOptions& options, const CommonOptions& common) {
+  const fabrication::Machine machine = fabrication::load_machine(options.times, {"", 0, "--times"});
+  if (!options.measurements) return write_time_programs(options, common, machine);
+  studies::TimedPrograms programs = studies::read_times(*options.measurements, machine);
+  std::vector<std::string> inputs = {*options.measurements};
+  if (std::filesystem::path(options.times).has_extension()) inputs.push_back(options.times);
+  for (const studies::TimedMoves& row : programs.rows)
+    inputs.push_back((std::filesystem::path(*options.measurements).parent_path() / row.program).string());
+  ResultFiles files(common, inputs, "time_calibration.json");
+  const studies::TimeCalibration result = studies::calibrate_times(std::move(programs), machine);
+  files.add("machine.toml", [&] { return studies::timed_machine_toml(result); });
+  files.prepare();
+  return files.write(studies::time_calibration_json(result), studies::time_calibration_table(result), result.warnings);
+}
+
 ExitCode run(const CalibrateOptions& options, const CommonOptions& common) {
-  studies::MeasuredParts parts = studies::read_measurements(options.measurements);
+  if (!options.times.empty()) return calibrate_times(options, common);
+  if (!options.measurements) throw InputError({"", 0, "MEASUREMENTS"}, "must be given");
+  studies::MeasuredParts parts = studies::read_measurements(*options.measurements);
   ResultFiles files(common, inputs_of(options, parts), "calibration.json");
   const studies::Calibration result = studies::calibrate(std::move(parts));
   files.add("machine.toml", [&] { return studies::calibrated_machine_toml(result); });
@@ -39,17 +99,21 @@ ExitCode run(const CalibrateOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command calibrate_command() {
-  return {.name = "calibrate",
-          .summary = "where a machine's axes are, from what was measured of parts that it cut",
-          .manual =
-              "Estimates, from depths, distances and angles of facets, by how much a machine differs from its file: "
-              "centres and directions of its axes, squareness, how the tool stands - each with its uncertainty -, says "
-              "which of them the measurements do not tell apart and which measurements the others contradict, and "
-              "writes machine.toml, for which the next programs are made.",
-          .reads = {"table of measurements (CSV)", "retrace.job/1", "retrace.machine/1"},
-          .writes = {"retrace.calibration/1", "retrace.machine/1"},
-          .refuses_set = "calibrate reads no design",
-          .begin = begins<CalibrateOptions>(arguments, run)};
+  return {
+      .name = "calibrate",
+      .summary = "where a machine's axes are, from what was measured of parts that it cut",
+      .manual =
+          "Estimates, from depths, distances and angles of facets, by how much a machine differs from its file: "
+          "centres and directions of its axes, squareness, how the tool stands - each with its uncertainty -, says "
+          "which of them the measurements do not tell apart and which measurements the others contradict, and "
+          "writes machine.toml, for which the next programs are made. With --times: how its axes speed up and settle, "
+          "from how long programs took.",
+      .reads = {"table of measurements (CSV)", "table of times (CSV)", "retrace.job/1", "retrace.machine/1",
+                "NC program"},
+      .writes = {"retrace.calibration/1", "retrace.time_calibration/1", "retrace.time_programs/1", "retrace.machine/1",
+                 "NC program", "table of times (CSV)"},
+      .refuses_set = "calibrate reads no design",
+      .begin = begins<CalibrateOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

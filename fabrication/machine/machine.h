@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,10 @@ struct Interval {
   bool contains(double value) const { return value >= low && value <= high; }
 };
 
+/// Of axes that have their whole acceleration at once.
+inline const Sourced<double> kNoJerkLimit = {std::numeric_limits<double>::infinity(), Basis::assumed,
+                                             "acceleration begins at once, as for every axis that names no jerk"};
+
 /// A linear axis. Positive words move the tool along `direction`, as seen from the workpiece.
 struct LinearAxis {
   Sourced<geometry::Vec3> direction;  ///< of length 1, in the frame of the workpiece at A = C = 0
@@ -44,6 +49,7 @@ struct LinearAxis {
   Sourced<double> max_feed_mm_per_min;
   Sourced<double> rapid_mm_per_min;
   Sourced<double> acceleration_mm_per_s2;
+  Sourced<double> jerk_mm_per_s3 = kNoJerkLimit;
 };
 
 /// A rotary axis: a line in space at A = C = 0.
@@ -57,6 +63,7 @@ struct RotaryAxis {
   Sourced<Interval> limits_deg;
   Sourced<double> speed_deg_per_s;
   Sourced<double> acceleration_deg_per_s2;
+  Sourced<double> jerk_deg_per_s3 = kNoJerkLimit;
 };
 
 /// What a body of a machine moves with.
@@ -115,6 +122,8 @@ struct Machine {
   /// Least Z to which the first move of a program goes, away from the part wherever the other axes stand; above the
   /// limit of Z: that limit.
   Sourced<double> safe_z_mm = {1e9, Basis::assumed, "the upper limit of Z, as for every machine that names none"};
+  /// That a control waits at every exact stop until the axes stand still.
+  Sourced<double> settling_s = {0.0, Basis::assumed, "axes arrive at once, as for every machine that names none"};
   Control control;
   Increments increments;  ///< to which positions are rounded when programs are planned
 

@@ -16,10 +16,6 @@ namespace {
 
 using namespace fabrication;
 
-NcTexts nc_texts_of(const Control& control) {
-  return {"", "", control.mist_on, control.mist_off, control.optional_stop};
-}
-
 /// What the job's own programs of all stages before that one do.
 std::vector<NcProgram> programs_before(const std::string& stage, const Job& job, const Machine& machine) {
   constexpr std::string_view dialect = "rs274ngc";
@@ -43,7 +39,7 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
   if (!request.standing.empty()) run.programs = programs_before(request.standing, run.job, run.machine);
   run.standing = run.programs.size();
   for (NcProgram& program :
-       read_programs(request.programs, request.dialect, nc_texts_of(run.machine.control), request.texts))
+       read_programs(request.programs, request.dialect, texts_of(run.machine.control), request.texts))
     run.programs.push_back(std::move(program));
   VerifyOptions options;
   options.tolerance_nm = request.tolerance_nm;

@@ -135,9 +135,9 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
             "m.toml:9: x.direction: must name its source, got \"\"");
   EXPECT_EQ(refusal(", assumed = \"square guideways\"", ""),
             "m.toml:9: x.direction: must say either measured = \"source\" or assumed = \"why\"");
-  EXPECT_EQ(
-      refusal("[z]", "[w]"),
-      "m.toml:22: w: unknown table, did you mean \"x\"? (allowed: safe_z_mm, x, y, z, a, b, c, mount, control, body)");
+  EXPECT_EQ(refusal("[z]", "[w]"),
+            "m.toml:22: w: unknown table, did you mean \"x\"? (allowed: safe_z_mm, settling_s, x, y, z, a, b, c, "
+            "mount, control, body)");
   EXPECT_EQ(refusal("moves_with = \"tool\"", "moves_with = \"spindle\""),
             "m.toml:52: body[2].moves_with: must be \"workpiece\", \"cradle\" or \"tool\", got \"spindle\"");
   const std::string box = "box_mm = { value = [-60, -60, -40, 60, 60, -15]";

@@ -14,6 +14,7 @@
 #include "fabrication/chisel/plan/routines.h"
 #include "fabrication/job/tool_angles.h"
 #include "fabrication/machine/io/machine_files.h"
+#include "fabrication/machine/motion_time.h"
 #include "tests/fabrication/jobs.h"
 #include "tests/support/refusals.h"
 
@@ -307,10 +308,57 @@ TEST(Time, WideToolHalvesTheTimePerArea) {
 }
 
 TEST(Time, OfAMoveFromRestToRest) {
-  EXPECT_DOUBLE_EQ(rest_to_rest_s(10.0, 2.0, 1.0), 7.0);  // 2 s up, 3 s at speed over 6, 2 s down
-  EXPECT_DOUBLE_EQ(rest_to_rest_s(4.0, 2.0, 1.0), 4.0);
-  EXPECT_DOUBLE_EQ(rest_to_rest_s(1.0, 2.0, 1.0), 2.0);
-  EXPECT_DOUBLE_EQ(rest_to_rest_s(0.0, 2.0, 1.0), 0.0);
+  EXPECT_DOUBLE_EQ(rest_to_rest_s(10.0, {2.0, 1.0}), 7.0);  // 2 s up, 3 s at speed over 6, 2 s down
+  EXPECT_DOUBLE_EQ(rest_to_rest_s(4.0, {2.0, 1.0}), 4.0);
+  EXPECT_DOUBLE_EQ(rest_to_rest_s(1.0, {2.0, 1.0}), 2.0);
+  EXPECT_DOUBLE_EQ(rest_to_rest_s(0.0, {2.0, 1.0}), 0.0);
+}
+
+/// Moves on as an axis does: jerk on while acceleration is below its limit and speed can still grow, then off again
+/// so that both end together. \return how far it has come when it is at `speed`, and after what time
+std::pair<double, double> speeding_up(double speed, const MotionLimits& limits) {
+  const double step_s = 1e-5 * (speed / limits.acceleration + std::sqrt(speed / limits.jerk));
+  double at = 0.0;
+  double v = 0.0;
+  double a = 0.0;
+  double time_s = 0.0;
+  while (v < speed) {
+    // With jerk against it the speed still grows by a^2 / (2 jerk).
+    const bool must_fall = v + a * a / (2.0 * limits.jerk) >= speed;
+    const double next = must_fall ? a - limits.jerk * step_s : std::min(a + limits.jerk * step_s, limits.acceleration);
+    if (must_fall && next <= 0.0) break;
+    const double v_next = v + 0.5 * (a + next) * step_s;
+    at += 0.5 * (v + v_next) * step_s;
+    v = v_next;
+    a = next;
+    time_s += step_s;
+  }
+  return {at, time_s};
+}
+
+RC_GTEST_PROP(Time, WithJerkIsThatOfTheMotionStepByStep, ()) {
+  const auto size = [](double low, double high) {
+    return low * std::pow(high / low, 1e-3 * *rc::gen::inRange(0, 1001));
+  };
+  const MotionLimits limits{size(0.1, 50.0), size(10.0, 5000.0), size(1e2, 1e7)};
+  const auto [ramp, ramp_s] = speeding_up(limits.speed, limits);
+  // Long moves have a part at speed; of short ones the greatest speed is that of speeding up over half of the way.
+  const double way = size(0.01, 10.0);
+  RC_ASSERT(std::abs(rest_to_rest_s(2.0 * ramp + way, limits) / (2.0 * ramp_s + way / limits.speed) - 1.0) < 2e-3);
+  const double lower = limits.speed * size(0.01, 1.0);
+  const auto [half, half_s] = speeding_up(lower, limits);
+  RC_ASSERT(std::abs(rest_to_rest_s(2.0 * half, limits) / (2.0 * half_s) - 1.0) < 2e-3);
+}
+
+TEST(Time, MovesSettle) {
+  Machine m = machine("paper");
+  const double before_s = linear_move_s(m, {0.3, 0.0, 0.4}, 60.0);
+  const double turn_s = rotary_move_s(m, 0.0, 30.0);
+  m.settling_s.value = 0.25;
+  EXPECT_DOUBLE_EQ(linear_move_s(m, {0.3, 0.0, 0.4}, 60.0), before_s + 0.25);
+  EXPECT_DOUBLE_EQ(rotary_move_s(m, 0.0, 30.0), turn_s + 0.25);
+  EXPECT_DOUBLE_EQ(linear_move_s(m, {0.0, 0.0, 0.0}, 60.0), 0.0);
+  EXPECT_DOUBLE_EQ(rotary_move_s(m, 0.0, 0.0), 0.0);
 }
 
 /// Height of a point above the blank's face, normal to it.

@@ -22,6 +22,10 @@ NcDialect dialect_of(const std::string& word, std::string_view text, const std::
   return static_cast<NcDialect>(found - std::begin(kNcDialectWords));
 }
 
+NcTexts texts_of(const Control& control) {
+  return {"", "", control.mist_on, control.mist_off, control.optional_stop};
+}
+
 ProgramName program_name(const std::string& given) {
   const std::size_t at = given.rfind('@');
   if (at == std::string::npos || std::filesystem::exists(given)) return {given, 0};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/file_texts.h"
+#include "fabrication/machine/control.h"
 #include "fabrication/read/nc_program.h"
 
 namespace retrace::fabrication {
@@ -15,6 +16,9 @@ namespace retrace::fabrication {
 /// The dialect of that word, or of "auto" the one that the text shows.
 /// \throw InputError for a word that is none, and for text that shows none
 NcDialect dialect_of(const std::string& word, std::string_view text, const std::string& file);
+
+/// Lines of a Power PMAC that a machine's file gives.
+NcTexts texts_of(const Control& control);
 
 /// A program as it is named: "part.ngc", or "part.ngc@120", which was stopped behind line 120.
 struct ProgramName {

@@ -172,6 +172,15 @@ constexpr auto kPositiveRows = sourced<double>(Number{kPositive}, access<&Source
 constexpr auto kPositiveRules = source_rules<double>();
 constexpr ValueTable kPositiveValue = {kPositiveRows, kPositiveRules};
 
+constexpr NumberRange kJerkRange{.low = 0.0, .low_included = false, .high = 1e12};
+constexpr auto kJerkRows = sourced<double>(Number{kJerkRange}, access<&Sourced<double>::value>);
+constexpr ValueTable kJerk = {kJerkRows, kPositiveRules};
+constexpr std::string_view kJerkMeaning = "The jerk: how fast the acceleration grows, and falls again.";
+
+constexpr NumberRange kSettlingRange{.low = 0.0, .high = 10.0};
+constexpr auto kSettlingRows = sourced<double>(Number{kSettlingRange}, access<&Sourced<double>::value>);
+constexpr ValueTable kSettling = {kSettlingRows, kPositiveRules};
+
 constexpr auto kHeightRows = sourced<double>(Number{kLength}, access<&Sourced<double>::value>);
 constexpr ValueTable kHeight = {kHeightRows, kPositiveRules};
 
@@ -215,13 +224,32 @@ constexpr Table value(std::string_view name, const ValueTable& type, Child child
           .otherwise = otherwise};
 }
 
+template <class Owner>
+Owner owner_of(Sourced<double> Owner::*);
+
+/// Not written where there is no limit.
+template <auto jerk>
+constexpr Child kJerkOf = {[](const void* axis) -> std::size_t {
+                             using Axis = decltype(owner_of(jerk));
+                             return std::isfinite((static_cast<const Axis*>(axis)->*jerk).value) ? 1 : 0;
+                           },
+                           [](const void* axis, std::size_t) -> const void* {
+                             using Axis = decltype(owner_of(jerk));
+                             return &(static_cast<const Axis*>(axis)->*jerk);
+                           },
+                           [](void* axis) -> void* {
+                             using Axis = decltype(owner_of(jerk));
+                             return &(static_cast<Axis*>(axis)->*jerk);
+                           }};
+
 constexpr Table kLinearTables[] = {
     value("direction", kDirection, child<&LinearAxis::direction>,
           "Where positive words move the tool, as seen from the workpiece; it is scaled to length 1."),
     value("limits_mm", kLimitsMm, child<&LinearAxis::limits_mm>, "The least and the greatest word."),
     value("max_feed_mm_per_min", kPositiveValue, child<&LinearAxis::max_feed_mm_per_min>, "The greatest feed."),
     value("rapid_mm_per_min", kPositiveValue, child<&LinearAxis::rapid_mm_per_min>, "The speed of rapid moves."),
-    value("acceleration_mm_per_s2", kPositiveValue, child<&LinearAxis::acceleration_mm_per_s2>, "The acceleration.")};
+    value("acceleration_mm_per_s2", kPositiveValue, child<&LinearAxis::acceleration_mm_per_s2>, "The acceleration."),
+    value("jerk_mm_per_s3", kJerk, kJerkOf<&LinearAxis::jerk_mm_per_s3>, kJerkMeaning, "no limit")};
 
 constexpr Table kRotaryTables[] = {
     value("direction", kDirection, child<&RotaryAxis::direction>,
@@ -232,7 +260,8 @@ constexpr Table kRotaryTables[] = {
           "Positive words turn the workpiece, of B the tool, by the right hand; with -1 by the left.", "1"),
     value("limits_deg", kLimitsDeg, child<&RotaryAxis::limits_deg>, "The least and the greatest word."),
     value("speed_deg_per_s", kPositiveValue, child<&RotaryAxis::speed_deg_per_s>, "The speed of rapid moves."),
-    value("acceleration_deg_per_s2", kPositiveValue, child<&RotaryAxis::acceleration_deg_per_s2>, "The acceleration.")};
+    value("acceleration_deg_per_s2", kPositiveValue, child<&RotaryAxis::acceleration_deg_per_s2>, "The acceleration."),
+    value("jerk_deg_per_s3", kJerk, kJerkOf<&RotaryAxis::jerk_deg_per_s3>, kJerkMeaning, "no limit")};
 
 constexpr std::string_view kCarrierWords[] = {"workpiece", "cradle", "tool"};
 constexpr Row kBodyRows[] = {
@@ -351,6 +380,14 @@ constexpr Child kSafeZ = {
     [](const void* machine, std::size_t) -> const void* { return &static_cast<const Machine*>(machine)->safe_z_mm; },
     [](void* machine) -> void* { return &static_cast<Machine*>(machine)->safe_z_mm; }};
 
+/// Not written where axes arrive at once.
+constexpr Child kSettlingOf = {
+    [](const void* machine) -> std::size_t {
+      return static_cast<const Machine*>(machine)->settling_s.value > 0.0 ? 1 : 0;
+    },
+    [](const void* machine, std::size_t) -> const void* { return &static_cast<const Machine*>(machine)->settling_s; },
+    [](void* machine) -> void* { return &static_cast<Machine*>(machine)->settling_s; }};
+
 constexpr Row kRows[] = {{"name", Text{}, kRequired, "What the machine is called.", access<&Machine::name>},
                          {"title", Text{}, kNone, "What it is, for people.", access<&Machine::title>}};
 constexpr Table kTables[] = {
@@ -358,6 +395,8 @@ constexpr Table kTables[] = {
           "Where the first move of a program brings Z, alone: clear of all that may stand on the table, wherever the "
           "other axes are.",
           "the upper limit of Z"),
+    value("settling_s", kSettling, kSettlingOf,
+          "How long the control waits after every move until the axes stand still at their exact stop.", "0"),
     linear("x", "The linear axis X.", child<&Machine::x>),
     linear("y", "The linear axis Y.", child<&Machine::y>),
     linear("z", "The linear axis Z.", child<&Machine::z>),

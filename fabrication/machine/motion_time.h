@@ -1,0 +1,25 @@
+#pragma once
+
+// How long the axes of a machine take from a standstill to a standstill.
+
+#include <limits>
+
+#include "fabrication/machine/machine.h"
+
+namespace retrace::fabrication {
+
+/// Of a motion along a line, or of one axis, in mm or degrees and seconds.
+struct MotionLimits {
+  double speed = 0.0;
+  double acceleration = 0.0;
+  double jerk = std::numeric_limits<double>::infinity();
+};
+
+/// The shortest time from rest to rest over a distance: jerk that is constant piece by piece, or constant acceleration
+/// where jerk has no limit (docs/theory/cutting.md). \pre distance >= 0, limits > 0
+double rest_to_rest_s(double distance, const MotionLimits& limits);
+
+/// By A or B and by C, in degrees, each as fast as it goes and both to be waited for; without settling.
+double rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg);
+
+}  // namespace retrace::fabrication

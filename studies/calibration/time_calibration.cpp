@@ -1,0 +1,259 @@
+#include "studies/calibration/time_calibration.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "studies/calibration/estimate.h"
+
+namespace retrace::studies {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+using fabrication::Machine, fabrication::LinearAxis, fabrication::RotaryAxis;
+
+constexpr auto kUnknowns = static_cast<Index>(kTimeQuantities);
+constexpr auto at(TimeQuantity quantity) {
+  return static_cast<Index>(quantity);
+}
+
+/// Unknowns that are less certain than this count as untold: settling and ramp in s, accelerations in the logarithm of
+/// their factor.
+constexpr double kTooUncertain[kTimeQuantities] = {0.05, 0.7, 0.05, 0.7};
+/// Below which a step of an unknown, in parts of that, ends the search.
+constexpr double kLastTimeStep = 1e-7;
+constexpr int kMostTimeSteps = 60;
+/// Ramps and factors of acceleration from which the search begins: time is not convex in them.
+constexpr double kFirstRampsS[] = {0.0, 3e-3, 1e-2, 3e-2, 0.1};
+constexpr double kFirstFactors[] = {0.5, 1.0, 2.0};
+/// Rows that miss what the others say by more than this are named.
+constexpr double kManyDeviations = 4.0;
+/// Ramps that are shorter are none.
+constexpr double kLeastRampS = 1e-6;
+
+/// Unknowns in parts of kTooUncertain; both factors are 1 where theirs are 0.
+using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+
+bool is_bounded(Index unknown) {
+  return unknown == at(TimeQuantity::settling) || unknown == at(TimeQuantity::linear_ramp);
+}
+
+/// What a machine file can say: 10 s, and a factor of 100.
+double most(Index unknown) {
+  return (is_bounded(unknown) ? 10.0 : std::log(100.0)) / kTooUncertain[unknown];
+}
+
+double value_of(const Unknowns& unknowns, TimeQuantity quantity) {
+  const double amount = unknowns[at(quantity)] * kTooUncertain[at(quantity)];
+  return is_bounded(at(quantity)) ? amount : std::exp(amount);
+}
+
+/// Until an axis has its acceleration.
+double ramp_s(const LinearAxis& axis) {
+  return axis.acceleration_mm_per_s2.value / axis.jerk_mm_per_s3.value;
+}
+
+double longest_ramp_s(const Machine& machine) {
+  return std::max({ramp_s(machine.x), ramp_s(machine.y), ramp_s(machine.z)});
+}
+
+Unknowns of_machine(const Machine& machine) {
+  Unknowns unknowns = Unknowns::Zero();
+  unknowns[at(TimeQuantity::settling)] = machine.settling_s.value / kTooUncertain[at(TimeQuantity::settling)];
+  unknowns[at(TimeQuantity::linear_ramp)] = longest_ramp_s(machine) / kTooUncertain[at(TimeQuantity::linear_ramp)];
+  return unknowns;
+}
+
+Machine with_times(Machine machine, const Unknowns& unknowns) {
+  machine.settling_s.value = value_of(unknowns, TimeQuantity::settling);
+  // Ramps of axes stay in proportion; of a file without jerks all are alike.
+  const double longest_before = longest_ramp_s(machine);
+  const double longest = value_of(unknowns, TimeQuantity::linear_ramp);
+  for (LinearAxis* axis : {&machine.x, &machine.y, &machine.z}) {
+    const double ramp = longest_before > 0.0 ? longest * ramp_s(*axis) / longest_before : longest;
+    axis->acceleration_mm_per_s2.value *= value_of(unknowns, TimeQuantity::linear_acceleration);
+    axis->jerk_mm_per_s3.value =
+        ramp > kLeastRampS ? axis->acceleration_mm_per_s2.value / ramp : std::numeric_limits<double>::infinity();
+  }
+  for (RotaryAxis* axis : {&machine.a, &machine.c}) {
+    // Its ramp takes as long as before.
+    axis->acceleration_deg_per_s2.value *= value_of(unknowns, TimeQuantity::rotary_acceleration);
+    axis->jerk_deg_per_s3.value *= value_of(unknowns, TimeQuantity::rotary_acceleration);
+  }
+  return machine;
+}
+
+/// Times of the rows on a machine, what was measured less those, and derivatives: each in uncertainties of its row.
+class Fit {
+ public:
+  Fit(const TimedPrograms& programs, const Machine& nominal) : programs_(programs), nominal_(nominal) {}
+
+  VectorXd residual(const Unknowns& unknowns) const {
+    const Machine machine = with_times(nominal_, unknowns);
+    VectorXd left(static_cast<Index>(programs_.rows.size()));
+    for (Index k = 0; k < left.size(); ++k) {
+      const TimedMoves& row = programs_.rows[static_cast<std::size_t>(k)];
+      left[k] = (row.seconds - row.on_s(machine)) / row.uncertainty_s;
+    }
+    return left;
+  }
+
+  Eigen::MatrixXd derivatives(const Unknowns& unknowns) const {
+    constexpr double kDifference = 1e-5;
+    Eigen::MatrixXd result(static_cast<Index>(programs_.rows.size()), kUnknowns);
+    for (Index k = 0; k < kUnknowns; ++k) {
+      Unknowns more = unknowns;
+      Unknowns less = unknowns;
+      more[k] += kDifference;
+      if (!is_bounded(k) || less[k] >= kDifference) less[k] -= kDifference;
+      result.col(k) = (residual(less) - residual(more)) / (more[k] - less[k]);
+    }
+    return result;
+  }
+
+  /// Derivatives without those of unknowns at their bound that would fall below it.
+  Eigen::MatrixXd free_derivatives(const Unknowns& unknowns, const VectorXd& left) const {
+    Eigen::MatrixXd result = derivatives(unknowns);
+    for (Index k = 0; k < kUnknowns; ++k)
+      if (is_bounded(k) && unknowns[k] <= 0.0 && result.col(k).dot(left) <= 0.0) result.col(k).setZero();
+    return result;
+  }
+
+  /// Gauss-Newton steps from there, halved until they are no worse.
+  Unknowns nearest(Unknowns unknowns) const {
+    const Eigen::MatrixXd nothing(static_cast<Index>(programs_.rows.size()), 0);
+    VectorXd left = residual(unknowns);
+    for (int k = 0; k < kMostTimeSteps; ++k) {
+      const Unknowns step = estimate(free_derivatives(unknowns, left), nothing, left, 1.0).value;
+      double share = 1.0;
+      Unknowns next;
+      VectorXd next_left;
+      do {
+        next = unknowns + share * step;
+        for (Index q = 0; q < kUnknowns; ++q) next[q] = std::clamp(next[q], is_bounded(q) ? 0.0 : -most(q), most(q));
+        next_left = residual(next);
+        share *= 0.5;
+      } while (!(next_left.squaredNorm() <= left.squaredNorm()) && share > 1e-6);
+      if (!(next_left.squaredNorm() <= left.squaredNorm())) return unknowns;
+      const double moved = (next - unknowns).norm();
+      unknowns = next;
+      left = next_left;
+      if (moved < kLastTimeStep) return unknowns;
+    }
+    return unknowns;
+  }
+
+  Unknowns best() const {
+    Unknowns found = nearest(of_machine(nominal_));
+    for (const double ramp : kFirstRampsS)
+      for (const double factor : kFirstFactors) {
+        Unknowns start = of_machine(nominal_);
+        start[at(TimeQuantity::linear_ramp)] = ramp / kTooUncertain[at(TimeQuantity::linear_ramp)];
+        start[at(TimeQuantity::linear_acceleration)] =
+            std::log(factor) / kTooUncertain[at(TimeQuantity::linear_acceleration)];
+        const Unknowns other = nearest(start);
+        // Better by more than what rounding makes of it: what is not told stays as the file has it.
+        if (residual(other).squaredNorm() < residual(found).squaredNorm() * (1.0 - 1e-6) - 1e-9) found = other;
+      }
+    return found;
+  }
+
+ private:
+  const TimedPrograms& programs_;
+  const Machine& nominal_;
+};
+
+void tell_sources(TimeCalibration& result) {
+  const auto tell = [&](auto& sourced, TimeQuantity quantity) {
+    const CalibratedTime& found = result.quantities[static_cast<std::size_t>(quantity)];
+    if (!found.is_told) return;
+    sourced.basis = fabrication::Basis::measured;
+    sourced.source = fmt::format(
+        "retrace calibrate {}: {} {:.4g} +- {:.2g}", std::filesystem::path(result.programs.file).filename().string(),
+        kTimeQuantityWords[static_cast<std::size_t>(quantity)].key, found.value, found.uncertainty);
+  };
+  tell(result.machine.settling_s, TimeQuantity::settling);
+  for (LinearAxis* axis : {&result.machine.x, &result.machine.y, &result.machine.z}) {
+    tell(axis->acceleration_mm_per_s2, TimeQuantity::linear_acceleration);
+    tell(axis->jerk_mm_per_s3, TimeQuantity::linear_ramp);
+  }
+  for (RotaryAxis* axis : {&result.machine.a, &result.machine.c})
+    tell(axis->acceleration_deg_per_s2, TimeQuantity::rotary_acceleration);
+}
+
+std::vector<std::string> not_told_apart(const Estimate& fitted) {
+  const Eigen::MatrixXd combinations = reduced_combinations(fitted.untold);
+  std::vector<std::string> words;
+  for (Index k = 0; k < combinations.cols(); ++k) {
+    std::string& keys = words.emplace_back();
+    for (std::size_t q = 0; q < kTimeQuantities; ++q) {
+      if (combinations(static_cast<Index>(q), k) == 0.0) continue;
+      keys += keys.empty() ? "" : ", ";
+      keys += kTimeQuantityWords[q].key;
+    }
+  }
+  return words;
+}
+
+void warn_of_misses(TimeCalibration& result, const Estimate& fitted) {
+  for (std::size_t k = 0; k < result.residuals.size(); ++k) {
+    const auto row = static_cast<Index>(k);
+    const double spare = 1.0 - fitted.leverage[row];
+    // A row that nothing checks is met, unless no machine takes so long.
+    const double deviations = std::abs(result.residuals[k]) / (spare > 1e-6 ? std::sqrt(spare) : 1.0);
+    if (deviations > kManyDeviations)
+      result.warnings.push_back(
+          fmt::format("line {}: {} s misses the best fit of all rows by {} standard uncertainties",
+                      result.programs.rows[k].line, shortest(result.programs.rows[k].seconds), fixed(deviations, 1)));
+  }
+}
+
+}  // namespace
+
+double TimedMoves::on_s(const Machine& machine) const {
+  double sum_s = dwell_s;
+  for (const AlikeMoves& alike : moves) {
+    fabrication::ProgramTime time;
+    time.add(machine, alike.motion);
+    sum_s += static_cast<double>(alike.count) * time.total_s();
+  }
+  return sum_s;
+}
+
+TimeCalibration calibrate_times(TimedPrograms programs, const Machine& machine) {
+  if (programs.rows.empty()) throw InputError({programs.file, 0, ""}, "must have a row with a time");
+  TimeCalibration result;
+  result.programs = std::move(programs);
+  result.nominal = machine;
+  const Fit fit(result.programs, result.nominal);
+  const Unknowns found = fit.best();
+  const VectorXd left = fit.residual(found);
+  const Eigen::MatrixXd nothing(left.size(), 0);
+  const Estimate fitted = estimate(fit.derivatives(found), nothing, left, 1.0);
+  result.residuals.assign(left.begin(), left.end());
+  result.freedom =
+      static_cast<std::size_t>(std::max(0L, std::lround(static_cast<double>(left.size()) - fitted.leverage.sum())));
+  if (result.freedom > 0) result.scatter = std::sqrt(left.squaredNorm() / static_cast<double>(result.freedom));
+  result.machine = with_times(result.nominal, found);
+  for (std::size_t k = 0; k < kTimeQuantities; ++k) {
+    const auto quantity = static_cast<TimeQuantity>(k);
+    CalibratedTime& told = result.quantities[k];
+    told.is_told = fitted.is_told(at(quantity));
+    told.value = value_of(found, quantity);
+    const double deviation = kTooUncertain[k] * std::sqrt(fitted.covariance(at(quantity), at(quantity)));
+    told.uncertainty = deviation * std::max(1.0, result.scatter) * (is_bounded(at(quantity)) ? 1.0 : told.value);
+  }
+  result.untold = not_told_apart(fitted);
+  tell_sources(result);
+  warn_of_misses(result, fitted);
+  return result;
+}
+
+}  // namespace retrace::studies
