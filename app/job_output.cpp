@@ -1,27 +1,20 @@
 #include "app/job_output.h"
 
+#include "app/shared_arguments.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/process_files.h"
-#include "fabrication/machine/io/machine_files.h"
 
 namespace retrace::app {
 namespace fs = std::filesystem;
-namespace {
-
-Words names_of(const auto& shipped) {
-  Words names;
-  for (const auto& one : shipped) names.push_back(one.name);
-  return names;
-}
-
-}  // namespace
 
 std::vector<Argument> making_arguments(MakingOptions& options, const std::string& needs) {
-  const auto machines = [] { return names_of(fabrication::shipped_machines()); };
-  const auto processes = [] { return names_of(fabrication::shipped_processes()); };
+  const auto processes = [] {
+    Words names;
+    for (const fabrication::Process& process : fabrication::shipped_processes()) names.push_back(process.name);
+    return names;
+  };
   std::vector<Argument> all = {
-      {"--machine MACHINE", "ideal, paper, thesis, ideal-dmc or a file", &options.request.machine,
-       one_of(machines, ".toml")},
+      {"--machine MACHINE", "ideal, paper, thesis, ideal-dmc or a file", &options.request.machine, machine_traits()},
       {"--tool-width-mm W",
        "width of the tool's edge, 0.1 to 2; of dmc 0.01 to 10",
        &options.tool_width_mm,

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "fabrication/machine/io/machine_files.h"
 #include "fabrication/read/nc_program.h"
 #include "studies/rre/rre.h"
 
@@ -34,6 +35,15 @@ Argument part_argument(std::string& part) {
 Argument dialect_argument(std::string& dialect) {
   return {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1", &dialect,
           one_of(words_of(fabrication::kNcDialectWords))};
+}
+
+Traits machine_traits() {
+  const auto names = [] {
+    Words words;
+    for (const fabrication::Machine& machine : fabrication::shipped_machines()) words.push_back(machine.name);
+    return words;
+  };
+  return one_of(names, ".toml");
 }
 
 Argument engine_argument(std::string& engine, const std::string& help) {

@@ -21,6 +21,8 @@ Argument job_argument(std::string& job, const std::string& help = "job file");
 Argument part_argument(std::string& part);
 /// --dialect of the programs that are written.
 Argument dialect_argument(std::string& dialect);
+/// Traits of a machine: the name of a shipped one, or a file.
+Traits machine_traits();
 /// --engine of commands whose engines are auto, exact, montecarlo and embree.
 Argument engine_argument(std::string& engine, const std::string& help);
 /// --dye: none, a shipped dye, or a file.

@@ -24,18 +24,13 @@ struct CalibrateOptions {
 };
 
 std::vector<Argument> arguments(CalibrateOptions& options) {
-  const auto machines = [] {
-    Words names;
-    for (const fabrication::Machine& machine : fabrication::shipped_machines()) names.push_back(machine.name);
-    return names;
-  };
   std::vector<Argument> all = {{"MEASUREMENTS", "table of what was measured of parts that the machine cut",
                                 &options.measurements, files(".csv")},
                                {"--times MACHINE",
                                 "the table is of how long programs took on that machine (a shipped one or a file), for "
                                 "how its axes speed up and "
                                 "settle; without a table: write programs to be timed",
-                                &options.times, one_of(machines, ".toml")}};
+                                &options.times, machine_traits()}};
   all.push_back(dialect_argument(options.dialect));
   all.back().traits.needs = "--times";
   return all;
@@ -79,7 +74,7 @@ ExitCode calibrate_times(const CalibrateOptions& options, const CommonOptions& c
     inputs.push_back((std::filesystem::path(*options.measurements).parent_path() / row.program).string());
   ResultFiles files(common, inputs, "time_calibration.json");
   const studies::TimeCalibration result = studies::calibrate_times(std::move(programs), machine);
-  files.add("machine.toml", [&] { return studies::timed_machine_toml(result); });
+  files.add("machine.toml", [&] { return fabrication::machine_text(result.machine); });
   files.prepare();
   return files.write(studies::time_calibration_json(result), studies::time_calibration_table(result), result.warnings);
 }
@@ -90,7 +85,7 @@ ExitCode run(const CalibrateOptions& options, const CommonOptions& common) {
   studies::MeasuredParts parts = studies::read_measurements(*options.measurements);
   ResultFiles files(common, inputs_of(options, parts), "calibration.json");
   const studies::Calibration result = studies::calibrate(std::move(parts));
-  files.add("machine.toml", [&] { return studies::calibrated_machine_toml(result); });
+  files.add("machine.toml", [&] { return fabrication::machine_text(result.machine); });
   files.add("residuals.csv", [&] { return studies::residuals_csv(result); });
   files.prepare();
   return files.write(studies::calibration_json(result), studies::calibration_table(result), result.warnings);

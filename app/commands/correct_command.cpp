@@ -11,6 +11,7 @@
 #include "core/message_text.h"
 #include "core/text.h"
 #include "fabrication/job/io/job_files.h"
+#include "fabrication/machine/io/machine_files.h"
 #include "studies/calibration/io/calibration_files.h"
 #include "surface_models/io/height_map_reader.h"
 
@@ -80,7 +81,7 @@ ExitCode run(const CorrectOptions& options, const CommonOptions& common) {
   for (const studies::FacetMap& map : maps) inputs.push_back(map.file);
   ResultFiles files(common, inputs, "correction.json");
   std::optional<studies::Correction> result;
-  files.add("machine.toml", [&] { return studies::calibrated_machine_toml(result->calibration); });
+  files.add("machine.toml", [&] { return fabrication::machine_text(result->calibration.machine); });
   files.add("job.toml", [&] { return fabrication::job_text(corrected_job(plan.job, options.job, common.out)); });
   files.add("residuals.csv", [&] { return studies::residuals_csv(result->calibration); });
   files.check();

@@ -1,33 +1,31 @@
 #include "fabrication/check/program_time.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "fabrication/machine/motion_time.h"
 
 namespace retrace::fabrication {
+
 void ProgramTime::add(const Machine& machine, const NcMotion& motion) {
+  if (motion.duration_s > 0.0) {
+    feed_s += motion.duration_s;
+    return;
+  }
   const auto known = [&](unsigned bit) { return (motion.known >> bit & 1U) != 0; };
-  const std::array<double, 3> travel = {known(0) ? motion.to.x_mm - motion.from.x_mm : 0.0,
-                                        known(1) ? motion.to.y_mm - motion.from.y_mm : 0.0,
-                                        known(2) ? motion.to.z_mm - motion.from.z_mm : 0.0};
-  const std::array<const LinearAxis*, 3> axes = {&machine.x, &machine.y, &machine.z};
-  const double distance = std::hypot(travel[0], travel[1], travel[2]);
+  const geometry::Vec3 travel(known(0) ? motion.to.x_mm - motion.from.x_mm : 0.0,
+                              known(1) ? motion.to.y_mm - motion.from.y_mm : 0.0,
+                              known(2) ? motion.to.z_mm - motion.from.z_mm : 0.0);
+  const double distance = travel.norm();
   if (motion.move == NcMove::linear && distance > 0.0 && motion.feed_mm_per_min > 0.0) {
-    MotionLimits path{motion.feed_mm_per_min / 60.0, std::numeric_limits<double>::infinity()};
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (travel[i] == 0.0) continue;
-      const double along = distance / std::abs(travel[i]);
-      path.acceleration = std::min(path.acceleration, axes[i]->acceleration_mm_per_s2.value * along);
-      path.jerk = std::min(path.jerk, axes[i]->jerk_mm_per_s3.value * along);
-    }
+    MotionLimits path = limits_along(machine, travel);
+    path.speed = motion.feed_mm_per_min / 60.0;
     feed_s += rest_to_rest_s(distance, path) + (motion.is_exact_stop ? machine.settling_s.value : 0.0);
   }
   if (motion.move == NcMove::rapid && distance > 0.0) {
+    const LinearAxis* const axes[] = {&machine.x, &machine.y, &machine.z};
     double slowest_s = 0.0;
-    for (std::size_t i = 0; i < 3; ++i)
+    for (Eigen::Index i = 0; i < 3; ++i)
       slowest_s = std::max(slowest_s, rest_to_rest_s(std::abs(travel[i]), {axes[i]->rapid_mm_per_min.value / 60.0,
                                                                            axes[i]->acceleration_mm_per_s2.value,
                                                                            axes[i]->jerk_mm_per_s3.value}));

@@ -7,7 +7,7 @@
 
 namespace retrace::fabrication {
 
-/// Seconds by what they are spent on. Moves start and end at rest.
+/// Seconds by what they are spent on. Moves start and end at rest, but for those that say their time.
 struct ProgramTime {
   double feed_s = 0.0;
   double rapid_s = 0.0;
@@ -18,7 +18,8 @@ struct ProgramTime {
     return {feed_s - other.feed_s, rapid_s - other.rapid_s, rotary_s - other.rotary_s, dwell_s - other.dwell_s};
   }
 
-  /// Adds a move. Ways of linear axes whose position is not known yet count nothing; rotary axes start at 0.
+  /// Adds a move; one that says its time takes that. Ways of linear axes whose position is not known yet count nothing;
+  /// rotary axes start at 0.
   void add(const Machine& machine, const NcMotion& motion);
 };
 

@@ -29,6 +29,18 @@ double one_axis_s(const RotaryAxis& axis, double deg) {
 
 }  // namespace
 
+MotionLimits limits_along(const Machine& machine, const geometry::Vec3& by_mm) {
+  MotionLimits along;
+  const LinearAxis* const axes[] = {&machine.x, &machine.y, &machine.z};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double share = std::abs(by_mm[k]) / by_mm.norm();
+    if (!(share > 0.0)) continue;
+    along.acceleration = std::min(along.acceleration, axes[k]->acceleration_mm_per_s2.value / share);
+    along.jerk = std::min(along.jerk, axes[k]->jerk_mm_per_s3.value / share);
+  }
+  return along;
+}
+
 double rest_to_rest_s(double distance, const MotionLimits& limits) {
   if (distance <= 0.0) return 0.0;
   const double up_s = speeding_up_s(limits.speed, limits);

@@ -10,10 +10,13 @@ namespace retrace::fabrication {
 
 /// Of a motion along a line, or of one axis, in mm or degrees and seconds.
 struct MotionLimits {
-  double speed = 0.0;
-  double acceleration = 0.0;
+  double speed = std::numeric_limits<double>::infinity();
+  double acceleration = std::numeric_limits<double>::infinity();
   double jerk = std::numeric_limits<double>::infinity();
 };
+
+/// Of a motion along a line in space by (x, y, z) mm: what the axes allow together. Its speed is left open.
+MotionLimits limits_along(const Machine& machine, const geometry::Vec3& by_mm);
 
 /// The shortest time from rest to rest over a distance: jerk that is constant piece by piece, or constant acceleration
 /// where jerk has no limit (docs/theory/cutting.md). \pre distance >= 0, limits > 0

@@ -32,13 +32,10 @@ std::string_view without_a3200_comment(std::string_view line) {
 
 /// In capitals, with one blank for each gap.
 std::string with_single_blanks(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    const bool is_blank = c == ' ' || c == '\t';
-    if (is_blank && (result.empty() || result.back() == ' ')) continue;
-    result += is_blank ? ' ' : c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  }
-  if (!result.empty() && result.back() == ' ') result.pop_back();
+  std::string result = in_capitals(trimmed(text));
+  std::replace(result.begin(), result.end(), '\t', ' ');
+  const auto is_gap = [](char a, char b) { return a == ' ' && b == ' '; };
+  result.erase(std::unique(result.begin(), result.end(), is_gap), result.end());
   return result;
 }
 
@@ -52,7 +49,7 @@ class A3200Reader {
   NcProgram run() {
     std::string_view line;
     while (lines_.next(line))
-      if (!read_text(trimmed(line)))
+      if (!take_text(trimmed(line), texts_, is_over_ ? "stands behind the end of the program" : "", lines_, program_))
         read_line_that_may_be_cut(lines_, program_, [&] { read(with_single_blanks(without_a3200_comment(line))); });
     program_.lines = lines_.number();
     if (!is_over_) program_.main_last = program_.blocks.size();
@@ -62,16 +59,6 @@ class A3200Reader {
   }
 
  private:
-  /// A line that the integrator has given a meaning.
-  bool read_text(std::string_view text) {
-    NcBlock block;
-    block.line = lines_.number();
-    if (!set_text(text, texts_, block)) return false;
-    if (is_over_) lines_.fail("stands behind the end of the program");
-    program_.blocks.push_back(block);
-    return true;
-  }
-
   void read(std::string_view text) {
     skip_line_number(text);
     if (text.empty()) return;

@@ -25,13 +25,6 @@ constexpr AeroScriptSetting kAeroScriptSettings[] = {
     {"CornerRoundingOff()", nc_effects::kSays<nc_said::kRoundingOff>},
 };
 
-std::string without_gaps(std::string_view text) {
-  std::string result;
-  for (const char c : text)
-    if (c != ' ' && c != '\t') result += c;
-  return result;
-}
-
 class Automation1Reader {
  public:
   Automation1Reader(NcLines lines, const NcTexts& texts) : lines_(std::move(lines)), texts_(texts), table_(program_) {
@@ -42,7 +35,7 @@ class Automation1Reader {
   NcProgram run() {
     std::string_view line;
     while (lines_.next(line))
-      if (!read_text(trimmed(line)))
+      if (!take_text(trimmed(line), texts_, is_in_main_ ? "" : "stands outside of program ... end", lines_, program_))
         read_line_that_may_be_cut(lines_, program_, [&] { read(trimmed(line.substr(0, line.find("//")))); });
     program_.lines = lines_.number();
     if (is_in_main_) program_.main_last = program_.blocks.size();
@@ -51,16 +44,6 @@ class Automation1Reader {
   }
 
  private:
-  /// A line that the integrator has given a meaning.
-  bool read_text(std::string_view text) {
-    NcBlock block;
-    block.line = lines_.number();
-    if (!set_text(text, texts_, block)) return false;
-    if (!is_in_main_) lines_.fail("stands outside of program ... end");
-    program_.blocks.push_back(block);
-    return true;
-  }
-
   void read(std::string_view text) {
     if (text.empty()) return;
     if (text.find("/*") != std::string_view::npos) lines_.fail("a comment /* ... */ is not understood");

@@ -12,6 +12,7 @@ constexpr NcNeed kOffsetNeed = {nc_said::kWorkOffset, "G54", "which zero of the 
 constexpr NcNeed kRadiusNeed = {nc_said::kRadiusOff, "G40", "that no radius of the tool is compensated"};
 constexpr NcNeed kLengthNeed = {nc_said::kLengthOff, "G49", "that no length of the tool is compensated"};
 constexpr std::string_view kStopText = "that moves stop exactly: corners would be rounded";
+constexpr std::string_view kFineStopText = "that stops wait for the axes' exact positions";
 
 /// G92 shifts stay in the file of parameters when the control is switched off (LinuxCNC, G-code reference, G92).
 constexpr std::array kRs274ngc = {kInchNeed,
@@ -35,7 +36,7 @@ constexpr std::array kSinumerik = {
     kRadiusNeed,
     NcNeed{nc_said::kLengthOff, "D0", "that no offset of the tool holds"},
     NcNeed{nc_said::kExactStop, "G60", kStopText},
-    NcNeed{nc_said::kFineStop, "G601", "that stops wait for the axes' exact positions"}};
+    NcNeed{nc_said::kFineStop, "G601", kFineStopText}};
 
 constexpr std::array kFanuc = {kInchNeed,
                                kDistanceNeed,
@@ -57,8 +58,6 @@ constexpr std::array kPmac = {
 /// Modes of a task persist between programs (Aerotech's knowledge base, Introduction to Tasks).
 constexpr NcNeed kFeedModeNeed = {nc_said::kFeedMode, "G94", "that feeds are speeds: not G93, not G95"};
 constexpr NcNeed kToolOffsetNeed = {nc_said::kLengthOff, "G149", "that no offset of the tool holds"};
-constexpr std::string_view kFineStopText = "that stops wait for the axes' exact positions";
-
 constexpr std::array kA3200 = {NcNeed{nc_said::kUnit, "G71 or METRIC", "the unit of lengths"},
                                NcNeed{nc_said::kFeedTime, "G75 or MINUTES", "what time feeds are per"},
                                kDistanceNeed,

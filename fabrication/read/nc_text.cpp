@@ -42,6 +42,21 @@ const NcCode* code_of(std::span<const NcCode> codes, const NcWord& word) {
   return found == codes.end() ? nullptr : &*found;
 }
 
+bool set_text(std::string_view line, const NcTexts& texts, NcBlock& block) {
+  if (line.empty()) return false;
+  if (line == texts.spindle_start)
+    block.spindle = NcSpindle::started_by_text;
+  else if (line == texts.spindle_stop)
+    block.spindle = NcSpindle::stopped_by_text;
+  else if (line == texts.mist_on || line == texts.mist_off)
+    block.mist_on = line == texts.mist_on;
+  else if (line == texts.optional_stop)
+    block.stops = true;
+  else
+    return false;
+  return true;
+}
+
 }  // namespace
 
 NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), rest_(text) {
@@ -108,11 +123,20 @@ NcWord take_word(std::string_view& text, const NcLines& lines) {
   return word;
 }
 
-std::string without_blanks(std::string_view text) {
-  std::string result;
-  for (const char c : text)
-    if (c != ' ' && c != '\t') result += capital(c);
+std::string in_capitals(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), capital);
   return result;
+}
+
+std::string without_gaps(std::string_view text) {
+  std::string result(text);
+  std::erase_if(result, [](char c) { return c == ' ' || c == '\t'; });
+  return result;
+}
+
+std::string without_blanks(std::string_view text) {
+  return in_capitals(without_gaps(text));
 }
 
 void skip_comment_marks(std::string_view& text) {
@@ -120,18 +144,13 @@ void skip_comment_marks(std::string_view& text) {
   while (text.ends_with(kNcCommentMark)) text.remove_suffix(1);
 }
 
-bool set_text(std::string_view line, const NcTexts& texts, NcBlock& block) {
-  if (line.empty()) return false;
-  if (line == texts.spindle_start)
-    block.spindle = NcSpindle::started_by_text;
-  else if (line == texts.spindle_stop)
-    block.spindle = NcSpindle::stopped_by_text;
-  else if (line == texts.mist_on || line == texts.mist_off)
-    block.mist_on = line == texts.mist_on;
-  else if (line == texts.optional_stop)
-    block.stops = true;
-  else
-    return false;
+bool take_text(std::string_view line, const NcTexts& texts, std::string_view misplaced, const NcLines& lines,
+               NcProgram& program) {
+  NcBlock block;
+  block.line = lines.number();
+  if (!set_text(line, texts, block)) return false;
+  if (!misplaced.empty()) lines.fail(misplaced);
+  program.blocks.push_back(block);
   return true;
 }
 

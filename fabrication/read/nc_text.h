@@ -54,7 +54,10 @@ struct NcWord {
 /// Takes a word such as off the front, its letter as a capital. \throw InputError if there is none
 NcWord take_word(std::string_view& text, const NcLines& lines);
 
-/// `text` without blanks and tabs, in capitals.
+std::string in_capitals(std::string_view text);
+/// `text` without blanks and tabs.
+std::string without_gaps(std::string_view text);
+/// The same in capitals.
 std::string without_blanks(std::string_view text);
 
 /// Stands for a comment within a line, so that it ends a word.
@@ -62,8 +65,10 @@ inline constexpr char kNcCommentMark = '(';
 /// Words may have comments between them, and at both ends of the line.
 void skip_comment_marks(std::string_view& text);
 
-/// Takes a line that the integrator has given a meaning. False for any other.
-bool set_text(std::string_view line, const NcTexts& texts, NcBlock& block);
+/// Takes a line that the integrator has given a meaning as a block. False for any other. \param misplaced why no such
+/// line may stand here; empty: it may \throw InputError for one that may not
+bool take_text(std::string_view line, const NcTexts& texts, std::string_view misplaced, const NcLines& lines,
+               NcProgram& program);
 
 bool starts_with_word(std::string_view text, std::string_view word);
 

@@ -28,7 +28,8 @@ class PmacReader {
   NcProgram run() {
     std::string_view line;
     while (lines_.next(line))
-      if (!read_text(trimmed(line)))
+      if (!take_text(trimmed(line), texts_, is_in_main_ ? "" : "stands outside of open prog ... close", lines_,
+                     program_))
         read_line_that_may_be_cut(lines_, program_, [&] { read(line.substr(0, line.find("//"))); });
     program_.lines = lines_.number();
     if (is_in_main_) end_main();
@@ -37,19 +38,8 @@ class PmacReader {
   }
 
  private:
-  /// A line that the integrator has given a meaning.
-  bool read_text(std::string_view text) {
-    NcBlock block;
-    block.line = lines_.number();
-    if (!set_text(text, texts_, block)) return false;
-    if (!is_in_main_) lines_.fail("stands outside of open prog ... close");
-    program_.blocks.push_back(block);
-    return true;
-  }
-
   void read(std::string_view line) {
-    std::string capitals;
-    for (const char c : trimmed(line)) capitals += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    const std::string capitals = in_capitals(trimmed(line));
     std::string_view text = capitals;
     if (text.empty()) return;
     if (starts_with_word(text, "OPEN")) return open(trimmed(text.substr(4)));

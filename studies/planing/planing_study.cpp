@@ -10,15 +10,9 @@
 namespace retrace::studies {
 namespace {
 
-/// \pre it is one
-fabrication::NcDialect dialect_of(const std::string& word) {
-  const auto found = std::find(std::begin(fabrication::kNcDialectWords), std::end(fabrication::kNcDialectWords), word);
-  return static_cast<fabrication::NcDialect>(found - std::begin(fabrication::kNcDialectWords));
-}
-
 /// \throw InputError for a lathe without spindle_start in a dialect that has no words for the spindle
 void check_spindle(const fabrication::PlanedPart& part, const std::string& dialect) {
-  if (!part.lathe || !fabrication::has_own_texts(dialect_of(dialect))) return;
+  if (!part.lathe || !fabrication::has_own_texts(fabrication::dialect_of(dialect, {}, {}))) return;
   if (part.lathe->spindle_start.empty())
     throw InputError(part.lathe->spindle_start_at, "missing, must be the line that starts the spindle: dialect " +
                                                        dialect + " has no word for it that every control knows");
@@ -41,7 +35,7 @@ PlaningResult plane(const std::string& part_file, const std::string& dialect) {
   }
   for (const PlannedProgram& planned : result.plan.programs)
     result.programs.push_back({planned.program.name + ending, nc_text(planned.program, dialect)});
-  result.check = check_planing(result.part, result.programs, dialect_of(dialect));
+  result.check = check_planing(result.part, result.programs, dialect_of(dialect, {}, {}));
   return result;
 }
 

@@ -17,7 +17,7 @@ namespace retrace::fabrication {
 /// \throw InputError for a word that is none, and for text that shows none
 NcDialect dialect_of(const std::string& word, std::string_view text, const std::string& file);
 
-/// Lines of a Power PMAC that a machine's file gives.
+/// Lines that a machine's file gives for dialects that have no words of their own.
 NcTexts texts_of(const Control& control);
 
 /// A program as it is named: "part.ngc", or "part.ngc@120", which was stopped behind line 120.

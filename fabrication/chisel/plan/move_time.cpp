@@ -11,7 +11,8 @@ double linear_move_s(const Machine& machine, const geometry::Vec3& by_mm, std::o
   const double distance_mm = by_mm.norm();
   if (distance_mm <= 0.0) return 0.0;
   constexpr double kSecondsPerMinute = 60.0;
-  MotionLimits path{feed_mm_per_min ? *feed_mm_per_min / kSecondsPerMinute : INFINITY, INFINITY};
+  MotionLimits path = limits_along(machine, by_mm);
+  if (feed_mm_per_min) path.speed = *feed_mm_per_min / kSecondsPerMinute;
   const LinearAxis* const axes[] = {&machine.x, &machine.y, &machine.z};
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double share = std::abs(by_mm[k]) / distance_mm;
@@ -19,8 +20,6 @@ double linear_move_s(const Machine& machine, const geometry::Vec3& by_mm, std::o
     const LinearAxis& axis = *axes[k];
     const double most = feed_mm_per_min ? axis.max_feed_mm_per_min.value : axis.rapid_mm_per_min.value;
     path.speed = std::min(path.speed, most / kSecondsPerMinute / share);
-    path.acceleration = std::min(path.acceleration, axis.acceleration_mm_per_s2.value / share);
-    path.jerk = std::min(path.jerk, axis.jerk_mm_per_s3.value / share);
   }
   return rest_to_rest_s(distance_mm, path) + machine.settling_s.value;
 }

@@ -16,6 +16,7 @@
 #include "core/number_format.h"
 #include "core/schema/access.h"
 #include "core/schema/reader.h"
+#include "core/schema/writer.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -224,23 +225,16 @@ constexpr Table value(std::string_view name, const ValueTable& type, Child child
           .otherwise = otherwise};
 }
 
-template <class Owner>
-Owner owner_of(Sourced<double> Owner::*);
+/// A member that is written only where it says more than its default.
+template <auto member, auto is_written>
+constexpr Child child_if = {
+    [](const void* parent) -> std::size_t {
+      return is_written(*static_cast<const typename MemberTypes<decltype(member)>::Object*>(parent)) ? 1 : 0;
+    },
+    child_at<member>, child_of<member>};
 
-/// Not written where there is no limit.
 template <auto jerk>
-constexpr Child kJerkOf = {[](const void* axis) -> std::size_t {
-                             using Axis = decltype(owner_of(jerk));
-                             return std::isfinite((static_cast<const Axis*>(axis)->*jerk).value) ? 1 : 0;
-                           },
-                           [](const void* axis, std::size_t) -> const void* {
-                             using Axis = decltype(owner_of(jerk));
-                             return &(static_cast<const Axis*>(axis)->*jerk);
-                           },
-                           [](void* axis) -> void* {
-                             using Axis = decltype(owner_of(jerk));
-                             return &(static_cast<Axis*>(axis)->*jerk);
-                           }};
+constexpr Child kJerkOf = child_if<jerk, [](const auto& axis) { return std::isfinite((axis.*jerk).value); }>;
 
 constexpr Table kLinearTables[] = {
     value("direction", kDirection, child<&LinearAxis::direction>,
@@ -309,14 +303,9 @@ constexpr Table kMountTables[] = {
           "hand. About X: other clearance; about Y: the edge is not level; about Z: the edge is not along X.",
           "0")};
 
-/// Not written where the tool stands as it should.
-constexpr Child kMount = {
-    [](const void* machine) -> std::size_t {
-      const ToolMount& mount = static_cast<const Machine*>(machine)->mount;
-      return mount.offset_mm.value == Vec3::Zero() && mount.turn_deg.value == Vec3::Zero() ? 0 : 1;
-    },
-    [](const void* machine, std::size_t) -> const void* { return &static_cast<const Machine*>(machine)->mount; },
-    [](void* machine) -> void* { return &static_cast<Machine*>(machine)->mount; }};
+bool is_mounted_askew(const Machine& m) {
+  return m.mount.offset_mm.value != Vec3::Zero() || m.mount.turn_deg.value != Vec3::Zero();
+}
 
 template <std::string Control::*line>
 std::string unfit_text(const Control& control) {
@@ -371,31 +360,21 @@ constexpr Rule kControlRules[] = {
     Check{kStopKeys, "So is `optional_stop`, another one.", check_by<unfit_text<&Control::optional_stop>>},
     Check{kModuloKeys, "`modulo_axes` holds letters of rotary axes.", check_by<unknown_modulo_axes>}};
 
-/// Not written where it is the limit of Z.
-constexpr Child kSafeZ = {
-    [](const void* machine) -> std::size_t {
-      const auto& m = *static_cast<const Machine*>(machine);
-      return m.safe_z_mm.value <= m.z.limits_mm.value.high ? 1 : 0;
-    },
-    [](const void* machine, std::size_t) -> const void* { return &static_cast<const Machine*>(machine)->safe_z_mm; },
-    [](void* machine) -> void* { return &static_cast<Machine*>(machine)->safe_z_mm; }};
-
-/// Not written where axes arrive at once.
-constexpr Child kSettlingOf = {
-    [](const void* machine) -> std::size_t {
-      return static_cast<const Machine*>(machine)->settling_s.value > 0.0 ? 1 : 0;
-    },
-    [](const void* machine, std::size_t) -> const void* { return &static_cast<const Machine*>(machine)->settling_s; },
-    [](void* machine) -> void* { return &static_cast<Machine*>(machine)->settling_s; }};
+bool has_safe_z(const Machine& m) {
+  return m.safe_z_mm.value <= m.z.limits_mm.value.high;
+}
+bool settles(const Machine& m) {
+  return m.settling_s.value > 0.0;
+}
 
 constexpr Row kRows[] = {{"name", Text{}, kRequired, "What the machine is called.", access<&Machine::name>},
                          {"title", Text{}, kNone, "What it is, for people.", access<&Machine::title>}};
 constexpr Table kTables[] = {
-    value("safe_z_mm", kHeight, kSafeZ,
+    value("safe_z_mm", kHeight, child_if<&Machine::safe_z_mm, has_safe_z>,
           "Where the first move of a program brings Z, alone: clear of all that may stand on the table, wherever the "
           "other axes are.",
           "the upper limit of Z"),
-    value("settling_s", kSettling, kSettlingOf,
+    value("settling_s", kSettling, child_if<&Machine::settling_s, settles>,
           "How long the control waits after every move until the axes stand still at their exact stop.", "0"),
     linear("x", "The linear axis X.", child<&Machine::x>),
     linear("y", "The linear axis Y.", child<&Machine::y>),
@@ -406,7 +385,7 @@ constexpr Table kTables[] = {
     {.name = "mount",
      .meaning = "How the tool stands, where it stands otherwise than it should.",
      .tables = kMountTables,
-     .child = kMount,
+     .child = child_if<&Machine::mount, is_mounted_askew>,
      .presence = Presence::optional},
     {.name = "control",
      .meaning = "What programs must know of the control; each dialect takes what concerns it.",
@@ -446,6 +425,10 @@ Machine parse_machine(std::string_view text, const std::string& source_name) {
   Machine machine;
   schema::read_object(kFormat, text, source_name, &machine);
   return machine;
+}
+
+std::string machine_text(const Machine& machine) {
+  return schema::object_text(kFormat, &machine);
 }
 
 std::vector<Machine> shipped_machines() {

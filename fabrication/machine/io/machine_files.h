@@ -19,6 +19,9 @@ const schema::Format& machine_format();
 /// \throw InputError naming file, line, key, what was given and what is allowed, on one line
 Machine parse_machine(std::string_view text, const std::string& source_name);
 
+/// A machine as the text of a file; values as they were given or found, each with its source.
+std::string machine_text(const Machine& machine);
+
 /// The shipped machines (data/machines/*.toml), by name.
 std::vector<Machine> shipped_machines();
 

@@ -9,8 +9,6 @@
 #include "core/csv.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/schema/writer.h"
-#include "fabrication/machine/io/machine_files.h"
 
 namespace retrace::studies {
 namespace {
@@ -132,10 +130,6 @@ std::string correction_table(const Correction& result) {
   text += fmt::format("  on the corrected machine within        {} nm, {} arcsec\n", fixed(result.after.distance_nm, 1),
                       fixed(result.after.tilt_arcsec, 2));
   return text;
-}
-
-std::string calibrated_machine_toml(const Calibration& result) {
-  return schema::object_text(fabrication::machine_format(), &result.machine);
 }
 
 std::string residuals_csv(const Calibration& result) {

@@ -11,8 +11,6 @@ namespace retrace::studies {
 
 std::string calibration_json(const Calibration& result);
 std::string calibration_table(const Calibration& result);
-/// The calibrated machine's file.
-std::string calibrated_machine_toml(const Calibration& result);
 /// What was measured with what is left of it, in standard uncertainties.
 std::string residuals_csv(const Calibration& result);
 

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -20,9 +21,7 @@
 #include "core/error.h"
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "core/schema/writer.h"
 #include "fabrication/check/io/program_files.h"
-#include "fabrication/machine/io/machine_files.h"
 
 namespace retrace::studies {
 namespace {
@@ -57,20 +56,24 @@ class Timeline final : public NcSink {
   }
 
   void add(TimedMoves& row, int from_line, int to_line) const {
-    std::vector<std::int64_t> counts(motions_.size(), 0);
-    for (const auto& [line, kind] : moves_)
-      if (line >= from_line && line <= to_line) ++counts[kind];
-    for (std::size_t k = 0; k < counts.size(); ++k)
-      if (counts[k] > 0) row.moves.push_back({motions_[k], counts[k]});
-    for (const auto& [line, seconds] : dwells_)
-      if (line >= from_line && line <= to_line) row.dwell_s += seconds;
+    std::map<std::size_t, std::int64_t> counts;
+    for (const auto& [line, kind] : of_lines(moves_, from_line, to_line)) ++counts[kind];
+    for (const auto& [kind, count] : counts) row.moves.push_back({motions_[kind], count});
+    for (const auto& [line, seconds] : of_lines(dwells_, from_line, to_line)) row.dwell_s += seconds;
   }
 
   int lines() const { return program_.lines; }
 
  private:
-  /// What the time of a move depends on: travels in nanometres and 1e-7 degrees, feed, and how it goes.
-  using Key = std::array<std::int64_t, kNcAxes + 3>;
+  /// What the time of a move depends on: travels in nanometres and 1e-7 degrees, feed or time, and how it goes.
+  using Key = std::array<std::int64_t, kNcAxes + 4>;
+
+  /// What happens on these lines: main programs run from their first line to their last.
+  template <class Event>
+  static std::span<const Event> of_lines(const std::vector<Event>& events, int from_line, int to_line) {
+    const auto first = std::ranges::lower_bound(events, from_line, {}, &Event::first);
+    return {first, std::ranges::upper_bound(first, events.end(), to_line, {}, &Event::first)};
+  }
 
   static int main_line(const NcPlace& place) { return place.call_line > 0 ? place.call_line : place.line; }
 
@@ -79,9 +82,6 @@ class Timeline final : public NcSink {
     const auto travel = [](double from, double to, double units) { return std::llround((to - from) * units); };
     const AxisPositions& a = motion.from;
     const AxisPositions& b = motion.to;
-    std::int64_t feed = 0;
-    static_assert(sizeof(feed) == sizeof(motion.feed_mm_per_min));
-    std::memcpy(&feed, &motion.feed_mm_per_min, sizeof(feed));
     return {travel(a.x_mm, b.x_mm, kUnits[0]),
             travel(a.y_mm, b.y_mm, kUnits[0]),
             travel(a.z_mm, b.z_mm, kUnits[0]),
@@ -89,7 +89,8 @@ class Timeline final : public NcSink {
             travel(a.c_deg, b.c_deg, kUnits[1]),
             travel(a.b_deg, b.b_deg, kUnits[1]),
             motion.known,
-            feed,
+            std::bit_cast<std::int64_t>(motion.feed_mm_per_min),
+            std::bit_cast<std::int64_t>(motion.duration_s),
             (motion.move == NcMove::rapid ? 1 : 0) + (motion.is_exact_stop ? 2 : 0)};
   }
 
@@ -272,10 +273,6 @@ std::string time_programs_json(const Machine& machine, const std::vector<std::st
   json["machine"] = machine.name;
   json["programs"] = programs;
   return result_text("retrace.time_programs/1", std::move(json), {});
-}
-
-std::string timed_machine_toml(const TimeCalibration& result) {
-  return schema::object_text(machine_format(), &result.machine);
 }
 
 }  // namespace retrace::studies

@@ -25,7 +25,5 @@ std::string time_calibration_table(const TimeCalibration& result);
 /// The table to be filled in with how long these programs take.
 std::string times_csv(const std::vector<std::string>& programs);
 std::string time_programs_json(const fabrication::Machine& machine, const std::vector<std::string>& programs);
-/// The calibrated machine's file.
-std::string timed_machine_toml(const TimeCalibration& result);
 
 }  // namespace retrace::studies

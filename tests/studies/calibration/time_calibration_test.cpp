@@ -222,13 +222,13 @@ TEST(TimeCalibration, NamesATimeThatNoMachineTakes) {
         timed().calibrate(std::string("program,seconds,uncertainty\ntimes-ways.ngc,") + seconds + ",1\n");
     ASSERT_EQ(found.warnings.size(), 1U) << seconds;
     EXPECT_TRUE(found.warnings[0].starts_with("line 2: "));
-    EXPECT_NO_THROW(parse_machine(timed_machine_toml(found), "machine.toml")) << "it can be read all the same";
+    EXPECT_NO_THROW(parse_machine(machine_text(found.machine), "machine.toml")) << "it can be read all the same";
   }
 }
 
 TEST(TimeCalibration, TheMachineFileReadsBack) {
   const TimeCalibration found = timed().calibrate(timed().table(drawn(9), 0.5, 9));
-  const Machine read = parse_machine(timed_machine_toml(found), "machine.toml");
+  const Machine read = parse_machine(machine_text(found.machine), "machine.toml");
   EXPECT_EQ(read.settling_s.value, found.machine.settling_s.value);
   EXPECT_EQ(read.settling_s.basis, Basis::measured);
   EXPECT_EQ(read.z.jerk_mm_per_s3.value, found.machine.z.jerk_mm_per_s3.value);
@@ -258,6 +258,14 @@ TEST(TimePrograms, StayAboveAllAndWithinTravelInEveryDialect) {
         EXPECT_FALSE(nc_text(program, dialect.name).empty());
       }
     }
+}
+
+TEST(TimeTables, MovesThatSayTheirTimeTakeIt) {
+  const FileTexts texts = {{"p.ngc", "%\nG21 G90 G94\nG0 Z50\nG0 X0 Y0\nG93\nG1 X1 F30\nG1 X1.5 F120\nM2\n%\n"}};
+  const TimedPrograms read = parse_times(
+      "program,from_line,to_line,seconds,uncertainty\np.ngc,6,7,1,1\np.ngc,6,6,1,1\n", "t.csv", nominal(), texts);
+  EXPECT_DOUBLE_EQ(read.rows[0].on_s(nominal()), 2.5);
+  EXPECT_DOUBLE_EQ(read.rows[1].on_s(nominal()), 2.0);
 }
 
 TEST(TimeTables, RefuseWhatIsWrongWithItsPlace) {
