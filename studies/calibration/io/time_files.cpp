@@ -20,6 +20,7 @@
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "fabrication/check/io/program_files.h"
 
@@ -173,6 +174,8 @@ class TimeReader {
 
   const Timeline& timeline_of(const std::string& name) {
     if (name.empty()) table_.fail(columns_.program, "must name a program");
+    if (printable(name, name.size()) != name)
+      table_.fail(columns_.program, "must be the name of a program, got " + in_quotes(name));
     if (const auto known = timelines_.find(name); known != timelines_.end()) return known->second.timeline;
     if (timelines_.size() == kMostPrograms) table_.fail(fmt::format("at most {} programs are allowed", kMostPrograms));
     auto program = std::make_unique<NcProgram>(
