@@ -77,6 +77,9 @@ struct ReturnedBeam {
   /// infinite part's light enters within the central period. Empty if it never entered.
   geometry::Polygon entered_mm;
   geometry::Polygon left_mm;
+  /// Trace of the map from where on the face light leaves to where it entered: 2 of a mirror's light, -2 of light that
+  /// cube corners send back, 0 where one axis alone is turned round.
+  double entry_trace = 2.0;
   /// Of the field: along source_axis() and the axis across it, of its own direction, for unit amplitudes along those
   /// of the source.
   JonesMatrix jones = JonesMatrix::Identity();

@@ -24,21 +24,6 @@ struct MeasuredTristimulus {
   bool lacks_diffraction = false;
 };
 
-/// The request of one response: with the rays of a direction shared by the three, and with the absorption of a coloured
-/// design as its dye, which changes nothing but where the wavelengths are placed.
-PhotometryRequest request_of_response(const PhotometryRequest& request, const Design& design, std::size_t response) {
-  PhotometryRequest one = request;
-  one.rays = std::max<std::uint64_t>(1, request.rays / 3);
-  one.seed = request.seed + kSeedStep * static_cast<std::uint32_t>(response + 1);
-  const auto* const own = std::get_if<std::vector<SpectralAbsorption>>(&design.substance.absorption_per_mm);
-  if (own != nullptr && one.dye_absorption_per_mm.values.empty())
-    for (const SpectralAbsorption& at : *own) {
-      one.dye_absorption_per_mm.wavelengths_nm.push_back(at.wavelength_nm);
-      one.dye_absorption_per_mm.values.push_back(at.per_mm);
-    }
-  return one;
-}
-
 /// In the order of the settings; nothing if it was cancelled.
 std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Design& design,
                                                                      const PhotometryRequest& request,
@@ -111,6 +96,19 @@ std::string reason_of(const PhotometricColour& colour, const PhotometryRequest& 
 }
 
 }  // namespace
+
+PhotometryRequest request_of_response(const PhotometryRequest& request, const Design& design, std::size_t response) {
+  PhotometryRequest one = request;
+  one.rays = std::max<std::uint64_t>(1, request.rays / 3);
+  one.seed = request.seed + kSeedStep * static_cast<std::uint32_t>(response + 1);
+  const auto* const own = std::get_if<std::vector<SpectralAbsorption>>(&design.substance.absorption_per_mm);
+  if (own != nullptr && one.dye_absorption_per_mm.values.empty())
+    for (const SpectralAbsorption& at : *own) {
+      one.dye_absorption_per_mm.wavelengths_nm.push_back(at.wavelength_nm);
+      one.dye_absorption_per_mm.values.push_back(at.per_mm);
+    }
+  return one;
+}
 
 std::optional<Verdict> PhotometricColour::verdict() const {
   if (boundaries.empty()) return std::nullopt;

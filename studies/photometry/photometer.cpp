@@ -289,15 +289,19 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
 }
 
 /// Forms of facets may be told in frames that a mirror does not keep.
+std::array<bool, 2> Photometer::mirrors() const {
+  const raytrace::Stokes& light = design_.light.polarisation;
+  std::array<bool, 2> mirrors{};
+  if (design_.balls() || has_form_ || light.u != 0.0 || light.v != 0.0) return mirrors;
+  for (const std::size_t axis : {0U, 1U})
+    mirrors[axis] = raytrace::is_its_own_mirror_image(model_.part, static_cast<Eigen::Index>(axis));
+  return mirrors;
+}
+
 std::vector<LitAlike> Photometer::settings_lit_alike(const std::vector<PhotometerSetting>& settings) const {
   std::vector<Vec3> to_source;
   for (const PhotometerSetting& setting : settings) to_source.push_back(frame_of(setting).to_source);
-  const raytrace::Stokes& light = design_.light.polarisation;
-  std::array<bool, 2> mirrors{};
-  if (settings.size() > 1 && !has_form_ && light.u == 0.0 && light.v == 0.0)
-    for (const std::size_t axis : {0U, 1U})
-      mirrors[axis] = raytrace::is_its_own_mirror_image(model_.part, static_cast<Eigen::Index>(axis));
-  return lit_alike(to_source, mirrors);
+  return lit_alike(to_source, settings.size() > 1 ? mirrors() : std::array<bool, 2>{});
 }
 
 std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vector<PhotometerSetting>& settings,

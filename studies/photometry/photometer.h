@@ -2,6 +2,7 @@
 
 // A goniophotometer in software: R_A and R_L of a design for given directions of light and observation.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,6 +54,8 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
                                                         Progress* progress, const Cancellation* cancel) const;
 
+  /// Whether the part, and the polarisation of the light, are their own mirror images along x and along y.
+  std::array<bool, 2> mirrors() const;
   /// Which settings share their light.
   std::vector<LitAlike> settings_lit_alike(const std::vector<PhotometerSetting>& settings) const;
 
@@ -73,6 +76,9 @@ class Photometer {
   /// From now on by Monte Carlo.
   void leave_exact() { is_exact_ = false; }
   bool is_exact() const { return is_exact_; }
+  /// From now on without the mirror image of the light: what the entrance face reflects, from outside and, between
+  /// elements that send it back, from inside. \pre is_exact()
+  void leave_out_mirror_image() { has_mirror_image_ = false; }
 
  private:
   /// What one wavelength adds.
@@ -117,6 +123,7 @@ class Photometer {
   std::vector<double> weights_;  ///< of the wavelengths: of flux without the dye, which the tracer applies
   raytrace::ApertureKernel kernel_;
   bool is_exact_ = true;
+  bool has_mirror_image_ = true;
   bool has_form_ = false;
   bool keeps_phases_ = false;  ///< exact: textures scatter by their phases, diffracted
 };

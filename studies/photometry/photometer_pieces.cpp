@@ -19,6 +19,8 @@ constexpr double kCutoffOfAll = 5e-7;
 constexpr std::uint32_t kReplicates = 16;
 // Beams of a direction and wavelength beyond which the choice is Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
+// ReturnedBeam::entry_trace from which on light is a mirror's.
+constexpr double kLeastMirrorTrace = 1.0;
 // Lattice points of the window, beyond which its power is not integrated.
 constexpr double kMostLatticePoints = 300'000.0;
 
@@ -79,7 +81,7 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
   double scattered_from_cone = 0.0;
   const raytrace::BeamResult traced = tracer.trace(
       light.optics, illumination, cones, beam_policy(wavelength), cancel, [&](const raytrace::ReturnedBeam& beam) {
-        collector.add(beam);
+        if (beam.entry_trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
         if (beam.cone < cones.size()) scattered_from_cone += beam.place_count() * scattered_power(beam);
       });
   if (!traced.complete) return std::vector<Piece>(alike.size());

@@ -43,6 +43,7 @@ const std::map<std::string, Names>& study_rooms() {
       {"roughness", {"design", "rre"}},
       {"photometry", {"design", "rre"}},
       {"image", {"design", "rre", "photometry"}},
+      {"appearance", {"design", "rre", "photometry"}},
       {"rays", {"design"}},
       {"inspect", {"design"}},
       {"scene", {"design"}},

@@ -1,0 +1,128 @@
+#include "studies/appearance/reflection_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Vec2, geometry::Vec3;
+
+// Directions within this of a border belong to the table, for rounding.
+constexpr double kSlackRad = 1e-9;
+
+/// Weights of the values at 0, 1, 2, 3 in the cubic through them, at `x`.
+std::array<double, kPerSide> cubic_weights(double x) {
+  std::array<double, kPerSide> weights{};
+  for (std::size_t k = 0; k < kPerSide; ++k) {
+    weights[k] = 1.0;
+    for (std::size_t other = 0; other < kPerSide; ++other)
+      if (other != k)
+        weights[k] *= (x - static_cast<double>(other)) / (static_cast<double>(k) - static_cast<double>(other));
+  }
+  return weights;
+}
+
+/// Four grid points about a place, and their weights.
+struct Stencil {
+  std::size_t first = 0;
+  std::array<double, kPerSide> weights{};
+};
+
+/// \param place in steps from the first of `count` points
+Stencil stencil_at(double place, std::size_t count) {
+  Stencil stencil;
+  const double first = std::clamp(std::floor(place) - 1.0, 0.0, static_cast<double>(count - kPerSide));
+  stencil.first = static_cast<std::size_t>(first);
+  stencil.weights = cubic_weights(place - first);
+  return stencil;
+}
+
+bool holds(const std::array<Angle, 2>& range, double rad) {
+  return range[0].rad() - kSlackRad <= rad && rad <= range[1].rad() + kSlackRad;
+}
+
+double thirds_of(const std::array<Angle, 2>& range, double rad) {
+  return 3.0 * (rad - range[0].rad()) / (range[1].rad() - range[0].rad());
+}
+
+}  // namespace
+
+double luminous(const Rgb& rgb) {
+  // The second row of the matrix of IEC 61966-2-1, with the digits that it gives.
+  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+
+Vec3 direction_of(Angle entrance, Angle azimuth) {
+  return {std::sin(entrance.rad()) * std::cos(azimuth.rad()), std::sin(entrance.rad()) * std::sin(azimuth.rad()),
+          std::cos(entrance.rad())};
+}
+
+Vec2 ReflectionTable::deviation(std::size_t index) const {
+  return Vec2(static_cast<double>(index % columns), static_cast<double>(index / columns)) * step() -
+         Vec2::Constant(half_width);
+}
+
+std::array<Angle, 2> ReflectionTable::azimuths() const {
+  const double from_deg = mirrors[0] && !mirrors[1] ? -90.0 : 0.0;
+  const double span_deg = mirrors[0] && mirrors[1] ? 90.0 : mirrors[0] || mirrors[1] ? 180.0 : 360.0;
+  return {Angle::from_deg(from_deg), Angle::from_deg(from_deg + span_deg)};
+}
+
+std::optional<ReflectionTable::Weighted> ReflectionTable::at(const Vec3& to_source) const {
+  Weighted found;
+  Vec2 folded = to_source.head<2>();
+  for (const Eigen::Index axis : {0, 1})
+    if (mirrors[static_cast<std::size_t>(axis)] && folded[axis] < 0.0) found.signs[axis] = -1.0;
+  folded = folded.cwiseProduct(found.signs);
+  const double entrance = std::atan2(folded.norm(), to_source.z());
+  double azimuth = folded.norm() > 0.0 ? std::atan2(folded.y(), folded.x()) : azimuths()[0].rad();
+  if (azimuth < azimuths()[0].rad() - kSlackRad) azimuth += 2.0 * std::numbers::pi;
+  for (const Cell& cell : cells) {
+    if (!holds(cell.entrance, entrance) || !holds(cell.azimuth, azimuth)) continue;
+    const auto along = cubic_weights(thirds_of(cell.entrance, entrance));
+    const auto round = cubic_weights(thirds_of(cell.azimuth, azimuth));
+    found.directions = cell.directions;
+    for (std::size_t k = 0; k < found.weights.size(); ++k)
+      found.weights[k] = round[k / kPerSide] * along[k % kPerSide];
+    return found;
+  }
+  return std::nullopt;
+}
+
+std::optional<Rgb> ReflectionTable::r_a(const Vec3& to_source, const Vec3& to_observer) const {
+  const std::optional<Weighted> among = at(to_source);
+  const Vec2 deviation = (to_observer - to_source).head<2>();
+  if (!among || deviation.cwiseAbs().maxCoeff() > half_width) return std::nullopt;
+  const Vec2 place = (deviation.cwiseProduct(among->signs) + Vec2::Constant(half_width)) / step();
+  const Stencil x = stencil_at(place.x(), columns);
+  const Stencil y = stencil_at(place.y(), columns);
+  Rgb sum{};
+  for (std::size_t k = 0; k < among->directions.size(); ++k)
+    for (std::size_t j = 0; j < kPerSide; ++j)
+      for (std::size_t i = 0; i < kPerSide; ++i) {
+        const Rgb& value = directions[among->directions[k]].r_a[(y.first + j) * columns + x.first + i];
+        const double weight = among->weights[k] * y.weights[j] * x.weights[i];
+        for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += weight * value[band];
+      }
+  return sum;
+}
+
+double ReflectionTable::returned(const Vec3& to_source) const {
+  const Weighted among = at(to_source).value();
+  const Vec2 source = to_source.head<2>().cwiseProduct(among.signs);
+  double sum = 0.0;
+  for (std::size_t place = 0; place < columns * columns; ++place) {
+    const double sines = (source + deviation(place)).squaredNorm();
+    if (sines >= 1.0) continue;
+    const auto at_border = [&](std::size_t k) { return k == 0 || k + 1 == columns ? 0.5 : 1.0; };
+    double r_a = 0.0;
+    for (std::size_t k = 0; k < among.directions.size(); ++k)
+      r_a += among.weights[k] * luminous(directions[among.directions[k]].r_a[place]);
+    sum += at_border(place % columns) * at_border(place / columns) * r_a / std::sqrt(1.0 - sines);
+  }
+  return sum * step() * step() / to_source.z();
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,74 @@
+#pragma once
+
+// Coefficients of retroreflection over direction of light and of view, as a table that is looked up.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/angle.h"
+#include "geometry/vec.h"
+
+namespace retrace::studies {
+
+/// Linear red, green and blue of IEC 61966-2-1 (sRGB): 1, 1, 1 is the light's own colour, CIE D65. May be negative, of
+/// colours that no mixture of the three makes.
+using Rgb = std::array<double, 3>;
+
+/// CIE Y of linear red, green and blue: what the eye weighs.
+double luminous(const Rgb& rgb);
+
+/// Values that a cubic is laid through, and directions along each side of a cell.
+inline constexpr std::size_t kPerSide = 4;
+
+/// R_A in cd/(lx m^2) about the direction back to the source. Of every direction of light it holds a square grid over
+/// the deviation o - s of the unit vectors to observer and source, along x and y of the part frame: what light does
+/// there changes least with its direction, as refraction at the entrance face leaves these components as they are
+/// (docs/theory/appearance.md). Directions of light are the corners and thirds of cells in entrance angle and azimuth;
+/// between grid points and between directions cubics are laid through four each way.
+struct ReflectionTable {
+  /// The R_A of one direction of light, row by row of rising y, x rising.
+  struct Direction {
+    Angle entrance;
+    Angle azimuth;
+    std::vector<Rgb> r_a;
+  };
+  struct Cell {
+    std::array<Angle, 2> entrance;  ///< from, to
+    std::array<Angle, 2> azimuth;
+    /// Of `directions`, by azimuth, then by entrance angle.
+    std::array<std::size_t, kPerSide * kPerSide> directions{};
+  };
+
+  double half_width = 0.0;  ///< of the square of deviations: a share of a unit vector
+  std::size_t columns = 0;  ///< and rows; >= 4
+  Angle most_entrance;
+  std::array<bool, 2> mirrors{};  ///< whether light from -x, -y is the mirror image of that from x, y
+  std::vector<Direction> directions;
+  std::vector<Cell> cells;
+
+  double step() const { return 2.0 * half_width / static_cast<double>(columns - 1); }
+  geometry::Vec2 deviation(std::size_t index) const;
+  /// The range of azimuths that the cells cover: what mirrors do not tell.
+  std::array<Angle, 2> azimuths() const;
+
+  /// Weights of directions that make a map of their maps. \return none outside the table
+  struct Weighted {
+    geometry::Vec2 signs = geometry::Vec2::Ones();  ///< of deviations in these maps
+    std::array<std::size_t, kPerSide * kPerSide> directions{};
+    std::array<double, kPerSide * kPerSide> weights{};
+  };
+  std::optional<Weighted> at(const geometry::Vec3& to_source) const;
+  /// \return none outside the table
+  std::optional<Rgb> r_a(const geometry::Vec3& to_source, const geometry::Vec3& to_observer) const;
+
+  /// Share of the power from `to_source` that comes back within the square, weighed by the eye: the integral of
+  /// R_A / (cos beta cos nu) over deviations. \pre the table holds that direction
+  double returned(const geometry::Vec3& to_source) const;
+};
+
+/// A unit vector of an entrance angle and an azimuth, from +x towards +y.
+geometry::Vec3 direction_of(Angle entrance, Angle azimuth);
+
+}  // namespace retrace::studies
