@@ -64,7 +64,8 @@ PhotometryRequest photometry_of(const AppearanceRequest& request) {
   PhotometryRequest photometry;
   photometry.apertures = request.apertures;
   // The corners of the square, seen aslant.
-  const double widest = std::numbers::sqrt2 * request.window_deg / std::cos(Angle::from_deg(request.entrance_deg).rad());
+  const double widest =
+      std::numbers::sqrt2 * request.window_deg / std::cos(Angle::from_deg(request.entrance_deg).rad());
   photometry.window_deg = std::min(widest, 10.0);
   photometry.light = PhotometricLight::illuminant_d65;
   photometry.engine = Engine::exact;
@@ -133,9 +134,9 @@ class TableMaker {
         photometry_(photometry_of(request)),
         eye_(photometer_of(design, photometry_, kEye, kParts)) {
     if (!eye_.is_exact())
-      throw InputError(design.where_facets(),
-                       "a material is computed by the exact engine, which does not take this design: " +
-                           eye_.why_undiffracted());
+      throw InputError(
+          design.where_facets(),
+          "a material is computed by the exact engine, which does not take this design: " + eye_.why_undiffracted());
     const materials::SpectralCurve lamp = lamp_power(photometry_.light);
     const materials::Tristimulus sent = materials::tristimulus(lamp, materials::shipped_colour_matching());
     // Photometers tell shares of what their response makes of the light.

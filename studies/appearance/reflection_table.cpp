@@ -84,8 +84,7 @@ std::optional<ReflectionTable::Weighted> ReflectionTable::at(const Vec3& to_sour
     const auto along = cubic_weights(thirds_of(cell.entrance, entrance));
     const auto round = cubic_weights(thirds_of(cell.azimuth, azimuth));
     found.directions = cell.directions;
-    for (std::size_t k = 0; k < found.weights.size(); ++k)
-      found.weights[k] = round[k / kPerSide] * along[k % kPerSide];
+    for (std::size_t k = 0; k < found.weights.size(); ++k) found.weights[k] = round[k / kPerSide] * along[k % kPerSide];
     return found;
   }
   return std::nullopt;
@@ -110,19 +109,9 @@ std::optional<Rgb> ReflectionTable::r_a(const Vec3& to_source, const Vec3& to_ob
 }
 
 double ReflectionTable::returned(const Vec3& to_source) const {
-  const Weighted among = at(to_source).value();
-  const Vec2 source = to_source.head<2>().cwiseProduct(among.signs);
   double sum = 0.0;
-  for (std::size_t place = 0; place < columns * columns; ++place) {
-    const double sines = (source + deviation(place)).squaredNorm();
-    if (sines >= 1.0) continue;
-    const auto at_border = [&](std::size_t k) { return k == 0 || k + 1 == columns ? 0.5 : 1.0; };
-    double r_a = 0.0;
-    for (std::size_t k = 0; k < among.directions.size(); ++k)
-      r_a += among.weights[k] * luminous(directions[among.directions[k]].r_a[place]);
-    sum += at_border(place % columns) * at_border(place / columns) * r_a / std::sqrt(1.0 - sines);
-  }
-  return sum * step() * step() / to_source.z();
+  for_each_power(to_source, [&](const Vec2&, double share) { sum += share; });
+  return sum;
 }
 
 }  // namespace retrace::studies

@@ -3,6 +3,7 @@
 // Coefficients of retroreflection over direction of light and of view, as a table that is looked up.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -63,10 +64,28 @@ struct ReflectionTable {
   /// \return none outside the table
   std::optional<Rgb> r_a(const geometry::Vec3& to_source, const geometry::Vec3& to_observer) const;
 
-  /// Share of the power from `to_source` that comes back within the square, weighed by the eye: the integral of
-  /// R_A / (cos beta cos nu) over deviations. \pre the table holds that direction
+  /// Calls visit(x and y of the view, share of the power from `to_source` that goes there), weighed by the eye, for
+  /// every grid point: R_A / (cos beta cos nu) times the point's part of the square. \pre the table holds that light
+  template <class Visit>
+  void for_each_power(const geometry::Vec3& to_source, Visit visit) const;
+  /// The sum of these shares: what comes back within the square. \pre likewise
   double returned(const geometry::Vec3& to_source) const;
 };
+
+template <class Visit>
+void ReflectionTable::for_each_power(const geometry::Vec3& to_source, Visit visit) const {
+  const Weighted among = at(to_source).value();
+  const auto at_border = [&](std::size_t k) { return k == 0 || k + 1 == columns ? 0.5 : 1.0; };
+  for (std::size_t place = 0; place < columns * columns; ++place) {
+    const geometry::Vec2 view = to_source.head<2>() + deviation(place).cwiseProduct(among.signs);
+    if (view.squaredNorm() >= 1.0) continue;
+    double r_a = 0.0;
+    for (std::size_t k = 0; k < among.directions.size(); ++k)
+      r_a += among.weights[k] * luminous(directions[among.directions[k]].r_a[place]);
+    const double area = step() * step() * at_border(place % columns) * at_border(place / columns);
+    visit(view, area * r_a / (to_source.z() * std::sqrt(1.0 - view.squaredNorm())));
+  }
+}
 
 /// A unit vector of an entrance angle and an azimuth, from +x towards +y.
 geometry::Vec3 direction_of(Angle entrance, Angle azimuth);

@@ -1,0 +1,170 @@
+#include "studies/appearance/io/appearance_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/json_text.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "studies/appearance/io/glsl_file.h"
+#include "studies/appearance/io/radiance_file.h"
+#include "studies/appearance/lobes.h"
+#include "studies/appearance/tensor_tree.h"
+#include "studies/design/io/design_json.h"
+
+namespace retrace::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json error_json(const AppearanceError& error) {
+  return {{"geometries", error.geometries},
+          {"median", error.median},
+          {"of_95_percent", error.of_95_percent},
+          {"greatest", error.greatest},
+          {"floor", AppearanceError::kFloor}};
+}
+
+Json range_json(const std::array<Angle, 2>& range) {
+  return Json::array({range[0].deg(), range[1].deg()});
+}
+
+/// What was asked, and how the table covers it.
+Json request_json(const AppearanceResult& result) {
+  const AppearanceRequest& request = result.request;
+  return {{"illuminant", "D65"},
+          {"source_arcmin", 60.0 * request.apertures.source.deg()},
+          {"receiver_arcmin", 60.0 * request.apertures.receiver.deg()},
+          {"most_entrance_deg", request.entrance_deg},
+          {"window_deg", request.window_deg},
+          {"error_asked", request.error}};
+}
+
+std::string table_text(const AppearanceResult& result, const std::string& values_name) {
+  const ReflectionTable& table = result.table;
+  Json json = {{"design", to_json(result.design)}, {"values", values_name}, {"unit", "cd/(lx m2)"}};
+  json["bands"] = {"red", "green", "blue"};
+  json.update(request_json(result));
+  json["error"] = error_json(result.error);
+  json["half_width"] = table.half_width;
+  json["columns"] = table.columns;
+  json["mirror_x"] = table.mirrors[0];
+  json["mirror_y"] = table.mirrors[1];
+  Json directions = Json::array();
+  for (const ReflectionTable::Direction& at : table.directions)
+    directions.push_back({{"entrance_deg", at.entrance.deg()},
+                          {"azimuth_deg", at.azimuth.deg()},
+                          {"returned", table.returned(direction_of(at.entrance, at.azimuth))}});
+  json["directions"] = directions;
+  Json cells = Json::array();
+  for (const ReflectionTable::Cell& cell : table.cells)
+    cells.push_back({{"entrance_deg", range_json(cell.entrance)},
+                     {"azimuth_deg", range_json(cell.azimuth)},
+                     {"directions", cell.directions}});
+  json["cells"] = cells;
+  return result_text("retrace.material/1", std::move(json), result.warnings);
+}
+
+/// Row by row of each direction's grid.
+std::string values_text(const ReflectionTable& table) {
+  std::string text = "direction,row,column,red,green,blue\n";
+  for (std::size_t k = 0; k < table.directions.size(); ++k)
+    for (std::size_t point = 0; point < table.columns * table.columns; ++point) {
+      const Rgb& rgb = table.directions[k].r_a[point];
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.7g},{:.7g},{:.7g}\n", k, point / table.columns,
+                     point % table.columns, rgb[0], rgb[1], rgb[2]);
+    }
+  return text;
+}
+
+std::string percent(double share) {
+  return fixed(100.0 * share, share < 0.1 ? 2 : 0) + " %";
+}
+
+std::string error_text(const AppearanceError& error) {
+  return fmt::format("median {}, of 95 % within {}, at most {}", percent(error.median), percent(error.of_95_percent),
+                     percent(error.greatest));
+}
+
+AppearanceText radiance(const AppearanceResult& result) {
+  const TensorTree tree = tensor_tree_of(result.table);
+  const double leaf_deg = Angle::from_rad(tree.leaf_width()).deg();
+  AppearanceText text;
+  text.what = fmt::format("{} leaves of a tensor tree, each the mean over {} degrees of light and of view",
+                          tree.leaves.size(), fixed(leaf_deg, 2));
+  text.text = radiance_text(tree, printable(short_name(result.design), 60));
+  return text;
+}
+
+AppearanceText glsl(const AppearanceResult& result) {
+  const ReflectionLobes lobes = fitted_lobes(result.table);
+  std::vector<double> told;
+  for (const AppearanceProbe& probe : result.probes)
+    told.push_back(luminous(lobes.r_a(probe.to_source, probe.to_observer)));
+  AppearanceText text;
+  text.error = appearance_error(result.probes, told);
+  text.what = fmt::format("{} lobes; off the photometer: {}", lobes.lobes.size(), error_text(*text.error));
+  text.text = glsl_text(lobes, {printable(short_name(result.design), 60), text.what});
+  return text;
+}
+
+}  // namespace
+
+std::optional<AppearanceFormat> appearance_format(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  if (ending == ".json") return AppearanceFormat::table;
+  if (ending == ".xml") return AppearanceFormat::radiance;
+  if (ending == ".glsl") return AppearanceFormat::glsl;
+  return std::nullopt;
+}
+
+AppearanceText appearance_text(const AppearanceResult& result, AppearanceFormat format,
+                               const std::string& values_name) {
+  if (format == AppearanceFormat::radiance) return radiance(result);
+  if (format == AppearanceFormat::glsl) return glsl(result);
+  return {table_text(result, values_name), values_text(result.table), {}, {}};
+}
+
+std::string appearance_json(const AppearanceResult& result, const AppearanceText& text, const std::string& file) {
+  Json json = {{"what", "material"}, {"file", file}};
+  json.update(request_json(result));
+  json["directions"] = result.table.directions.size();
+  json["cells"] = result.table.cells.size();
+  json["columns"] = result.table.columns;
+  json["returned"] = result.table.returned(geometry::Vec3::UnitZ());
+  json["error"] = error_json(result.error);
+  if (text.error) json["error_of_lobes"] = error_json(*text.error);
+  json["elapsed_s"] = result.elapsed_s;
+  json["design"] = to_json(result.design);
+  return result_text("retrace.export/1", json, result.warnings);
+}
+
+std::string appearance_table(const AppearanceResult& result, const AppearanceText& text) {
+  const AppearanceRequest& request = result.request;
+  std::string lines =
+      fmt::format("material of {}: R_A about the direction back to the source, CIE D65, discs of {} and {} arcmin\n",
+                  printable(short_name(result.design), 60), shortest(60.0 * request.apertures.source.deg()),
+                  shortest(60.0 * request.apertures.receiver.deg()));
+  lines +=
+      fmt::format("  light      entrance angles to {} degrees: {} directions in {} cells, the least {} degrees wide\n",
+                  shortest(request.entrance_deg), result.table.directions.size(), result.table.cells.size(),
+                  shortest(result.least_cell_deg));
+  lines += fmt::format("  views      deviations to {} degrees: {} x {} points\n", shortest(request.window_deg),
+                       result.table.columns, result.table.columns);
+  lines += fmt::format("  returned   {} of the light at normal incidence\n",
+                       percent(result.table.returned(geometry::Vec3::UnitZ())));
+  lines += fmt::format("  error      {} of the value, or of {} of the brightest view, over {} random geometries\n",
+                       error_text(result.error), percent(AppearanceError::kFloor), result.error.geometries);
+  if (!text.what.empty()) lines += "  file       " + text.what + '\n';
+  return lines;
+}
+
+}  // namespace retrace::studies

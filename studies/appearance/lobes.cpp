@@ -1,0 +1,222 @@
+#include "studies/appearance/lobes.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "studies/appearance/appearance.h"
+
+namespace retrace::studies {
+namespace {
+
+using Eigen::ArrayXd, Eigen::ArrayXXd, Eigen::Index;
+using geometry::Vec2, geometry::Vec3;
+
+constexpr int kIterations = 300;
+// Lobes to begin with: distance from the middle and spread, in units of the pattern's own, and how many in a ring.
+struct Ring {
+  double distance, spread;
+  int count;
+};
+constexpr std::array<Ring, 3> kRings = {{{0.0, 0.3, 1}, {0.7, 0.3, 6}, {1.2, 0.4, 12}}};
+// For what is dim, lobes on a square lattice over all deviations: its steps in steps of the table, their spread in its
+// own, and how many lobes are in a row, at most: shaders keep all of them in registers or in a small memory.
+constexpr double kStepsPerLattice = 2.5;
+constexpr double kLatticeSpread = 0.7;
+constexpr int kMostInARow = 15;
+// Least variance of a lobe, in squares of the table's step: narrower ones would fall between grid points.
+constexpr double kLeastVariance = 0.5;
+
+std::array<double, Lobe::kTerms> terms_of(const Vec2& place) {
+  std::array<double, Lobe::kTerms> terms{};
+  std::size_t term = 0;
+  for (int degree = 0; degree <= 4; ++degree)
+    for (int j = 0; j <= degree; ++j) terms[term++] = std::pow(place.x(), degree - j) * std::pow(place.y(), j);
+  return terms;
+}
+
+double density(const Lobe& lobe, const Vec2& deviation) {
+  const Vec2 d = deviation - lobe.centre;
+  const double determinant = lobe.spread.x() * lobe.spread.y() - lobe.covariance * lobe.covariance;
+  const double square =
+      (lobe.spread.y() * d.x() * d.x() - 2.0 * lobe.covariance * d.x() * d.y() + lobe.spread.x() * d.y() * d.y()) /
+      determinant;
+  return std::exp(-0.5 * square) / (2.0 * std::numbers::pi * std::sqrt(determinant));
+}
+
+class Fit {
+ public:
+  explicit Fit(const ReflectionTable& table) : table_(table) {
+    const auto points = static_cast<Index>(table.columns * table.columns);
+    const auto lights = static_cast<Index>(table.directions.size());
+    for (std::size_t band = 0; band < 3; ++band) power_[band] = ArrayXXd::Zero(points, lights);
+    for (Index light = 0; light < lights; ++light) {
+      const ReflectionTable::Direction& direction = table.directions[static_cast<std::size_t>(light)];
+      const Vec3 to_source = direction_of(direction.entrance, direction.azimuth);
+      for (Index point = 0; point < points; ++point) {
+        const Vec2 view = to_source.head<2>() + table.deviation(static_cast<std::size_t>(point));
+        if (view.squaredNorm() >= 1.0) continue;
+        const double share = table.step() * table.step() / (to_source.z() * std::sqrt(1.0 - view.squaredNorm()));
+        const Rgb& r_a = direction.r_a[static_cast<std::size_t>(point)];
+        for (std::size_t band = 0; band < 3; ++band) power_[band](point, light) = share * r_a[band];
+      }
+    }
+    luminous_ = (0.2126 * power_[0] + 0.7152 * power_[1] + 0.0722 * power_[2]).max(0.0);
+    begin();
+  }
+
+  ReflectionLobes fitted() {
+    for (int round = 0; round < kIterations; ++round) improve();
+    add_lattice();
+    fit_powers();
+    ReflectionLobes result{{}, std::sin(table_.most_entrance.rad()), table_.mirrors};
+    Eigen::MatrixXd terms(luminous_.cols(), static_cast<Index>(Lobe::kTerms));
+    for (Index light = 0; light < terms.rows(); ++light) {
+      const ReflectionTable::Direction& direction = table_.directions[static_cast<std::size_t>(light)];
+      const auto row = terms_of(direction_of(direction.entrance, direction.azimuth).head<2>() / result.scale);
+      for (Index term = 0; term < terms.cols(); ++term) terms(light, term) = row[static_cast<std::size_t>(term)];
+    }
+    const Eigen::MatrixXd coefficients = terms.colPivHouseholderQr().solve(of_light_.matrix());
+    for (std::size_t k = 0; k < lobes_.size(); ++k) {
+      for (std::size_t term = 0; term < Lobe::kTerms; ++term)
+        lobes_[k].power[term] = coefficients(static_cast<Index>(term), static_cast<Index>(k));
+      const double sum = luminous(lobes_[k].colour);
+      for (double& band : lobes_[k].colour) band = sum > 0.0 ? band / sum : 1.0;
+    }
+    result.lobes = lobes_;
+    return result;
+  }
+
+ private:
+  /// Rings about the middle, as wide as the pattern.
+  void begin() {
+    const ArrayXd mean = luminous_.rowwise().sum();
+    Vec2 squares = Vec2::Zero();
+    for (Index point = 0; point < mean.size(); ++point)
+      squares += mean[point] * table_.deviation(static_cast<std::size_t>(point)).cwiseAbs2();
+    const double unit = std::sqrt(squares.sum() / std::max(mean.sum(), 1e-300));
+    for (const Ring& ring : kRings)
+      for (int k = 0; k < ring.count; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / ring.count;
+        Lobe lobe;
+        lobe.centre = ring.distance * unit * Vec2(std::cos(angle), std::sin(angle));
+        lobe.spread = Vec2::Constant(std::max(std::pow(ring.spread * unit, 2.0), least_variance()));
+        lobes_.push_back(lobe);
+      }
+    of_light_ = ArrayXXd::Ones(luminous_.cols(), static_cast<Index>(lobes_.size()));
+  }
+
+  double least_variance() const { return kLeastVariance * table_.step() * table_.step(); }
+
+  /// Of the lobes at the grid points.
+  ArrayXXd lobe_densities() const {
+    ArrayXXd densities(luminous_.rows(), static_cast<Index>(lobes_.size()));
+    for (Index k = 0; k < densities.cols(); ++k)
+      for (Index point = 0; point < densities.rows(); ++point)
+        densities(point, k) =
+            density(lobes_[static_cast<std::size_t>(k)], table_.deviation(static_cast<std::size_t>(point)));
+    return densities;
+  }
+
+  void add_lattice() {
+    const double steps = static_cast<double>(table_.columns - 1) / kStepsPerLattice;
+    const int row = std::clamp(static_cast<int>(std::ceil(steps)) + 1, 2, kMostInARow);
+    const double step = 2.0 * table_.half_width / (row - 1);
+    for (int j = 0; j < row; ++j)
+      for (int i = 0; i < row; ++i) {
+        Lobe lobe = lobes_.front();
+        lobe.centre = step * Vec2(i, j) - Vec2::Constant(table_.half_width);
+        lobe.spread = Vec2::Constant(std::pow(kLatticeSpread * step, 2.0));
+        lobe.covariance = 0.0;
+        lobes_.push_back(lobe);
+      }
+    of_light_ = ArrayXXd::Zero(luminous_.cols(), static_cast<Index>(lobes_.size()));
+  }
+
+  /// The powers of each direction of light that miss its grid least, by the measure of AppearanceError: the lobes lie
+  /// where most light is, and dim places take what they leave.
+  void fit_powers() {
+    const Eigen::MatrixXd densities = table_.step() * table_.step() * lobe_densities().matrix();
+    for (Index light = 0; light < luminous_.cols(); ++light) {
+      const Eigen::VectorXd power = luminous_.col(light).matrix();
+      const double floor = AppearanceError::kFloor * std::max(power.maxCoeff(), 1e-300);
+      const Eigen::VectorXd weights = power.cwiseMax(floor).cwiseInverse();
+      const Eigen::MatrixXd weighted = weights.asDiagonal() * densities;
+      of_light_.row(light) = weighted.colPivHouseholderQr().solve(weights.cwiseProduct(power)).transpose().array();
+    }
+  }
+
+  /// Gives every grid point's power to the lobes by how much of it they make, and makes the lobes of what they got.
+  void improve() {
+    const ArrayXXd densities = lobe_densities();
+    const ArrayXXd model = (densities.matrix() * of_light_.matrix().transpose()).array().max(1e-300);
+    const ArrayXXd ratio = luminous_ / model;
+    std::array<ArrayXXd, 3> ratio_of_band;
+    for (std::size_t band = 0; band < 3; ++band) ratio_of_band[band] = power_[band] / model;
+    for (Index k = 0; k < densities.cols(); ++k) {
+      const auto got_of = [&](const ArrayXXd& ratios) -> ArrayXd {
+        return densities.col(k) * (ratios.matrix() * of_light_.col(k).matrix()).array();
+      };
+      Lobe& lobe = lobes_[static_cast<std::size_t>(k)];
+      reshape(lobe, got_of(ratio));
+      for (std::size_t band = 0; band < 3; ++band) lobe.colour[band] = got_of(ratio_of_band[band]).sum();
+    }
+    of_light_ *= (ratio.matrix().transpose() * densities.matrix()).array();
+  }
+
+  /// Mean and spread of the power that a lobe got, by grid point.
+  void reshape(Lobe& lobe, const ArrayXd& got) const {
+    const double sum = got.sum();
+    if (!(sum > 0.0)) return;
+    Vec2 mean = Vec2::Zero();
+    for (Index point = 0; point < got.size(); ++point)
+      mean += got[point] / sum * table_.deviation(static_cast<std::size_t>(point));
+    Vec2 squares = Vec2::Zero();
+    double mixed = 0.0;
+    for (Index point = 0; point < got.size(); ++point) {
+      const Vec2 d = table_.deviation(static_cast<std::size_t>(point)) - mean;
+      squares += got[point] / sum * d.cwiseAbs2();
+      mixed += got[point] / sum * d.x() * d.y();
+    }
+    lobe.centre = mean;
+    lobe.spread = squares.cwiseMax(least_variance());
+    const double most = 0.99 * std::sqrt(lobe.spread.x() * lobe.spread.y());
+    lobe.covariance = std::clamp(mixed, -most, most);
+  }
+
+  const ReflectionTable& table_;
+  std::array<ArrayXXd, 3> power_;  ///< by grid point and direction of light
+  ArrayXXd luminous_;
+  std::vector<Lobe> lobes_;
+  ArrayXXd of_light_;  ///< power of lobes, by direction of light and lobe
+};
+
+}  // namespace
+
+Rgb ReflectionLobes::r_a(const Vec3& to_source, const Vec3& to_observer) const {
+  Vec2 light = to_source.head<2>();
+  Vec2 deviation = (to_observer - to_source).head<2>();
+  for (const Eigen::Index axis : {0, 1})
+    if (mirrors[static_cast<std::size_t>(axis)] && light[axis] < 0.0) {
+      light[axis] = -light[axis];
+      deviation[axis] = -deviation[axis];
+    }
+  Rgb sum{};
+  if (light.norm() > scale * (1.0 + 1e-9)) return sum;
+  const auto terms = terms_of(light / scale);
+  for (const Lobe& lobe : lobes) {
+    double power = 0.0;
+    for (std::size_t term = 0; term < terms.size(); ++term) power += lobe.power[term] * terms[term];
+    const double r_a = to_source.z() * to_observer.z() * power * density(lobe, deviation);
+    for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += r_a * lobe.colour[band];
+  }
+  for (double& band : sum) band = std::max(band, 0.0);
+  return sum;
+}
+
+ReflectionLobes fitted_lobes(const ReflectionTable& table) {
+  return Fit(table).fitted();
+}
+
+}  // namespace retrace::studies
