@@ -124,6 +124,16 @@ Photometer photometer_of(const Design& design, const PhotometryRequest& request,
   return photometer;
 }
 
+/// \throw InputError for a design that the exact engine does not take
+void check_engine(const Design& design, PhotometryRequest request) {
+  request.engine = Engine::automatic;
+  const Photometer photometer(design, request, kParts);
+  if (!photometer.is_exact())
+    throw InputError(design.where_facets(),
+                     "a material is computed by the exact engine, which does not take this design: " +
+                         photometer.why_undiffracted());
+}
+
 constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
 
 class TableMaker {
@@ -133,10 +143,6 @@ class TableMaker {
         request_(request),
         photometry_(photometry_of(request)),
         eye_(photometer_of(design, photometry_, kEye, kParts)) {
-    if (!eye_.is_exact())
-      throw InputError(
-          design.where_facets(),
-          "a material is computed by the exact engine, which does not take this design: " + eye_.why_undiffracted());
     const materials::SpectralCurve lamp = lamp_power(photometry_.light);
     const materials::Tristimulus sent = materials::tristimulus(lamp, materials::shipped_colour_matching());
     // Photometers tell shares of what their response makes of the light.
@@ -402,6 +408,7 @@ AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, con
 AppearanceResult compute_appearance(const Design& design, const AppearanceRequest& request, Progress* progress,
                                     const Cancellation* cancel) {
   check(request);
+  check_engine(design, photometry_of(request));
   const auto begin = std::chrono::steady_clock::now();
   AppearanceResult result;
   result.design = design;

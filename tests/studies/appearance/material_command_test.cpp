@@ -1,0 +1,260 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <sstream>
+
+#include "tests/app/program.h"
+#include "tests/studies/appearance/material_readers.h"
+
+// `retrace export` of materials: what the files say, by readers of their own, against what `retrace photometry` and
+// `retrace rre` say of the design.
+
+namespace retrace::test::material_command_test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Cube corners with six spots. \param aperture_mm 0.5 diffracts; of 20 mm the discs hide it
+std::string cubes(const std::string& aperture_mm) {
+  return "[element]\nkind = \"hexagonal_icc\"\naperture_mm = " + aperture_mm +
+         "\n[array]\narrangement = \"honeycomb\"\nextent = \"infinite\"\n[body]\nthickness_mm = 1\n"
+         "refractive_index = 1.4917\n[surface]\ndihedral_error_arcmin = 2.2\n";
+}
+
+/// \param window_deg wide enough for what the discs make of the spots
+Arguments export_of(const std::string& file, const std::string& window_deg = "0.4") {
+  return {"export",   "d.toml",          file, "--entrance-deg",    "8",  "--window-deg",
+          window_deg, "--source-arcmin", "20", "--receiver-arcmin", "20", "--most-directions",
+          "64",       "--quiet"};
+}
+
+/// A geometry of a goniometer, and what was read there.
+struct Reading {
+  double observation_deg, v_deg, h_deg, turn_deg;
+  double r_a = 0.0;
+};
+
+/// Random ones, ten to a turn, beside the mirror image, read by `retrace photometry`.
+std::vector<Reading> readings(const TemporaryFolder& folder) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  std::vector<Reading> all;
+  for (int turn = 0; turn < 5; ++turn) {
+    const double turn_deg = 360.0 * share(random);
+    std::string limits = "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n";
+    for (int k = 0; k < 10; ++k) {
+      const double beta_deg = 2.0 + 5.9 * share(random);
+      const double round = 2.0 * kPi * share(random);
+      const Reading at{0.39 * share(random), beta_deg * std::sin(round), beta_deg * std::cos(round), turn_deg};
+      all.push_back(at);
+      std::ostringstream row;
+      row.precision(15);
+      row << "S,,white," << at.observation_deg << ',' << at.v_deg << ',' << at.h_deg << ",1,cd/lx/m2,read\n";
+      limits += row.str();
+    }
+    folder.write("limits.csv", limits);
+    std::ostringstream turn_text;
+    turn_text.precision(15);
+    turn_text << turn_deg;
+    const Json json = retrace_json(
+        folder, {"photometry", "d.toml", "--standard", "limits.csv", "--area-cm2", "10", "--light", "d65", "--rotation",
+                 turn_text.str(), "--source-arcmin", "20", "--receiver-arcmin", "20", "--no-advice"});
+    for (std::size_t k = 0; k < 10; ++k)
+      all[all.size() - 10 + k].r_a = json.at("points").at(k).at("r_a_cd_per_lx_m2").get<double>();
+  }
+  return all;
+}
+
+double rad(double deg) {
+  return deg * kPi / 180.0;
+}
+
+/// Presentation, entrance and orientation angle by the relations of CIE 54.2.
+Triple intrinsic_deg(const Reading& at) {
+  const double beta1 = rad(-at.v_deg);
+  const double beta2 = rad(-at.h_deg);
+  const double beta = std::acos(std::cos(beta1) * std::cos(beta2));
+  const double gamma = std::atan2(std::sin(beta2), std::sin(beta1) * std::cos(beta2));
+  const double omega = rad(at.turn_deg) + kPi / 2.0 - std::atan2(std::sin(beta1), std::cos(beta1) * std::sin(beta2));
+  return {gamma / rad(1.0), beta / rad(1.0), omega / rad(1.0)};
+}
+
+/// Turned by -turn about +z, as the part turns by it.
+Triple turned_back(const Triple& v, double turn_deg) {
+  const double c = std::cos(rad(turn_deg));
+  const double s = std::sin(rad(turn_deg));
+  return {c * v[0] + s * v[1], -s * v[0] + c * v[1], v[2]};
+}
+
+/// In the part frame, at V + `up_deg`.
+Triple at_v(const Reading& at, double up_deg) {
+  const double v = rad(at.v_deg + up_deg);
+  const double h = rad(at.h_deg);
+  return turned_back({std::sin(h) * std::cos(v), std::sin(v), std::cos(h) * std::cos(v)}, at.turn_deg);
+}
+
+/// Relative errors, of values below 1 % of the greatest of that; sorted.
+std::vector<double> errors_of(const std::vector<Reading>& truth, const std::vector<double>& told) {
+  double most = 0.0;
+  for (const Reading& at : truth) most = std::max(most, at.r_a);
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < truth.size(); ++k)
+    errors.push_back(std::abs(told[k] - truth[k].r_a) / std::max(truth[k].r_a, 0.01 * most));
+  std::sort(errors.begin(), errors.end());
+  return errors;
+}
+
+TEST(Material, IsWithinTwoPercentOfPhotometryByItsExampleReader) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", cubes("0.5"));
+  const std::vector<Reading> truth = readings(folder);
+  ASSERT_EQ(retrace(folder, export_of("m.json")).code, 0);
+  std::ostringstream geometries;
+  geometries.precision(12);
+  for (const Reading& at : truth) {
+    const Triple angles = intrinsic_deg(at);
+    geometries << at.observation_deg << ' ' << angles[0] << ' ' << angles[1] << ' ' << angles[2] << '\n';
+  }
+  Child reader(folder.path(),
+               {RETRACE_PYTHON, "-B", RETRACE_SOURCE_DIR "/examples/material/read_material.py", "m.json"},
+               geometries.str());
+  const Outcome outcome = reader.wait();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::istringstream lines(outcome.out);
+  std::vector<double> told;
+  for (Triple rgb{}; lines >> rgb[0] >> rgb[1] >> rgb[2];)
+    told.push_back(0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]);
+  ASSERT_EQ(told.size(), truth.size()) << outcome.out;
+  EXPECT_LT(errors_of(truth, told).back(), 0.02);
+  const Json header = folder.json("m.json");
+  EXPECT_EQ(header.at("schema"), "retrace.material/1");
+  EXPECT_LT(header.at("error").at("of_95_percent"), 0.02);
+}
+
+TEST(Material, LobesOfAShaderAreAsFarOffAsTheySay) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", cubes("0.5"));
+  const std::vector<Reading> truth = readings(folder);
+  const Json json = retrace_json(folder, export_of("m.glsl"));
+  const GlslFile shader(folder.read("m.glsl"));
+  std::vector<double> told;
+  for (const Reading& at : truth) {
+    const Triple to_source = at_v(at, 0.0);
+    const Triple to_observer = at_v(at, at.observation_deg);
+    told.push_back(shader.brdf(to_source, to_observer) * to_source[2] * to_observer[2]);
+  }
+  const std::vector<double> errors = errors_of(truth, told);
+  EXPECT_LT(errors[errors.size() * 95 / 100], 0.05);
+  // Over its own random geometries, which reach farther out.
+  EXPECT_LT(errors[errors.size() / 2], 2.0 * json.at("error_of_lobes").at("median").get<double>());
+  EXPECT_GT(json.at("error_of_lobes").at("greatest"), json.at("error").at("greatest"));
+}
+
+TEST(Material, EveryFormatKeepsThePower) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", cubes("20"));
+  const Triple to_source = direction(5.0, 20.0);
+  const double rre =
+      retrace_json(folder, {"rre", "d.toml", "--incidence", "5", "--azimuth", "20", "--target-error", "1e-4"})
+          .at("points")
+          .at(0)
+          .at("rre")
+          .get<double>();
+  ASSERT_GT(rre, 0.7);
+
+  ASSERT_EQ(retrace(folder, export_of("m.json", "0.6")).code, 0);
+  const Json header = folder.json("m.json");
+  // The grid of the direction that lies nearest, summed by the values' own file.
+  std::size_t nearest = 0;
+  const auto distance = [&](std::size_t k) {
+    const Json& at = header.at("directions").at(k);
+    const Triple d = direction(at.at("entrance_deg"), at.at("azimuth_deg"));
+    return std::hypot(d[0] - to_source[0], d[1] - to_source[1]);
+  };
+  for (std::size_t k = 0; k < header.at("directions").size(); ++k)
+    if (distance(k) < distance(nearest)) nearest = k;
+  const Json& at = header.at("directions").at(nearest);
+  const Triple light = direction(at.at("entrance_deg"), at.at("azimuth_deg"));
+  const double half = header.at("half_width");
+  const double step = 2.0 * half / (header.at("columns").get<double>() - 1.0);
+  std::istringstream rows(folder.read("m.csv"));
+  std::string row;
+  std::getline(rows, row);
+  EXPECT_EQ(row, "direction,row,column,red,green,blue");
+  double sum = 0.0;
+  while (std::getline(rows, row)) {
+    std::replace(row.begin(), row.end(), ',', ' ');
+    std::istringstream values(row);
+    double k = 0.0, j = 0.0, i = 0.0, red = 0.0, green = 0.0, blue = 0.0;
+    values >> k >> j >> i >> red >> green >> blue;
+    if (k != static_cast<double>(nearest)) continue;
+    const double x = light[0] + i * step - half;
+    const double y = light[1] + j * step - half;
+    const double r_a = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+    sum += r_a / (light[2] * std::sqrt(1.0 - x * x - y * y)) * step * step;
+  }
+  const std::string there = std::to_string(at.at("entrance_deg").get<double>());
+  const double rre_there =
+      retrace_json(folder, {"rre", "d.toml", "--incidence", there, "--azimuth",
+                            std::to_string(at.at("azimuth_deg").get<double>()), "--target-error", "1e-4"})
+          .at("points")
+          .at(0)
+          .at("rre")
+          .get<double>();
+  EXPECT_NEAR(sum, rre_there, 0.01 * rre_there) << there;
+  EXPECT_NEAR(at.at("returned").get<double>(), sum, 0.005 * sum);
+
+  ASSERT_EQ(retrace(folder, export_of("m.xml", "0.6")).code, 0);
+  const RadianceFile bsdf(folder.read("m.xml"));
+  EXPECT_NEAR(bsdf.reflected(to_source), rre, 0.01 * rre);
+  // It goes back to where it came from, and nowhere else.
+  const double projected_sr = kPi * bsdf.least_leaf() * bsdf.least_leaf();
+  double about = 0.0;
+  for (int j = -4; j <= 4; ++j)
+    for (int i = -4; i <= 4; ++i) {
+      const double width = std::sqrt(projected_sr);
+      Triple out = {to_source[0] + i * width / 4.0, to_source[1] + j * width / 4.0, 0.0};
+      about = std::max(about, bsdf.brdf(to_source, out) * projected_sr);
+    }
+  EXPECT_GT(about, 0.2 * rre);
+  EXPECT_EQ(bsdf.brdf(to_source, {-to_source[0], -to_source[1], to_source[2]}), 0.0);
+
+  ASSERT_EQ(retrace(folder, export_of("m.glsl", "0.6")).code, 0);
+  const GlslFile shader(folder.read("m.glsl"));
+  double power = 0.0;
+  constexpr int kPoints = 120;
+  for (int j = -kPoints; j < kPoints; ++j)
+    for (int i = -kPoints; i < kPoints; ++i) {
+      const double fine = half / kPoints;
+      const Triple out = {to_source[0] + (i + 0.5) * fine, to_source[1] + (j + 0.5) * fine, 0.0};
+      power += shader.brdf(to_source, out) * fine * fine;
+    }
+  EXPECT_NEAR(power, rre, 0.01 * rre);
+}
+
+TEST(Material, WhatCannotBeIsRefusedAndNothingWritten) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", cubes("0.5"));
+  const auto refused = [&](Arguments more, const std::string& text) {
+    more.insert(more.begin(), {"export", "d.toml"});
+    expect_refused(retrace(folder, more), text);
+  };
+  refused({"m.json", "--entrance-deg", "50"}, "--entrance-deg: must be >= 1 and <= 40, got 50");
+  refused({"m.json", "--window-deg", "0"}, "--window-deg: must be >= 0.1 and <= 5, got 0");
+  refused({"m.json", "--error", "nan"}, "--error: must be ");
+  refused({"m.json", "--most-directions", "3"}, "--most-directions: must be >= 64 and <= 10000, got 3");
+  refused({"m.json", "--source-arcmin", "-1"}, "--source-arcmin: must be >= 1 and <= 120, got -1");
+  refused({"m.xml", "--what", "array"}, "--what: is of solids");
+  refused({"m.stl", "--error", "0.1"}, "--error: is of materials: .json, .xml or .glsl");
+  refused({"m.json", "--json", "m.csv"}, "--json: m.csv is a file that");
+  expect_refused_with(
+      retrace(folder, {"export", example("fronts/cats_eye_lenslets.toml"), "m.json"}),
+      "a material is computed by the exact engine, which does not take this design: curved fronts are traced by rays");
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"d.toml"});
+}
+
+}  // namespace
+}  // namespace retrace::test::material_command_test
