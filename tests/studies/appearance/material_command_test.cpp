@@ -247,7 +247,7 @@ TEST(Material, WhatCannotBeIsRefusedAndNothingWritten) {
   refused({"m.json", "--error", "nan"}, "--error: must be ");
   refused({"m.json", "--most-directions", "3"}, "--most-directions: must be >= 64 and <= 10000, got 3");
   refused({"m.json", "--source-arcmin", "-1"}, "--source-arcmin: must be >= 1 and <= 120, got -1");
-  refused({"m.xml", "--what", "array"}, "--what: is of solids");
+  refused({"m.xml", "--what", "element"}, "--what: is of solids");
   refused({"m.stl", "--error", "0.1"}, "--error: is of materials: .json, .xml or .glsl");
   refused({"m.json", "--json", "m.csv"}, "--json: m.csv is a file that");
   expect_refused_with(
