@@ -1,6 +1,7 @@
 #include "core/text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/leading_number.h"
@@ -41,6 +42,12 @@ std::optional<double> number_in(std::string_view text) {
   const std::optional<LeadingNumber> number = leading_number(text);
   if (!number || number->length != text.size() || !std::isfinite(number->value)) return std::nullopt;
   return number->value;
+}
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
 }
 
 std::size_t utf8_length(std::string_view text) {

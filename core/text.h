@@ -1,9 +1,12 @@
 #pragma once
 
-// Small operations on text: trimming, splitting, numbers independent of the locale, and the length of UTF-8 characters.
+// Small operations on text: trimming, splitting, numbers independent of the locale, endings of file names, and the
+// length of UTF-8 characters.
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +23,9 @@ std::vector<std::string_view> words_in(std::string_view text);
 
 /// The finite number that `text` is, with a decimal point whatever the locale; none if it is anything else.
 std::optional<double> number_in(std::string_view text);
+
+/// The ending of a file's name in small letters, with its dot; empty if it has none.
+std::string ending_of(const std::filesystem::path& file);
 
 /// Bytes of the UTF-8 character that `text` begins with; 0 if they are none (overlong and surrogate forms included).
 /// \pre text is not empty

@@ -93,8 +93,8 @@ ExitCode run_material(const ExportOptions& options, const CommonOptions& common,
   files.add_named("--out", file, [&] { return text.text; });
   if (format == studies::AppearanceFormat::table) files.add_named("--out", values, [&] { return text.values; });
   files.prepare();
-  const OrderlyInterrupt interrupt;
-  interrupt.run(common, "material", [&](Progress* bar, const Cancellation* cancel) {
+  // Only while it lasts: what comes after has nothing to stop in order for.
+  OrderlyInterrupt().run(common, "material", [&](Progress* bar, const Cancellation* cancel) {
     result = studies::compute_appearance(design, request, bar, cancel);
   });
   if (!result.complete) {

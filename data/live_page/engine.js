@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 2b4b7bb33dedffc39df3caabae526a40f8462f564e43901c674c88469884b16a */
+/* made by tools/live_page; engine.wasm.gz 39d4a24daa0889b9c5b906c7740211e21e346b2307ba42aff97502fe37d7d171 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

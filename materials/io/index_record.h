@@ -2,21 +2,19 @@
 
 // Reads records of the refractiveindex.info database (YAML): one material a file.
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "materials/dispersion.h"
 
 namespace retrace::materials {
 
 /// Whether a file's name is that of a record: it ends in .yml or .yaml.
 inline bool is_index_record(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = ending_of(file);
   return ending == ".yml" || ending == ".yaml";
 }
 

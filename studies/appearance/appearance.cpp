@@ -23,6 +23,7 @@ namespace retrace::studies {
 namespace {
 
 using geometry::Vec2, geometry::Vec3;
+using View = raytrace::PhotometricDirections;
 
 // Spans of each colour matching function, of two wavelengths each; of the eye, to judge the table by.
 constexpr std::size_t kParts = 2;
@@ -81,28 +82,11 @@ Eigen::Matrix3d rgb_from_xyz(const materials::Tristimulus& white) {
   return (primaries * brightness.asDiagonal()).inverse();
 }
 
-/// A direction of light and one of view.
-struct View {
-  Vec3 to_source;
-  Vec3 to_observer;
-};
-
 /// None below the horizon.
 std::optional<View> view_of(const Vec3& to_source, const Vec2& deviation) {
   const Vec2 across = to_source.head<2>() + deviation;
   if (across.squaredNorm() >= 1.0) return std::nullopt;
   return View{to_source, {across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm())}};
-}
-
-PhotometerSetting setting_of(const View& view) {
-  const raytrace::PhotometricGeometry geometry = raytrace::geometry_of({view.to_source, view.to_observer});
-  const raytrace::EntranceAngles entrance = raytrace::entrance_angles(geometry);
-  PhotometerSetting setting;
-  setting.v_deg = entrance.v.deg();
-  setting.h_deg = entrance.h.deg();
-  setting.rotation_deg = geometry.epsilon.deg();
-  setting.observation_deg = {geometry.alpha.deg()};
-  return setting;
 }
 
 /// A place on the lattice of directions that cells share.
@@ -158,10 +142,12 @@ class TableMaker {
 
   /// False if it was cancelled.
   bool make(Progress* progress, const Cancellation* cancel) {
-    const std::vector<PlannedCell> first = first_cells();
-    if (!compute(first, progress, cancel)) return false;
-    cells_ = first;
+    cells_ = first_cells();
+    if (!compute(cells_, progress, cancel)) return false;
+    first_directions_ = table_.directions.size();
     for (std::size_t judged = 0;;) {
+      table_.cells.clear();
+      for (const PlannedCell& cell : cells_) table_.cells.push_back(cell_of(cell));
       if (!judge(judged, cancel)) return false;
       const auto worst = std::max_element(cells_.begin(), cells_.end(), [](const PlannedCell& a, const PlannedCell& b) {
         return (a.size > 3 ? a.error : 0.0) < (b.size > 3 ? b.error : 0.0);
@@ -174,7 +160,6 @@ class TableMaker {
       judged = cells_.size();
       cells_.insert(cells_.end(), parts.begin(), parts.end());
     }
-    for (const PlannedCell& cell : cells_) table_.cells.push_back(cell_of(cell));
     return true;
   }
 
@@ -272,14 +257,19 @@ class TableMaker {
     for (std::size_t first = 0; first < places.size(); first += kBatch) {
       const std::size_t count = std::min(kBatch, places.size() - first);
       if (!compute({places.data() + first, count}, cancel)) return false;
-      if (progress == nullptr) continue;
-      const double done = static_cast<double>(table_.directions.size());
-      const double known = done + static_cast<double>(places.size() - first - count);
-      share_ = std::max(share_, 0.95 * done / std::max(known, 2.0 * done * (judging_ ? 0.75 : 0.5)));
-      progress->at(share_);
+      if (progress != nullptr) progress->at(share_done(places.size()));
     }
-    judging_ = true;
     return true;
+  }
+
+  /// The first cells are half of the work, and of the other half nobody knows how much will be done. \param first
+  /// directions of the first cells, while these are computed
+  double share_done(std::size_t first) const {
+    const auto done = static_cast<double>(table_.directions.size());
+    if (first_directions_ == 0) return 0.5 * done / static_cast<double>(first);
+    const auto before = static_cast<double>(first_directions_);
+    return 0.5 +
+           0.5 * (done - before) / std::max(static_cast<double>(request_.most_directions) - before, done - before);
   }
 
   bool compute(std::span<const LatticePlace> places, const Cancellation* cancel) {
@@ -345,9 +335,7 @@ class TableMaker {
     std::vector<double> told;
     std::vector<double> floor;
     std::vector<std::size_t> of_cell;
-    const std::vector<ReflectionTable::Cell> before = std::move(table_.cells);
     for (std::size_t k = first; k < cells_.size(); ++k) {
-      table_.cells = {cell_of(cells_[k])};
       for (const double share : {1.0 / 6.0, 0.5, 5.0 / 6.0}) {
         const Vec3 to_source = direction_of(entrance_at(cells_[k].entrance + share * cells_[k].size),
                                             azimuth_at(cells_[k].azimuth + share * cells_[k].size));
@@ -363,7 +351,6 @@ class TableMaker {
         }
       }
     }
-    table_.cells = before;
     const auto readings = eye_.measure(settings, nullptr, cancel);
     if (!readings) return false;
     std::map<std::size_t, std::vector<double>> errors;
@@ -386,8 +373,7 @@ class TableMaker {
   ReflectionTable table_;
   std::vector<PlannedCell> cells_;
   std::map<LatticePlace, std::size_t> known_;  ///< index of the direction there
-  double share_ = 0.0;                         ///< that was told to be done
-  bool judging_ = false;
+  std::size_t first_directions_ = 0;           ///< of the first cells; 0 until they are computed
 };
 
 }  // namespace

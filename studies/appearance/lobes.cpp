@@ -38,11 +38,10 @@ std::array<double, Lobe::kTerms> terms_of(const Vec2& place) {
 
 double density(const Lobe& lobe, const Vec2& deviation) {
   const Vec2 d = deviation - lobe.centre;
-  const double determinant = lobe.spread.x() * lobe.spread.y() - lobe.covariance * lobe.covariance;
   const double square =
       (lobe.spread.y() * d.x() * d.x() - 2.0 * lobe.covariance * d.x() * d.y() + lobe.spread.x() * d.y() * d.y()) /
-      determinant;
-  return std::exp(-0.5 * square) / (2.0 * std::numbers::pi * std::sqrt(determinant));
+      lobe.determinant();
+  return lobe.peak() * std::exp(-0.5 * square);
 }
 
 class Fit {
@@ -50,7 +49,7 @@ class Fit {
   explicit Fit(const ReflectionTable& table) : table_(table) {
     const auto points = static_cast<Index>(table.columns * table.columns);
     const auto lights = static_cast<Index>(table.directions.size());
-    for (std::size_t band = 0; band < 3; ++band) power_[band] = ArrayXXd::Zero(points, lights);
+    for (ArrayXXd* power : {&power_[0], &power_[1], &power_[2], &luminous_}) *power = ArrayXXd::Zero(points, lights);
     for (Index light = 0; light < lights; ++light) {
       const ReflectionTable::Direction& direction = table.directions[static_cast<std::size_t>(light)];
       const Vec3 to_source = direction_of(direction.entrance, direction.azimuth);
@@ -60,14 +59,15 @@ class Fit {
         const double share = table.step() * table.step() / (to_source.z() * std::sqrt(1.0 - view.squaredNorm()));
         const Rgb& r_a = direction.r_a[static_cast<std::size_t>(point)];
         for (std::size_t band = 0; band < 3; ++band) power_[band](point, light) = share * r_a[band];
+        luminous_(point, light) = share * std::max(luminous(r_a), 0.0);
       }
     }
-    luminous_ = (0.2126 * power_[0] + 0.7152 * power_[1] + 0.0722 * power_[2]).max(0.0);
     begin();
   }
 
   ReflectionLobes fitted() {
     for (int round = 0; round < kIterations; ++round) improve();
+    colour();
     add_lattice();
     fit_powers();
     ReflectionLobes result{{}, std::sin(table_.most_entrance.rad()), table_.mirrors};
@@ -81,8 +81,6 @@ class Fit {
     for (std::size_t k = 0; k < lobes_.size(); ++k) {
       for (std::size_t term = 0; term < Lobe::kTerms; ++term)
         lobes_[k].power[term] = coefficients(static_cast<Index>(term), static_cast<Index>(k));
-      const double sum = luminous(lobes_[k].colour);
-      for (double& band : lobes_[k].colour) band = sum > 0.0 ? band / sum : 1.0;
     }
     result.lobes = lobes_;
     return result;
@@ -119,6 +117,7 @@ class Fit {
     return densities;
   }
 
+  /// In the colour of the middle.
   void add_lattice() {
     const double steps = static_cast<double>(table_.columns - 1) / kStepsPerLattice;
     const int row = std::clamp(static_cast<int>(std::ceil(steps)) + 1, 2, kMostInARow);
@@ -147,22 +146,32 @@ class Fit {
     }
   }
 
+  /// What lobes make of the grid points, by direction of light.
+  ArrayXXd model_of(const ArrayXXd& densities) const {
+    return (densities.matrix() * of_light_.matrix().transpose()).array().max(1e-300);
+  }
+
   /// Gives every grid point's power to the lobes by how much of it they make, and makes the lobes of what they got.
   void improve() {
     const ArrayXXd densities = lobe_densities();
-    const ArrayXXd model = (densities.matrix() * of_light_.matrix().transpose()).array().max(1e-300);
-    const ArrayXXd ratio = luminous_ / model;
-    std::array<ArrayXXd, 3> ratio_of_band;
-    for (std::size_t band = 0; band < 3; ++band) ratio_of_band[band] = power_[band] / model;
-    for (Index k = 0; k < densities.cols(); ++k) {
-      const auto got_of = [&](const ArrayXXd& ratios) -> ArrayXd {
-        return densities.col(k) * (ratios.matrix() * of_light_.col(k).matrix()).array();
-      };
-      Lobe& lobe = lobes_[static_cast<std::size_t>(k)];
-      reshape(lobe, got_of(ratio));
-      for (std::size_t band = 0; band < 3; ++band) lobe.colour[band] = got_of(ratio_of_band[band]).sum();
-    }
+    const ArrayXXd ratio = luminous_ / model_of(densities);
+    const ArrayXXd got = densities * (ratio.matrix() * of_light_.matrix()).array();
+    for (std::size_t k = 0; k < lobes_.size(); ++k) reshape(lobes_[k], got.col(static_cast<Index>(k)));
     of_light_ *= (ratio.matrix().transpose() * densities.matrix()).array();
+  }
+
+  /// The colour of what each lobe gets in the same way.
+  void colour() {
+    const ArrayXXd densities = lobe_densities();
+    const ArrayXXd model = model_of(densities);
+    for (std::size_t band = 0; band < 3; ++band) {
+      const ArrayXXd got = densities * ((power_[band] / model).matrix() * of_light_.matrix()).array();
+      for (std::size_t k = 0; k < lobes_.size(); ++k) lobes_[k].colour[band] = got.col(static_cast<Index>(k)).sum();
+    }
+    for (Lobe& lobe : lobes_) {
+      const double sum = luminous(lobe.colour);
+      for (double& band : lobe.colour) band = sum > 0.0 ? band / sum : 1.0;
+    }
   }
 
   /// Mean and spread of the power that a lobe got, by grid point.
@@ -193,6 +202,10 @@ class Fit {
 };
 
 }  // namespace
+
+double Lobe::peak() const {
+  return 1.0 / (2.0 * std::numbers::pi * std::sqrt(determinant()));
+}
 
 Rgb ReflectionLobes::r_a(const Vec3& to_source, const Vec3& to_observer) const {
   Vec2 light = to_source.head<2>();

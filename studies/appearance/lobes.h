@@ -21,6 +21,10 @@ struct Lobe {
   /// Share of the power of light of x and y, in units of ReflectionLobes::scale; may be below 0, where the sum over
   /// lobes counts as 0 if it is.
   std::array<double, kTerms> power{};
+
+  double determinant() const { return spread.x() * spread.y() - covariance * covariance; }
+  /// Density at the centre, whose integral over deviations is 1.
+  double peak() const;
 };
 
 /// BRDF = sum over lobes of colour x power x density of the Gaussian at the deviation. Where the table has mirrors,

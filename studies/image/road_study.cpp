@@ -222,19 +222,6 @@ struct Pair {
   std::size_t lamp = 0;
 };
 
-/// The reflector as it hangs on the car: its frame is that of the scene.
-PhotometerSetting setting_of(const Vec3& reflector, const Vec3& lamp, const Vec3& eye) {
-  const raytrace::PhotometricGeometry geometry =
-      raytrace::geometry_of({(lamp - reflector).normalized(), (eye - reflector).normalized()});
-  const raytrace::EntranceAngles entrance = raytrace::entrance_angles(geometry);
-  PhotometerSetting setting;
-  setting.v_deg = entrance.v.deg();
-  setting.h_deg = entrance.h.deg();
-  setting.rotation_deg = geometry.epsilon.deg();
-  setting.observation_deg = {geometry.alpha.deg()};
-  return setting;
-}
-
 PhotometryRequest photometry_at(const RoadRequest& r, const RoadScene& s, double distance_m, std::uint32_t seed) {
   PhotometryRequest request;
   request.area_cm2 = 1e4 * s.reflector_width * s.reflector_tall;
@@ -288,8 +275,11 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
     const std::array<Vec3, 2> lamps = lamps_at(result.scene, distance_m);
     const Vec3 eye = eye_at(result.scene, distance_m);
     std::vector<PhotometerSetting> settings;
-    for (const auto& [side, lamp] : {Pair{0, 0}, Pair{0, 1}, Pair{1, 0}, Pair{1, 1}})
-      settings.push_back(setting_of(reflector_place(result.scene, side), lamps[lamp], eye));
+    for (const auto& [side, lamp] : {Pair{0, 0}, Pair{0, 1}, Pair{1, 0}, Pair{1, 1}}) {
+      // The reflector as it hangs on the car: its frame is that of the scene.
+      const Vec3 reflector = reflector_place(result.scene, side);
+      settings.push_back(setting_of({(lamps[lamp] - reflector).normalized(), (eye - reflector).normalized()}));
+    }
     PartOfProgress part(progress, share * static_cast<double>(result.views.size()), share);
     const auto readings = measured(photometer, settings, part, cancel);
     if (!readings) {

@@ -149,6 +149,17 @@ PhotometricGeometry geometry_of(const PhotometerSetting& setting, double observa
                                  deg(setting.rotation_deg));
 }
 
+PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions) {
+  const PhotometricGeometry geometry = raytrace::geometry_of(directions);
+  const raytrace::EntranceAngles entrance = raytrace::entrance_angles(geometry);
+  PhotometerSetting setting;
+  setting.v_deg = entrance.v.deg();
+  setting.h_deg = entrance.h.deg();
+  setting.rotation_deg = geometry.epsilon.deg();
+  setting.observation_deg = {geometry.alpha.deg()};
+  return setting;
+}
+
 raytrace::ReturnFrame frame_of(const PhotometerSetting& setting) {
   return raytrace::return_frame(geometry_of(setting, 0.0));
 }

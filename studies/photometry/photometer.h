@@ -25,6 +25,8 @@ struct PhotometerSetting {
 };
 
 raytrace::PhotometricGeometry geometry_of(const PhotometerSetting& setting, double observation_deg);
+/// A design lit from one direction and looked at from another. \param directions in the part frame
+PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions);
 /// Directions round the return, in the part frame.
 raytrace::ReturnFrame frame_of(const PhotometerSetting& setting);
 

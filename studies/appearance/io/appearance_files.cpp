@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/text.h"
 #include "studies/appearance/io/glsl_file.h"
 #include "studies/appearance/io/radiance_file.h"
 #include "studies/appearance/lobes.h"
@@ -117,9 +114,7 @@ AppearanceText glsl(const AppearanceResult& result) {
 }  // namespace
 
 std::optional<AppearanceFormat> appearance_format(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  const std::string ending = ending_of(file);
   if (ending == ".json") return AppearanceFormat::table;
   if (ending == ".xml") return AppearanceFormat::radiance;
   if (ending == ".glsl") return AppearanceFormat::glsl;

@@ -52,16 +52,11 @@ std::string glsl_text(const ReflectionLobes& lobes, const std::vector<std::strin
   text += constant(lobes, "vec2", "RETRACE_CENTRE", 1, [](const Lobe& lobe) {
     return fmt::format("vec2({}, {})", number(lobe.centre.x()), number(lobe.centre.y()));
   });
-  const auto determinant = [](const Lobe& lobe) {
-    return lobe.spread.x() * lobe.spread.y() - lobe.covariance * lobe.covariance;
-  };
-  text += constant(lobes, "vec3", "RETRACE_SHAPE", 1, [&](const Lobe& lobe) {
-    return fmt::format("vec3({}, {}, {})", number(lobe.spread.y() / determinant(lobe)),
-                       number(-lobe.covariance / determinant(lobe)), number(lobe.spread.x() / determinant(lobe)));
+  text += constant(lobes, "vec3", "RETRACE_SHAPE", 1, [](const Lobe& lobe) {
+    return fmt::format("vec3({}, {}, {})", number(lobe.spread.y() / lobe.determinant()),
+                       number(-lobe.covariance / lobe.determinant()), number(lobe.spread.x() / lobe.determinant()));
   });
-  text += constant(lobes, "float", "RETRACE_DENSITY", 1, [&](const Lobe& lobe) {
-    return number(1.0 / (2.0 * std::numbers::pi * std::sqrt(determinant(lobe))));
-  });
+  text += constant(lobes, "float", "RETRACE_DENSITY", 1, [](const Lobe& lobe) { return number(lobe.peak()); });
   text += constant(lobes, "vec3", "RETRACE_COLOUR", 1, [](const Lobe& lobe) {
     return fmt::format("vec3({}, {}, {})", number(lobe.colour[0]), number(lobe.colour[1]), number(lobe.colour[2]));
   });

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -326,9 +325,7 @@ PhotometricLamp parse_ldt(std::string_view text, const std::string& file) {
 }
 
 PhotometricLamp read_lamp(const std::filesystem::path& file, const std::string& option) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char character) { return static_cast<char>(std::tolower(character)); });
+  const std::string ending = ending_of(file);
   if (ending != ".ies" && ending != ".ldt")
     throw InputError({"", 0, option}, fmt::format("must end in .ies or .ldt, got {}", in_quotes(file.string())));
   const std::string text = read_file(file, kMostLampBytes);

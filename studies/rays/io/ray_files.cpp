@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-
 #include "core/error.h"
 #include "core/message_text.h"
+#include "core/text.h"
 #include "studies/rays/io/ray_csv.h"
 #include "studies/rays/io/tm25.h"
 
@@ -16,8 +14,7 @@ namespace {
 enum class RayFormat { tm25, csv };
 
 RayFormat format_of(const std::filesystem::path& file, const std::string& option) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = ending_of(file);
   if (ending == ".tm25ray") return RayFormat::tm25;
   if (ending == ".csv") return RayFormat::csv;
   throw InputError({"", 0, option}, fmt::format("must be a file .tm25ray or .csv, got {}", in_quotes(file.string())));

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/text.h"
 #include "core/version.h"
 #include "geometry/io/gltf_file.h"
 #include "geometry/io/obj_file.h"
@@ -51,9 +51,7 @@ Json vector_json(const geometry::Vec3& v) {
 }  // namespace
 
 SolidFormat solid_format(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  const std::string ending = ending_of(file);
   if (ending == ".stl") return SolidFormat::stl;
   if (ending == ".obj") return SolidFormat::obj;
   if (ending == ".glb") return SolidFormat::gltf;
