@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "core/number_format.h"
 
@@ -15,6 +16,7 @@ constexpr std::uint8_t kZBit = 0b100;
 constexpr std::uint8_t kLinearBits = 0b111;
 /// Rounding of words.
 constexpr double kSlackMm = 1e-9;
+constexpr double kSlackDeg = 1e-9;
 
 constexpr NcNeed kRotationNeed = {nc_said::kRotationOff, "G69", "that coordinates are not turned"};
 constexpr NcNeed kMirrorNeed = {nc_said::kMirrorOff, "G50.1", "that coordinates are not mirrored"};
@@ -28,6 +30,8 @@ bool has_bit(unsigned bits, char axis) {
 void ControlCheck::begin(const NcProgram& program) {
   dialect_ = program.dialect;
   rested_s_ = 0.0;
+  has_moved_ = false;
+  known_ = 0;
   wrong_.clear();
   if (program.coordinate_system != 0 && program.coordinate_system != control_.coordinate_system)
     findings_.add("setup", 0,
@@ -44,12 +48,14 @@ bool ControlCheck::turns_wrong(const std::string& kind, bool holds) {
 
 void ControlCheck::way(const NcSettings& settings, const NcMotion& motion) {
   if (motion.moved != 0) rested_s_ = 0.0;
-  if (motion.before == 0) return first_move(settings, motion);
+  const std::uint8_t known = known_;
+  known_ = static_cast<std::uint8_t>(known_ | motion.absolute | motion.shortest);
+  if (!std::exchange(has_moved_, true)) return first_move(settings, motion);
   const bool goes_low = motion.to.z_mm < rule_.safe_z_mm - kSlackMm && (motion.moved & kZBit) != 0;
-  if (!goes_low || (motion.known & rule_.axes) == rule_.axes) return;
+  if (!goes_low || (known & rule_.axes) == rule_.axes) return;
   std::string unknown;
   for (std::size_t axis = 0; axis < kNcAxes; ++axis)
-    if ((rule_.axes >> axis & 1U) != 0 && (motion.known >> axis & 1U) == 0)
+    if ((rule_.axes >> axis & 1U) != 0 && (known >> axis & 1U) == 0)
       unknown += fmt::format("{}{}", unknown.empty() ? "" : ", ", kNcAxisLetters[axis]);
   findings_.add(
       "unknown_position", motion.place.line,
@@ -67,7 +73,7 @@ void ControlCheck::first_move(const NcSettings& settings, const NcMotion& motion
   if (dialect_ == NcDialect::fanuc && control_.has_rotation) ask(kRotationNeed);
   if (dialect_ == NcDialect::fanuc && control_.has_mirror) ask(kMirrorNeed);
   const double safe_mm = rule_.safe_z_mm;
-  if (motion.moved != kZBit || motion.to.z_mm < safe_mm - kSlackMm)
+  if ((motion.absolute | motion.shortest) != kZBit || motion.to.z_mm < safe_mm - kSlackMm)
     findings_.add("first_move", motion.place.line,
                   std::isfinite(safe_mm)
                       ? fmt::format("the first move must be of Z alone, to {} mm or higher: nothing is known of where "
@@ -75,6 +81,25 @@ void ControlCheck::first_move(const NcSettings& settings, const NcMotion& motion
                                     shortest(safe_mm))
                       : "the first move must be of Z alone: nothing is known of where the tool stands",
                   motion.to.z_mm, std::isfinite(safe_mm) ? safe_mm : 0.0);
+}
+
+void ControlCheck::stop(const NcSettings& settings, const AxisPositions& at, const NcPlace& place) {
+  const auto ask = [&](bool holds, std::string message) {
+    if (!holds && has_moved_) findings_.add("unsafe_stop", place.line, std::move(message));
+  };
+  ask((known_ & rule_.axes) == rule_.axes && at.z_mm >= rule_.safe_z_mm - kSlackMm,
+      fmt::format("the program stops while Z stands at {} mm, must be {} mm or higher", shortest(at.z_mm),
+                  shortest(rule_.safe_z_mm)));
+  const auto is_at_zero = [](double deg) { return std::abs(std::remainder(deg, 360.0)) < kSlackDeg; };
+  ask(is_at_zero(at.a_deg) && is_at_zero(at.b_deg) && is_at_zero(at.c_deg),
+      "the program stops while the rotary axes do not stand at 0, where the operator works");
+  ask(!settings.mist_on.value_or(false), "the program stops with the mist on");
+  const NcSpindle spindle = settings.spindle.value_or(NcSpindle::stopped);
+  ask(spindle == NcSpindle::stopped || spindle == NcSpindle::stopped_by_text,
+      "the program stops while the spindle turns");
+  has_moved_ = false;
+  known_ = 0;
+  wrong_.clear();
 }
 
 void ControlCheck::cut(const NcSettings& settings, const NcPlace& place) {

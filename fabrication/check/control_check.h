@@ -53,6 +53,11 @@ class ControlCheck {
   void state(const NcSettings& settings, const NcPlace& place, bool is_in_material);
   /// The tool rests in the material. \param seconds infinite: until the operator goes on
   void rest(double seconds, const NcPlace& place);
+  /// The program waits for the operator: above all, rotary axes at 0, with mist and spindle off. What follows begins
+  /// like a program.
+  void stop(const NcSettings& settings, const AxisPositions& at, const NcPlace& place);
+  /// Axes whose place was said since the program began or stopped.
+  std::uint8_t known() const { return known_; }
   void spindle_at_end(const NcEnd& end);
   /// That the machine has the axes that move, that they stay within their limits, have a feed and are not fed faster
   /// than they go.
@@ -75,6 +80,8 @@ class ControlCheck {
   ControlRule rule_;
   Control control_;
   NcDialect dialect_ = NcDialect::rs274ngc;
+  bool has_moved_ = false;       ///< since the program began or stopped
+  std::uint8_t known_ = 0;       ///< axes whose place was said since then
   double rested_s_ = 0.0;        ///< in the material, since the last move
   std::set<std::string> wrong_;  ///< kinds of settings that are wrong now
 };

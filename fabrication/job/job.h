@@ -31,6 +31,7 @@ enum class Strategy {
 /// Words of files and commands, in the order of the enumerators.
 inline constexpr std::string_view kWorkpieceWords[] = {"mould", "direct"};
 inline constexpr std::string_view kStrategyWords[] = {"unidirectional", "bidirectional", "two-step", "dmc"};
+inline constexpr std::string_view kNextEdgeWords[] = {"stop", "program"};
 
 struct Workpiece {
   WorkpieceKind kind = WorkpieceKind::mould;
@@ -44,6 +45,12 @@ struct EdgeChip {
   double depth_um = 0.0;     ///< normal to the clearance face; > 0, at most half the width
 };
 
+/// What an edge that has cut its life is followed by.
+enum class NextEdge {
+  stop,    ///< the program stops, and with every stop the edge's account begins anew
+  program  ///< a new program begins; stops leave the edge as it is
+};
+
 /// A diamond whose clearance face looks at the facet that it cuts; the clearance comes from how the tool is mounted.
 /// For prisms a chisel with a straight edge (single-point inverted cutting, thesis 2.1), for cube corners a V-shaped
 /// tool with two edges that meet in its tip (diamond micro chiseling, thesis 1.4.2).
@@ -55,6 +62,9 @@ struct Tool {
   double side_clearance_deg = 2.0;   ///< by which a chisel's side walls fall back from the edge's ends; > 0
   double nose_angle_deg = 50.0;      ///< between the two edges of a V
   std::vector<EdgeChip> edge_chips;  ///< of a chisel; they keep clear of each other
+  /// The way of the tip below the blank's face, in moves that cut, that an edge is good for; nothing: it lasts.
+  std::optional<double> edge_life_mm;
+  NextEdge next_edge = NextEdge::stop;  ///< of an edge with a life
 };
 
 /// The wedge of a V-shaped tool with rake 22 and clearance 3 (thesis 1.4.2): they add up to 90.
@@ -80,7 +90,10 @@ struct Process {
   double plough_lift_um = 0.0;   ///< by which the tool leaves the facet once the chip is free; 0: it does not
   double slow_retract_um = 0.0;  ///< of bidirectional cuts: this much straight up at cutting feed first (thesis 4.4)
   bool mist = true;              ///< while the tool cuts, to keep chips off and the edge cool
-  double rotary_clearance_mm = 5.0;  ///< above all that the turning blank can reach, before a rotary move
+  double rotary_clearance_mm = 5.0;      ///< above all that the turning blank can reach, before a rotary move
+  std::optional<double> least_chip_um;   ///< a cut that is thinner all along rubs; nothing: no cut is too thin
+  std::optional<double> stop_every_min;  ///< the longest that a program runs without a stop; nothing: to its end
+  bool stop_before_finishing = false;    ///< every element, between its roughing and its finishing
   /// Areal roughness Sa that the motions leave on facets. Milliken 2017 and Hamilton et al. 2017, as measured.
   double plough_sa_nm = 468.0;
   double roughing_plunge_sa_nm = 115.0;

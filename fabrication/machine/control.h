@@ -30,6 +30,7 @@ struct Control {
   std::string mist_on;            ///< lines of a Power PMAC or an Aerotech control; empty: it has none
   std::string mist_off;
   std::string optional_stop;
+  std::string stop;
   bool rapids_are_straight = false;  ///< axes arrive together; otherwise each goes at its own speed
 };
 

@@ -124,6 +124,8 @@ struct Machine {
   Sourced<double> safe_z_mm = {1e9, Basis::assumed, "the upper limit of Z, as for every machine that names none"};
   /// That a control waits at every exact stop until the axes stand still.
   Sourced<double> settling_s = {0.0, Basis::assumed, "axes arrive at once, as for every machine that names none"};
+  /// For how long axes must move before a first cut, of a program or behind a stop.
+  Sourced<double> warm_up_s = {0.0, Basis::assumed, "cuts may begin cold, as for every machine that names none"};
   Control control;
   Increments increments;  ///< to which positions are rounded when programs are planned
 

@@ -114,6 +114,7 @@ constexpr DialectWords kPmac = {
     .mist_on = "{0}\n",
     .mist_off = "{0}\n",
     .optional_stop = "{0}\n",
+    .stop = "{0}\n",
     .has_own_texts = true};
 
 /// Aerotech A3200 with its CNC option: G codes and AeroBasic. What they rest on stands in docs/nc_dialects.md. Blending
@@ -146,6 +147,7 @@ constexpr DialectWords kA3200 = {
     .mist_on = "{0}\n",
     .mist_off = "{0}\n",
     .optional_stop = "{0}\n",
+    .stop = "{0}\n",
     .has_own_texts = true,
     .has_paths_by_speed = true};
 
@@ -180,6 +182,7 @@ constexpr DialectWords kAutomation1 = {
     .mist_on = "{0}\n",
     .mist_off = "{0}\n",
     .optional_stop = "{0}\n",
+    .stop = "{0}\n",
     .has_own_texts = true,
     .has_paths_by_speed = true};
 

@@ -38,6 +38,7 @@ struct DialectWords {
   std::string_view mist_on = "M7\n";
   std::string_view mist_off = "M9\n";
   std::string_view optional_stop = "M1\n";
+  std::string_view stop = "M0\n";
   std::string_view shortest = {};   ///< of a modulo axis: letter; degrees within a turn
   std::string_view increment = {};  ///< of a modulo axis within a path: letter; degrees
   bool has_own_texts = false;       ///< mist and stops are lines of the machine's file

@@ -39,12 +39,9 @@ class FileWriter {
       text_ += dialect_.main_begin;
       header();
     }
-    add_for_control(dialect_.prepare);
-    if (const auto& spindle = program_.spindle)
-      add(dialect_.spindle_start, spindle->rpm, spindle->is_clockwise ? "M3" : "M4", spindle->start_text);
+    prepare();
     for (const Item& item : program_.items) std::visit(*this, item);
-    mist(false);
-    if (program_.spindle) add(dialect_.spindle_stop, program_.spindle->stop_text);
+    still();
     text_ += dialect_.main_end;
     if (!dialect_.subroutines_first) subroutines();
     text_ += dialect_.file_ends;
@@ -59,6 +56,13 @@ class FileWriter {
     mist(false);
     add(dialect_.optional_stop, program_.control.optional_stop);
     mist(had_mist);
+  }
+  void operator()(const Stop& stop) {
+    still();
+    add(dialect_.message, stop.text);
+    add(dialect_.stop, program_.control.stop);
+    prepare();
+    at_ = {};
   }
   void operator()(const Move& move) {
     const bool is_rapid = move.motion == Motion::rapid;
@@ -93,6 +97,19 @@ class FileWriter {
   }
 
   void add_for_control(std::string_view format) { text_ += for_control(format, program_.control); }
+
+  /// All that must hold before the first move, of the program or behind a stop.
+  void prepare() {
+    add_for_control(dialect_.prepare);
+    if (const auto& spindle = program_.spindle)
+      add(dialect_.spindle_start, spindle->rpm, spindle->is_clockwise ? "M3" : "M4", spindle->start_text);
+  }
+
+  /// Mist and spindle off.
+  void still() {
+    mist(false);
+    if (program_.spindle) add(dialect_.spindle_stop, program_.spindle->stop_text);
+  }
 
   void header() {
     for (const std::string& line : program_.header) add(dialect_.comment, line);
@@ -285,9 +302,13 @@ void check_words(const Program& program, std::string_view dialect) {
   };
   if (program.needs_mist) need(program.control.mist_on, "mist", "mist_on", "the job say process.mist = false");
   if (program.needs_mist) need(program.control.mist_off, "mist", "mist_off", "the job say process.mist = false");
-  for (const Item& item : program.items)
+  for (const Item& item : program.items) {
     if (std::holds_alternative<OptionalStop>(item))
       need(program.control.optional_stop, "an optional stop", "optional_stop", "--stop-every be left out");
+    if (std::holds_alternative<Stop>(item))
+      need(program.control.stop, "a stop", "stop",
+           "the job ask for none by tool.edge_life_mm, process.stop_every_min and stop_before_finishing");
+  }
 }
 
 std::string nc_text(const Program& program, std::string_view dialect) {

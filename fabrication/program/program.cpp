@@ -17,6 +17,7 @@ class Walker {
   void operator()(const Comment&) {}
   void operator()(const Message&) {}
   void operator()(const OptionalStop&) {}
+  void operator()(const Stop&) { at_ = kBeginning; }
   void operator()(const Move& move) { tell(move, -1); }
   void operator()(const Path& path) {
     for (const Move& move : path.moves) tell(move, -1);
@@ -54,7 +55,8 @@ class Walker {
 
   const Program& program_;
   const std::function<void(const PlannedMove&)>& sink_;
-  Words at_ = {std::nullopt, std::nullopt, std::nullopt, 0, 0};
+  static constexpr Words kBeginning = {std::nullopt, std::nullopt, std::nullopt, 0, 0};
+  Words at_ = kBeginning;
 };
 
 }  // namespace

@@ -112,7 +112,13 @@ struct Path {
 /// The operator may stop here.
 struct OptionalStop {};
 
-using Item = std::variant<Comment, Message, OptionalStop, Move, Visit, Path>;
+/// The program waits until the operator lets it go on, mist and spindle off. Behind it nothing holds of what stood
+/// before: it is prepared anew, and no axis is taken to be anywhere.
+struct Stop {
+  std::string text;  ///< for the operator
+};
+
+using Item = std::variant<Comment, Message, OptionalStop, Stop, Move, Visit, Path>;
 
 /// How the spindle turns while a program cuts.
 struct Spindle {

@@ -150,7 +150,16 @@ class Runner {
     if (block.move_time_s) move_time_s_ = *block.move_time_s;
     if (block.dwell_s) sink_.dwell(*block.dwell_s, place_of(block), axes_of(position_));
     if (block.axes != 0) move(block);
-    if (block.stops) sink_.stop(place_of(block));
+    if (block.stop != NcStop::none) stop(block);
+  }
+
+  void stop(const NcBlock& block) {
+    sink_.stop(block.stop, settings_, place_of(block));
+    if (block.stop != NcStop::always) return;
+    // The operator may type lines and jog.
+    settings_.said = 0;
+    settings_.spindle.reset();
+    settings_.mist_on.reset();
   }
 
   void move(const NcBlock& block) {
@@ -160,7 +169,7 @@ class Runner {
     motion.place = place_of(block);
     motion.shortest = block.shortest;
     motion.decimals = block.decimals;
-    motion.before = motions_++;
+    ++motions_;
     motion.known = known_;
     motion.from = axes_of(position_);
     for (std::size_t axis = 0; axis < kNcAxes; ++axis)

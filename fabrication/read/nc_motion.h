@@ -31,7 +31,6 @@ struct NcMotion {
   std::uint8_t shortest = 0;     ///< bit i: axis i goes the shortest way to a place within a turn
   std::uint8_t absolute = 0;     ///< bit i: axis i goes to the place that its word counts
   std::uint8_t decimals = 0;     ///< NcBlock::decimals
-  std::int32_t before = 0;       ///< motions of the program before this one
 };
 
 /// Modal settings that a program has made so far. Nothing: it has not, and relies on what the controller starts with.
@@ -55,8 +54,9 @@ class NcSink {
   virtual void dwell(double seconds, const NcPlace& place, const AxisPositions& position) = 0;
   /// A block says something of spindle, mist, exact stops or by bits of nc_said, before it moves.
   virtual void state(const NcSettings&, const NcPlace&) {}
-  /// The program stops for the operator, behind what its block moves.
-  virtual void stop(const NcPlace&) {}
+  /// The program stops for the operator, behind what its block moves. \param settings that it stops with: where it
+  /// always does, nothing is known behind it of spindle and mist, and what was said must be said again
+  virtual void stop(NcStop, const NcSettings&, const NcPlace&) {}
 };
 
 /// How a program ended.

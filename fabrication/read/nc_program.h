@@ -47,7 +47,11 @@ struct NcTexts {
   std::string mist_on;
   std::string mist_off;
   std::string optional_stop;
+  std::string stop = {};
 };
+
+/// What a block waits for: nothing, the operator if a switch asks for it, the operator always.
+enum class NcStop : std::uint8_t { none, optional, always };
 
 /// What a program says of the control's state, whose value is nothing that moves depend on: a bit each.
 namespace nc_said {
@@ -97,7 +101,7 @@ struct NcBlock {
   Setting<double> spindle_rpm;  ///< S
   Setting<bool> mist_on;
   Setting<double> dwell_s;
-  bool stops = false;      ///< for the operator, always or if a switch asks for it
+  NcStop stop = NcStop::none;
   std::int32_t call = -1;  ///< index of a subroutine
   bool returns = false;
   bool ends = false;

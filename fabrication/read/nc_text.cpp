@@ -25,8 +25,8 @@ bool is_control(char c) {
 
 /// Groups of M codes count on where those of G codes end. M8 is flood of other machines, and nothing of this one's
 /// mist.
-constexpr NcCode kMCodes[] = {{0, 28, [](NcBlock& b) { b.stops = true; }},
-                              {1, 28, [](NcBlock& b) { b.stops = true; }},
+constexpr NcCode kMCodes[] = {{0, 28, [](NcBlock& b) { b.stop = NcStop::always; }},
+                              {1, 28, [](NcBlock& b) { b.stop = NcStop::optional; }},
                               {2, 28, [](NcBlock& b) { b.ends = true; }},
                               {3, 29, [](NcBlock& b) { b.spindle = NcSpindle::clockwise; }},
                               {4, 29, [](NcBlock& b) { b.spindle = NcSpindle::counterclockwise; }},
@@ -51,7 +51,9 @@ bool set_text(std::string_view line, const NcTexts& texts, NcBlock& block) {
   else if (line == texts.mist_on || line == texts.mist_off)
     block.mist_on = line == texts.mist_on;
   else if (line == texts.optional_stop)
-    block.stops = true;
+    block.stop = NcStop::optional;
+  else if (line == texts.stop)
+    block.stop = NcStop::always;
   else
     return false;
   return true;

@@ -214,6 +214,21 @@ PageSection control_section(const FabricationResult& result, const SetupSheet& s
   return s;
 }
 
+/// Where programs wait for the operator.
+PageTable stops_table(const FabricationResult& result) {
+  PageTable table;
+  table.caption = "Stops";
+  table.csv_name = "stops.csv";
+  table.columns = {"program", "after", "why", "goes on with", "edge has cut (mm)", "done, by"};
+  for (const fabrication::PlannedStop& stop : result.plan.stops)
+    table.rows.push_back({result.program_file(stop.program), hours(stop.at_s),
+                          std::string(fabrication::kStopReasonWords[static_cast<std::size_t>(stop.reason)]),
+                          fmt::format("element {} of {}", stop.element, result.plan.stages[stop.stage].name),
+                          result.job.tool.edge_life_mm ? fixed(stop.used.cut_mm, 1) : std::string(),
+                          "_________________"});
+  return table;
+}
+
 PageSection programs_section(const FabricationResult& result, const SetupSheet& sheet) {
   PageSection s = section("programs", "6. Programs, in this order");
   PageTable table;
@@ -228,6 +243,7 @@ PageSection programs_section(const FabricationResult& result, const SetupSheet& 
     before_s += seconds;
   }
   s.tables.push_back(std::move(table));
+  if (!result.plan.stops.empty()) s.tables.push_back(stops_table(result));
   PageTable travel;
   travel.caption = "Travel that they use";
   travel.csv_name = "travel.csv";
@@ -237,6 +253,16 @@ PageSection programs_section(const FabricationResult& result, const SetupSheet& 
                            fmt::format("{} to {}", shortest(axis.limits.low), shortest(axis.limits.high)),
                            axis.axis == 'X' || axis.axis == 'Y' || axis.axis == 'Z' ? "mm" : "degrees"});
   s.tables.push_back(std::move(travel));
+  if (result.machine.warm_up_s.value > 0.0)
+    s.paragraphs.push_back(fmt::format(
+        "X and Y move to and fro for {} s before the first cut of a program and behind a stop: nothing stands in their "
+        "way.",
+        shortest(result.machine.warm_up_s.value)));
+  if (result.job.tool.edge_life_mm)
+    s.paragraphs.push_back(
+        fmt::format("Every program begins with an edge that cuts {} mm; {}.", shortest(*result.job.tool.edge_life_mm),
+                    result.job.tool.next_edge == fabrication::NextEdge::stop ? "so does one that goes on behind a stop"
+                                                                             : "it stays at stops"));
   s.paragraphs.push_back(fmt::format(
       "Rotary axes turn while the tool stands at Z {} or higher. Before the first: dry-run high above the table.",
       fixed(result.plan.safe_z_mm, 3)));

@@ -120,20 +120,6 @@ std::vector<int> optional_stops_of(const Plan& plan) {
   return stops;
 }
 
-/// What a stage leaves on the facets that it cuts.
-double left_um(const Job& job, const Stage& stage) {
-  const Process& p = job.process;
-  const double allowance_um = p.finishing_cuts * p.finishing_depth_um;
-  const double rest = stage.cuts - stage.cut;
-  switch (job.strategy) {
-    case Strategy::unidirectional: return 0.0;
-    case Strategy::bidirectional: return p.roughing_depth_um * rest;
-    case Strategy::two_step: return stage.roughs ? allowance_um : p.finishing_depth_um * rest;
-    case Strategy::dmc: break;
-  }
-  return stage.roughs ? allowance_um + p.roughing_depth_um * rest : p.finishing_depth_um * rest;
-}
-
 /// Follows what stands on the facets of elements that are cut alike.
 class Standing {
  public:
@@ -193,7 +179,7 @@ std::vector<StageCheck> checks_of(const FabricationResult& result) {
     check.stage = stage.name;
     check.program = program->second;
     check.ends_s = seconds;
-    check.left_um = left_um(result.job, stage);
+    check.left_um = kUmPerMm * stage.left_mm;
     alike.cut(pose.facet.facet, stage.roughs && result.job.strategy != Strategy::dmc, check.left_um);
     check.root_depth_mm = alike.root_depth_mm();
     checks.push_back(std::move(check));

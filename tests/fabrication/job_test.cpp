@@ -143,6 +143,13 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   job.process.shortest_plough = *rc::gen::arbitrary<bool>();
   job.process.plough_lift_um = real(0.0, 9.0);
   job.process.plough_sa_nm = real(0.0, 900.0);
+  if (*rc::gen::arbitrary<bool>()) {
+    job.tool.edge_life_mm = real(1.0, 1e6);
+    job.tool.next_edge = *rc::gen::element(NextEdge::stop, NextEdge::program);
+    job.process.least_chip_um = real(0.01, 0.5);
+    job.process.stop_every_min = real(1.0, 600.0);
+    job.process.stop_before_finishing = job.strategy == Strategy::two_step;
+  }
   if (job.array.arrangement == Arrangement::single) job.array.x_length_mm = job.array.y_length_mm = 0.0;
   RC_ASSERT(same(parse_job(job_text(job), "j.toml"), job));
 }
@@ -199,6 +206,15 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
        "process.retract_feed_mm_per_min: must be >= 5e-04 and <= 1e+05, got 0"},
       {"machine = \"ideal\"", "machine = \"\"", "machine: must name a machine"},
       {"machine = \"ideal\"", "machine = \"a\\u0000.toml\"", "machine: must name a machine"},
+      {"side_clearance_deg = 2\n", "side_clearance_deg = 2\nedge_life_mm = 0\n",
+       "tool.edge_life_mm: must be > 0 and <= 1e+09, got 0"},
+      {"side_clearance_deg = 2\n", "side_clearance_deg = 2\nedge_life_mm = 9\nnext_edge = \"tool\"\n",
+       "tool.next_edge: must be \"stop\" or \"program\", got \"tool\""},
+      {"mist = true", "stop_every_min = 0", "process.stop_every_min: must be > 0 and <= 1e+05, got 0"},
+      {"mist = true", "stop_before_finishing = 1", "process.stop_before_finishing: must be true or false, got 1"},
+      {"mist = true", "least_chip_um = 0", "process.least_chip_um: must be > 0 and <= 1000, got 0"},
+      {"mist = true", "least_chip_um = 2.6",
+       "process.least_chip_um: must be at most half of roughing_depth_um and finishing_depth_um, 2.5, got 2.6"},
       {"base_mm = 0.451", "base_mm = nan", "element.base_mm: must be a finite number, got nan"},
   };
   for (const Wrong& wrong : cases) {
@@ -211,6 +227,16 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
       EXPECT_TRUE(message.starts_with("j.toml:" + line_of(wrong.from) + ": ")) << message;
     }
   }
+}
+
+TEST(JobFile, OnlyWhatIsFinishedStopsBeforeFinishing) {
+  Job job = square_job(4);
+  job.process.stop_before_finishing = true;
+  ASSERT_NO_THROW(parse_job(job_text(job), "j.toml"));
+  job.strategy = Strategy::bidirectional;
+  EXPECT_TRUE(refusal_of([&] { parse_job(job_text(job), "j.toml"); })
+                  .ends_with(": process.stop_before_finishing: must be false where nothing is finished: strategy = "
+                             "\"two-step\" or \"dmc\" does, got \"bidirectional\""));
 }
 
 TEST(JobFile, BasesReadBackEqual) {

@@ -135,9 +135,10 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
             "m.toml:9: x.direction: must name its source, got \"\"");
   EXPECT_EQ(refusal(", assumed = \"square guideways\"", ""),
             "m.toml:9: x.direction: must say either measured = \"source\" or assumed = \"why\"");
-  EXPECT_EQ(refusal("[z]", "[w]"),
-            "m.toml:22: w: unknown table, did you mean \"x\"? (allowed: safe_z_mm, settling_s, x, y, z, a, b, c, "
-            "mount, control, body)");
+  EXPECT_EQ(
+      refusal("[z]", "[w]"),
+      "m.toml:22: w: unknown table, did you mean \"x\"? (allowed: safe_z_mm, settling_s, warm_up_s, x, y, z, a, b, c, "
+      "mount, control, body)");
   EXPECT_EQ(refusal("moves_with = \"tool\"", "moves_with = \"spindle\""),
             "m.toml:52: body[2].moves_with: must be \"workpiece\", \"cradle\" or \"tool\", got \"spindle\"");
   const std::string box = "box_mm = { value = [-60, -60, -40, 60, 60, -15]";
@@ -162,9 +163,14 @@ TEST(MachineFile, LinesOfAnIntegratorMoveNothing) {
         refusal("[z]", fmt::format("[control]\nmist_on = \"{}\"\n[z]", line)),
         fmt::format("m.toml:23: control.mist_on: must not move axes, wait, or lead out of the program, got \"{}\"",
                     line));
-  EXPECT_EQ(refusal("[z]", "[control]\nmist_on = \"P1=1\"\noptional_stop = \"P1=1\"\n[z]"),
-            "m.toml:23: control.mist_on: must be another line than those of mist_on, mist_off and optional_stop, got "
-            "\"P1=1\"");
+  EXPECT_EQ(refusal("[z]", "[control]\nstop = \"linear X1\"\n[z]"),
+            "m.toml:23: control.stop: must not move axes, wait, or lead out of the program, got \"linear X1\"");
+  EXPECT_TRUE(refusal("[x]", "warm_up_s = { value = -1, assumed = \"a test\" }\n[x]")
+                  .ends_with(": warm_up_s.value: must be >= 0 and <= 36000, got -1"));
+  EXPECT_EQ(
+      refusal("[z]", "[control]\nmist_on = \"P1=1\"\noptional_stop = \"P1=1\"\n[z]"),
+      "m.toml:23: control.mist_on: must be another line than those of mist_on, mist_off, optional_stop and stop, got "
+      "\"P1=1\"");
   for (const char* line : {"P100=1", "M7", "Gate3[0].GpioData[0].16=1", "MistOn=1", "ccall 3", "$DO[0].X = 1",
                            "DigitalOutputSet(X, 0, 1)"})
     EXPECT_EQ(refusal("[z]", fmt::format("[control]\nmist_on = \"{}\"\n[z]", line)), "accepted") << line;

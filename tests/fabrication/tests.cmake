@@ -21,6 +21,7 @@ retrace_test(fabrication_tests
   LIBRARIES retrace::chisel_plan retrace::post retrace::nc_read rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/control_state_test.cpp ${CMAKE_CURRENT_LIST_DIR}/partial_programs_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/stops_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/cutting_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp ${CMAKE_CURRENT_LIST_DIR}/setup_cuts_test.cpp
   LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check rapidcheck)

@@ -23,7 +23,7 @@ NcDialect dialect_of(const std::string& word, std::string_view text, const std::
 }
 
 NcTexts texts_of(const Control& control) {
-  return {"", "", control.mist_on, control.mist_off, control.optional_stop};
+  return {"", "", control.mist_on, control.mist_off, control.optional_stop, control.stop};
 }
 
 ProgramName program_name(const std::string& given) {

@@ -7,6 +7,7 @@
 
 #include "core/number_format.h"
 #include "fabrication/chisel/check/chip_limit.h"
+#include "fabrication/chisel/check/cut_check.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -46,7 +47,8 @@ ChipCheck::ChipCheck(const Workpiece3d& workpiece, std::size_t element, Standing
       material_(material),
       wedge_(wedge),
       poses_(poses),
-      allowance_mm_(finishing_allowance_mm(workpiece)) {
+      allowance_mm_(finishing_allowance_mm(workpiece)),
+      is_begun_(groove_.facets.size(), false) {
   if (allowance_mm_ > 0.0) add_lines();
 }
 
@@ -102,6 +104,7 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
   const ChipLimit limit(workpiece_, element_, cut, wedge_, back);
   double worst_mm = 0.0;
   double allowed_mm = 0.0;
+  double thickest_mm = 0.0;
   for (std::size_t s = 0; s < removed.size(); ++s) {
     const SectionPlane& plane = material_.sections()[s].plane;
     const Vec2 square = plane.direction(normal);
@@ -116,19 +119,31 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
       for (const double side : {-1.0, 1.0}) bends.push_back(deepest_mm + side * (bend + 1e-9));
     for (const LineLength& line : line_lengths(removed[s], along, bends)) {
       const double most_mm = limit.at(std::abs(line.at_mm - deepest_mm), beside_mm);
-      figures_.thickest_mm = std::max(figures_.thickest_mm, line.length_mm);
+      thickest_mm = std::max(thickest_mm, line.length_mm);
       figures_.thickest_share = std::max(figures_.thickest_share, line.length_mm / most_mm);
       if (line.length_mm - most_mm <= worst_mm - allowed_mm) continue;
       worst_mm = line.length_mm;
       allowed_mm = most_mm;
     }
   }
+  figures_.thickest_mm = std::max(figures_.thickest_mm, thickest_mm);
+  if (cut && cut->is_by_clearance && !groove_.is_cube()) check_rubbing(sweep, *cut, thickest_mm);
   constexpr double kRoundingMm = 1e-7;
   if (worst_mm <= allowed_mm + kRoundingMm) return;
   find("chip_too_thick", sweep,
        fmt::format("the cut takes {} um at once, at a depth of cut of {} um {} are borne: a cut before it is missing",
                    fixed(1e3 * worst_mm, 3), shortest(1e3 * limit.depth_mm()), fixed(1e3 * allowed_mm, 3)),
        1e3 * worst_mm, 1e3 * allowed_mm);
+}
+
+void ChipCheck::check_rubbing(const SweptVolume& sweep, const FacetCut& cut, double thickest_mm) {
+  const auto& least_um = workpiece_.job->process.least_chip_um;
+  // On a base first cuts take what they meet.
+  const bool may_be_thin = workpiece_.job->substrate && !is_begun_[cut.facet];
+  is_begun_[cut.facet] = true;
+  constexpr double kRoundingUm = 2e-3;
+  if (!least_um || may_be_thin || thickest_mm <= 0.0 || 1e3 * thickest_mm > *least_um - kRoundingUm) return;
+  find("rubs", sweep, rubbing_text(1e3 * thickest_mm, *least_um), 1e3 * thickest_mm, *least_um);
 }
 
 void ChipCheck::count_finishing(const SweptVolume& sweep, const FacetCut& cut,

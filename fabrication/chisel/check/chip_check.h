@@ -50,6 +50,8 @@ class ChipCheck {
   void add_lines();
   void check_chips(const SweptVolume& sweep, const std::optional<FacetCut>& cut, const RigidMotion& back,
                    std::span<const std::vector<ConvexPiece>> removed);
+  /// A plunge of a chisel that takes less than the least chip, wherever it takes most, rubs.
+  void check_rubbing(const SweptVolume& sweep, const FacetCut& cut, double thickest_mm);
   void count_finishing(const SweptVolume& sweep, const FacetCut& cut,
                        std::span<const std::vector<ConvexPiece>> removed);
   void find(const char* kind, const SweptVolume& sweep, std::string message, double value_um, double limit_um);
@@ -62,6 +64,7 @@ class ChipCheck {
   std::span<const RigidMotion> poses_;
   double allowance_mm_;
   std::vector<FacetLine> lines_;
+  std::vector<bool> is_begun_;  ///< by facet: something was cut along it
   ChipFigures figures_;
 };
 

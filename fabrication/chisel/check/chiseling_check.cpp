@@ -59,7 +59,11 @@ void ChiselingCheck::open(const CutMove& move) {
 void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
   const double tip_mm = cut.tip_mm[cut.facet];
   const double chip_mm = state.left_mm[cut.facet] - tip_mm;
-  if (std::abs(chip_mm) < kSameTipMm) find("cut_twice", cut.place, cut.element, "this cut has been made before");
+  const double least_mm = 1e-3 * process_.least_chip_um.value_or(0.0);
+  if (std::abs(chip_mm) < kSameTipMm)
+    find("cut_twice", cut.place, cut.element, "this cut has been made before");
+  else if (chip_mm > 0.0 && chip_mm < least_mm - kSameTipMm)
+    find("rubs", cut.place, cut.element, rubbing_text(1e3 * chip_mm, 1e3 * least_mm), 1e3 * chip_mm, 1e3 * least_mm);
   for (std::size_t g = 0; g < 3; ++g) {
     const double short_mm = cut.tip_mm[g] - tip_mm;
     if (short_mm > workpiece_.tolerance_mm)

@@ -2,12 +2,15 @@
 
 // What the checks of single processes have in common: they follow the cuts of a tool within elements.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
 
+#include "core/number_format.h"
 #include "fabrication/check/control_check.h"
 #include "fabrication/chisel/check/facet_cut.h"
 #include "fabrication/chisel/check/workpiece.h"
@@ -74,6 +77,12 @@ class CutCheck {
   ControlCheck& control_;
   FindingList& findings_;
 };
+
+/// Of a cut that is too thin for its edge.
+inline std::string rubbing_text(double takes_um, double least_um) {
+  return fmt::format("the cut takes {} um at most, all along it, and the edge rubs below {} um", fixed(takes_um, 4),
+                     shortest(least_um));
+}
 
 /// Share of a cutting move that may lead towards the facet: rounding of its end points.
 inline constexpr double kMostSlip = 1e-3;

@@ -55,12 +55,14 @@ ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
       control_(findings, control_rule_of(*workpiece.job, machine_), machine_.control),
       way_(workpiece, wedge_, findings),
       cuts_(cut_check_of(workpiece, wedge_, control_, findings)),
+      stops_(workpiece, wedge_, findings),
       sweeps_(workpiece.grooves.size()) {}
 
 void ProgramCheck::begin(const NcProgram& program) {
   findings_.begin(program.file);
   ++programs_begun_;
   control_.begin(program);
+  stops_.begin(time_.total_s());
 }
 
 std::vector<RigidMotion> ProgramCheck::poses() const {
@@ -88,8 +90,12 @@ void ProgramCheck::dwell(double seconds, const NcPlace& place, const AxisPositio
   cuts_->dwell(seconds);
 }
 
-void ProgramCheck::stop(const NcPlace& place) {
+void ProgramCheck::stop(NcStop kind, const NcSettings& settings, const NcPlace& place) {
   if (is_in_blank_) control_.rest(std::numeric_limits<double>::infinity(), place);
+  if (kind != NcStop::always) return;
+  cuts_->close();
+  control_.stop(settings, at_, place);
+  stops_.stop(time_.total_s());
 }
 
 void ProgramCheck::finish() {
@@ -104,9 +110,13 @@ void ProgramCheck::end(const NcEnd& end) {
 }
 
 void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
+  // Where the operator leaves the axes at a stop is not known, nor how far they go from there.
+  NcMotion from_known = motion;
+  from_known.known = control_.known();
+  time_.add(machine_, from_known);
   control_.way(settings, motion);
   control_.axes(machine_, motion);
-  time_.add(machine_, motion);
+  at_ = motion.to;
   const std::optional<std::size_t> run = visits_.empty() ? std::nullopt : runs_.of(motion);
   if (motion.moved == 0) return;
   const std::uint8_t rotary = rotary_bits(machine_);
@@ -208,7 +218,9 @@ void ProgramCheck::check_cut(const NcMotion& motion, const SweptVolume& sweep, s
                      fixed(prediction.wall_mm * kNmPerMm, 1)),
          wall_mm, wall_limit_mm);
   if (sweep.is_rapid) return cuts_->close();
-  cuts_->move({motion, sweep, poses_[sweep.pose], back_[sweep.pose], element});
+  const CutMove cut{motion, sweep, poses_[sweep.pose], back_[sweep.pose], element};
+  cuts_->move(cut);
+  stops_.cut(cut, time_.total_s());
 }
 
 }  // namespace retrace::fabrication

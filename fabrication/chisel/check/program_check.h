@@ -14,6 +14,7 @@
 #include "fabrication/check/findings.h"
 #include "fabrication/check/program_time.h"
 #include "fabrication/chisel/check/cut_check.h"
+#include "fabrication/chisel/check/stop_check.h"
 #include "fabrication/chisel/check/visits.h"
 #include "fabrication/chisel/check/way_check.h"
 #include "fabrication/chisel/check/workpiece.h"
@@ -35,7 +36,7 @@ class ProgramCheck : public NcSink {
   void state(const NcSettings& settings, const NcPlace& place) override {
     control_.state(settings, place, is_in_blank_);
   }
-  void stop(const NcPlace& place) override;
+  void stop(NcStop kind, const NcSettings& settings, const NcPlace& place) override;
   void end(const NcEnd& end);
   /// After the last program.
   void finish();
@@ -65,6 +66,7 @@ class ProgramCheck : public NcSink {
   ControlCheck control_;
   WayCheck way_;
   std::unique_ptr<CutCheck> cuts_;
+  StopCheck stops_;
   std::vector<RotaryPose> pose_words_;
   std::map<std::pair<std::int64_t, std::int64_t>, std::size_t> known_poses_;
   std::vector<RigidMotion> poses_;
@@ -72,6 +74,7 @@ class ProgramCheck : public NcSink {
   std::vector<std::vector<PlacedBody>> standing_;  ///< table, cradle and fixtures in each pose
   std::vector<std::vector<SweptVolume>> sweeps_;
   std::vector<geometry::Vec3> corners_;
+  AxisPositions at_;  ///< after the last move
   ProgramTime time_;
   double deepest_wall_mm_ = 0.0;
   bool is_in_blank_ = false;  ///< where the last move ended

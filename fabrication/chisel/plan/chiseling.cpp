@@ -66,12 +66,16 @@ double chiseling_allowance_mm(const Job& job) {
   return 1e-3 * job.process.finishing_cuts * job.process.finishing_depth_um;
 }
 
-int chiseling_layers(const Job& job, double stock_mm) {
+double chiseling_across_mm(const Job& job, double stock_mm) {
   // The blank's face is 1 / sqrt(3) of the depth from the apex of each facet's normal.
   const double across_mm =
       (cavity_depth_mm(blank_element(job)) + stock_mm) / std::numbers::sqrt3 - chiseling_allowance_mm(job);
   check_allowance(job, across_mm);
-  return whole_cuts(job, across_mm / (1e-3 * job.process.roughing_depth_um));
+  return across_mm;
+}
+
+int chiseling_layers(const Job& job, double stock_mm) {
+  return whole_cuts(job, chiseling_across_mm(job, stock_mm) / (1e-3 * job.process.roughing_depth_um));
 }
 
 CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,

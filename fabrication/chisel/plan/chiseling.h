@@ -19,6 +19,8 @@ std::array<geometry::Vec3, 2> cube_facet_edges(const FacetChoice& facet);
 
 /// What layers of roughing leave on all facets for the finishing layers.
 double chiseling_allowance_mm(const Job& job);
+/// What all layers of roughing take along the normal of each facet. \throw InputError if finishing leaves nothing
+double chiseling_across_mm(const Job& job, double stock_mm);
 /// Roughing layers: nested cube corners, each `roughing_depth_um` further along the normals of all three facets.
 /// \param stock_mm by which the blank stands over the rims
 int chiseling_layers(const Job& job, double stock_mm = 0.0);

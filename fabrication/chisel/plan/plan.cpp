@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
@@ -108,7 +109,8 @@ class ProgramMaker {
         facts_(facts),
         starts_(starts),
         plan_(plan),
-        way_(job, machine) {
+        way_(job, machine),
+        account_(job) {
     for (const Subroutine& subroutine : plan.subroutines) routine_times_.push_back(routine_time(machine, subroutine));
     const Nanometres step = machine.increments.linear_nm;
     safe_z_nm_ = to_step(plan.safe_z_mm * kNanometresPerMm, step);
@@ -135,6 +137,8 @@ class ProgramMaker {
         order.erase(order.begin(), first);
         if (waiting) continue;
       }
+      if (job_.process.stop_before_finishing && has_roughed_ && !stage.roughs)
+        stop(StopReason::finishing, stage, order.front());
       enter(stage);
       for (const std::int32_t element : order) visit(stage, element);
     }
@@ -166,8 +170,31 @@ class ProgramMaker {
     program_.tilt_letter = machine_.tilt_letter();
     program_.control = machine_.control;
     program_.has_mist = program_.needs_mist = job_.process.mist;
+    has_visits_ = false;
+    stops_ = 0;
+    plan_.program_cuts_mm.push_back(0.0);
+    account_.begin_program();
+    begin_to_move();
+  }
+
+  /// From a place that is not known, by a machine that has stood.
+  void begin_to_move() {
     at_ = {};
+    is_cold_ = is_fresh_ = true;
+    has_roughed_ = false;
     raise_to(first_z_nm_);
+  }
+
+  /// Where the operator can work: as high as the machine's first move, rotary axes at 0.
+  void stop(StopReason reason, const Stage& stage, std::int32_t element) {
+    raise_to(std::max(*at_[kZ], first_z_nm_));
+    turn(0, 0);
+    plan_.stops.push_back({plan_.programs.size(), reason, static_cast<std::size_t>(&stage - plan_.stages.data()),
+                           element, program_seconds_, account_.used()});
+    program_.items.emplace_back(Stop{stop_text(job_, reason, ++stops_)});
+    program_.items.emplace_back(Comment{plain(fmt::format("Goes on with element {} of {}", element, stage.name))});
+    account_.stop();
+    begin_to_move();
   }
 
   void raise() { raise_to(at_[kZ] ? std::max(*at_[kZ], safe_z_nm_) : safe_z_nm_); }
@@ -203,6 +230,7 @@ class ProgramMaker {
   /// The operator is told where the work stands before a stage starts.
   void enter(const Stage& stage) {
     const CuttingPose& pose = plan_.poses[stage.pose];
+    if (std::exchange(is_cold_, false)) warm_up();
     turn(pose.a, pose.c);
     if (stage.roughs) {
       program_.items.emplace_back(Comment{plain("Stage " + stage.name)});
@@ -213,27 +241,100 @@ class ProgramMaker {
     program_.items.emplace_back(Message{fmt::format("{} {} of {} C-axis at {}", what, stage.cut, stage.cuts, c_deg)});
   }
 
-  void visit(Stage& stage, std::int32_t element) {
+  /// X and Y to and fro, one at a time, over most of their travel, and to the middle of the array.
+  void warm_up() {
+    if (machine_.warm_up_s.value <= 0.0) return;
+    constexpr double kOfTravel = 0.9;
+    constexpr std::size_t kMostStrokes = 100'000;
+    const Interval limits[] = {machine_.x.limits_mm.value, machine_.y.limits_mm.value};
+    for (std::size_t k = 0; k < kMostStrokes && account_.used().seconds < machine_.warm_up_s.value; ++k) {
+      const auto& [low, high] = limits[k % 2];
+      const double side = k % 4 < 2 ? -0.5 : 0.5;
+      stroke(k % 2 == 0 ? kX : kY, 0.5 * (low + high) + kOfTravel * side * (high - low));
+    }
+    stroke(kX, 0.0);
+    stroke(kY, 0.0);
+  }
+
+  void stroke(Axis axis, double to_mm) {
+    Move move;
+    move.to[axis] = to_step(to_mm * kNanometresPerMm, machine_.increments.linear_nm);
+    Vec3 by = Vec3::Zero();
+    if (at_[axis]) by[axis] = millimetres(*move.to[axis] - *at_[axis]);
+    spend(nullptr, &TimeShares::fixed_s, linear_move_s(machine_, by, std::nullopt));
+    program_.items.emplace_back(move);
+    go_to(at_, move.to);
+  }
+
+  /// The passes of an element side by side, to and fro.
+  std::vector<Visit> passes_of(const Stage& stage, std::int32_t element) {
     const CuttingPose& pose = plan_.poses[stage.pose];
     const Vec3 root =
         plan_.elements[static_cast<std::size_t>(element)].foot_mm - pose.section.depth_mm * pose.turn.col(2);
-    if (is_full(stage)) {
-      finish_program();
-      begin();
-      enter(stage);
-    }
-    // To and fro over the passes as well.
     forth_ = !forth_;
+    std::vector<Visit> passes;
     for (std::size_t k = 0; k < facts_.passes_mm.size(); ++k) {
       const double offset_mm = facts_.passes_mm[forth_ ? k : facts_.passes_mm.size() - 1 - k];
       const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
       const auto& [start, reach] = starts_[stage.subroutine];
-      const Visit visit{element, stage.subroutine,
-                        rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along, pose.section.step_nm) + start};
-      check_limits(visit, reach);
-      clear_way(visit, pose);
-      add(stage, visit, reach);
+      passes.push_back({element, stage.subroutine,
+                        rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along, pose.section.step_nm) + start});
+      check_limits(passes.back(), reach);
     }
+    return passes;
+  }
+
+  /// What a visit cuts, and the longest that it takes: by way of the safe height to each of its passes.
+  EdgeUse use_of(const Stage& stage, const std::vector<Visit>& passes) const {
+    EdgeUse use;
+    if (!job_.tool.edge_life_mm && !job_.process.stop_every_min) return use;
+    Words at = at_;
+    const Subroutine& routine = plan_.subroutines[stage.subroutine];
+    const auto rapid_s = [&](const Vec3& by) { return linear_move_s(machine_, by, std::nullopt); };
+    for (const Visit& pass : passes) {
+      if (job_.tool.edge_life_mm)
+        use.cut_mm += length_of_cut_mm(job_, machine_, plan_.elements[static_cast<std::size_t>(pass.element)],
+                                       plan_.poses[stage.pose], pass, routine, plan_.stock_mm);
+      const Nanometres high = std::max(*at[kZ], safe_z_nm_);
+      Vec3 across = Vec3::Zero();
+      for (const Axis axis : {kX, kY})
+        if (at[axis]) across[axis] = millimetres(pass.start[axis] - *at[axis]);
+      use.seconds += rapid_s(Vec3(0.0, 0.0, millimetres(high - *at[kZ]))) + rapid_s(across) +
+                     rapid_s(Vec3(0.0, 0.0, millimetres(high - pass.start.z()))) +
+                     routine_times_[stage.subroutine].total_s();
+      go_to(at, linear_words(pass.start + starts_[stage.subroutine].reach.end));
+    }
+    return use;
+  }
+
+  /// Begins a new program or stops where the visit cannot follow as it is.
+  void make_way(const Stage& stage, std::int32_t element, const std::vector<Visit>& passes) {
+    const EdgeUse use = use_of(stage, passes);
+    const std::optional<StopReason> reason = account_.stop_before(use);
+    if (has_visits_ && (is_full(stage) || account_.needs_program(use))) {
+      finish_program();
+      begin();
+      enter(stage);
+    } else if (reason && !is_fresh_) {
+      stop(*reason, stage, element);
+      enter(stage);
+    }
+    const EdgeUse anew = use_of(stage, passes);
+    if (is_fresh_) account_.check(anew, account_.used().seconds, element);
+    account_.cut(anew.cut_mm);
+    plan_.program_cuts_mm.back() += anew.cut_mm;
+    is_fresh_ = false;
+  }
+
+  void visit(Stage& stage, std::int32_t element) {
+    const std::vector<Visit> passes = passes_of(stage, element);
+    make_way(stage, element, passes);
+    for (const Visit& pass : passes) {
+      clear_way(pass, plan_.poses[stage.pose]);
+      add(stage, pass, starts_[stage.subroutine].reach);
+    }
+    has_visits_ = true;
+    has_roughed_ = stage.roughs;
     ++stage.visits;
     ++visits_;
     if (options_.stop_every && visits_ % *options_.stop_every == 0) program_.items.emplace_back(OptionalStop{});
@@ -284,10 +385,10 @@ class ProgramMaker {
     plan_.time.*on += seconds;
     if (stage != nullptr) stage->time.*on += seconds;
     program_seconds_ += seconds;
+    account_.spend(seconds);
   }
 
   bool is_full(const Stage& stage) const {
-    if (program_.items.size() < 4) return false;
     if (job_.substrate && is_out_of_numbers(stage)) return true;
     if (!options_.split_hours) return false;
     constexpr double kToLeaveS = 30.0;  // for the way home
@@ -379,6 +480,9 @@ class ProgramMaker {
         fmt::format("{} is taken to turn about a line through {} from {}, C about one through {} from the work zero",
                     tilt, point(machine_.a),
                     machine_.tilt == Tilt::table ? "the work zero" : "the tool reference point", point(machine_.c)));
+    if (job_.tool.edge_life_mm)
+      lines.push_back(fmt::format("Begins with an edge that cuts {} mm, and has cut nothing yet",
+                                  shortest(*job_.tool.edge_life_mm)));
     if (options_.phase != "all" || options_.from_element) lines.push_back(restart_text());
     const auto minutes = static_cast<std::int64_t>(std::ceil(program_seconds_ / 60.0));
     lines.push_back(fmt::format("Expected time: {} h {} min", minutes / 60, minutes % 60));
@@ -406,7 +510,13 @@ class ProgramMaker {
   Nanometres safe_z_nm_ = 0;
   Nanometres first_z_nm_ = 0;  ///< of the first move
   bool just_turned_ = true;
+  bool is_cold_ = true;       ///< the machine has stood
+  bool is_fresh_ = true;      ///< nothing was cut since the program began or stopped
+  bool has_visits_ = false;   ///< of the program
+  bool has_roughed_ = false;  ///< the visit before, since the program began or stopped
+  int stops_ = 0;             ///< of the program
   ClearWay way_;
+  EdgeAccount account_;
   std::set<std::uint32_t> used_;  ///< subroutines that the program calls
   bool forth_ = false;
   std::int64_t visits_ = 0;

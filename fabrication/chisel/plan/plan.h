@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "fabrication/chisel/plan/edge_use.h"
 #include "fabrication/chisel/plan/section.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
@@ -45,8 +46,19 @@ struct Stage {
   bool roughs = false;
   int cut = 0;  ///< of `cuts`, from 1; 0 for roughing
   int cuts = 0;
+  double left_mm = 0.0;     ///< then over the design, on the facets that it cuts
   std::int64_t visits = 0;  ///< that were planned
   TimeShares time;
+};
+
+/// A stop of a program, before the visit of an element.
+struct PlannedStop {
+  std::size_t program = 0;
+  StopReason reason = StopReason::time;
+  std::size_t stage = 0;     ///< index in Plan::stages
+  std::int32_t element = 0;  ///< that the program goes on with
+  double at_s = 0.0;         ///< since the program began
+  EdgeUse used;              ///< since the stop before it, or since the edge began
 };
 
 /// Number of a program's first subroutine.
@@ -66,6 +78,8 @@ struct Plan {
   double aperture_area_mm2 = 0.0;  ///< of all elements that are cut
   TimeShares time;
   std::vector<double> program_times_s;
+  std::vector<PlannedStop> stops;
+  std::vector<double> program_cuts_mm;  ///< length of cut of each program
   std::vector<Program> programs;
 };
 

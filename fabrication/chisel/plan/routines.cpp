@@ -59,6 +59,24 @@ Vec2 on_clearance_plane(const Section& section, const Vec2& point, const Vec2& d
   return point + to_go / section.face_normal.dot(direction) * direction;
 }
 
+/// The thickest that the first slice takes, along the wall's normal, over its width at the floor: what the rake face
+/// reaches of the triangle below the blank's face.
+double share_of_first_slice(const Job& job, const Section& section) {
+  const double rake_slope = std::tan(Angle::from_deg(job.tool.clearance_deg + job.tool.wedge_deg).rad());
+  const double face_slope = 1.0 / std::tan(0.5 * section.apex.rad());
+  return rake_slope * face_slope / (rake_slope + face_slope) / std::sin(section.apex.rad());
+}
+
+/// How deep the blank's face stands over the last slice of a unidirectional routine, along its floor: over where the
+/// tangents of the edge meet, which takes chips, below the reference point.
+double slices_across_mm(const Section& section, double left_mm) {
+  const auto over_floor_mm = [&](double y) {
+    const double tip_z = section.floor_z(y, left_mm) - section.edge_mm / section.floor_normal.y();
+    return section.face_z(y, section.stock_mm - section.start_mm) - tip_z;
+  };
+  return over_floor_mm(0.0) / (over_floor_mm(0.0) - over_floor_mm(section.wall_y)) - left_mm;
+}
+
 /// From the root along the floor, in one move or leaving the floor once the chip is free.
 Vec2 plough(SectionPath& path, const Job& job, const Section& section, const Vec2& root) {
   const Process& process = job.process;
@@ -79,15 +97,32 @@ double finishing_allowance_mm(const Job& job) {
   return job.strategy == Strategy::two_step ? 1e-3 * job.process.finishing_cuts * job.process.finishing_depth_um : 0.0;
 }
 
-int cuts_per_facet(const Job& job, double stock_mm) {
+double roughing_across_mm(const Job& job, double stock_mm) {
   const geometry::RtpElement element = blank_prism(job);
   const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
   const double facet_mm = 0.5 * element.base_mm / std::sin(0.5 * apex_rad) + stock_mm / std::cos(0.5 * apex_rad);
-  const double depth_mm = 1e-3 * job.process.roughing_depth_um;
-  double across_mm = facet_mm * std::sin(apex_rad) - finishing_allowance_mm(job);
+  const double across_mm = facet_mm * std::sin(apex_rad) - finishing_allowance_mm(job);
   check_allowance(job, across_mm);
-  if (job.strategy == Strategy::bidirectional) across_mm *= 0.5;
-  return whole_cuts(job, across_mm / depth_mm);
+  return job.strategy == Strategy::bidirectional ? 0.5 * across_mm : across_mm;
+}
+
+int cuts_per_facet(const Job& job, double stock_mm) {
+  return whole_cuts(job, roughing_across_mm(job, stock_mm) / (1e-3 * job.process.roughing_depth_um));
+}
+
+double left_of_roughing_mm(const Job& job, double across_mm, int cut, int cuts, double share, double dip_mm) {
+  const double depth_mm = 1e-3 * job.process.roughing_depth_um;
+  const double least_mm = 1e-3 * job.process.least_chip_um.value_or(0.0);
+  const double left_mm = depth_mm * (cuts - cut);
+  const double taken_mm = across_mm - left_mm;
+  // Cuts above the face take nothing.
+  if (least_mm == 0.0 || taken_mm <= -dip_mm || share * taken_mm - dip_mm >= least_mm) return left_mm;
+  const double shared_mm = cut < cuts ? 0.5 * (taken_mm + depth_mm) : taken_mm;
+  if (share * shared_mm - dip_mm < least_mm)
+    throw InputError(job.where("process.least_chip_um"),
+                     fmt::format("must be at most {}, what the first cut of roughing takes, got {}",
+                                 fixed(1e3 * (share * shared_mm - dip_mm), 3), shortest(*job.process.least_chip_um)));
+  return across_mm - shared_mm;
 }
 
 void check_allowance(const Job& job, double left_mm) {
@@ -114,9 +149,12 @@ double shortest_plough_mm(const Job& job, const Section& section) {
 Routine unidirectional_routine(const Job& job, const Section& section) {
   const Process& process = job.process;
   const double left_mm = finishing_allowance_mm(job);
+  const double across_mm = slices_across_mm(section, left_mm);
+  const double share = share_of_first_slice(job, section);
+  const double dip_mm = edge_dip_mm(section);
   const int cuts = cuts_per_facet(job, section.stock_mm);
   const auto wall_y = [&](int cut) {
-    return section.wall_y * (left_mm + 1e-3 * process.roughing_depth_um * (cuts - cut));
+    return section.wall_y * (left_mm + left_of_roughing_mm(job, across_mm, cut, cuts, share, dip_mm));
   };
   Routine routine;
   SectionPath path(routine, start_of_cut(section, wall_y(1), process.clearance_mm), section.step_nm);

@@ -19,6 +19,25 @@ struct Routine {
 /// \param stock_mm by which the blank stands over the rims
 int cuts_per_facet(const Job& job, double stock_mm = 0.0);
 
+/// What roughing takes off a facet, along its normal; of a bidirectional strategy half of it.
+/// \throw InputError naming the key if finishing leaves nothing
+double roughing_across_mm(const Job& job, double stock_mm);
+
+/// By how much a first cut may take more than planned, or less, in some section across its edge. Ends of a tilted edge
+/// stand two lifts apart over the blank's face, those of the plunge along the other facet as well; positions are whole
+/// steps in Y and Z of either.
+inline double edge_dip_mm(const Section& section) {
+  return 4.0 * section.lift_mm + 2.0 * static_cast<double>(section.step_nm) / kNanometresPerMm;
+}
+
+/// What stays over the last cut, along the facet's normal, when cut `cut` of `cuts` is made: whole depths; where the
+/// first that takes anything would be thinner than the least chip it shares with the next.
+/// \param across_mm that all take \param share of its depth that the first one takes where it is thickest
+/// \param dip_mm edge_dip_mm()
+/// \throw InputError naming the key if it is thinner even so
+double left_of_roughing_mm(const Job& job, double across_mm, int cut, int cuts, double share = 1.0,
+                           double dip_mm = 0.0);
+
 /// That finishing leaves something to roughing. \param left_mm of a facet's depth \throw InputError naming the key
 void check_allowance(const Job& job, double left_mm);
 

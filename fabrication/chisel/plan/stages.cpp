@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <string>
 #include <string_view>
@@ -38,12 +40,10 @@ class StageMaker {
         for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) add_roughing(pose);
         break;
       case Strategy::bidirectional:
-        add_plunges("layer", plan_.cuts_per_facet, job_.process.roughing_depth_um,
-                    job_.process.roughing_feed_mm_per_min, false);
+        add_plunges("layer", plan_.cuts_per_facet, job_.process.roughing_feed_mm_per_min, false);
         break;
       case Strategy::two_step:
-        add_plunges("finishing", job_.process.finishing_cuts, job_.process.finishing_depth_um,
-                    job_.process.finishing_feed_mm_per_min, true);
+        add_plunges("finishing", job_.process.finishing_cuts, job_.process.finishing_feed_mm_per_min, true);
         break;
       case Strategy::dmc: break;
     }
@@ -71,9 +71,29 @@ class StageMaker {
   void chisel() {
     has_tilts_ ? add_poses_by_facet() : add_poses_by_group();
     const Process& process = job_.process;
-    const double left_mm = chiseling_allowance_mm(job_);
-    add_layers("layer", plan_.cuts_per_facet, process.roughing_depth_um, left_mm, process.roughing_feed_mm_per_min);
-    add_layers("finishing", process.finishing_cuts, process.finishing_depth_um, 0.0, process.finishing_feed_mm_per_min);
+    add_layers("layer", plan_.cuts_per_facet, process.roughing_feed_mm_per_min);
+    add_layers("finishing", process.finishing_cuts, process.finishing_feed_mm_per_min);
+  }
+
+  /// What stays over the design on the facets of a layer, or of a finishing cut.
+  double left_mm(std::string_view what, int cut, int cuts) const {
+    if (what == "finishing") return 1e-3 * job_.process.finishing_depth_um * (cuts - cut);
+    const bool is_dmc = job_.strategy == Strategy::dmc;
+    const double across_mm =
+        is_dmc ? chiseling_across_mm(job_, plan_.stock_mm) : roughing_across_mm(job_, plan_.stock_mm);
+    // The second plunge of the first shell takes least: what the first one's rake face has left of the triangle.
+    double share = 1.0;
+    if (!is_dmc) {
+      const double apex_rad = plan_.poses.front().section.apex.rad();
+      const double rake_slope =
+          std::tan(apex_rad - Angle::from_deg(job_.tool.clearance_deg + job_.tool.wedge_deg).rad());
+      const double face_slope = 1.0 / std::tan(0.5 * apex_rad);
+      share = std::min(1.0, 2.0 * rake_slope * face_slope / (std::sin(apex_rad) * (rake_slope + face_slope)));
+    }
+    double dip_mm = 0.0;
+    for (const CuttingPose& pose : plan_.poses) dip_mm = std::max(dip_mm, edge_dip_mm(pose.section));
+    return (is_dmc ? chiseling_allowance_mm(job_) : 0.0) +
+           left_of_roughing_mm(job_, across_mm, cut, cuts, share, dip_mm);
   }
 
   CuttingPose next_pose(const ElementGroup& group, int facet) {
@@ -102,7 +122,7 @@ class StageMaker {
     }
   }
 
-  void add_layers(std::string_view what, int cuts, double depth_um, double left_mm, double feed_mm_per_min) {
+  void add_layers(std::string_view what, int cuts, double feed_mm_per_min) {
     for (int cut = 1; cut <= cuts; ++cut)
       for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
         Stage stage;
@@ -110,8 +130,8 @@ class StageMaker {
         stage.roughs = what == "layer";
         stage.cut = cut;
         stage.cuts = cuts;
-        Routine routine = chiseling_routine(job_, machine_, plan_.poses[pose], left_mm + 1e-3 * depth_um * (cuts - cut),
-                                            feed_mm_per_min);
+        stage.left_mm = left_mm(what, cut, cuts);
+        Routine routine = chiseling_routine(job_, machine_, plan_.poses[pose], stage.left_mm, feed_mm_per_min);
         routine.subroutine.title = fmt::format("{}: down one edge, up the other", stage.name);
         add(std::move(stage), pose, std::move(routine));
       }
@@ -128,13 +148,14 @@ class StageMaker {
     Stage stage;
     stage.name = "roughing" + group_name(pose);
     stage.roughs = true;
+    stage.left_mm = finishing_allowance_mm(job_);
     Routine routine = unidirectional_routine(job_, plan_.poses[pose].section);
     routine.subroutine.title = fmt::format("{}: {} cuts by plunging and ploughing", stage.name, plan_.cuts_per_facet);
     add(std::move(stage), pose, std::move(routine));
   }
 
   /// Cut by cut, all poses in turn. \param rough_first roughs in the pose of a facet 1 before its first cut
-  void add_plunges(std::string_view what, int cuts, double depth_um, double feed_mm_per_min, bool rough_first) {
+  void add_plunges(std::string_view what, int cuts, double feed_mm_per_min, bool rough_first) {
     for (int cut = 1; cut <= cuts; ++cut)
       for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
         const FacetChoice& facet = plan_.poses[pose].facet;
@@ -143,8 +164,8 @@ class StageMaker {
         stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, facet.facet, group_name(pose));
         stage.cut = cut;
         stage.cuts = cuts;
-        Routine routine =
-            plunge_routine(job_, plan_.poses[pose].section, 1e-3 * depth_um * (cuts - cut), feed_mm_per_min);
+        stage.left_mm = left_mm(what, cut, cuts);
+        Routine routine = plunge_routine(job_, plan_.poses[pose].section, stage.left_mm, feed_mm_per_min);
         routine.subroutine.title = fmt::format("{}: one plunge", stage.name);
         add(std::move(stage), pose, std::move(routine));
       }

@@ -12,6 +12,7 @@
 #include "core/schema/conditions.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
+#include "fabrication/job/io/given_access.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
@@ -80,6 +81,10 @@ Value get_tiled(const ArrayLayout& array) {
 template <Arrangement tiled>
 void set_tiled(ArrayLayout& array, const Value& value) {
   array.arrangement = std::get<double>(value) == 0.0 ? Arrangement::single : tiled;
+}
+
+bool has_edge_life(const Tool& tool) {
+  return tool.edge_life_mm.has_value();
 }
 
 constexpr std::string_view kElementKind = "element.kind";
@@ -169,7 +174,16 @@ constexpr Row kToolRows[] = {
      kOfVTools},
     {"side_clearance_deg", Number{{.low = 0.0, .low_included = false, .high = 20.0}}, 2.0,
      "Of a chisel's side walls, so little that the diamond is still there where it leaves the element.",
-     access<&Tool::side_clearance_deg>, kOfChisels}};
+     access<&Tool::side_clearance_deg>, kOfChisels},
+    {"edge_life_mm", Number{{.low = 0.0, .low_included = false, .high = 1e9}}, kNone,
+     "The length of cut that an edge is good for: the way of its tip below the blank's face, along plunges and "
+     "ploughs; "
+     "of a V down and up dihedral edges.",
+     access_given<&Tool::edge_life_mm>},
+    {"next_edge", Word{kNextEdgeWords}, "stop",
+     "Where the next edge goes on. `\"stop\"`: at a stop, and at every stop the edge is judged, and changed or touched "
+     "off again, for a life of its own; `\"program\"`: in the next program, and stops leave the edge as it is.",
+     access_where<&Tool::next_edge, has_edge_life>}};
 constexpr Table kToolTables[] = {
     {.name = "edge_chips",
      .meaning = "Pieces that are broken out of a chisel's edge, at most 100, clear of each other. The diamond cuts as "
@@ -354,6 +368,14 @@ void check_tool(const Job& job, const Refuse& refuse) {
     check_v_tool(blank_element(job), job.tool, refuse);
 }
 
+void check_stops(const Job& job, const Refuse& refuse) {
+  const bool finishes = job.strategy == Strategy::two_step || job.strategy == Strategy::dmc;
+  if (job.process.stop_before_finishing && !finishes)
+    refuse("process.stop_before_finishing",
+           fmt::format("must be false where nothing is finished: strategy = \"two-step\" or \"dmc\" does, got {}",
+                       in_quotes(kStrategyWords[static_cast<std::size_t>(job.strategy)])));
+}
+
 constexpr Words kMachineKeys = {"machine"};
 constexpr Words kWorkpieceKeys = {"workpiece.kind", "element.kind"};
 constexpr Words kChipKeys = {"tool.edge_chips", "tool.width_mm"};
@@ -364,6 +386,7 @@ constexpr Words kPatternKeys = {"array.pattern"};
 constexpr Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr Words kToolKeys = {"tool.width_mm", "tool.wedge_deg", "tool.clearance_deg", "tool.side_clearance_deg"};
 constexpr Words kSubstrateKeys = {"base.kind"};
+constexpr Words kStopKeys = {"process.stop_before_finishing", "strategy"};
 constexpr Rule kJobRules[] = {
     Check{kMachineKeys, "It has a name.", check_by<check_machine>},
     Check{kWorkpieceKeys, "Cube corners are cut as moulds.", check_by<check_workpiece>},
@@ -378,6 +401,7 @@ constexpr Rule kJobRules[] = {
           "The tool fits the element: a chisel's edge is no wider and its wedge leaves room for chips; a V reaches the "
           "apex and every place of the facets.",
           check_by<check_tool>},
+    Check{kStopKeys, "What stops before finishing is finished: by `two-step` or `dmc`.", check_by<check_stops>},
     Check{kSubstrateKeys, "The base carries the elements, and the tool comes out of their cuts.",
           check_by<check_substrate>}};
 

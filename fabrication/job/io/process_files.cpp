@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/atomic_file.h"
@@ -11,12 +12,14 @@
 #include "core/number_format.h"
 #include "core/schema/access.h"
 #include "core/schema/reader.h"
+#include "fabrication/job/io/given_access.h"
 
 namespace retrace::fabrication {
 namespace fs = std::filesystem;
 namespace {
 
 using schema::access;
+using schema::kNone;
 using schema::kRequired;
 using schema::Number;
 
@@ -27,6 +30,11 @@ constexpr NumberRange kDwell{.low = 0.0, .high = 60.0};
 constexpr NumberRange kCuts{.low = 1.0, .high = 1000.0};
 constexpr NumberRange kRoughness{.low = 0.0, .high = 1e4};
 constexpr NumberRange kMicrometres{.low = 0.0, .high = 1000.0};
+constexpr NumberRange kMinutes{.low = 0.0, .low_included = false, .high = 1e5};
+
+bool stops_before_finishing(const Process& process) {
+  return process.stop_before_finishing;
+}
 
 constexpr schema::Row kRows[] = {
     {"name", schema::Text{}, kRequired, "What the process is called.", access<&Process::name>},
@@ -59,6 +67,16 @@ constexpr schema::Row kRows[] = {
     {"rotary_clearance_mm", Number{kShortLength}, 5.0,
      "Distance above all that the turning blank can reach, before a rotary move.",
      access<&Process::rotary_clearance_mm>},
+    {"least_chip_um", Number{kDepth}, kNone,
+     "What a cut takes at least somewhere along its length, or its edge rubs; at most half of either depth.",
+     access_given<&Process::least_chip_um>},
+    {"stop_every_min", Number{kMinutes}, kNone,
+     "The program stops before it has run longer since it began or stopped: for inspection, and to touch off again.",
+     access_given<&Process::stop_every_min>},
+    {"stop_before_finishing", schema::Flag{}, false,
+     "Whether every element is inspected, at a stop, between roughing and finishing; elements that stand alike "
+     "together.",
+     access_where<&Process::stop_before_finishing, stops_before_finishing>},
     {"mist", schema::Flag{}, true, "Whether mist is on while the tool cuts.", access<&Process::mist>},
     {"plough_sa_nm", Number{kRoughness}, 468.0,
      "Areal roughness Sa that ploughing leaves, as measured by the thesis and the journal paper.",
@@ -77,8 +95,19 @@ std::string hanging_chip(const Process& p) {
                      shortest(p.roughing_depth_um), shortest(p.plough_length_mm));
 }
 
+/// The cut after one that is too thin must not be too thick, so that two share what is left.
+std::string rubbing_depth(const Process& p) {
+  const double most_um = 0.5 * std::min(p.roughing_depth_um, p.finishing_depth_um);
+  if (!p.least_chip_um || *p.least_chip_um <= most_um) return {};
+  return fmt::format("must be at most half of roughing_depth_um and finishing_depth_um, {}, got {}", shortest(most_um),
+                     shortest(*p.least_chip_um));
+}
+
 constexpr std::string_view kPloughKeys[] = {"plough_length_mm"};
+constexpr std::string_view kLeastChipKeys[] = {"least_chip_um"};
 constexpr schema::Rule kRules[] = {
+    schema::Check{kLeastChipKeys, "The least chip is at most half of either depth of cut.",
+                  schema::check_by<rubbing_depth>},
     schema::Check{kPloughKeys, "A plough is at least as long as the depth of roughing, unless shortest_plough is true.",
                   schema::check_by<hanging_chip>}};
 

@@ -181,6 +181,9 @@ constexpr std::string_view kJerkMeaning = "The jerk: how fast the acceleration g
 constexpr NumberRange kSettlingRange{.low = 0.0, .high = 10.0};
 constexpr auto kSettlingRows = sourced<double>(Number{kSettlingRange}, access<&Sourced<double>::value>);
 constexpr ValueTable kSettling = {kSettlingRows, kPositiveRules};
+constexpr NumberRange kWarmUpRange{.low = 0.0, .high = 36000.0};
+constexpr auto kWarmUpRows = sourced<double>(Number{kWarmUpRange}, access<&Sourced<double>::value>);
+constexpr ValueTable kWarmUp = {kWarmUpRows, kPositiveRules};
 
 constexpr auto kHeightRows = sourced<double>(Number{kLength}, access<&Sourced<double>::value>);
 constexpr ValueTable kHeight = {kHeightRows, kPositiveRules};
@@ -312,11 +315,12 @@ std::string unfit_text(const Control& control) {
   const std::string& text = control.*line;
   if (text.empty()) return {};
   if (const std::string fault = unfit_line(text); !fault.empty()) return fault + ", got " + in_quotes(text);
-  const std::string* const lines[] = {&control.mist_on, &control.mist_off, &control.optional_stop};
+  const std::string* const lines[] = {&control.mist_on, &control.mist_off, &control.optional_stop, &control.stop};
   const bool is_other = std::any_of(std::begin(lines), std::end(lines),
                                     [&](const auto* other) { return other != &text && *other == text; });
-  return is_other ? "must be another line than those of mist_on, mist_off and optional_stop, got " + in_quotes(text)
-                  : "";
+  return is_other
+             ? "must be another line than those of mist_on, mist_off, optional_stop and stop, got " + in_quotes(text)
+             : "";
 }
 std::string unknown_modulo_axes(const Control& control) {
   if (control.modulo_axes.find_first_not_of("ABC") == std::string::npos) return {};
@@ -341,6 +345,9 @@ constexpr Row kControlRows[] = {
      access<&Control::mist_off>},
     {"optional_stop", Text{}, kNone, "Of a Power PMAC or an Aerotech control: the line at which the operator may stop.",
      access<&Control::optional_stop>},
+    {"stop", Text{}, kNone,
+     "Of a Power PMAC or an Aerotech control: the line at which a program waits until the operator lets it go on.",
+     access<&Control::stop>},
     {"rapids_are_straight", Flag{}, false,
      "Whether the axes of a rapid move arrive together (Fanuc 1401#1, 840D `RTLIOF`), on a straight line; otherwise "
      "all "
@@ -348,7 +355,8 @@ constexpr Row kControlRows[] = {
      access<&Control::rapids_are_straight>}};
 constexpr std::string_view kMistOnKeys[] = {"mist_on"};
 constexpr std::string_view kMistOffKeys[] = {"mist_off"};
-constexpr std::string_view kStopKeys[] = {"optional_stop"};
+constexpr std::string_view kOptionalStopKeys[] = {"optional_stop"};
+constexpr std::string_view kStopKeys[] = {"stop"};
 constexpr std::string_view kModuloKeys[] = {"modulo_axes"};
 constexpr Rule kControlRules[] = {
     Check{kMistOnKeys,
@@ -357,7 +365,8 @@ constexpr Rule kControlRules[] = {
           "out of the program.",
           check_by<unfit_text<&Control::mist_on>>},
     Check{kMistOffKeys, "So is `mist_off`, another one.", check_by<unfit_text<&Control::mist_off>>},
-    Check{kStopKeys, "So is `optional_stop`, another one.", check_by<unfit_text<&Control::optional_stop>>},
+    Check{kOptionalStopKeys, "So is `optional_stop`, another one.", check_by<unfit_text<&Control::optional_stop>>},
+    Check{kStopKeys, "So is `stop`, another one.", check_by<unfit_text<&Control::stop>>},
     Check{kModuloKeys, "`modulo_axes` holds letters of rotary axes.", check_by<unknown_modulo_axes>}};
 
 bool has_safe_z(const Machine& m) {
@@ -365,6 +374,9 @@ bool has_safe_z(const Machine& m) {
 }
 bool settles(const Machine& m) {
   return m.settling_s.value > 0.0;
+}
+bool warms_up(const Machine& m) {
+  return m.warm_up_s.value > 0.0;
 }
 
 constexpr Row kRows[] = {{"name", Text{}, kRequired, "What the machine is called.", access<&Machine::name>},
@@ -376,6 +388,10 @@ constexpr Table kTables[] = {
           "the upper limit of Z"),
     value("settling_s", kSettling, child_if<&Machine::settling_s, settles>,
           "How long the control waits after every move until the axes stand still at their exact stop.", "0"),
+    value("warm_up_s", kWarmUp, child_if<&Machine::warm_up_s, warms_up>,
+          "How long X and Y move to and fro, at the height of the first move, before the first cut of a program and "
+          "behind a stop: what the machine takes to be as warm as it stays.",
+          "0"),
     linear("x", "The linear axis X.", child<&Machine::x>),
     linear("y", "The linear axis Y.", child<&Machine::y>),
     linear("z", "The linear axis Z.", child<&Machine::z>),

@@ -166,7 +166,7 @@ void LatheCheck::dwell(double seconds, const NcPlace& place, const AxisPositions
   if (!run_.empty()) control_->rest(seconds, place);
 }
 
-void LatheCheck::stop(const NcPlace& place) {
+void LatheCheck::stop(NcStop, const NcSettings&, const NcPlace& place) {
   if (!run_.empty()) control_->rest(std::numeric_limits<double>::infinity(), place);
 }
 

@@ -27,7 +27,7 @@ class LatheCheck : public NcSink {
   void state(const NcSettings& settings, const NcPlace& place) override {
     control_->state(settings, place, !run_.empty());
   }
-  void stop(const NcPlace& place) override;
+  void stop(NcStop, const NcSettings&, const NcPlace& place) override;
   void end(const NcEnd& end);
   /// What all passes left.
   void measure();

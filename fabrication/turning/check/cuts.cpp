@@ -85,7 +85,7 @@ class CutReader : public NcSink {
     control_.state(asked, place, is_down_);
   }
 
-  void stop(const NcPlace& place) override {
+  void stop(NcStop, const NcSettings&, const NcPlace& place) override {
     if (is_down_) control_.rest(std::numeric_limits<double>::infinity(), place);
   }
 

@@ -154,6 +154,7 @@ std::string fabrication_json(const FabricationResult& result, const Json& setup)
                {"section_path", section_path_json(result)},
                {"programs", programs},
                {"program_times_s", plan.program_times_s}};
+  if (result.job.tool.edge_life_mm) json["program_cuts_mm"] = plan.program_cuts_mm;
   // A V cuts in both directions with its leading edge, always with the same rake.
   if (result.job.strategy == fabrication::Strategy::dmc) json.erase("plough_rake_deg");
   if (!setup.is_null()) json["setup"] = setup;
@@ -187,6 +188,7 @@ std::string fabrication_table(const FabricationResult& result) {
                       fixed(100.0 * t.cutting_s / t.total_s(), 1), fixed(100.0 * t.dwell_s / t.total_s(), 1),
                       fixed(100.0 * t.retract_s / t.total_s(), 1), fixed(100.0 * t.rapid_s / t.total_s(), 1),
                       fixed(100.0 * t.fixed_s / t.total_s(), 1));
+  if (!plan.stops.empty()) text += fmt::format("  stops               {}\n", plan.stops.size());
   constexpr std::size_t kMostStages = 20;
   for (std::size_t k = 0; k < plan.stages.size() && k < kMostStages; ++k) {
     const fabrication::Stage& stage = plan.stages[k];

@@ -70,6 +70,19 @@ Json checks_json(const FabricationResult& result, const std::vector<StageCheck>&
   return rows;
 }
 
+Json stops_json(const FabricationResult& result) {
+  Json rows = Json::array();
+  for (const PlannedStop& stop : result.plan.stops)
+    rows.push_back({{"program", result.program_file(stop.program)},
+                    {"reason", kStopReasonWords[static_cast<std::size_t>(stop.reason)]},
+                    {"stage", result.plan.stages[stop.stage].name},
+                    {"element", stop.element},
+                    {"at_s", stop.at_s},
+                    {"ran_s", stop.used.seconds},
+                    {"cut_mm", stop.used.cut_mm}});
+  return rows;
+}
+
 Json sensitivities_json(const FabricationResult& result, const SetupSheet& sheet) {
   Json rows = Json::array();
   for (const Sensitivity& row : sheet.sensitivities.rows) {
@@ -113,6 +126,8 @@ Json setup_json(const FabricationResult& result, const SetupSheet& sheet) {
   json["mist"] = result.job.process.mist;
   json["travel"] = travel_json(sheet.travel);
   json["optional_stops"] = sheet.optional_stops;
+  json["warm_up_s"] = result.machine.warm_up_s.value;
+  json["stops"] = stops_json(result);
   json["checks"] = checks_json(result, sheet.checks);
   json["sensitivities"] = sensitivities_json(result, sheet);
   if (sheet.light) json["light"] = light_json(*sheet.light);

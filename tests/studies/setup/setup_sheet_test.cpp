@@ -143,6 +143,26 @@ TEST(SetupSheet, APartThatIsCutDirectlyHasNoLight) {
   EXPECT_FALSE(sheet.why_no_light.empty());
 }
 
+TEST(SetupSheet, StopsAreTold) {
+  std::string job = kJob;
+  job.insert(job.find("[process]\n") + 10, "stop_before_finishing = true\n");
+  job.insert(job.find("[tool]\n") + 7, "edge_life_mm = 1e6\n");
+  const FabricationResult result = made(job);
+  ASSERT_EQ(result.plan.stops.size(), 2U);  // turned prisms are roughed for themselves
+  const SetupSheet sheet = setup_sheet(result, false);
+  const nlohmann::ordered_json stops = setup_json(result, sheet)["stops"];
+  ASSERT_EQ(stops.size(), 2U);
+  EXPECT_EQ(stops[0]["reason"], "finishing");
+  EXPECT_EQ(stops[0]["stage"], "finishing-1-facet-1");
+  EXPECT_EQ(stops[0]["program"], "program.ngc");
+  EXPECT_GT(stops[0]["at_s"], 20.0);
+  EXPECT_GT(stops[0]["cut_mm"], 3.0);
+  const std::string html = report::setup_html(report::setup_page(result, sheet, {}));
+  for (const char* const text : {"Stops", "of finishing-1-facet-1", "Every program begins with an edge that cuts"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  EXPECT_EQ(report::setup_html(report::setup_page(made(), sheet, {})).find("stops.csv"), std::string::npos);
+}
+
 /// The page is whole, and needs no script.
 TEST(SetupSheet, ThePageSaysItAll) {
   const FabricationResult result = made();

@@ -1,0 +1,468 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/plan.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/post/post.h"
+#include "tests/fabrication/chiseling_jobs.h"
+#include "tests/fabrication/controls.h"
+#include "tests/fabrication/findings_text.h"
+#include "tests/fabrication/jobs.h"
+#include "tests/fabrication/mutants.h"
+#include "tests/fabrication/substrate_jobs.h"
+#include "tests/support/refusals.h"
+
+// Programs that stop: for the next edge, for inspection, before finishing; restarts where they stopped, and chips too
+// thin to be cut. The planner counts by its moves, the verifier by what it reads; they share neither.
+
+namespace retrace::fabrication::test::stops_test {
+namespace {
+
+using geometry::Arrangement;
+
+using Lines = std::vector<std::string>;
+
+struct Case {
+  std::string name;
+  Job job;
+  std::string machine;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const auto strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step}) {
+    Job job = square_job(2, Arrangement::checker);
+    job.strategy = strategy;
+    job.tool.width_mm = strategy == Strategy::two_step ? 0.3 : 0.451;
+    job.tool.edge_radius_um = 1.0;
+    job.process.roughing_depth_um = 40;
+    job.process.slow_retract_um = strategy == Strategy::bidirectional ? 5.0 : 0.0;
+    job.process.plough_lift_um = strategy == Strategy::unidirectional ? 2.0 : 0.0;
+    all.push_back({std::string(kStrategyWords[static_cast<std::size_t>(strategy)]), job, "paper"});
+  }
+  Job cubes = cube_job(true, 0.15);
+  cubes.process.roughing_depth_um = 20;
+  all.push_back({"dmc", cubes, "ideal-dmc"});
+  return all;
+}
+
+Case two_step() {
+  return cases()[2];
+}
+
+class Stops : public ::testing::TestWithParam<NcDialect> {
+ protected:
+  std::string word() const { return std::string(kNcDialectWords[static_cast<std::size_t>(GetParam())]); }
+
+  Machine machine_of(const Case& c, double warm_up_s = 0.0) const {
+    const std::string file = std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + c.machine + ".toml";
+    Machine machine = for_dialect(parse_machine(read_file(file), file), word());
+    machine.warm_up_s.value = warm_up_s;
+    return machine;
+  }
+  NcProgram program(const std::string& text, std::int32_t stop_line = 0) const {
+    NcProgram program = parse_nc(text, "p", GetParam(), control_texts());
+    program.stop_line = stop_line;
+    return program;
+  }
+  std::vector<NcProgram> programs(const Plan& plan) const {
+    std::vector<NcProgram> result;
+    for (const Program& p : plan.programs) result.push_back(program(nc_text(p, word())));
+    return result;
+  }
+  std::string stop_line() const { return has_own_texts(GetParam()) ? control_texts().stop : "M0"; }
+  bool is_comment(const std::string& line) const {
+    return line.starts_with("(") || line.starts_with(";") || line.starts_with("//") || line.starts_with("'") ||
+           line.starts_with("MSG");
+  }
+  /// Kinds of what is found, each once; "error" for a text that cannot be carried out.
+  std::string kinds_in(const Case& c, const Machine& machine, const Lines& lines) const {
+    try {
+      return kinds_of(verify_programs(c.job, machine, {program(text_of_lines(lines))}, {}, {}));
+    } catch (const InputError&) {
+      return "error";
+    }
+  }
+  static std::string kinds_of(const Verification& v) {
+    std::vector<std::string> kinds;
+    for (const Finding& f : v.findings) kinds.push_back(f.kind);
+    std::sort(kinds.begin(), kinds.end());
+    kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
+    return fmt::format("{}", fmt::join(kinds, " "));
+  }
+};
+
+/// Of all visits of a plan, the one that cuts most.
+double longest_visit_mm(const Case& c, const Machine& machine) {
+  Job job = c.job;
+  job.tool.edge_life_mm = 1e-3;
+  const std::string text = "must be at least ";
+  for (;;) {
+    const std::string refused = refusal_of([&] { make_plan(job, machine); });
+    const std::size_t at = refused.find(text);
+    if (at == std::string::npos) return *job.tool.edge_life_mm;
+    job.tool.edge_life_mm = 1e-3 + std::stod(refused.substr(at + text.size()));
+  }
+}
+
+TEST_P(Stops, EdgesCutNoMoreThanTheirLifeAndNoLess) {
+  for (Case c : cases()) {
+    const Machine machine = machine_of(c, 20.0);
+    Job endless = c.job;
+    endless.tool.edge_life_mm = 1e6;
+    const double all_mm = make_plan(endless, machine).program_cuts_mm.front();
+    for (const NextEdge next : {NextEdge::stop, NextEdge::program}) {
+      c.job.tool.edge_life_mm = std::max(all_mm / 3.5, longest_visit_mm(c, machine));
+      c.job.tool.next_edge = next;
+      const Plan plan = make_plan(c.job, machine);
+      EXPECT_EQ(next == NextEdge::stop, plan.programs.size() == 1) << c.name;
+      std::vector<double> cut_mm;
+      for (const PlannedStop& stop : plan.stops) cut_mm.push_back(stop.used.cut_mm);
+      double last_mm = 0.0;
+      for (const double mm : plan.program_cuts_mm) last_mm += mm;
+      EXPECT_NEAR(last_mm, all_mm, 1e-5 * all_mm) << c.name;
+      if (next == NextEdge::program) cut_mm = plan.program_cuts_mm;
+      ASSERT_GE(cut_mm.size(), 3U) << c.name;
+      const std::vector<NcProgram> read = programs(plan);
+      const Verification v = verify_programs(c.job, machine, read, {}, {});
+      EXPECT_TRUE(v.passes()) << c.name << "\n" << listed(v);
+      // What the planner counts is what the verifier reads: a life a little shorter than the most is found.
+      const double most_mm = *std::max_element(cut_mm.begin(), cut_mm.end());
+      EXPECT_LE(most_mm, *c.job.tool.edge_life_mm) << c.name;
+      Job shorter = c.job;
+      shorter.tool.edge_life_mm = most_mm * (1.0 - 2e-4);
+      EXPECT_EQ(kinds_of(verify_programs(shorter, machine, read, {}, {})), "edge_worn") << c.name;
+      shorter.tool.edge_life_mm = most_mm;
+      EXPECT_TRUE(verify_programs(shorter, machine, read, {}, {}).passes()) << c.name;
+    }
+  }
+}
+
+TEST_P(Stops, ProgramsRunNoLongerThanTheyMayAndWarm) {
+  for (Case c : cases()) {
+    constexpr double kWarmUp = 10.0;
+    const Machine machine = machine_of(c, kWarmUp);
+    const double cutting_s = make_plan(c.job, machine).time.total_s() - kWarmUp;
+    c.job.process.stop_every_min = (cutting_s / 2.5 + kWarmUp + 5.0) / 60.0;
+    const Plan plan = make_plan(c.job, machine);
+    ASSERT_GE(plan.stops.size(), 2U) << c.name;
+    const std::vector<NcProgram> read = programs(plan);
+    const Verification v = verify_programs(c.job, machine, read, {}, {});
+    EXPECT_TRUE(v.passes()) << c.name << "\n" << listed(v);
+    // C of a Sinumerik turns back the shortest way, which the plan does not count.
+    const bool is_shorter = GetParam() == NcDialect::sinumerik;
+    EXPECT_LT(v.time.total_s(), 1.02 * plan.time.total_s()) << c.name;
+    EXPECT_TRUE(is_shorter || v.time.total_s() > 0.98 * plan.time.total_s()) << c.name;
+    Machine colder = machine;
+    colder.warm_up_s.value = 300.0;
+    const Verification cold = verify_programs(c.job, colder, read, {}, {});
+    std::size_t found = 0;
+    for (const Finding& f : cold.findings) found += static_cast<std::size_t>(f.count);
+    EXPECT_EQ(found, plan.stops.size() + 1) << listed(cold);
+    EXPECT_EQ(kinds_of(cold), "cold");
+    Job impatient = c.job;
+    impatient.process.stop_every_min = 0.8 * *c.job.process.stop_every_min;
+    EXPECT_TRUE(is_shorter || kinds_of(verify_programs(impatient, machine, read, {}, {})) == "stop_overdue") << c.name;
+  }
+}
+
+TEST_P(Stops, ElementsAreInspectedBeforeTheyAreFinished) {
+  for (Case c : {cases()[2], cases()[3]}) {
+    const Machine machine = machine_of(c);
+    const std::vector<NcProgram> without = programs(make_plan(c.job, machine));
+    c.job.process.stop_before_finishing = true;
+    const Plan plan = make_plan(c.job, machine);
+    // Elements of a checker are roughed and first cut in two groups.
+    EXPECT_EQ(plan.stops.size(), c.name == "dmc" ? 1U : 2U);
+    for (const PlannedStop& stop : plan.stops) EXPECT_EQ(stop.reason, StopReason::finishing);
+    const Verification v = verify_programs(c.job, machine, programs(plan), {}, {});
+    EXPECT_TRUE(v.passes()) << c.name << "\n" << listed(v);
+    EXPECT_EQ(kinds_of(verify_programs(c.job, machine, without, {}, {})), "not_inspected");
+  }
+}
+
+/// Every line of every stop, from the last cut before it to the first behind it, is one that is missed.
+TEST_P(Stops, EveryLineOfAStopIsMissed) {
+  for (Case c : cases()) {
+    const Machine machine = machine_of(c, 5.0);
+    if (c.name == "two-step" || c.name == "dmc") c.job.process.stop_before_finishing = true;
+    c.job.tool.edge_life_mm = 1.5 * longest_visit_mm(c, machine);
+    const Plan plan = make_plan(c.job, machine);
+    const std::string text = nc_text(plan.programs.front(), word());
+    const Lines lines = lines_of_text(text);
+    ASSERT_EQ(kinds_in(c, machine, lines), "") << c.name;
+    EXPECT_EQ(static_cast<std::size_t>(std::count(lines.begin(), lines.end(), stop_line())), plan.stops.size());
+    int tried = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (lines[i] != stop_line()) continue;
+      // Down to the turn and the way up before it, up to the second line that names the element again.
+      const auto is_element = [&](std::size_t k) {
+        return lines[k].find("element ") != std::string::npos && lines[k].find("Goes on") == std::string::npos;
+      };
+      std::size_t begin = i;
+      while (lines[begin].find('Z') == std::string::npos || is_comment(lines[begin])) --begin;
+      std::size_t end = i + 2;
+      while (!is_element(end)) ++end;
+      for (std::size_t k = begin; k < end + 3; ++k) {
+        if (is_comment(lines[k])) continue;
+        Lines spoilt = lines;
+        spoilt.erase(spoilt.begin() + static_cast<std::ptrdiff_t>(k));
+        // Strokes of a warm-up are long enough together, or not.
+        const bool is_stroke =
+            k > i && k < end && (lines[k].find(" X") != std::string::npos || lines[k].find(" Y") != std::string::npos);
+        if (!is_stroke) {
+          EXPECT_NE(kinds_in(c, machine, spoilt), "") << c.name << " without line " << k + 1 << ": " << lines[k];
+        }
+        spoilt = lines;
+        spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(k), lines[k]);
+        if (k < end) {
+          EXPECT_EQ(kinds_in(c, machine, spoilt), "") << c.name << " with line " << k + 1 << " twice: " << lines[k];
+        }
+        ++tried;
+      }
+      if (tried > 30) break;
+    }
+    EXPECT_GE(tried, 10) << c.name;
+  }
+}
+
+/// A stop anywhere else in the main program is found.
+TEST_P(Stops, AStopElsewhereIsFound) {
+  Case c = two_step();
+  const Machine machine = machine_of(c);
+  c.job.process.stop_before_finishing = true;
+  const Plan plan = make_plan(c.job, machine);
+  const Lines lines = lines_of_text(nc_text(plan.programs.front(), word()));
+  const auto at = std::find(lines.begin(), lines.end(), stop_line()) - lines.begin();
+  int tried = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool is_element = lines[i].find("element ") != std::string::npos && is_comment(lines[i]);
+    if (!is_element || std::abs(static_cast<std::ptrdiff_t>(i) - at) < 3) continue;
+    Lines spoilt = lines;
+    spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), stop_line());
+    EXPECT_NE(kinds_in(c, machine, spoilt), "") << "before line " << i + 1 << ": " << lines[i];
+    ++tried;
+  }
+  EXPECT_GE(tried, 15);
+}
+
+/// The line of the n-th call of a visit, from 1.
+std::int32_t line_of_visit(const Lines& lines, std::int64_t n) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t at = lines[i].find("element ");
+    const bool marks = at != std::string::npos && lines[i].find("Goes on") == std::string::npos &&
+                       lines[i].find("from element") == std::string::npos && at < 4;
+    if (!marks || --n > 0) continue;
+    // Rapid moves, and mist on, come before the call.
+    for (++i; i < lines.size(); ++i) {
+      const std::string& line = lines[i];
+      if (line.ends_with("call") || line.starts_with("REPEAT") || line.starts_with("M98") || line.starts_with("call") ||
+          line.starts_with("CALL") || line.starts_with("RT"))
+        return static_cast<std::int32_t>(i + 1);
+    }
+  }
+  return 0;
+}
+
+/// Whatever visit the operator stopped behind, the next one begins a program that cuts nothing again.
+TEST_P(Stops, RestartsFromAnyVisit) {
+  for (Case c : cases()) {
+    const Machine machine = machine_of(c, 5.0);
+    c.job.tool.width_mm = c.name == "dmc" ? c.job.tool.width_mm : 0.451;
+    c.job.process.least_chip_um = 2.0;
+    c.job.tool.edge_life_mm = 2.5 * longest_visit_mm(c, machine);
+    const Plan whole = make_plan(c.job, machine);
+    const std::string text = nc_text(whole.programs.front(), word());
+    const Lines lines = lines_of_text(text);
+    std::int64_t behind = 0;
+    for (std::size_t k = 0; k < whole.stages.size(); ++k) {
+      PlanOptions options;
+      options.phase = whole.stages[k].name + "+";
+      std::vector<std::int32_t> order;
+      for (const Item& item : make_plan(c.job, machine, options).programs.front().items)
+        if (const auto* const visit = std::get_if<Visit>(&item)) order.push_back(visit->element);
+      for (std::int64_t n = 0; n < whole.stages[k].visits; ++n, ++behind) {
+        if (behind == 0 || (c.name == "dmc" && n > 1)) continue;
+        options.from_element = order[static_cast<std::size_t>(n)];
+        const NcProgram done = program(text, line_of_visit(lines, behind));
+        const NcProgram next = program(nc_text(make_plan(c.job, machine, options).programs.front(), word()));
+        const Verification v = verify_programs(c.job, machine, {done, next}, {}, {});
+        EXPECT_EQ(v.verdict(), "pass") << c.name << " " << options.phase << " " << *options.from_element << "\n"
+                                       << listed(v);
+        if (n != 1) continue;
+        // One visit too early, with a tool that was touched off 0.3 um deeper.
+        options.from_element = order[0];
+        Machine lower = machine;
+        lower.mount.offset_mm.value +=
+            c.name == "dmc" ? geometry::Vec3(-3e-4, 0.0, 0.0) : geometry::Vec3(0.0, 0.0, 3e-4);
+        const NcProgram again = program(nc_text(make_plan(c.job, lower, options).programs.front(), word()));
+        const std::string kinds = kinds_of(verify_programs(c.job, machine, {done, again}, {}, {}));
+        EXPECT_NE(kinds.find("rubs"), std::string::npos) << c.name << " " << options.phase << ": " << kinds;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Dialects, Stops,
+                         ::testing::Values(NcDialect::rs274ngc, NcDialect::sinumerik, NcDialect::fanuc, NcDialect::pmac,
+                                           NcDialect::a3200, NcDialect::automation1),
+                         [](const auto& dialect) {
+                           return std::string(kNcDialectWords[static_cast<std::size_t>(dialect.param)]);
+                         });
+
+Machine shipped(const std::string& name) {
+  const std::string file = std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml";
+  return parse_machine(read_file(file), file);
+}
+
+Verification verified(const Job& job, const Machine& machine, const Plan& plan) {
+  std::vector<NcProgram> programs;
+  for (const Program& p : plan.programs)
+    programs.push_back(parse_nc(nc_text(p, "rs274ngc"), "p", NcDialect::rs274ngc, {}));
+  return verify_programs(job, machine, programs, {}, {});
+}
+
+/// Slices of an ideal machine: plunges from the face to the floor, ploughs along it until they leave the blank.
+TEST(LengthOfCut, IsThatOfTheClosedForm) {
+  Job job = square_job(2, Arrangement::aligned);
+  job.strategy = Strategy::unidirectional;
+  job.tool.edge_life_mm = 1e6;
+  const double facet_mm = 0.451 / std::sqrt(2.0);
+  double visit_mm = 0.0;
+  for (double deep_mm = facet_mm; deep_mm > 0.0; deep_mm -= 1e-3 * job.process.roughing_depth_um)
+    visit_mm += deep_mm + std::min(deep_mm, job.process.plough_length_mm);
+  EXPECT_NEAR(make_plan(job, shipped("ideal")).program_cuts_mm.front(), 4.0 * visit_mm, 1e-4);
+}
+
+/// Whatever the depth of cut leaves to the first cut: it is as thick as the edge needs, or shares with the second.
+RC_GTEST_PROP(LeastChip, NoCutOfARightProgramRubs, ()) {
+  Job job = square_job(1);
+  job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
+  job.process.roughing_depth_um = 1e-2 * *rc::gen::inRange(1500, 6000);
+  job.process.finishing_depth_um = *rc::gen::inRange(3, 8);
+  const Machine machine = shipped(*rc::gen::element(std::string("ideal"), std::string("paper"), std::string("thesis")));
+  const Plan without = make_plan(job, machine);
+  job.process.least_chip_um = 0.5 * job.process.finishing_depth_um;
+  const Plan plan = make_plan(job, machine);
+  const Verification v = verified(job, machine, plan);
+  if (!v.passes()) RC_FAIL(listed(v));
+  // Where the programs are the same nothing had to be shared.
+  const bool is_same = nc_text(without.programs.front(), "rs274ngc") == nc_text(plan.programs.front(), "rs274ngc");
+  RC_CLASSIFY(is_same);
+  // Of a tilted edge the plan allows for what its ends may do; of others for two steps of 1 nm, and the verifier for
+  // 2 nm of rounding.
+  if (machine.name != "ideal" || is_same) return;
+  constexpr double kAllowedUm = 4e-3;
+  job.process.least_chip_um = *job.process.least_chip_um + kAllowedUm;
+  RC_ASSERT(!verified(job, machine, without).passes());
+}
+
+/// The same with other wedges, rounded edges and coarser steps: the edge reaches below its reference point.
+RC_GTEST_PROP(LeastChip, OfAnyPrisms, ()) {
+  Job job = square_job(1);
+  geometry::RtpElement& prism = prism_of(job);
+  prism.apex_angle_deg = *rc::gen::element(90.0, 60.0, 75.0, 120.0);
+  job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
+  job.tool.clearance_deg = *rc::gen::inRange(2, 11);
+  const double widest_deg = std::min(prism.apex_angle_deg - 12.5 - job.tool.clearance_deg, 70.0);
+  // Rake faces of plunges along both facets that do not cross leave a fin over the root.
+  const double least_deg = job.strategy == Strategy::unidirectional
+                               ? 40.0
+                               : std::max(40.0, 0.5 * prism.apex_angle_deg + 2.0 - job.tool.clearance_deg);
+  job.tool.wedge_deg = std::min(widest_deg, least_deg + *rc::gen::inRange(0, 25));
+  job.tool.edge_radius_um = *rc::gen::element(0.0, 0.5, 3.0);
+  job.process.roughing_depth_um = 1e-2 * *rc::gen::inRange(1500, 6000);
+  job.process.finishing_depth_um = *rc::gen::inRange(3, 8);
+  Machine machine = shipped(*rc::gen::element(std::string("ideal"), std::string("paper"), std::string("thesis")));
+  machine.increments.linear_nm = *rc::gen::element(1, 10);
+  job.process.least_chip_um = 0.5 * job.process.finishing_depth_um;
+  const Verification v = verified(job, machine, make_plan(job, machine));
+  if (!v.passes())
+    RC_FAIL(fmt::format("apex {} clearance {} wedge {} radius {} strategy {} d {} f {} machine {} step {}\n{}",
+                        prism.apex_angle_deg, job.tool.clearance_deg, job.tool.wedge_deg, job.tool.edge_radius_um,
+                        static_cast<int>(job.strategy), job.process.roughing_depth_um, job.process.finishing_depth_um,
+                        machine.name, machine.increments.linear_nm, listed(v)));
+}
+
+TEST(LeastChip, OfCubeCorners) {
+  for (const double depth_um : {15.0, 15.3, 15.6, 15.9, 16.2, 17.0, 18.0, 19.0, 20.0, 21.0}) {
+    Job job = cube_job(true, 0.15);
+    job.process.roughing_depth_um = depth_um;
+    job.process.least_chip_um = 0.5 * job.process.finishing_depth_um;
+    const Machine machine = shipped("ideal-dmc");
+    const Verification v = verified(job, machine, make_plan(job, machine));
+    EXPECT_TRUE(v.passes()) << depth_um << "\n" << listed(v);
+  }
+}
+
+/// First cuts there take what they meet, however thin.
+TEST(LeastChip, OnABase) {
+  struct OnBase {
+    std::string name;
+    Job job;
+    std::string machine;
+  };
+  const OnBase all[] = {{"incline", prisms_on(plane_substrate(10.0, 90.0, ElementAxes::parallel)), "paper"},
+                        {"bulge", prisms_on(cylinder_substrate(20.0, false, ElementAxes::normal)), "ideal"},
+                        {"hollow", prisms_on(sphere_substrate(-30.0, ElementAxes::parallel)), "paper"},
+                        {"cubes", cubes_on(sphere_substrate(-20.0, ElementAxes::normal), true), "ideal-dmc"}};
+  for (const OnBase& c : all) {
+    Job job = c.job;
+    job.process.least_chip_um = 0.5 * job.process.finishing_depth_um;
+    job.tool.edge_life_mm = c.name == "cubes" ? 2.0 : 20.0;
+    const Machine machine = shipped(c.machine);
+    const Plan plan = make_plan(job, machine);
+    const Verification v = verified(job, machine, plan);
+    EXPECT_TRUE(v.passes()) << c.name << "\n" << listed(v);
+    ASSERT_FALSE(plan.stops.empty()) << c.name;
+    double most_mm = 0.0;
+    for (const PlannedStop& stop : plan.stops) most_mm = std::max(most_mm, stop.used.cut_mm);
+    job.tool.edge_life_mm = most_mm * (1.0 - 2e-4);
+    EXPECT_FALSE(verified(job, machine, plan).passes()) << c.name;
+  }
+}
+
+TEST(StopsRefused, WhatCannotBe) {
+  const Machine machine = shipped("ideal");
+  Job job = square_job(2);
+  job.source = "j.toml";
+  const auto refusal = [&] { return refusal_of([&] { make_plan(job, machine); }, "not refused"); };
+  job.tool.edge_life_mm = 3.0;
+  EXPECT_EQ(refusal(), "j.toml: tool.edge_life_mm: must be at least 4.837, what one visit of element 0 cuts, got 3");
+  job.tool.edge_life_mm.reset();
+  job.process.stop_every_min = 0.1;
+  EXPECT_TRUE(refusal().starts_with("j.toml: process.stop_every_min: must be at least ")) << refusal();
+  EXPECT_TRUE(refusal().ends_with(", what the way to element 0, warm-up included, and one visit take, got 0.1"))
+      << refusal();
+  job.process.stop_every_min.reset();
+  job.strategy = Strategy::unidirectional;
+  job.process.least_chip_um = 7.0;
+  EXPECT_EQ(refusal(),
+            "j.toml: process.least_chip_um: must be at most 5.389, what the first cut of roughing takes, got 7");
+}
+
+TEST(StopsRefused, ControlsWithoutALineForStops) {
+  Job job = square_job(2);
+  job.process.stop_before_finishing = true;
+  Machine machine = for_dialect(shipped("ideal"), "pmac");
+  machine.control.stop.clear();
+  const Program program = make_plan(job, machine).programs.front();
+  for (const char* dialect : {"pmac", "a3200", "automation1"})
+    EXPECT_EQ(refusal_of([&] { nc_text(program, dialect); }),
+              fmt::format("--dialect: {} has no words of its own for a stop: the machine file must give control.stop, "
+                          "or the job ask for none by tool.edge_life_mm, process.stop_every_min and "
+                          "stop_before_finishing",
+                          dialect));
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::test::stops_test
