@@ -19,7 +19,7 @@ COSTS = {"raytrace/Kinds/Leaks": 140, "app/Readme": 90, "app/Photometry/Tutorial
          "app/Studies/Tutorials": 15, "raytrace/Cases/Canted:2": 60, "raytrace/BeamTracer": 60,
          "sweep/CommandsByMpi": 50, "surface_models/HarveyShack": 40, "sweep/SweepByMpi": 38,
          "studies/DesignTexture": 33, "app/Inputs": 30,
-         "raytrace/Cases/AgainstReference": 30, "studies/EngineChoice": 27, "turning/Turn": 24,
+         "raytrace/Cases/AgainstReference": 30, "studies/EngineChoice": 27, "calibration/Correction": 27, "turning/Turn": 24,
          "app/Commands/LongWork": 23, "raytrace/RoughFacets": 22, "studies/AdaptiveCurve": 22,
          "surface_models/Scatter": 20, "app/Front": 20, "raytrace/Kinds/RealArrays": 19,
          "surface_models/TextureModel": 19, "app/VerifyCommand": 18, "sweep/Cells": 18, "app/Inspect": 17,

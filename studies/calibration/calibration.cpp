@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <random>
 #include <set>
 #include <utility>
 
@@ -25,6 +27,9 @@ constexpr int kMostSteps = 20;
 constexpr double kFalseAlarm = 0.01;
 /// Of measurements, that may be outliers.
 constexpr double kMostOutliers = 0.1;
+/// Standard deviations of set-ups, for what of them is not told: axes are set by dial gauges, tools under a microscope.
+constexpr double kUntoldArcsec = 50.0;
+constexpr double kUntoldUm = 2.0;
 /// Leverage from which on nothing checks a measurement.
 constexpr double kUnchecked = 1.0 - 1e-9;
 
@@ -34,24 +39,71 @@ void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
       throw InputError({measured.file, m.line, ""}, fault);
 }
 
+/// How poses move for the share of the observations that the set-up leaves.
+VectorXd pose_step(const LinearModel& model, const VectorXd& left) {
+  // Differences are exact to some 1e-12: below that columns are the same ones.
+  constexpr double kSame = 1e-9;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> of_poses;
+  of_poses.setThreshold(kSame);
+  of_poses.compute(model.of_poses);
+  return of_poses.solve(left);
+}
+
+/// What is not told still changes figures, by products with itself and with what is told. How far that moves the told
+/// combinations, as mean squares over machines that are set up so well.
+Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const MeasuredParts& measured,
+                                 const Estimate& fitted, const Estimate& first, const std::vector<PartPose>& poses) {
+  constexpr int kMachines = 64;
+  const auto quantities = setup_quantities(measured.plans.front().machine.tilt);
+  const Machine& nominal = measured.plans.front().machine;
+  const auto machine = [&](const VectorXd& errors) {
+    return with_errors(nominal, {errors.data(), static_cast<std::size_t>(errors.size())});
+  };
+  const LinearModel model =
+      linear_model(parts, measured.measurements, machine(fitted.value), measured.map_faces, poses);
+  std::mt19937_64 bits(1);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(first.told.cols(), first.told.cols());
+  for (int k = 0; k < kMachines; ++k) {
+    VectorXd errors(first.untold.rows());
+    for (Index q = 0; q < errors.size(); ++q)
+      errors[q] = normal(bits) * (quantities[static_cast<std::size_t>(q)].is_angle() ? kUntoldArcsec : kUntoldUm);
+    const VectorXd untold = first.untold * (first.untold.transpose() * errors);
+    const VectorXd change = model.residual - residual_of(parts, measured.measurements, machine(fitted.value + untold),
+                                                         measured.map_faces, poses);
+    const VectorXd moved = estimate(model.of_setup * first.told, model.of_poses, change, 2.0 * kSetUpByEye).value;
+    spread += moved * moved.transpose() / kMachines;
+  }
+  return first.told * spread * first.told.transpose();
+}
+
 /// Gauss-Newton steps among the combinations that are told about the nominal machine: in all others the measurements
-/// change by terms of the second order alone, which would be taken for signs of them.
+/// change by terms of the second order alone, which would be taken for signs of them. Parts lie askew by as much as
+/// machines do, and maps tell products of the two.
 Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
   const Machine& nominal = measured.plans.front().machine;
   LinearModel model = linear_model(parts, measured.measurements, nominal, measured.map_faces);
   Estimate result = estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
-  const Eigen::MatrixXd told = result.told;
+  const Estimate first = result;
+  const Eigen::MatrixXd& told = first.told;
+  std::vector<PartPose> poses(parts.size());
+  VectorXd left = model.residual - model.of_setup * result.value;
   for (int step = 0; step < kMostSteps; ++step) {
+    move(poses, pose_step(model, left));
     const VectorXd before = told.transpose() * result.value;
     const std::span<const double> amounts(result.value.data(), static_cast<std::size_t>(result.value.size()));
-    model = linear_model(parts, measured.measurements, with_errors(nominal, amounts), measured.map_faces);
+    model = linear_model(parts, measured.measurements, with_errors(nominal, amounts), measured.map_faces, poses);
     const Eigen::MatrixXd of_told = model.of_setup * told;
     const Estimate next = estimate(of_told, model.of_poses, model.residual + of_told * before, 2.0 * kSetUpByEye);
+    left = model.residual - of_told * (next.value - before);
     result.value = told * next.value;
     result.covariance = told * next.covariance * told.transpose();
     result.residual = next.residual;
     result.leverage = next.leverage;
-    if ((next.value - before).cwiseQuotient(next.covariance.diagonal().cwiseSqrt()).norm() < kLastStep) return result;
+    if ((next.value - before).cwiseQuotient(next.covariance.diagonal().cwiseSqrt()).norm() < kLastStep) {
+      result.covariance += spread_of_untold(parts, measured, result, first, poses);
+      return result;
+    }
   }
   throw InputError({measured.file, 0, ""},
                    "no machine near that of the jobs leaves what was measured: are units and facets right?");

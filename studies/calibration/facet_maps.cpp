@@ -30,8 +30,9 @@ constexpr int kPlaces = 12;
 constexpr double kTurnsDeg[] = {-2.0, -1.0, 0.0, 1.0, 2.0};
 /// The best of them that are followed.
 constexpr std::size_t kFollowed = 4;
-constexpr int kMostMoves = 60;
-constexpr double kLastMove = 1e-12;  ///< mm or rad
+constexpr int kMostMoves = 20;       ///< among all points, and then among those clear of edges
+constexpr double kRoughMove = 1e-6;  ///< mm or rad: the last one among all points
+constexpr double kLastMove = 1e-9;   ///< and of all: a pose is free in what follows, so that a small change is none
 /// Of an element's depth, that a registered map may lie off the design.
 constexpr double kMostOff = 0.02;
 /// A facet, or a face, is told by so many points at least.
@@ -73,7 +74,7 @@ class DesignSurface {
     const Region middle = region(p.x(), p.y());
     for (const Vec2& off : {Vec2(margin_mm, margin_mm), Vec2(-margin_mm, margin_mm), Vec2(margin_mm, -margin_mm),
                             Vec2(-margin_mm, -margin_mm)})
-      if (region(p.x() + off.x(), p.y() + off.y()) != middle) return std::nullopt;
+      if (!lies_in(middle, p.x() + off.x(), p.y() + off.y())) return std::nullopt;
     return middle;
   }
   Vec3 normal(const Region& r) const { return r.is_face ? Vec3::UnitZ() : grooves_[r.element].facets[r.facet].normal; }
@@ -83,6 +84,17 @@ class DesignSurface {
   const std::vector<Groove>& grooves() const { return grooves_; }
 
  private:
+  /// Whether that is the region of a point; of prisms that stand upright without asking which element it is.
+  bool lies_in(const Region& r, double x_mm, double y_mm) const {
+    if (r.is_face) return !map_.at(x_mm, y_mm);
+    const Groove& groove = grooves_[r.element];
+    if (groove.is_cube() || groove.axis != Vec3::UnitZ()) return region(x_mm, y_mm) == r;
+    const Vec2 from_root(x_mm - groove.root_mm.x(), y_mm - groove.root_mm.y());
+    const Vec2 along = groove.root_direction.head<2>();
+    const Vec2 outward = groove.facets[r.facet].up_slope.head<2>().normalized();
+    const double across = from_root.dot(outward);
+    return across >= 0.0 && across <= groove.half_base_mm && std::abs(from_root.dot(along)) <= groove.half_width_mm;
+  }
   double z_of(std::size_t element, std::size_t facet, double x_mm, double y_mm) const {
     const DesignFacet& f = grooves_[element].facets[facet];
     return (f.offset_mm - f.normal.x() * x_mm - f.normal.y() * y_mm) / f.normal.z();
@@ -149,10 +161,12 @@ class Registration {
     RigidMotion best;
     double least = std::numeric_limits<double>::infinity();
     for (auto& [off, pose] : tried) {
-      refine(pose);
+      refine(pose, false);
       const double now = off_mm(pose);
       if (now < least) std::tie(least, best) = std::pair(now, pose);
     }
+    refine(best, true);
+    least = off_mm(best);
     const double most = kMostOff * surface_.grooves().front().depth_mm;
     if (!(least < most))
       throw InputError(
@@ -204,17 +218,16 @@ class Registration {
     return off.empty() ? std::numeric_limits<double>::infinity() : median_of(off);
   }
 
-  /// Steps of Gauss and Newton, each point drawn to the plane that it lies over; at first all, then only those that are
+  /// Steps of Gauss and Newton, each point drawn to the plane that it lies over: of all points, or of those that are
   /// clear of edges.
-  void refine(RigidMotion& pose) const {
+  void refine(RigidMotion& pose, bool is_clear) const {
     for (int step = 0; step < kMostMoves; ++step) {
       std::vector<std::pair<Vec3, Region>> placed;
       std::vector<double> off;
       std::vector<double> off_facets;
       for (const Vec3& p : fine_) {
         const Vec3 at = pose.point(p);
-        const auto region =
-            step < kMostMoves / 3 ? surface_.region(at.x(), at.y()) : surface_.clear_region(at, margin_mm_);
+        const auto region = is_clear ? surface_.clear_region(at, margin_mm_) : surface_.region(at.x(), at.y());
         if (!region) continue;
         placed.emplace_back(at, *region);
         off.push_back(std::abs(surface_.height_mm(*region, at)));
@@ -238,7 +251,7 @@ class Registration {
                                                 : Eigen::Matrix3d(Eigen::Matrix3d::Identity()),
                               move.head<3>()};
       pose = {small.rotation * pose.rotation, small.point(pose.translation_mm)};
-      if (step > kMostMoves / 3 && move.norm() < kLastMove) return;
+      if (move.norm() < (is_clear ? kLastMove : kRoughMove)) return;
     }
   }
 

@@ -1,7 +1,6 @@
 #include "studies/calibration/linear_model.h"
 
 #include <array>
-#include <numbers>
 
 #include "fabrication/machine/setup.h"
 
@@ -9,71 +8,103 @@ namespace retrace::studies {
 namespace {
 
 using Eigen::Index;
-using fabrication::Machine, fabrication::SetupQuantity;
+using fabrication::Machine, fabrication::SetupQuantity, fabrication::kNmPerMm;
 
 /// Steps of um and arcsec over which differences are taken: measurements are smooth over millions of them.
 constexpr double kStep = 1.0;
 /// Of a part's pose: three turns, shifts along X, Y and Z; then the turns of the face about X and Y.
 constexpr Index kTurns = 3;
 constexpr Index kPose = 6;
-constexpr double kNmPerUm = 1e3;
-constexpr double kNmPerMmArcsec = 1e6 * std::numbers::pi / (180.0 * 3600.0);
+constexpr double kUmPerMm = 1e3;
 
-PartPose moved(Index unknown, double amount) {
-  PartPose pose;
-  (unknown < kTurns ? pose.turn_arcsec[unknown] : pose.shift_um[unknown - kTurns]) = amount;
-  return pose;
+/// \param unknown of one part, or kPose and kPose + 1: of the face
+void move_one(PartPose& pose, Index unknown, double amount) {
+  if (unknown >= kPose)
+    pose.face_turn_arcsec[unknown - kPose] += amount;
+  else
+    (unknown < kTurns ? pose.turn_arcsec[unknown] : pose.shift_um[unknown - kTurns]) += amount;
 }
 
-/// What a map that lies askew shows of the face: z = shift + turn_x y - turn_y x.
-void add_face(LinearModel& model, Index row, Index pose, const FaceFigures& face) {
-  Eigen::Matrix<double, 3, kPose> rows = Eigen::Matrix<double, 3, kPose>::Zero();
-  rows.row(0) << kNmPerMmArcsec * face.middle_mm.y(), -kNmPerMmArcsec * face.middle_mm.x(), 0.0, 0.0, 0.0, kNmPerUm;
-  rows(1, 1) = -1.0;
-  rows(2, 0) = 1.0;
-  const Eigen::Vector3d weight = face.uncertainty.cwiseInverse();
-  model.of_poses.block<3, kPose>(row, pose) = weight.asDiagonal() * rows;
-  model.residual.segment<3>(row) = face.value.cwiseProduct(weight);
+/// What a map that lies askew shows of the face.
+geometry::Vec3 predicted_face(const FaceFigures& face, const PartPose& pose) {
+  const geometry::Vec3 normal = pose.face_rotation().col(2);
+  const geometry::Vec3 shift = pose.shift_um / kUmPerMm;
+  const double height_mm = shift.z() - (normal.head<2>().dot(face.middle_mm - shift.head<2>())) / normal.z();
+  return {kNmPerMm * height_mm, -kArcsecPerRad * normal.x() / normal.z(), -kArcsecPerRad * normal.y() / normal.z()};
 }
 
 }  // namespace
 
+Eigen::VectorXd residual_of(const std::vector<CutPart>& parts, std::span<const Measurement> measurements,
+                            const Machine& machine, const std::vector<std::optional<FaceFigures>>& map_faces,
+                            const std::vector<PartPose>& poses) {
+  std::vector<double> residual;
+  for (const Measurement& m : measurements)
+    residual.push_back((m.value - parts[m.part].predicted(m, machine, poses[m.part])) / m.uncertainty);
+  for (std::size_t k = 0; k < map_faces.size(); ++k) {
+    if (!map_faces[k]) continue;
+    const geometry::Vec3 off = map_faces[k]->value - predicted_face(*map_faces[k], poses[k]);
+    for (Index row = 0; row < 3; ++row) residual.push_back(off[row] / map_faces[k]->uncertainty[row]);
+  }
+  return Eigen::Map<const Eigen::VectorXd>(residual.data(), static_cast<Index>(residual.size()));
+}
+
 LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Measurement> measurements,
-                         const Machine& machine, const std::vector<std::optional<FaceFigures>>& map_faces) {
+                         const Machine& machine, const std::vector<std::optional<FaceFigures>>& map_faces,
+                         const std::vector<PartPose>& given) {
+  const std::vector<PartPose> poses = given.empty() ? std::vector<PartPose>(parts.size()) : given;
+  LinearModel model;
+  model.residual = residual_of(parts, measurements, machine, map_faces, poses);
   const auto quantities = fabrication::setup_quantities(machine.tilt);
   std::vector<std::array<Machine, 2>> off;
   for (const SetupQuantity& quantity : quantities)
     off.push_back({with_error(machine, quantity, -kStep), with_error(machine, quantity, kStep)});
-  const auto rows = static_cast<Index>(measurements.size());
-  Index faces = 0;
-  for (const auto& face : map_faces) faces += face ? 1 : 0;
   const auto of_face = kPose * static_cast<Index>(parts.size());
-  LinearModel model;
-  model.of_setup.setZero(rows + 3 * faces, static_cast<Index>(quantities.size()));
-  model.of_poses.setZero(rows + 3 * faces, of_face + 2);
-  model.residual.resize(rows + 3 * faces);
-  for (Index row = 0; row < rows; ++row) {
-    const Measurement& m = measurements[static_cast<std::size_t>(row)];
+  model.of_setup.setZero(model.residual.size(), static_cast<Index>(quantities.size()));
+  model.of_poses.setZero(model.residual.size(), of_face + 2);
+  const auto poses_about = [](const PartPose& pose, Index unknown) {
+    std::array<PartPose, 2> both{pose, pose};
+    move_one(both[0], unknown, -kStep);
+    move_one(both[1], unknown, kStep);
+    return both;
+  };
+  Index row = 0;
+  for (const Measurement& m : measurements) {
     const CutPart& part = parts[m.part];
-    const auto difference = [&](const Machine& low, const Machine& high, const PartPose& before,
-                                const PartPose& after) {
-      return (part.predicted(m, high, after) - part.predicted(m, low, before)) / (2.0 * kStep * m.uncertainty);
-    };
+    const PartPose& pose = poses[m.part];
+    const double span = 2.0 * kStep * m.uncertainty;
     for (std::size_t k = 0; k < off.size(); ++k)
-      model.of_setup(row, static_cast<Index>(k)) = difference(off[k][0], off[k][1], {}, {});
-    const Index pose = kPose * static_cast<Index>(m.part);
-    for (Index k = 0; k < (map_faces.empty() ? kPose - 1 : kPose); ++k)
-      model.of_poses(row, pose + k) = difference(machine, machine, moved(k, -kStep), moved(k, kStep));
-    if (!map_faces.empty()) model.of_poses.block<1, 2>(row, of_face) = model.of_poses.block<1, 2>(row, pose);
-    model.residual[row] = (m.value - part.predicted(m, machine, {})) / m.uncertainty;
+      model.of_setup(row, static_cast<Index>(k)) =
+          (part.predicted(m, off[k][1], pose) - part.predicted(m, off[k][0], pose)) / span;
+    const auto of_pose = [&](Index unknown) {
+      const auto [low, high] = poses_about(pose, unknown);
+      return (part.predicted(m, machine, high) - part.predicted(m, machine, low)) / span;
+    };
+    const Index first = kPose * static_cast<Index>(m.part);
+    for (Index k = 0; k < (map_faces.empty() ? kPose - 1 : kPose); ++k) model.of_poses(row, first + k) = of_pose(k);
+    if (!map_faces.empty())
+      for (Index k = 0; k < 2; ++k) model.of_poses(row, of_face + k) = of_pose(kPose + k);
+    ++row;
   }
-  Index row = rows;
   for (std::size_t k = 0; k < map_faces.size(); ++k) {
     if (!map_faces[k]) continue;
-    add_face(model, row, kPose * static_cast<Index>(k), *map_faces[k]);
+    const FaceFigures& face = *map_faces[k];
+    for (Index unknown = 0; unknown < kPose; ++unknown) {
+      const auto [low, high] = poses_about(poses[k], unknown);
+      model.of_poses.block<3, 1>(row, kPose * static_cast<Index>(k) + unknown) =
+          (predicted_face(face, high) - predicted_face(face, low)).cwiseQuotient(2.0 * kStep * face.uncertainty);
+    }
     row += 3;
   }
   return model;
+}
+
+void move(std::vector<PartPose>& poses, const Eigen::VectorXd& by) {
+  const auto of_face = kPose * static_cast<Index>(poses.size());
+  for (std::size_t part = 0; part < poses.size(); ++part) {
+    for (Index k = 0; k < kPose; ++k) move_one(poses[part], k, by[kPose * static_cast<Index>(part) + k]);
+    for (Index k = 0; k < 2; ++k) move_one(poses[part], kPose + k, by[of_face + k]);
+  }
 }
 
 }  // namespace retrace::studies

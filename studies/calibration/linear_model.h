@@ -25,8 +25,19 @@ struct LinearModel {
 
 /// \param parts as Measurement::part counts them
 /// \param map_faces as MeasuredParts::map_faces; three rows more for each face, behind all measurements
+/// \param poses about which the model is, of each part; none: all as programs have them
 LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Measurement> measurements,
                          const fabrication::Machine& machine,
-                         const std::vector<std::optional<FaceFigures>>& map_faces = {});
+                         const std::vector<std::optional<FaceFigures>>& map_faces = {},
+                         const std::vector<PartPose>& poses = {});
+
+/// LinearModel::residual alone.
+Eigen::VectorXd residual_of(const std::vector<CutPart>& parts, std::span<const Measurement> measurements,
+                            const fabrication::Machine& machine,
+                            const std::vector<std::optional<FaceFigures>>& map_faces,
+                            const std::vector<PartPose>& poses);
+
+/// Poses moved by the unknowns of LinearModel::of_poses. \pre poses are as many as parts
+void move(std::vector<PartPose>& poses, const Eigen::VectorXd& by);
 
 }  // namespace retrace::studies

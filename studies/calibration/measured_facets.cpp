@@ -26,7 +26,21 @@ double included_rad(const Vec3& a, const Vec3& b) {
   return std::numbers::pi - std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+Eigen::Matrix3d rotation_by(const Vec3& turn_arcsec) {
+  const Vec3 turn = turn_arcsec / kArcsecPerRad;
+  if (turn.isZero(0.0)) return Eigen::Matrix3d::Identity();
+  return rotation_about(turn.normalized(), Angle::from_rad(turn.norm()));
+}
+
 }  // namespace
+
+Eigen::Matrix3d PartPose::face_rotation() const {
+  return rotation_by(turn_arcsec);
+}
+
+Eigen::Matrix3d PartPose::rotation() const {
+  return rotation_by(turn_arcsec) * rotation_by({face_turn_arcsec.x(), face_turn_arcsec.y(), 0.0});
+}
 
 CutPart::CutPart(const FabricationResult& result, const std::vector<std::size_t>& elements)
     : grooves_(designed_grooves(result.job)), half_edge_mm_(0.5 * result.job.tool.width_mm) {
@@ -58,9 +72,9 @@ CutPart::MadeFacet CutPart::made(const FacetPlace& at, const Machine& real, cons
   const Groove& groove = grooves_[at.element];
   MadeFacet facet{&groove, at.facet, {}};
   facet.plane = cut_plane(real, cuts_.at({at.element, at.facet}), groove.facets[at.facet].normal);
-  const Vec3 turn = pose.turn_arcsec / kArcsecPerRad;
-  facet.plane.point_mm += kMmPerUm * pose.shift_um + turn.cross(facet.plane.point_mm);
-  facet.plane.normal = (facet.plane.normal + turn.cross(facet.plane.normal)).normalized();
+  const Eigen::Matrix3d rotation = pose.rotation();
+  facet.plane.point_mm = kMmPerUm * pose.shift_um + rotation * facet.plane.point_mm;
+  facet.plane.normal = rotation * facet.plane.normal;
   return facet;
 }
 

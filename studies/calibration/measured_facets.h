@@ -67,7 +67,13 @@ struct FaceFigures {
 /// How a part lies where it is measured, against how it lay when it was cut: small, and never known.
 struct PartPose {
   geometry::Vec3 shift_um = geometry::Vec3::Zero();
-  geometry::Vec3 turn_arcsec = geometry::Vec3::Zero();
+  geometry::Vec3 turn_arcsec = geometry::Vec3::Zero();  ///< as a vector of rotation
+  /// Of a part that is seen from its face: how its facets are turned against that, before, about X and Y.
+  geometry::Vec2 face_turn_arcsec = geometry::Vec2::Zero();
+
+  /// Of the face; and of the facets.
+  Eigen::Matrix3d face_rotation() const;
+  Eigen::Matrix3d rotation() const;
 };
 
 /// The facets of a part as its programs ask for them, so that it can be told what any machine makes of them.

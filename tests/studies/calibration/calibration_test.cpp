@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -55,18 +56,23 @@ double uncertainty_of(FacetQuantity what) {
   return what == FacetQuantity::distance ? 5.0 : 1.0;
 }
 
-double truth_of(const Groove& groove, const FacetFigures& figures, std::size_t facet, FacetQuantity what) {
-  const geometry::Vec3 from_root = groove.facet_middle(facet) - groove.root_mm;
-  const double up_mm = groove.facets[facet].up_slope.dot(from_root) - figures.mean_up_mm;
-  const double along_mm = groove.level_of(facet).dot(from_root) - figures.mean_along_mm;
+/// What is measured of a facet that lies askew. \param figures as the verifier finds it in the machine
+double truth_of(const Groove& groove, const FacetFigures& figures, std::size_t facet, FacetQuantity what,
+                const RigidMotion& pose) {
+  const DesignFacet& design = groove.facets[facet];
+  const geometry::Vec3 along = groove.level_of(facet);
+  const geometry::Vec3 normal =
+      pose.direction(design.normal - figures.slope_up * design.up_slope - figures.slope_along * along);
+  const geometry::Vec3 point = pose.point(groove.root_mm + figures.mean_up_mm * design.up_slope +
+                                          figures.mean_along_mm * along + 1e-6 * figures.mean_nm * design.normal);
   switch (what) {
-    case FacetQuantity::up: return kArcsecPerRad * figures.slope_up;
-    case FacetQuantity::along: return kArcsecPerRad * figures.slope_along;
-    default: return figures.mean_nm + 1e6 * (figures.slope_up * up_mm + figures.slope_along * along_mm);
+    case FacetQuantity::up: return -kArcsecPerRad * normal.dot(design.up_slope) / normal.dot(design.normal);
+    case FacetQuantity::along: return -kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
+    default: return 1e6 * normal.dot(point - groove.facet_middle(facet)) / normal.dot(design.normal);
   }
 }
 
-/// What is measured on a machine, each part lying askew by up to a degree and a mm: only what a small pose does.
+/// What is measured on a machine, each part lying askew by 50 arcsec or so and 10 um off.
 MeasuredParts measured_on(const Machine& real, std::mt19937& bits) {
   std::normal_distribution<double> normal;
   const TestCuts& cuts = test_cuts();
@@ -79,19 +85,13 @@ MeasuredParts measured_on(const Machine& real, std::mt19937& bits) {
     const Verification v = verify_programs(plan.job, real, cuts.programs[k], {}, {});
     const std::vector<Groove> grooves = designed_grooves(plan.job);
     const geometry::Vec3 turn = 50.0 / kArcsecPerRad * geometry::Vec3(normal(bits), normal(bits), normal(bits));
-    const geometry::Vec3 shift_mm(1e-2 * normal(bits), 1e-2 * normal(bits), 0.0);
+    const RigidMotion pose{rotation_about(turn.normalized(), Angle::from_rad(turn.norm())),
+                           {1e-2 * normal(bits), 1e-2 * normal(bits), 0.0}};
     for (std::size_t element = 0; element < grooves.size(); ++element)
       for (std::size_t facet = 0; facet < 2; ++facet)
         for (const FacetQuantity what : {FacetQuantity::distance, FacetQuantity::up, FacetQuantity::along}) {
-          const Groove& groove = grooves[element];
-          const geometry::Vec3& n = groove.facets[facet].normal;
           Measurement m{k, {element, facet}, what, 0.0, uncertainty_of(what), {}, 0.0, 0};
-          const geometry::Vec3 middle = groove.facet_middle(facet);
-          const double of_pose = what == FacetQuantity::distance ? 1e6 * n.dot(shift_mm + turn.cross(middle))
-                                 : what == FacetQuantity::up
-                                     ? kArcsecPerRad * n.dot(turn.cross(groove.facets[facet].up_slope))
-                                     : kArcsecPerRad * n.dot(turn.cross(groove.level_of(facet)));
-          m.value = truth_of(groove, v.elements[element].figures.facets[facet], facet, what) + of_pose +
+          m.value = truth_of(grooves[element], v.elements[element].figures.facets[facet], facet, what, pose) +
                     m.uncertainty * normal(bits);
           m.line = static_cast<int>(parts.measurements.size()) + 2;
           parts.measurements.push_back(m);
