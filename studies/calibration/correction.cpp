@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/number_format.h"
 #include "studies/calibration/linear_model.h"
 
 namespace retrace::studies {
@@ -33,16 +34,49 @@ void tell_outlooks(Correction& result) {
   }
 }
 
+/// Waves and marks that the facets of all maps have, and warnings of them.
+void tell_rests(Correction& result, double feed_mm_per_min) {
+  std::vector<FacetRest> rests;
+  for (const RegisteredMap& map : result.registered) rests.insert(rests.end(), map.rests.begin(), map.rests.end());
+  result.facets = rests.size();
+  result.waves = common_waves(rests, feed_mm_per_min);
+  result.marks = common_marks(rests);
+  for (const FacetWave& wave : result.waves)
+    result.calibration.warnings.push_back(fmt::format(
+        "{}: waves are not corrected. {}", words_of(wave, result.facets),
+        wave.is_along_edge ? "They are the edge's own" : "Look for a drive or a spindle that runs at their frequency"));
+  for (const FacetMark& mark : result.marks)
+    result.calibration.warnings.push_back(fmt::format("{}: marks are not corrected. {}", words_of(mark),
+                                                      mark.is_of_edge
+                                                          ? "Most facets that show this place have it: it is the edge's"
+                                                          : "Figures are taken beside it"));
+}
+
 }  // namespace
 
+std::string words_of(const FacetWave& wave, std::size_t facets) {
+  return fmt::format(
+      "waves {}, {} um long, amplitude {} nm{}, on {} of {} facets",
+      wave.is_along_edge ? "along the edge" : "up the facets", fixed(wave.length_um, 1), fixed(wave.amplitude_nm, 1),
+      wave.frequency_hz ? fmt::format(", {} Hz", fixed(*wave.frequency_hz, 2)) : "", wave.facets.size(), facets);
+}
+
+std::string words_of(const FacetMark& mark) {
+  return fmt::format("{}{} {} nm {}, {} um wide, {} um {}, on {} of {} facets that show the place",
+                     mark.is_of_edge ? (mark.height_nm > 0.0 ? "a chip of the edge: " : "the edge stands out: ") : "",
+                     mark.height_nm > 0.0 ? "a ridge" : "a groove", fixed(std::abs(mark.height_nm), 1),
+                     mark.height_nm > 0.0 ? "high" : "deep", fixed(mark.width_um, 1), fixed(mark.place_um, 1),
+                     mark.is_along_cut ? "along the edge from its middle" : "up the facet", mark.facets.size(),
+                     mark.shown);
+}
+
 Correction correct(const FabricationResult& plan, std::vector<FacetMap> maps) {
-  const std::vector<Groove> grooves = designed_grooves(plan.job);
   Correction result;
   MeasuredParts measured;
   measured.file = plan.job.source;
   measured.plans = {plan};
   for (std::size_t k = 0; k < maps.size(); ++k) {
-    result.registered.push_back(registered(maps[k], grooves));
+    result.registered.push_back(registered(maps[k], plan));
     measured.map_faces.push_back(result.registered.back().face);
     measured.jobs.push_back(maps[k].file);
     for (Measurement m : result.registered.back().figures) {
@@ -58,6 +92,7 @@ Correction correct(const FabricationResult& plan, std::vector<FacetMap> maps) {
           fmt::format("{} shows too little of the blank's face: what shifts all that it shows alike is not told by it",
                       result.maps[k].file));
   tell_outlooks(result);
+  tell_rests(result, plan.job.process.finishing_feed_mm_per_min);
   return result;
 }
 

@@ -23,8 +23,15 @@ struct Correction {
   std::vector<RegisteredMap> registered;  ///< in their order
   Calibration calibration;                ///< its parts are the maps
   FacetOutlook before;                    ///< that the job's programs leave on the calibrated machine
+  std::vector<FacetWave> waves;           ///< that facets have, the highest first: told, not corrected
+  std::vector<FacetMark> marks;           ///< likewise
+  std::size_t facets = 0;                 ///< that are looked at for them
   FacetOutlook after;  ///< twice the standard uncertainty of what programs for the calibrated machine leave
 };
+
+/// In words. \param facets that were looked at
+std::string words_of(const FacetWave& wave, std::size_t facets);
+std::string words_of(const FacetMark& mark);
 
 /// \throw InputError for maps that lie nowhere on the part, show no facet or contradict each other
 Correction correct(const FabricationResult& plan, std::vector<FacetMap> maps);

@@ -10,11 +10,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <random>
+#include <set>
 #include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/chisel/check/groove.h"
 
 namespace retrace::studies {
 namespace {
@@ -270,35 +273,97 @@ struct RegionFit {
   Vec3 uncertainty;
 };
 
-/// \param along two coordinates and the height of each point
-std::optional<RegionFit> fitted(std::vector<Vec3> along) {
-  if (along.size() < kLeastPoints) return std::nullopt;
-  std::vector<double> heights;
-  for (const Vec3& p : along) heights.push_back(p.z());
-  const double middle = median_of(heights);
-  for (double& h : heights) h = std::abs(h - middle);
-  const double most = std::max(kFarOff * median_of(heights), 1e-12);
-  std::erase_if(along, [&](const Vec3& p) { return std::abs(p.z() - middle) > most; });
-  if (along.size() < kLeastPoints) return std::nullopt;
+/// How far a point lies over the plane of a fit.
+double left_of(const RegionFit& fit, const Vec3& p) {
+  return p.z() - fit.value.dot(Vec3(1.0, p.x() - fit.middle_mm.x(), p.y() - fit.middle_mm.y()));
+}
+
+/// Fits a plane, and waves with it that would tilt it.
+/// \param points two coordinates and the height of each; those too far off the others do not count
+/// \param waves in radians for a mm of either coordinate
+std::optional<RegionFit> fitted(const std::vector<Vec3>& points, const std::vector<Vec2>& waves = {}) {
+  constexpr int kRounds = 8;
   RegionFit fit{Vec2::Zero(), Vec3::Zero(), Vec3::Zero()};
-  for (const Vec3& p : along) fit.middle_mm += p.head<2>() / static_cast<double>(along.size());
-  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-  Vec3 b = Vec3::Zero();
-  for (const Vec3& p : along) {
-    const Vec3 row(1.0, p.x() - fit.middle_mm.x(), p.y() - fit.middle_mm.y());
-    a += row * row.transpose();
-    b += row * p.z();
+  const auto unknowns = static_cast<Eigen::Index>(3 + 2 * waves.size());
+  const auto row_of = [&](const Vec3& p) {
+    Eigen::VectorXd row(unknowns);
+    row.head<3>() << 1.0, p.x() - fit.middle_mm.x(), p.y() - fit.middle_mm.y();
+    for (std::size_t k = 0; k < waves.size(); ++k) {
+      const double phase = waves[k].dot(p.head<2>());
+      row.segment<2>(static_cast<Eigen::Index>(3 + 2 * k)) << std::cos(phase), std::sin(phase);
+    }
+    return row;
+  };
+  std::vector<const Vec3*> taken;
+  for (const Vec3& p : points) taken.push_back(&p);
+  for (int round = 0; round < kRounds; ++round) {
+    if (taken.size() < kLeastPoints) return std::nullopt;
+    const auto count = static_cast<double>(taken.size());
+    fit.middle_mm.setZero();
+    for (const Vec3* p : taken) fit.middle_mm += p->head<2>() / count;
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(unknowns);
+    for (const Vec3* p : taken) {
+      const Eigen::VectorXd row = row_of(*p);
+      a += row * row.transpose();
+      b += row * p->z();
+    }
+    const Eigen::MatrixXd inverse = a.inverse();
+    const Eigen::VectorXd solution = inverse * b;
+    std::vector<double> off;
+    for (const Vec3& p : points) off.push_back(std::abs(p.z() - row_of(p).dot(solution)));
+    const double most = std::max(kFarOff * median_of(off), 1e-12);
+    std::vector<const Vec3*> near;
+    double squares = 0.0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (off[k] > most) continue;
+      near.push_back(&points[k]);
+      squares += off[k] * off[k];
+    }
+    fit.value = solution.head<3>();
+    fit.uncertainty =
+        (squares / (static_cast<double>(near.size()) - static_cast<double>(unknowns)) * inverse.diagonal().head<3>())
+            .cwiseSqrt();
+    if (near == taken) break;
+    taken = std::move(near);
   }
-  const Eigen::Matrix3d inverse = a.inverse();
-  fit.value = inverse * b;
-  double rest = 0.0;
-  for (const Vec3& p : along) {
-    const double off = p.z() - fit.value.dot(Vec3(1.0, p.x() - fit.middle_mm.x(), p.y() - fit.middle_mm.y()));
-    rest += off * off;
-  }
-  fit.uncertainty = (rest / static_cast<double>(along.size() - 3) * inverse.diagonal()).cwiseSqrt();
   if (!(fit.uncertainty.minCoeff() > 0.0) || !fit.uncertainty.allFinite()) return std::nullopt;
   return fit;
+}
+
+/// A facet's plane without its marks and waves, and what that leaves. \param points up the facet, along it, the height
+std::optional<RegionFit> fitted_facet(const std::vector<Vec3>& points, const EdgeView& view, const Vec2& pitch_mm,
+                                      FacetRest& rest) {
+  constexpr int kRounds = 3;
+  std::optional<RegionFit> fit = fitted(points);
+  std::vector<Vec3> unmarked = points;
+  std::vector<Vec3> left;
+  for (int round = 0; fit && round < kRounds; ++round) {
+    left.clear();
+    for (const Vec3& p : points) left.emplace_back(view.place_mm(p).x(), view.place_mm(p).y(), left_of(*fit, p));
+    const std::size_t before = rest.marks.size();
+    rest = marks_of(rest.at, left, pitch_mm);
+    if (rest.marks.size() == before) break;
+    unmarked.clear();
+    for (const Vec3& p : points)
+      if (!rest.is_marked(view.place_mm(p))) unmarked.push_back(p);
+    fit = fitted(unmarked);
+  }
+  if (!fit) return fit;
+  add_waves(rest, left);
+  std::vector<Vec2> waves;
+  for (const surface_models::SpectralPeak& wave : rest.waves) {
+    const Eigen::Index axis = wave.axis == surface_models::Axis::x ? 0 : 1;
+    waves.push_back(2.0 * std::numbers::pi * wave.frequency_per_mm * Vec2(view.of_up[axis], view.of_along[axis]));
+  }
+  return waves.empty() ? fit : fitted(unmarked, waves);
+}
+
+/// How far points of a map lie apart along a direction of the part, in the facet that it lies in.
+double pitch_mm(const FacetMap& map, const RigidMotion& part_from_map, const Vec3& along) {
+  const Vec3 seen = part_from_map.rotation.transpose() * along;
+  return 1e-3 * std::min(map.heights.x_pixel_um / std::max(std::abs(seen.x()), 1e-6),
+                         map.heights.y_pixel_um / std::max(std::abs(seen.y()), 1e-6));
 }
 
 void add_figures(RegisteredMap& result, const Region& region, const RegionFit& fit) {
@@ -318,12 +383,14 @@ void add_figures(RegisteredMap& result, const Region& region, const RegionFit& f
 
 }  // namespace
 
-RegisteredMap registered(const FacetMap& map, const std::vector<Groove>& grooves) {
+RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
+  const std::vector<Groove> grooves = designed_grooves(plan.job);
   const DesignSurface surface(grooves);
   const Registration registration(map, surface);
   RegisteredMap result;
   result.part_from_map = registration.best(map);
   std::map<Region, std::vector<Vec3>> by_region;
+  std::set<std::size_t> elements;
   double sum = 0.0;
   std::size_t count = 0;
   for (const Vec3& p : registration.points()) {
@@ -337,22 +404,38 @@ RegisteredMap registered(const FacetMap& map, const std::vector<Groove>& grooves
       by_region[*region].emplace_back(at.x(), at.y(), height);
       continue;
     }
+    elements.insert(region->element);
     const Groove& groove = grooves[region->element];
     const Vec3 from_root = at - groove.root_mm;
     by_region[*region].emplace_back(groove.facets[region->facet].up_slope.dot(from_root),
                                     groove.level_of(region->facet).dot(from_root), height);
   }
   if (count > 0) result.rms_nm = kNmPerMm * std::sqrt(sum / static_cast<double>(count));
-  for (auto& [region, points] : by_region) {
-    const std::optional<RegionFit> fit = fitted(std::move(points));
+  const std::map<FacetPlace, EdgeView> views = edge_views(plan, {elements.begin(), elements.end()});
+  for (const auto& [region, points] : by_region) {
+    if (region.is_face) {
+      if (const std::optional<RegionFit> fit = fitted(points))
+        result.face = FaceFigures{
+            fit->middle_mm,
+            {kNmPerMm * fit->value[0], kArcsecPerRad * fit->value[1], kArcsecPerRad * fit->value[2]},
+            {kNmPerMm * fit->uncertainty[0], kArcsecPerRad * fit->uncertainty[1], kArcsecPerRad * fit->uncertainty[2]}};
+      continue;
+    }
+    const auto view = views.find({region.element, region.facet});
+    if (view == views.end()) continue;
+    const Groove& groove = grooves[region.element];
+    const auto pitch = [&](Eigen::Index axis) {
+      // Directions of the edge and of its way: the rows of what takes places on the facet to them.
+      return pitch_mm(map, result.part_from_map,
+                      view->second.of_up[axis] * groove.facets[region.facet].up_slope +
+                          view->second.of_along[axis] * groove.level_of(region.facet));
+    };
+    FacetRest rest;
+    rest.at = {region.element, region.facet};
+    const std::optional<RegionFit> fit = fitted_facet(points, view->second, {pitch(0), pitch(1)}, rest);
     if (!fit) continue;
-    if (region.is_face)
-      result.face = FaceFigures{
-          fit->middle_mm,
-          {kNmPerMm * fit->value[0], kArcsecPerRad * fit->value[1], kArcsecPerRad * fit->value[2]},
-          {kNmPerMm * fit->uncertainty[0], kArcsecPerRad * fit->uncertainty[1], kArcsecPerRad * fit->uncertainty[2]}};
-    else
-      add_figures(result, region, *fit);
+    add_figures(result, region, *fit);
+    result.rests.push_back(std::move(rest));
   }
   if (result.figures.empty()) throw InputError({map.file, 0, ""}, "shows no facet: its points lie too near to edges");
   return result;

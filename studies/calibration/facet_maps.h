@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fabrication/chisel/check/groove.h"
+#include "studies/calibration/facet_marks.h"
 #include "studies/calibration/measured_facets.h"
 #include "surface_models/height_map.h"
 
@@ -27,9 +27,12 @@ struct RegisteredMap {
   double rms_nm = 0.0;                     ///< of what then lies off the design
   std::vector<Measurement> figures;        ///< of every facet that it shows: distance and both tilts
   std::optional<FaceFigures> face;         ///< none: it shows too little of the blank's face
+  std::vector<FacetRest> rests;      ///< of the facets that figures are of: what these leave
 };
 
+/// Marks of chips and scratches are left out of figures.
+/// \param plan of the programs that cut the part
 /// \throw InputError for a map that lies nowhere on the design, or shows no facet
-RegisteredMap registered(const FacetMap& map, const std::vector<fabrication::Groove>& grooves);
+RegisteredMap registered(const FacetMap& map, const FabricationResult& plan);
 
 }  // namespace retrace::studies

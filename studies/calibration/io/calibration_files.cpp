@@ -76,6 +76,34 @@ std::string rows_of(const Calibration& result) {
   return text;
 }
 
+Json facets_of(const std::vector<FacetPlace>& facets) {
+  Json json = Json::array();
+  for (const FacetPlace& at : facets) json.push_back({{"element", at.element}, {"facet", at.facet + 1}});
+  return json;
+}
+
+void put_rests(Json& json, const Correction& result) {
+  json["facets"] = result.facets;
+  json["waves"] = Json::array();
+  for (const FacetWave& wave : result.waves) {
+    Json of_wave = {{"direction", wave.is_along_edge ? "edge" : "cut"},
+                    {"length_um", wave.length_um},
+                    {"amplitude_nm", wave.amplitude_nm}};
+    if (wave.frequency_hz) of_wave["frequency_hz"] = *wave.frequency_hz;
+    of_wave["facets"] = facets_of(wave.facets);
+    json["waves"].push_back(std::move(of_wave));
+  }
+  json["marks"] = Json::array();
+  for (const FacetMark& mark : result.marks)
+    json["marks"].push_back({{"direction", mark.is_along_cut ? "cut" : "edge"},
+                             {"of_edge", mark.is_of_edge},
+                             {"place_um", mark.place_um},
+                             {"height_nm", mark.height_nm},
+                             {"width_um", mark.width_um},
+                             {"shown", mark.shown},
+                             {"facets", facets_of(mark.facets)}});
+}
+
 }  // namespace
 
 std::string calibration_json(const Calibration& result) {
@@ -111,6 +139,7 @@ std::string correction_json(const Correction& result) {
   };
   json["before"] = outlook(result.before);
   json["after"] = outlook(result.after);
+  put_rests(json, result);
   return result_text("retrace.correction/1", std::move(json), result.calibration.warnings);
 }
 
@@ -129,6 +158,10 @@ std::string correction_table(const Correction& result) {
                       fixed(result.before.distance_nm, 1), fixed(result.before.tilt_arcsec, 2));
   text += fmt::format("  on the corrected machine within        {} nm, {} arcsec\n", fixed(result.after.distance_nm, 1),
                       fixed(result.after.tilt_arcsec, 2));
+  for (const FacetWave& wave : result.waves) text += fmt::format("  left: {}\n", words_of(wave, result.facets));
+  for (const FacetMark& mark : result.marks) text += fmt::format("  left: {}\n", words_of(mark));
+  if (result.waves.empty() && result.marks.empty())
+    text += fmt::format("  left: no waves or marks on {} facets\n", result.facets);
   return text;
 }
 

@@ -1,0 +1,223 @@
+#include "studies/calibration/facet_marks.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "fabrication/chisel/plan/edge_cuts.h"
+#include "fabrication/machine/setup.h"
+
+namespace retrace::studies {
+namespace {
+
+using namespace fabrication;
+using geometry::Vec2, geometry::Vec3;
+using surface_models::Axis, surface_models::HeightMap, surface_models::Scratch, surface_models::SpectralPeak;
+
+constexpr double kUmPerMm = 1e3;
+/// What a line of a facet is compared with lies so far beside it at most.
+constexpr double kBesideUm = 30.0;
+/// Waves of which fewer go on the facet are its form.
+constexpr double kLeastPeriods = 3.0;
+/// Frequencies are the same within this share, or the share of a period over the facet.
+constexpr double kSameFrequency = 0.02;
+constexpr double kSamePeriods = 0.5;
+/// Of the facets that show a place, those that must have a mark there if it is the edge's.
+constexpr double kShareOfEdge = 0.5;
+/// Marks nearer to the end of what a facet shows are not seen.
+constexpr double kUnseenUm = kBesideUm;
+
+/// Heights of places on a grid, the mean of those that fall into a cell; nothing in others.
+HeightMap laid_out(std::span<const Vec3> left, const Vec2& low_mm, const Vec2& high_mm, const Vec2& pitch_mm) {
+  const auto cells = [&](Eigen::Index axis) {
+    return 1 + static_cast<std::size_t>(std::lround((high_mm[axis] - low_mm[axis]) / pitch_mm[axis]));
+  };
+  HeightMap map{cells(0), cells(1), kUmPerMm * pitch_mm.x(), kUmPerMm * pitch_mm.y(), {}};
+  map.heights_nm.assign(map.columns * map.rows, 0.0);
+  std::vector<double> count(map.heights_nm.size(), 0.0);
+  for (const Vec3& p : left) {
+    const auto cell = [&](Eigen::Index axis) {
+      return static_cast<std::size_t>(std::lround((p[axis] - low_mm[axis]) / pitch_mm[axis]));
+    };
+    const std::size_t at = cell(1) * map.columns + cell(0);
+    map.heights_nm[at] += kNmPerMm * p.z();
+    count[at] += 1.0;
+  }
+  for (std::size_t k = 0; k < count.size(); ++k)
+    map.heights_nm[k] = count[k] > 0.0 ? map.heights_nm[k] / count[k] : surface_models::kMissing;
+  return map;
+}
+
+/// The same without what lies in marks.
+HeightMap laid_out(const FacetRest& rest, std::span<const Vec3> left) {
+  std::vector<Vec3> unmarked;
+  for (const Vec3& p : left)
+    if (!rest.is_marked(p.head<2>())) unmarked.push_back(p);
+  return laid_out(unmarked, rest.low_mm, rest.high_mm, rest.pitch_mm);
+}
+
+Eigen::Index across(Axis along) {
+  return along == Axis::y ? 0 : 1;
+}
+
+/// One of a facet, for gathering.
+template <class Thing>
+struct Found {
+  const FacetRest* rest = nullptr;
+  Thing thing;
+};
+
+double periods(const Found<SpectralPeak>& wave) {
+  const Eigen::Index axis = wave.thing.axis == Axis::x ? 0 : 1;
+  return wave.rest->high_mm[axis] - wave.rest->low_mm[axis];
+}
+
+FacetWave gathered(const std::vector<Found<SpectralPeak>>& waves, double feed_mm_per_min) {
+  FacetWave wave;
+  wave.is_along_edge = waves.front().thing.axis == Axis::x;
+  double frequency_per_mm = 0.0;
+  double power = 0.0;
+  for (const auto& [rest, peak] : waves) {
+    frequency_per_mm += peak.frequency_per_mm / static_cast<double>(waves.size());
+    power += 2.0 * peak.sq_nm * peak.sq_nm / static_cast<double>(waves.size());
+    wave.facets.push_back(rest->at);
+  }
+  wave.length_um = kUmPerMm / frequency_per_mm;
+  wave.amplitude_nm = std::sqrt(power);
+  constexpr double kSecondsPerMin = 60.0;
+  if (!wave.is_along_edge) wave.frequency_hz = frequency_per_mm * feed_mm_per_min / kSecondsPerMin;
+  return wave;
+}
+
+FacetMark gathered(const std::vector<Found<Scratch>>& marks, const std::vector<FacetRest>& rests) {
+  FacetMark mark;
+  const Axis along = marks.front().thing.along;
+  mark.is_along_cut = along == Axis::y;
+  for (const auto& [rest, scratch] : marks) {
+    const double share = 1.0 / static_cast<double>(marks.size());
+    mark.place_um += share * scratch.position_um;
+    mark.height_nm -= share * scratch.depth_nm;
+    mark.width_um += share * scratch.width_um;
+    mark.facets.push_back(rest->at);
+  }
+  for (const FacetRest& rest : rests) {
+    const double low_um = kUmPerMm * rest.low_mm[across(along)];
+    const double high_um = kUmPerMm * rest.high_mm[across(along)];
+    const bool is_of_mark = std::ranges::find(mark.facets, rest.at) != mark.facets.end();
+    mark.shown += is_of_mark || (low_um + kUnseenUm < mark.place_um && mark.place_um < high_um - kUnseenUm) ? 1U : 0U;
+  }
+  mark.is_of_edge = mark.is_along_cut && mark.facets.size() > 1 &&
+                    static_cast<double>(mark.facets.size()) >= kShareOfEdge * static_cast<double>(mark.shown);
+  return mark;
+}
+
+}  // namespace
+
+std::map<FacetPlace, EdgeView> edge_views(const FabricationResult& plan, const std::vector<std::size_t>& elements) {
+  const std::vector<Groove> grooves = designed_grooves(plan.job);
+  std::map<FacetPlace, EdgeView> views;
+  for (const FacetEdgeCut& made : facet_edge_cuts(plan.job, plan.plan, elements)) {
+    if (!made.ends_at_root && !made.is_ploughed) continue;
+    const Groove& groove = grooves[made.element];
+    const Vec3& up = groove.facets[made.facet].up_slope;
+    const Vec3 level = groove.level_of(made.facet);
+    const EdgeCut& cut = made.cut;
+    const RigidMotion back = machine_from_workpiece(plan.machine, rotary_pose(plan.machine, cut.at)).inverse();
+    const Vec3 middle = back.point(machine_point(plan.machine, cut.at) + tool_turn(plan.machine) * cut.tip_mm);
+    const Vec3 edge = back.direction(cutting_edge(plan.machine, cut.edge_rise));
+    Vec3 way = groove.facets[made.facet].normal.cross(edge);
+    if (way.dot(up) < 0.0) way = -way;
+    const auto seen = [&](const Vec3& v) { return Vec2(edge.dot(v), way.dot(v)); };
+    views[{made.element, made.facet}] = {seen(groove.root_mm - middle), seen(up), seen(level)};
+  }
+  return views;
+}
+
+bool FacetRest::is_marked(const Vec2& place_mm) const {
+  return std::ranges::any_of(marks, [&](const Scratch& mark) {
+    const Eigen::Index axis = across(mark.along);
+    return std::abs(kUmPerMm * place_mm[axis] - mark.position_um) <= mark.width_um + kUmPerMm * pitch_mm[axis];
+  });
+}
+
+FacetRest marks_of(const FacetPlace& at, std::span<const Vec3> left, const Vec2& pitch_mm) {
+  FacetRest rest;
+  rest.at = at;
+  rest.pitch_mm = pitch_mm;
+  if (left.empty()) return rest;
+  rest.low_mm = rest.high_mm = left.front().head<2>();
+  for (const Vec3& p : left) {
+    rest.low_mm = rest.low_mm.cwiseMin(p.head<2>());
+    rest.high_mm = rest.high_mm.cwiseMax(p.head<2>());
+  }
+  // One by one, the deepest first, and without those before it: lines beside a wide one stand out against it.
+  constexpr std::size_t kMostMarks = 16;
+  while (rest.marks.size() < kMostMarks) {
+    const HeightMap map = laid_out(rest, left);
+    std::vector<Scratch> found = surface_models::find_scratches(map, Axis::x, kBesideUm);
+    for (const Scratch& scratch : surface_models::find_scratches(map, Axis::y, kBesideUm)) found.push_back(scratch);
+    const auto deepest =
+        std::ranges::max_element(found, {}, [](const Scratch& scratch) { return std::abs(scratch.depth_nm); });
+    if (deepest == found.end()) break;
+    deepest->position_um += kUmPerMm * rest.low_mm[across(deepest->along)];
+    rest.marks.push_back(*deepest);
+  }
+  return rest;
+}
+
+void add_waves(FacetRest& rest, std::span<const Vec3> left) {
+  if (left.empty()) return;
+  rest.waves = surface_models::dominant_peaks(laid_out(rest, left));
+  std::erase_if(rest.waves, [&](const SpectralPeak& wave) {
+    return wave.frequency_per_mm * periods({&rest, wave}) < kLeastPeriods;
+  });
+}
+
+std::vector<FacetWave> common_waves(const std::vector<FacetRest>& rests, double feed_mm_per_min) {
+  std::vector<std::vector<Found<SpectralPeak>>> groups;
+  for (const FacetRest& rest : rests)
+    for (const SpectralPeak& peak : rest.waves) {
+      const Found<SpectralPeak> wave{&rest, peak};
+      const auto same = std::ranges::find_if(groups, [&](const auto& group) {
+        const SpectralPeak& first = group.front().thing;
+        const double most = std::max(kSameFrequency * first.frequency_per_mm,
+                                     kSamePeriods / std::min(periods(wave), periods(group.front())));
+        return first.axis == peak.axis && std::abs(first.frequency_per_mm - peak.frequency_per_mm) <= most;
+      });
+      (same != groups.end() ? *same : groups.emplace_back()).push_back(wave);
+    }
+  std::vector<FacetWave> waves;
+  for (const auto& group : groups) waves.push_back(gathered(group, feed_mm_per_min));
+  std::ranges::stable_sort(waves, std::ranges::greater(), &FacetWave::amplitude_nm);
+  return waves;
+}
+
+std::vector<FacetMark> common_marks(const std::vector<FacetRest>& rests) {
+  std::vector<std::vector<Found<Scratch>>> groups;
+  for (const FacetRest& rest : rests)
+    for (const Scratch& mark : rest.marks) {
+      const auto same = std::ranges::find_if(groups, [&](const auto& group) {
+        const Scratch& first = group.front().thing;
+        return first.along == mark.along && (first.depth_nm > 0.0) == (mark.depth_nm > 0.0) &&
+               std::abs(first.position_um - mark.position_um) <= std::max(first.width_um, mark.width_um);
+      });
+      auto& group = same != groups.end() ? *same : groups.emplace_back();
+      if (group.empty() || group.back().rest != &rest) group.push_back({&rest, mark});
+    }
+  std::vector<FacetMark> marks;
+  for (const auto& group : groups) marks.push_back(gathered(group, rests));
+  // What stands out beside a chip on a facet that shows little of it.
+  const std::vector<FacetMark> all = marks;
+  std::erase_if(marks, [&](const FacetMark& mark) {
+    return std::ranges::any_of(all, [&](const FacetMark& chip) {
+      return chip.is_of_edge && mark.is_along_cut && mark.facets.size() < chip.facets.size() &&
+             std::abs(mark.height_nm) < std::abs(chip.height_nm) &&
+             std::abs(mark.place_um - chip.place_um) < 2.0 * kBesideUm;
+    });
+  });
+  std::ranges::stable_sort(marks, std::ranges::greater(), [](const FacetMark& m) { return std::abs(m.height_nm); });
+  return marks;
+}
+
+}  // namespace retrace::studies

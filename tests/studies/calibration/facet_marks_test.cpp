@@ -1,0 +1,202 @@
+#include "studies/calibration/facet_marks.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "fabrication/chisel/check/groove.h"
+#include "studies/calibration/correction.h"
+#include "tests/support/prism_jobs.h"
+#include "tests/support/seen_parts.h"
+
+// Parts whose facets have waves, or marks of a chipped edge, seen with noise at a place and askew as nobody knows: what
+// is told of them must be what they have, nothing is told of those that have none, and the machine is found as well.
+
+namespace retrace::studies::facet_marks_test {
+namespace {
+
+using namespace fabrication;
+using geometry::Vec3;
+using test::CutSurface, test::four_prisms, test::hidden_errors, test::seen;
+
+/// Where a point lies under the edge that cut its facet: along it from its middle, and up the facet. Facets stand
+/// upright with their outward normal along -Y while they are cut, so that the edge, along X, is z times that.
+struct UnderEdge {
+  double along_mm = 0.0;
+  double up_mm = 0.0;
+};
+
+/// The facets of a cut part with a pattern over what the edge does, in nm.
+template <class Pattern>
+class PatternedSurface {
+ public:
+  PatternedSurface(const CutSurface& cut, Pattern pattern)
+      : cut_(cut), grooves_(designed_grooves(four_prisms().job)), pattern_(std::move(pattern)) {}
+
+  double z(double x, double y) const {
+    const double plain = cut_.z(x, y);
+    if (plain >= 0.0) return plain;
+    const Vec3 p(x, y, plain);
+    for (const Groove& groove : grooves_) {
+      const Vec3 from_root = p - groove.root_mm;
+      const Vec3 across = from_root - groove.root_direction * groove.root_direction.dot(from_root);
+      if (std::abs(groove.along_mm(p)) > groove.half_width_mm || across.head<2>().norm() > groove.half_base_mm)
+        continue;
+      const DesignFacet& facet =
+          groove.facets[groove.facets[0].up_slope.dot(from_root) > groove.facets[1].up_slope.dot(from_root) ? 0 : 1];
+      const Vec3 edge = Vec3::UnitZ().cross(facet.normal).normalized();
+      const double nm = pattern_(UnderEdge{edge.dot(from_root), facet.up_slope.dot(from_root)});
+      return plain + 1e-6 * nm / facet.normal.z();
+    }
+    return plain;
+  }
+
+ private:
+  const CutSurface& cut_;
+  std::vector<Groove> grooves_;
+  Pattern pattern_;
+};
+
+struct HiddenMachine {
+  std::vector<double> errors;
+  CutSurface cut;
+
+  explicit HiddenMachine(std::mt19937& bits)
+      : errors(hidden_errors(bits)), cut(with_errors(four_prisms().machine, errors)) {}
+
+  template <class Pattern>
+  Correction corrected(std::mt19937& bits, Pattern pattern) const {
+    return correct(four_prisms(), {seen(PatternedSurface(cut, pattern), bits)});
+  }
+  /// How many intervals of 95 % of what is told hold what is hidden, and how many there are.
+  std::pair<int, int> held(const Correction& found) const {
+    std::pair<int, int> counts;
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      const CalibratedQuantity& q = found.calibration.quantities[k];
+      if (!q.is_told) continue;
+      counts.first += std::abs(q.value - errors[k]) < 1.96 * q.uncertainty ? 1 : 0;
+      ++counts.second;
+    }
+    return counts;
+  }
+};
+
+constexpr std::uint32_t kMachines = 40;
+
+TEST(FacetMarks, NothingIsToldOfNoise) {
+  std::uint32_t alarms = 0;
+  for (std::uint32_t seed = 1; seed <= kMachines; ++seed) {
+    std::mt19937 bits(seed);
+    const HiddenMachine machine(bits);
+    const Correction found = machine.corrected(bits, [](const UnderEdge&) { return 0.0; });
+    EXPECT_EQ(found.facets, 8U);
+    alarms += found.waves.empty() && found.marks.empty() ? 0U : 1U;
+  }
+  EXPECT_LE(alarms, kMachines / 20);
+}
+
+/// Along the edge, where all facets have them as the edge has, and up the facet, where each begins as it happens.
+TEST(FacetMarks, WavesAreFound) {
+  int held = 0;
+  int all = 0;
+  for (std::uint32_t seed = 1; seed <= kMachines; ++seed) {
+    std::mt19937 bits(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    const HiddenMachine machine(bits);
+    const bool is_along = seed % 2 == 0;
+    const double length_um = seed <= 4 ? 40.0 : 30.0 + 40.0 * uniform(bits);
+    const double amplitude_nm = seed <= 4 ? 20.0 : 10.0 + 20.0 * uniform(bits);
+    const double phase = 2.0 * std::numbers::pi * uniform(bits);
+    const Correction found = machine.corrected(bits, [=](const UnderEdge& at) {
+      return amplitude_nm * std::sin(phase + 2e3 * std::numbers::pi / length_um * (is_along ? at.along_mm : at.up_mm));
+    });
+    ASSERT_EQ(found.waves.size(), 1U) << seed;
+    const FacetWave& wave = found.waves.front();
+    EXPECT_EQ(wave.is_along_edge, is_along) << seed;
+    EXPECT_NEAR(wave.length_um, length_um, 0.05 * length_um) << seed;
+    EXPECT_NEAR(wave.amplitude_nm, amplitude_nm, 0.2 * amplitude_nm) << seed;
+    EXPECT_GE(wave.facets.size(), 6U) << seed;
+    ASSERT_EQ(wave.frequency_hz.has_value(), !is_along) << seed;
+    // Finishing goes at 20 mm/min.
+    if (!is_along) {
+      EXPECT_NEAR(*wave.frequency_hz, 20.0 / 60.0 / (1e-3 * wave.length_um), 1e-9) << seed;
+    }
+    EXPECT_TRUE(found.marks.empty()) << seed;
+    EXPECT_FALSE(found.calibration.warnings.empty()) << seed;
+    const auto [in, of] = machine.held(found);
+    held += in;
+    all += of;
+  }
+  EXPECT_GE(held, 0.9 * all);
+}
+
+/// A pit in the edge, of which every facet has the negative.
+TEST(FacetMarks, ChipsOfTheEdgeAreFound) {
+  int held = 0;
+  int all = 0;
+  for (std::uint32_t seed = 1; seed <= kMachines; ++seed) {
+    std::mt19937 bits(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    const HiddenMachine machine(bits);
+    const double place_um = -180.0 + 360.0 * uniform(bits);
+    const double width_um = seed <= 20 ? 20.0 : 15.0 + 10.0 * uniform(bits);
+    const double depth_nm = seed <= 20 ? 50.0 : 30.0 + 70.0 * uniform(bits);
+    const Correction found = machine.corrected(bits, [=](const UnderEdge& at) {
+      const double off = (1e3 * at.along_mm - place_um) / (0.5 * width_um);
+      return depth_nm * std::max(0.0, 1.0 - off * off);
+    });
+    ASSERT_EQ(found.marks.size(), 1U) << seed;
+    const FacetMark& mark = found.marks.front();
+    EXPECT_TRUE(mark.is_along_cut) << seed;
+    EXPECT_TRUE(mark.is_of_edge) << seed;
+    EXPECT_NEAR(mark.place_um, place_um, 10.0) << seed;
+    EXPECT_NEAR(mark.height_nm, depth_nm, 0.25 * depth_nm) << seed;
+    // Of a part that lies off, the map may not show the end of a facet.
+    EXPECT_EQ(mark.facets.size(), mark.shown) << seed;
+    EXPECT_GE(mark.shown, 6U) << seed;
+    EXPECT_TRUE(found.waves.empty()) << seed;
+    const auto [in, of] = machine.held(found);
+    held += in;
+    all += of;
+  }
+  EXPECT_GE(held, 0.9 * all);
+}
+
+/// A scratch of a single facet is none of the edge.
+TEST(FacetMarks, AScratchOfOneFacetIsNotTheEdges) {
+  std::mt19937 bits(3);
+  const HiddenMachine machine(bits);
+  const Groove groove = designed_grooves(four_prisms().job).front();
+  class Scratched {
+   public:
+    Scratched(const CutSurface& cut, const Groove& groove) : cut_(cut), groove_(groove) {}
+    double z(double x, double y) const {
+      const double plain = cut_.z(x, y);
+      const Vec3 p(x, y, plain);
+      const bool is_there = plain < 0.0 && std::abs(groove_.along_mm(p) - 0.1) < 0.008 &&
+                            groove_.facets[0].up_slope.dot(p - groove_.root_mm) > 0.0 &&
+                            std::abs(y - groove_.root_mm.y()) < groove_.half_base_mm && y > groove_.root_mm.y();
+      return is_there ? plain - 8e-5 : plain;
+    }
+
+   private:
+    const CutSurface& cut_;
+    const Groove& groove_;
+  };
+  const Correction found = correct(four_prisms(), {seen(Scratched(machine.cut, groove), bits)});
+  ASSERT_EQ(found.marks.size(), 1U);
+  EXPECT_FALSE(found.marks.front().is_of_edge);
+  EXPECT_LT(found.marks.front().height_nm, 0.0);
+  ASSERT_EQ(found.marks.front().facets.size(), 1U);
+  EXPECT_EQ(found.marks.front().facets.front(), (FacetPlace{0, 0}));
+  EXPECT_NEAR(std::abs(found.marks.front().place_um), 100.0, 10.0);
+  EXPECT_EQ(found.marks.front().shown, 8U);
+}
+
+}  // namespace
+}  // namespace retrace::studies::facet_marks_test

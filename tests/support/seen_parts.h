@@ -1,0 +1,141 @@
+#pragma once
+
+// A part of four prisms as the verifier cuts it on a machine with hidden errors, and what an instrument sees of it.
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/verify.h"
+#include "studies/calibration/correction.h"
+#include "tests/support/prism_jobs.h"
+
+namespace retrace::test {
+
+/// Four prisms with land of 0.25 mm between them.
+inline const studies::FabricationResult& four_prisms() {
+  static const studies::FabricationResult made = planned(prism_job({90.0, 0.25, 10.0, 1}));
+  return made;
+}
+
+/// The planes that the verifier finds of a part's facets, and the face, as a surface over the plane.
+class CutSurface {
+ public:
+  explicit CutSurface(const fabrication::Machine& real, const studies::FabricationResult& made = four_prisms())
+      : grooves_(fabrication::designed_grooves(made.job)), figures_(cut_on(real, made)) {
+    for (std::size_t element = 0; element < grooves_.size(); ++element)
+      for (std::size_t facet = 0; facet < 2; ++facet) {
+        const fabrication::FacetFigures& f = figures_[2 * element + facet];
+        const fabrication::DesignFacet& design = grooves_[element].facets[facet];
+        const geometry::Vec3 along = grooves_[element].level_of(facet);
+        const geometry::Vec3 point = grooves_[element].root_mm + f.mean_up_mm * design.up_slope +
+                                     f.mean_along_mm * along + 1e-6 * f.mean_nm * design.normal;
+        const geometry::Vec3 normal =
+            (design.normal - f.slope_up * design.up_slope - f.slope_along * along).normalized();
+        planes_.emplace_back(normal, point);
+      }
+  }
+
+  double z(double x, double y) const {
+    const geometry::Vec3 p(x, y, 0.0);
+    for (std::size_t element = 0; element < grooves_.size(); ++element) {
+      const fabrication::Groove& groove = grooves_[element];
+      const double along = groove.along_mm(p);
+      const double across =
+          groove.root_direction.x() * (y - groove.root_mm.y()) - groove.root_direction.y() * (x - groove.root_mm.x());
+      if (std::abs(along) > groove.half_width_mm || std::abs(across) > groove.half_base_mm) continue;
+      double z = -1e9;
+      for (const auto& [normal, point] : {planes_[2 * element], planes_[2 * element + 1]})
+        z = std::max(z, point.z() - (normal.x() * (x - point.x()) + normal.y() * (y - point.y())) / normal.z());
+      return std::min(z, 0.0);
+    }
+    return 0.0;
+  }
+
+  /// How far facets are off at most, but for what any part does that lies turned or shifted: that is not told.
+  studies::FacetOutlook off() const {
+    constexpr double kTiltNm = 250.0;  // weighs a turn as what it does over half a facet
+    const auto facets = static_cast<Eigen::Index>(planes_.size());
+    Eigen::MatrixXd of_pose(3 * facets, 5);
+    Eigen::VectorXd off(3 * facets);
+    for (Eigen::Index k = 0; k < facets; ++k) {
+      const fabrication::FacetFigures& f = figures_[static_cast<std::size_t>(k)];
+      const fabrication::Groove& groove = grooves_[static_cast<std::size_t>(k / 2)];
+      const fabrication::DesignFacet& design = groove.facets[static_cast<std::size_t>(k % 2)];
+      const geometry::Vec3 along = groove.level_of(static_cast<std::size_t>(k % 2));
+      const geometry::Vec3 at = groove.root_mm + f.mean_up_mm * design.up_slope + f.mean_along_mm * along;
+      const geometry::Vec3& n = design.normal;
+      of_pose.row(3 * k) << at.cross(n).transpose(), n.x(), n.y();
+      of_pose.row(3 * k + 1) << kTiltNm * 1e-6 * design.up_slope.cross(n).transpose(), 0.0, 0.0;
+      of_pose.row(3 * k + 2) << kTiltNm * 1e-6 * along.cross(n).transpose(), 0.0, 0.0;
+      off.segment<3>(3 * k) << 1e-6 * f.mean_nm, kTiltNm * 1e-6 * f.slope_up, kTiltNm * 1e-6 * f.slope_along;
+    }
+    const Eigen::VectorXd left = off - of_pose * of_pose.colPivHouseholderQr().solve(off);
+    studies::FacetOutlook most;
+    for (Eigen::Index k = 0; k < left.size(); ++k)
+      if (k % 3 == 0)
+        most.distance_nm = std::max(most.distance_nm, 1e6 * std::abs(left[k]));
+      else
+        most.tilt_arcsec = std::max(most.tilt_arcsec, studies::kArcsecPerRad * 1e6 / kTiltNm * std::abs(left[k]));
+    return most;
+  }
+
+  /// By how much the angle of a groove is off at most.
+  double apex_error_arcsec() const {
+    double most = 0.0;
+    for (std::size_t k = 0; k < figures_.size(); k += 2)
+      most = std::max(most, studies::kArcsecPerRad * std::abs(figures_[k].slope_up + figures_[k + 1].slope_up));
+    return most;
+  }
+
+ private:
+  static std::vector<fabrication::FacetFigures> cut_on(const fabrication::Machine& real,
+                                                       const studies::FabricationResult& made) {
+    const fabrication::Verification v = fabrication::verify_programs(made.job, real, programs_of(made), {}, {});
+    std::vector<fabrication::FacetFigures> figures;
+    for (const fabrication::ElementResult& element : v.elements)
+      for (const fabrication::FacetFigures& facet : element.figures.facets) figures.push_back(facet);
+    return figures;
+  }
+
+  std::vector<fabrication::Groove> grooves_;
+  std::vector<fabrication::FacetFigures> figures_;  ///< facet by facet
+  std::vector<std::pair<geometry::Vec3, geometry::Vec3>> planes_;
+};
+
+/// What an instrument sees of all of the part, with 5 nm of noise; 220 points a row are 6 um apart.
+template <class Surface>
+studies::FacetMap seen(const Surface& surface, std::mt19937& bits, std::size_t points = 220) {
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const Eigen::AngleAxisd turn(0.02 * uniform(bits), geometry::Vec3::UnitZ());
+  const Eigen::AngleAxisd tip(0.003 * uniform(bits), geometry::Vec3(uniform(bits), uniform(bits), 0.0).normalized());
+  const Eigen::Matrix3d part_from_map = (turn * tip).toRotationMatrix();
+  const geometry::Vec3 shift(0.15 * uniform(bits), 0.15 * uniform(bits), 0.3 * uniform(bits));
+  const double pixel_mm = 1.32 / static_cast<double>(points);
+  studies::FacetMap map{"map.txt", {points, points, 1e3 * pixel_mm, 1e3 * pixel_mm, {}}, {0.0, 0.0}, 0.0};
+  for (std::size_t row = 0; row < points; ++row)
+    for (std::size_t column = 0; column < points; ++column) {
+      const double x = pixel_mm * (static_cast<double>(column) - 0.5 * static_cast<double>(points - 1));
+      const double y = pixel_mm * (static_cast<double>(row) - 0.5 * static_cast<double>(points - 1));
+      // The height at which the line of sight meets the part: it stands askew on it, by so little that each step leaves
+      // less than a hundredth of what is missing.
+      constexpr int kSteps = 8;
+      double z = -shift.z();
+      for (int step = 0; step < kSteps; ++step) {
+        const geometry::Vec3 p = part_from_map * geometry::Vec3(x, y, z) + shift;
+        const double missing = surface.z(p.x(), p.y()) - p.z();
+        z += missing;
+        if (std::abs(missing) < 1e-10) break;
+      }
+      map.heights.heights_nm.push_back(1e6 * z + 5.0 * normal(bits));
+    }
+  return map;
+}
+
+}  // namespace retrace::test
