@@ -43,14 +43,21 @@ std::vector<std::string> files_of_making(const MakingOptions& options) {
   return files;
 }
 
+std::string name_from(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  const fs::path base = folder.empty() ? fs::path(".") : folder;
+  const fs::path direct =
+      fs::absolute(file).lexically_normal().lexically_relative(fs::absolute(base / "").lexically_normal());
+  // Where a folder is a link, what lies above it is not what its name says.
+  if (!direct.empty() && fs::equivalent(base / direct, file, error)) return direct.string();
+  const fs::path followed = fs::relative(file, base, error);
+  return error || followed.empty() ? fs::absolute(file).string() : followed.string();
+}
+
 std::string job_text_at(studies::MadeJob& made, const fs::path& file) {
   const fs::path machine = made.job.machine;
-  const fs::path folder = file.parent_path();
-  if (machine.has_extension() && !machine.is_absolute()) {
-    std::error_code error;
-    const fs::path relative = fs::relative(machine, folder.empty() ? fs::path(".") : folder, error);
-    if (!error && !relative.empty()) made.job.machine = relative.string();
-  }
+  if (machine.has_extension() && !machine.is_absolute()) made.job.machine = name_from(file.parent_path(), machine);
+  if (!file.empty() && !made.design_file.empty()) made.job.design = name_from(file.parent_path(), made.design_file);
   return fabrication::job_text(made.job);
 }
 

@@ -29,8 +29,11 @@ studies::JobRequest job_request(const MakingOptions& options, double tool_width_
 /// Files that making a job reads beside the design. Names without an ending are shipped ones, not files.
 std::vector<std::string> files_of_making(const MakingOptions& options);
 
-/// The text of a job that is to lie at a place: its machine's file is named as seen from there. \param file empty: the
-/// working directory
+/// How a job that is to lie in a folder names a file. \param folder empty: the working directory
+std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file);
+
+/// The text of a job that is to lie at a place: its design and its machine's file are named as seen from there.
+/// \param file empty: the job is printed, and names its design by the file's name alone
 std::string job_text_at(studies::MadeJob& made, const std::filesystem::path& file);
 
 }  // namespace retrace::app

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/commands.h"
+#include "app/job_output.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
 #include "core/error.h"
@@ -65,8 +66,7 @@ fabrication::Job corrected_job(fabrication::Job job, const fs::path& file, const
   job.machine = "machine.toml";
   std::error_code error;
   const fs::path design = file.parent_path() / job.design;
-  if (job.design.empty() || !fs::is_regular_file(design, error)) return job;
-  if (const fs::path seen = fs::relative(design, folder, error); !error) job.design = seen.string();
+  if (!job.design.empty() && fs::is_regular_file(design, error)) job.design = name_from(folder, design);
   return job;
 }
 

@@ -184,7 +184,8 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   MadeJob made;
   Job& job = made.job;
   job.title = design.title;
-  job.design = design.source == "-" ? "" : std::filesystem::path(design.source).filename().string();
+  if (design.source != "-") made.design_file = design.source;
+  job.design = made.design_file.filename().string();
   job.strategy = strategy_of(request.strategy);
   job.element = element_of(design, request);
   job.array = design.part().array;

@@ -24,7 +24,8 @@ struct JobRequest {
 };
 
 struct MadeJob {
-  fabrication::Job job;
+  fabrication::Job job;               ///< names its design by the file's name alone
+  std::filesystem::path design_file;  ///< that it was made from, from the working directory; none: standard input
   std::int64_t elements = 0;          ///< that are cut
   std::int64_t partial_elements = 0;  ///< that the design has and the job leaves out
   std::vector<std::string> warnings;

@@ -154,6 +154,33 @@ TEST(Fabricate, AMachineOfTheUserIsNamedFromTheJob) {
   EXPECT_EQ(retrace_json(folder, {"fabricate", "jobs/j.toml"})["machine"], "paper");
 }
 
+/// Also through a folder that is a link, above which lies something else than its name says.
+TEST(Job, NamesItsDesignFromWhereItLies) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", design("single", 0) + "\n");
+  std::filesystem::create_directories(folder.path() / "far/away");
+  std::filesystem::create_directories(folder.path() / "jobs");
+  std::filesystem::create_directory_symlink(folder.path() / "far/away", folder.path() / "link");
+  const auto named = [&](const Arguments& out) {
+    const Outcome made = retrace(folder, with({"job", "d.toml", "--tool-width-mm", "0.451"}, out));
+    EXPECT_EQ(made.code, 0) << made.err;
+    const std::string text = out.empty() ? made.out : folder.read(out[1]);
+    const std::size_t at = text.find("design = ");
+    return at == std::string::npos ? "nothing" : text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_EQ(named({}), "design = \"d.toml\"");
+  EXPECT_EQ(named({"-o", "j.toml"}), "design = \"d.toml\"");
+  EXPECT_EQ(named({"-o", "jobs/j.toml"}), "design = \"../d.toml\"");
+  EXPECT_EQ(named({"-o", "link/j.toml"}), "design = \"../../d.toml\"");
+  // The part that its programs leave has the design's plate, not one that is made up.
+  ASSERT_EQ(retrace(folder, {"fabricate", "jobs/j.toml", "--dialect", "rs274ngc", "-o", "programs"}).code, 0);
+  const Outcome verified = retrace(folder, {"verify", "jobs/j.toml", "programs/program.ngc", "--as-machined",
+                                            "parts.toml", "--quiet", "--json", "-"});
+  EXPECT_EQ(verified.code, 0) << verified.err;
+  EXPECT_EQ(Json::parse(verified.out)["warnings"], Json::array());
+  EXPECT_EQ(retrace(folder, {"rre", "parts.toml", "--incidence=0", "--target-error", "0.01"}).code, 0);
+}
+
 TEST(Job, DoesNotReplaceWhatItReads) {
   const TemporaryFolder folder;
   folder.write("d.toml", design("single", 0));
