@@ -39,16 +39,6 @@ void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
       throw InputError({measured.file, m.line, ""}, fault);
 }
 
-/// How poses move for the share of the observations that the set-up leaves.
-VectorXd pose_step(const LinearModel& model, const VectorXd& left) {
-  // Differences are exact to some 1e-12: below that columns are the same ones.
-  constexpr double kSame = 1e-9;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> of_poses;
-  of_poses.setThreshold(kSame);
-  of_poses.compute(model.of_poses);
-  return of_poses.solve(left);
-}
-
 /// What is not told still changes figures, by products with itself and with what is told. How far that moves the told
 /// combinations, as mean squares over machines that are set up so well.
 Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const MeasuredParts& measured,
@@ -59,8 +49,9 @@ Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const Measur
   const auto machine = [&](const VectorXd& errors) {
     return with_errors(nominal, {errors.data(), static_cast<std::size_t>(errors.size())});
   };
-  const LinearModel model =
-      linear_model(parts, measured.measurements, machine(fitted.value), measured.map_faces, poses);
+  const LinearModel model = with_poses_by_eye(
+      linear_model(parts, measured.measurements, machine(fitted.value), measured.map_faces, poses), poses);
+  const VectorXd now = residual_of(parts, measured.measurements, machine(fitted.value), measured.map_faces, poses);
   std::mt19937_64 bits(1);
   std::normal_distribution<double> normal;
   Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(first.told.cols(), first.told.cols());
@@ -69,8 +60,9 @@ Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const Measur
     for (Index q = 0; q < errors.size(); ++q)
       errors[q] = normal(bits) * (quantities[static_cast<std::size_t>(q)].is_angle() ? kUntoldArcsec : kUntoldUm);
     const VectorXd untold = first.untold * (first.untold.transpose() * errors);
-    const VectorXd change = model.residual - residual_of(parts, measured.measurements, machine(fitted.value + untold),
-                                                         measured.map_faces, poses);
+    VectorXd change = VectorXd::Zero(model.residual.size());
+    change.head(now.size()) =
+        now - residual_of(parts, measured.measurements, machine(fitted.value + untold), measured.map_faces, poses);
     const VectorXd moved = estimate(model.of_setup * first.told, model.of_poses, change, 2.0 * kSetUpByEye).value;
     spread += moved * moved.transpose() / kMachines;
   }
@@ -82,17 +74,20 @@ Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const Measur
 /// machines do, and maps tell products of the two.
 Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
   const Machine& nominal = measured.plans.front().machine;
-  LinearModel model = linear_model(parts, measured.measurements, nominal, measured.map_faces);
+  std::vector<PartPose> poses(parts.size());
+  LinearModel model = linear_model(parts, measured.measurements, nominal, measured.map_faces, poses);
+  // What is told is told by measurements alone.
   Estimate result = estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
+  model = with_poses_by_eye(std::move(model), poses);
   const Estimate first = result;
   const Eigen::MatrixXd& told = first.told;
-  std::vector<PartPose> poses(parts.size());
   VectorXd left = model.residual - model.of_setup * result.value;
   for (int step = 0; step < kMostSteps; ++step) {
-    move(poses, pose_step(model, left));
+    move(poses, model.of_poses.colPivHouseholderQr().solve(left));
     const VectorXd before = told.transpose() * result.value;
     const std::span<const double> amounts(result.value.data(), static_cast<std::size_t>(result.value.size()));
-    model = linear_model(parts, measured.measurements, with_errors(nominal, amounts), measured.map_faces, poses);
+    model = with_poses_by_eye(
+        linear_model(parts, measured.measurements, with_errors(nominal, amounts), measured.map_faces, poses), poses);
     const Eigen::MatrixXd of_told = model.of_setup * told;
     const Estimate next = estimate(of_told, model.of_poses, model.residual + of_told * before, 2.0 * kSetUpByEye);
     left = model.residual - of_told * (next.value - before);

@@ -27,7 +27,7 @@ struct RegisteredMap {
   double rms_nm = 0.0;                     ///< of what then lies off the design
   std::vector<Measurement> figures;        ///< of every facet that it shows: distance and both tilts
   std::optional<FaceFigures> face;         ///< none: it shows too little of the blank's face
-  std::vector<FacetRest> rests;      ///< of the facets that figures are of: what these leave
+  std::vector<FacetRest> rests;            ///< of the facets that figures are of: what these leave
 };
 
 /// Marks of chips and scratches are left out of figures.

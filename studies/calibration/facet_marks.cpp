@@ -13,7 +13,8 @@ namespace {
 
 using namespace fabrication;
 using geometry::Vec2, geometry::Vec3;
-using surface_models::Axis, surface_models::HeightMap, surface_models::Scratch, surface_models::SpectralPeak;
+using MapAxis = surface_models::Axis;
+using surface_models::HeightMap, surface_models::Scratch, surface_models::SpectralPeak;
 
 constexpr double kUmPerMm = 1e3;
 /// What a line of a facet is compared with lies so far beside it at most.
@@ -57,8 +58,8 @@ HeightMap laid_out(const FacetRest& rest, std::span<const Vec3> left) {
   return laid_out(unmarked, rest.low_mm, rest.high_mm, rest.pitch_mm);
 }
 
-Eigen::Index across(Axis along) {
-  return along == Axis::y ? 0 : 1;
+Eigen::Index across(MapAxis along) {
+  return along == MapAxis::y ? 0 : 1;
 }
 
 /// One of a facet, for gathering.
@@ -69,13 +70,13 @@ struct Found {
 };
 
 double periods(const Found<SpectralPeak>& wave) {
-  const Eigen::Index axis = wave.thing.axis == Axis::x ? 0 : 1;
+  const Eigen::Index axis = wave.thing.axis == MapAxis::x ? 0 : 1;
   return wave.rest->high_mm[axis] - wave.rest->low_mm[axis];
 }
 
 FacetWave gathered(const std::vector<Found<SpectralPeak>>& waves, double feed_mm_per_min) {
   FacetWave wave;
-  wave.is_along_edge = waves.front().thing.axis == Axis::x;
+  wave.is_along_edge = waves.front().thing.axis == MapAxis::x;
   double frequency_per_mm = 0.0;
   double power = 0.0;
   for (const auto& [rest, peak] : waves) {
@@ -92,8 +93,8 @@ FacetWave gathered(const std::vector<Found<SpectralPeak>>& waves, double feed_mm
 
 FacetMark gathered(const std::vector<Found<Scratch>>& marks, const std::vector<FacetRest>& rests) {
   FacetMark mark;
-  const Axis along = marks.front().thing.along;
-  mark.is_along_cut = along == Axis::y;
+  const MapAxis along = marks.front().thing.along;
+  mark.is_along_cut = along == MapAxis::y;
   for (const auto& [rest, scratch] : marks) {
     const double share = 1.0 / static_cast<double>(marks.size());
     mark.place_um += share * scratch.position_um;
@@ -155,8 +156,8 @@ FacetRest marks_of(const FacetPlace& at, std::span<const Vec3> left, const Vec2&
   constexpr std::size_t kMostMarks = 16;
   while (rest.marks.size() < kMostMarks) {
     const HeightMap map = laid_out(rest, left);
-    std::vector<Scratch> found = surface_models::find_scratches(map, Axis::x, kBesideUm);
-    for (const Scratch& scratch : surface_models::find_scratches(map, Axis::y, kBesideUm)) found.push_back(scratch);
+    std::vector<Scratch> found = surface_models::find_scratches(map, MapAxis::x, kBesideUm);
+    for (const Scratch& scratch : surface_models::find_scratches(map, MapAxis::y, kBesideUm)) found.push_back(scratch);
     const auto deepest =
         std::ranges::max_element(found, {}, [](const Scratch& scratch) { return std::abs(scratch.depth_nm); });
     if (deepest == found.end()) break;

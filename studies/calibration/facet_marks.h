@@ -41,7 +41,7 @@ struct FacetRest {
   geometry::Vec2 low_mm = geometry::Vec2::Zero();  ///< of what is shown of it: along the edge and up the facet
   geometry::Vec2 high_mm = geometry::Vec2::Zero();
   geometry::Vec2 pitch_mm = geometry::Vec2::Zero();  ///< of the map's points, likewise
-  std::vector<surface_models::SpectralPeak> waves;  ///< along x: along the edge; along y: up the facet
+  std::vector<surface_models::SpectralPeak> waves;   ///< along x: along the edge; along y: up the facet
   /// That run along y, the cut, and along x, the edge; their positions count from the edge's middle and from where its
   /// tip stood last.
   std::vector<surface_models::Scratch> marks;

@@ -15,7 +15,11 @@ constexpr double kStep = 1.0;
 /// Of a part's pose: three turns, shifts along X, Y and Z; then the turns of the face about X and Y.
 constexpr Index kTurns = 3;
 constexpr Index kPose = 6;
-constexpr double kUmPerMm = 1e3;
+constexpr double kUmInMm = 1e3;
+
+/// Standard deviations of poses, um and arcsec.
+constexpr double kShiftByEye = 100.0;
+constexpr double kTurnByEye = 3600.0;
 
 /// \param unknown of one part, or kPose and kPose + 1: of the face
 void move_one(PartPose& pose, Index unknown, double amount) {
@@ -28,7 +32,7 @@ void move_one(PartPose& pose, Index unknown, double amount) {
 /// What a map that lies askew shows of the face.
 geometry::Vec3 predicted_face(const FaceFigures& face, const PartPose& pose) {
   const geometry::Vec3 normal = pose.face_rotation().col(2);
-  const geometry::Vec3 shift = pose.shift_um / kUmPerMm;
+  const geometry::Vec3 shift = pose.shift_um / kUmInMm;
   const double height_mm = shift.z() - (normal.head<2>().dot(face.middle_mm - shift.head<2>())) / normal.z();
   return {kNmPerMm * height_mm, -kArcsecPerRad * normal.x() / normal.z(), -kArcsecPerRad * normal.y() / normal.z()};
 }
@@ -96,6 +100,26 @@ LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Meas
     }
     row += 3;
   }
+  return model;
+}
+
+LinearModel with_poses_by_eye(LinearModel model, const std::vector<PartPose>& poses) {
+  const Index rows = model.residual.size();
+  const Index unknowns = model.of_poses.cols();
+  Eigen::VectorXd value(unknowns);
+  Eigen::VectorXd deviation(unknowns);
+  for (std::size_t part = 0; part < poses.size(); ++part) {
+    const Index first = kPose * static_cast<Index>(part);
+    value.segment<kPose>(first) << poses[part].turn_arcsec, poses[part].shift_um;
+    deviation.segment<kPose>(first) << geometry::Vec3::Constant(kTurnByEye), geometry::Vec3::Constant(kShiftByEye);
+  }
+  value.tail<2>() = poses.front().face_turn_arcsec;
+  deviation.tail<2>().setConstant(kTurnByEye);
+  model.of_setup.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + unknowns, model.of_setup.cols()));
+  model.of_poses.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + unknowns, unknowns));
+  model.residual.conservativeResize(rows + unknowns);
+  model.of_poses.bottomRows(unknowns).diagonal() = deviation.cwiseInverse();
+  model.residual.tail(unknowns) = -value.cwiseQuotient(deviation);
   return model;
 }
 

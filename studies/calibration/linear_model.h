@@ -37,6 +37,11 @@ Eigen::VectorXd residual_of(const std::vector<CutPart>& parts, std::span<const M
                             const std::vector<std::optional<FaceFigures>>& map_faces,
                             const std::vector<PartPose>& poses);
 
+/// The same with what is known of poses without measurements, as rows behind all others: parts lie where programs have
+/// them to 100 um and a degree (standard). Without it a shift that only moves facets because they are tilted a little
+/// could be of any size, and take the place of what is told.
+LinearModel with_poses_by_eye(LinearModel model, const std::vector<PartPose>& poses);
+
 /// Poses moved by the unknowns of LinearModel::of_poses. \pre poses are as many as parts
 void move(std::vector<PartPose>& poses, const Eigen::VectorXd& by);
 

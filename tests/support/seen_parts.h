@@ -93,6 +93,11 @@ class CutSurface {
     return most;
   }
 
+  const std::vector<fabrication::Groove>& grooves() const { return grooves_; }
+  const fabrication::FacetFigures& figures(std::size_t element, std::size_t facet) const {
+    return figures_[2 * element + facet];
+  }
+
  private:
   static std::vector<fabrication::FacetFigures> cut_on(const fabrication::Machine& real,
                                                        const studies::FabricationResult& made) {
@@ -107,6 +112,61 @@ class CutSurface {
   std::vector<fabrication::FacetFigures> figures_;  ///< facet by facet
   std::vector<std::pair<geometry::Vec3, geometry::Vec3>> planes_;
 };
+
+/// Where a point lies under the edge that cut its facet: along it from its middle, and up the facet. Facets stand
+/// upright with their outward normal along -Y while they are cut, so that the edge, along X, is z times that.
+struct UnderEdge {
+  double along_mm = 0.0;
+  double up_mm = 0.0;
+};
+
+/// The facets of a cut part with a pattern over what the edge does, in nm.
+template <class Pattern>
+class PatternedSurface {
+ public:
+  PatternedSurface(const CutSurface& cut, Pattern pattern)
+      : cut_(cut), grooves_(cut.grooves()), pattern_(std::move(pattern)) {}
+
+  double z(double x, double y) const {
+    const double plain = cut_.z(x, y);
+    if (plain >= 0.0) return plain;
+    const geometry::Vec3 p(x, y, plain);
+    for (const fabrication::Groove& groove : grooves_) {
+      const geometry::Vec3 from_root = p - groove.root_mm;
+      const geometry::Vec3 across = from_root - groove.root_direction * groove.root_direction.dot(from_root);
+      if (std::abs(groove.along_mm(p)) > groove.half_width_mm || across.head<2>().norm() > groove.half_base_mm)
+        continue;
+      const fabrication::DesignFacet& facet =
+          groove.facets[groove.facets[0].up_slope.dot(from_root) > groove.facets[1].up_slope.dot(from_root) ? 0 : 1];
+      const geometry::Vec3 edge = geometry::Vec3::UnitZ().cross(facet.normal).normalized();
+      const double nm = pattern_(UnderEdge{edge.dot(from_root), facet.up_slope.dot(from_root)});
+      return plain + 1e-6 * nm / facet.normal.z();
+    }
+    return plain;
+  }
+
+ private:
+  const CutSurface& cut_;
+  std::vector<fabrication::Groove> grooves_;
+  Pattern pattern_;
+};
+
+/// What is measured of a facet that lies askew. \param figures as the verifier finds it in the machine
+inline double measured_of(const fabrication::Groove& groove, const fabrication::FacetFigures& figures,
+                          std::size_t facet, studies::FacetQuantity what, const fabrication::RigidMotion& pose) {
+  const fabrication::DesignFacet& design = groove.facets[facet];
+  const geometry::Vec3 along = groove.level_of(facet);
+  const geometry::Vec3 normal =
+      pose.direction(design.normal - figures.slope_up * design.up_slope - figures.slope_along * along);
+  const geometry::Vec3 point = pose.point(groove.root_mm + figures.mean_up_mm * design.up_slope +
+                                          figures.mean_along_mm * along + 1e-6 * figures.mean_nm * design.normal);
+  switch (what) {
+    case studies::FacetQuantity::up:
+      return -studies::kArcsecPerRad * normal.dot(design.up_slope) / normal.dot(design.normal);
+    case studies::FacetQuantity::along: return -studies::kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
+    default: return 1e6 * normal.dot(point - groove.facet_middle(facet)) / normal.dot(design.normal);
+  }
+}
 
 /// What an instrument sees of all of the part, with 5 nm of noise; 220 points a row are 6 um apart.
 template <class Surface>

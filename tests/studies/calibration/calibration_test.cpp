@@ -15,6 +15,7 @@
 #include "fabrication/chisel/check/verify.h"
 #include "studies/calibration/io/measurement_reader.h"
 #include "tests/support/prism_jobs.h"
+#include "tests/support/seen_parts.h"
 
 // Machines that err in all that a set-up leaves uncertain cut test parts in the verifier, which shares nothing with the
 // derivatives that calibration uses; from what the verifier finds of the facets, with noise, calibration must find the
@@ -24,7 +25,7 @@ namespace retrace::studies::calibration_test {
 namespace {
 
 using namespace fabrication;
-using test::hidden_errors, test::planned, test::prism_job, test::programs_of;
+using test::hidden_errors, test::measured_of, test::planned, test::prism_job, test::programs_of;
 
 /// Facets at C = 0, 90, 180 and 270, at the A of their apex angle, on prisms 10 mm apart.
 std::string job_text(double apex_angle_deg) {
@@ -56,22 +57,6 @@ double uncertainty_of(FacetQuantity what) {
   return what == FacetQuantity::distance ? 5.0 : 1.0;
 }
 
-/// What is measured of a facet that lies askew. \param figures as the verifier finds it in the machine
-double truth_of(const Groove& groove, const FacetFigures& figures, std::size_t facet, FacetQuantity what,
-                const RigidMotion& pose) {
-  const DesignFacet& design = groove.facets[facet];
-  const geometry::Vec3 along = groove.level_of(facet);
-  const geometry::Vec3 normal =
-      pose.direction(design.normal - figures.slope_up * design.up_slope - figures.slope_along * along);
-  const geometry::Vec3 point = pose.point(groove.root_mm + figures.mean_up_mm * design.up_slope +
-                                          figures.mean_along_mm * along + 1e-6 * figures.mean_nm * design.normal);
-  switch (what) {
-    case FacetQuantity::up: return -kArcsecPerRad * normal.dot(design.up_slope) / normal.dot(design.normal);
-    case FacetQuantity::along: return -kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
-    default: return 1e6 * normal.dot(point - groove.facet_middle(facet)) / normal.dot(design.normal);
-  }
-}
-
 /// What is measured on a machine, each part lying askew by 50 arcsec or so and 10 um off.
 MeasuredParts measured_on(const Machine& real, std::mt19937& bits) {
   std::normal_distribution<double> normal;
@@ -91,7 +76,7 @@ MeasuredParts measured_on(const Machine& real, std::mt19937& bits) {
       for (std::size_t facet = 0; facet < 2; ++facet)
         for (const FacetQuantity what : {FacetQuantity::distance, FacetQuantity::up, FacetQuantity::along}) {
           Measurement m{k, {element, facet}, what, 0.0, uncertainty_of(what), {}, 0.0, 0};
-          m.value = truth_of(grooves[element], v.elements[element].figures.facets[facet], facet, what, pose) +
+          m.value = measured_of(grooves[element], v.elements[element].figures.facets[facet], facet, what, pose) +
                     m.uncertainty * normal(bits);
           m.line = static_cast<int>(parts.measurements.size()) + 2;
           parts.measurements.push_back(m);

@@ -22,45 +22,7 @@ namespace {
 
 using namespace fabrication;
 using geometry::Vec3;
-using test::CutSurface, test::four_prisms, test::hidden_errors, test::seen;
-
-/// Where a point lies under the edge that cut its facet: along it from its middle, and up the facet. Facets stand
-/// upright with their outward normal along -Y while they are cut, so that the edge, along X, is z times that.
-struct UnderEdge {
-  double along_mm = 0.0;
-  double up_mm = 0.0;
-};
-
-/// The facets of a cut part with a pattern over what the edge does, in nm.
-template <class Pattern>
-class PatternedSurface {
- public:
-  PatternedSurface(const CutSurface& cut, Pattern pattern)
-      : cut_(cut), grooves_(designed_grooves(four_prisms().job)), pattern_(std::move(pattern)) {}
-
-  double z(double x, double y) const {
-    const double plain = cut_.z(x, y);
-    if (plain >= 0.0) return plain;
-    const Vec3 p(x, y, plain);
-    for (const Groove& groove : grooves_) {
-      const Vec3 from_root = p - groove.root_mm;
-      const Vec3 across = from_root - groove.root_direction * groove.root_direction.dot(from_root);
-      if (std::abs(groove.along_mm(p)) > groove.half_width_mm || across.head<2>().norm() > groove.half_base_mm)
-        continue;
-      const DesignFacet& facet =
-          groove.facets[groove.facets[0].up_slope.dot(from_root) > groove.facets[1].up_slope.dot(from_root) ? 0 : 1];
-      const Vec3 edge = Vec3::UnitZ().cross(facet.normal).normalized();
-      const double nm = pattern_(UnderEdge{edge.dot(from_root), facet.up_slope.dot(from_root)});
-      return plain + 1e-6 * nm / facet.normal.z();
-    }
-    return plain;
-  }
-
- private:
-  const CutSurface& cut_;
-  std::vector<Groove> grooves_;
-  Pattern pattern_;
-};
+using test::CutSurface, test::four_prisms, test::hidden_errors, test::PatternedSurface, test::seen, test::UnderEdge;
 
 struct HiddenMachine {
   std::vector<double> errors;
