@@ -269,7 +269,8 @@ std::string name_of(const testing::TestParamInfo<std::string>& tutorial) {
 }
 
 // Apart, so that they run beside each other.
-INSTANTIATE_TEST_SUITE_P(Short, Tutorials, testing::Values("first_curve", "measured_facet", "nc_program"), name_of);
+INSTANTIATE_TEST_SUITE_P(Short, Tutorials, testing::Values("first_curve", "measured_facet", "nc_program", "test_cuts"),
+                         name_of);
 INSTANTIATE_TEST_SUITE_P(Photometry, Tutorials, testing::Values("regulation"), name_of);
 INSTANTIATE_TEST_SUITE_P(Studies, Tutorials, testing::Values("cluster"), name_of);
 
@@ -278,7 +279,8 @@ TEST(TutorialPages, AreAllFollowed) {
   for (const auto& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "docs/tutorials"))
     names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"cluster", "first_curve", "measured_facet", "nc_program", "regulation"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"cluster", "first_curve", "measured_facet", "nc_program", "regulation",
+                                             "test_cuts"}));
 }
 
 TEST(TutorialPages, AreReadStepByStep) {

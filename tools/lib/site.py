@@ -32,7 +32,8 @@ MOST_LINES = 200  # of a file that is shown
 SECTIONS = {
     "Start": ["README.md", "docs/install.md"],
     "Tutorials": ["docs/tutorials/first_curve.md", "docs/tutorials/regulation.md", "docs/tutorials/nc_program.md",
-                  "docs/tutorials/measured_facet.md", "docs/tutorials/cluster.md", "docs/tutorials/*.md"],
+                  "docs/tutorials/test_cuts.md", "docs/tutorials/measured_facet.md", "docs/tutorials/cluster.md",
+                  "docs/tutorials/*.md"],
     "Notebooks": ["examples/notebooks/*.md"],
     "How to": ["docs/nc_dialects.md", "docs/adding_a_dialect.md", "docs/python.md", "docs/library.md", "CONTRIBUTING.md", "docs/*.md"],
     "Reference": ["docs/commands.md", "docs/design_file.md", "docs/study_file.md", "docs/job_file.md",
