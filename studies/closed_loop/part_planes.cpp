@@ -84,7 +84,8 @@ MachinedBody machined_body(const Job& job, const fs::path& job_file, std::vector
             design->substance.refractive_index,
             design->substance.temperature_c,
             design->substance.absorption_per_mm};
-  warnings.push_back("the job's design is not where the job names it: the as-machined part is given a plate of 2 mm of PMMA");
+  warnings.push_back(
+      "the job's design is not where the job names it: the as-machined part is given a plate of 2 mm of PMMA");
   return {};
 }
 
