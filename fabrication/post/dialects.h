@@ -35,6 +35,14 @@ struct DialectWords {
   std::string_view path_time;   ///< moves like this in a minute; milliseconds; speed of all axes together, in mm and
                                 ///< degrees per minute
   std::string_view path_end;    ///< exact stop and feeds per minute again; control
+  /// A path whose moves say places, velocities and times, for a control that joins them by cubics; empty: it cannot.
+  std::string_view cubic_begin = {};
+  std::string_view cubic_end = {};
+  std::string_view cubic_word = {};  ///< of an axis: letter; place; velocity
+  /// A move: words of all axes; their letters, places and velocities, each as a list; its milliseconds; its seconds;
+  /// seconds since the path began
+  std::string_view cubic_move = {};
+  double cubic_time_s = 1.0;  ///< that velocities are per
   std::string_view mist_on = "M7\n";
   std::string_view mist_off = "M9\n";
   std::string_view optional_stop = "M1\n";

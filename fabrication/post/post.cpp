@@ -1,6 +1,7 @@
 #include "fabrication/post/post.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/message_text.h"
+#include "core/number_format.h"
 #include "fabrication/post/dialects.h"
 
 namespace retrace::fabrication {
@@ -72,6 +74,7 @@ class FileWriter {
     go_to(at_, move.to);
   }
   void operator()(const Path& path) {
+    if (!path.end_velocities.empty()) return cubics(path);
     add(dialect_.path_begin, path.blend_mm, program_.control.coordinate_system);
     is_in_path_ = true;
     for (const Move& move : path.moves) {
@@ -90,6 +93,41 @@ class FileWriter {
   }
 
  private:
+  void cubics(const Path& path) {
+    if (dialect_.cubic_move.empty())
+      throw InputError({"", 0, "--dialect"},
+                       fmt::format("{} has no moves that say places, velocities and times", dialect_.dialect.name));
+    add_for_control(dialect_.cubic_begin);
+    double since_begin_s = 0.0;
+    for (std::size_t i = 0; i < path.moves.size(); ++i) {
+      const Move& move = path.moves[i];
+      since_begin_s += move.seconds;
+      cubic(move, path.end_velocities[i], since_begin_s);
+      go_to(at_, move.to);
+    }
+    add_for_control(dialect_.cubic_end);
+  }
+
+  void cubic(const Move& move, const Velocities& velocities, double since_begin_s) {
+    const std::string letters = axis_letters();
+    std::string words;
+    std::vector<std::string> axes;
+    std::vector<std::string> places;
+    std::vector<std::string> speeds;
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      if (!move.to[axis]) continue;
+      axes.emplace_back(1, letters[axis]);
+      places.push_back(number(*move.to[axis], axis >= kTilt ? 7 : 6));
+      // Half of the last decimal over a second, which no move takes, is far below a nanometre at the tool.
+      speeds.push_back(fixed(velocities[axis] * dialect_.cubic_time_s, 7));
+      words += fmt::format(fmt::runtime(dialect_.cubic_word), axes.back(), places.back(), speeds.back());
+    }
+    add(dialect_.cubic_move, words, fmt::join(axes, ", "), fmt::join(places, ", "), fmt::join(speeds, ", "),
+        fixed(1e3 * move.seconds, 6), fixed(move.seconds, 9), fixed(since_begin_s, 9));
+  }
+
+  std::string axis_letters() const { return {'X', 'Y', 'Z', program_.tilt_letter, 'C'}; }
+
   /// A format of the dialect, filled in.
   template <class... Values>
   void add(std::string_view format, const Values&... values) {
@@ -147,7 +185,7 @@ class FileWriter {
 
   void write(const Move& move) {
     text_ += move.motion == Motion::rapid ? dialect_.rapid : dialect_.linear;
-    const std::array letters = {'X', 'Y', 'Z', program_.tilt_letter, 'C'};
+    const std::string letters = axis_letters();
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (move.to[axis]) word(axis, letters[axis], *move.to[axis]);
     if (move.seconds > 0.0)
@@ -318,6 +356,10 @@ std::string nc_text(const Program& program, std::string_view dialect) {
 
 Increments word_increments(std::string_view dialect, const Control& control) {
   return words_of(dialect).has_increment_systems ? increments_of(control.increment_system) : Increments{};
+}
+
+bool takes_cubics(std::string_view dialect) {
+  return !words_of(dialect).cubic_move.empty();
 }
 
 std::string_view ending_of(std::string_view dialect) {

@@ -104,9 +104,16 @@ struct Visit {
   std::uint32_t subroutine = 0;  ///< index in Program::subroutines
   Place start = Place::Zero();
 };
+/// Velocities of axes, in mm/s and degrees/s.
+using Velocities = std::array<double, kAxes>;
+
 /// Timed moves that follow each other without stopping. They begin where the axes are.
 struct Path {
   std::vector<Move> moves;
+  /// Of each move, at its end: each axis then goes by the cubic over time that has its places and velocities at both
+  /// ends, from a standstill at first to one at last, and all moves have words for the same axes. Empty: straight
+  /// moves.
+  std::vector<Velocities> end_velocities = {};
   double blend_mm = 1e-6;  ///< by which a control may leave the path where moves meet, if it can be told
 };
 /// The operator may stop here.

@@ -89,6 +89,7 @@ class A3200Reader {
       if (text == statement.words) return statement.effect(block);
     if (starts_with_word(text, "WAIT")) lines_.fail("must be WAIT MODE INPOS");
     IsoBlock iso(lines_, block);
+    if (starts_with_word(text, "PVT")) return read_cubic(text, iso, block);
     if (starts_with_word(text, "DWELL")) {
       text = trimmed(text.substr(5));
       iso.set_dwell(take_number(text, lines_).value);
@@ -103,6 +104,31 @@ class A3200Reader {
     const std::string packed = without_blanks(text);
     for (std::string_view rest = packed; !rest.empty();) take_aerotech_word(take_word(rest, lines_), iso, lines_);
     iso.finish();
+  }
+
+  /// PVT X 1,0.5 C 2,3 TIME 4: places, velocities and the time since PVT INIT TIME ABS.
+  void read_cubic(std::string_view text, IsoBlock& iso, NcBlock& block) {
+    if (text == "PVT INIT TIME ABS") {
+      block.begins_cubics = true;
+      return;
+    }
+    if (text.starts_with("PVT INIT")) lines_.fail("must be PVT INIT TIME ABS");
+    NcCubic cubic;
+    const std::string packed = without_blanks(text.substr(3));
+    std::string_view rest = packed;
+    while (!rest.empty() && !rest.starts_with("TIME")) {
+      const NcWord word = take_word(rest, lines_);
+      const std::size_t axis = axis_index(word.letter);
+      if (axis == kNcAxes || !rest.starts_with(',')) lines_.fail("PVT must have axes, each with place, velocity");
+      rest.remove_prefix(1);
+      iso.set_cubic(axis, word.number.value, take_number(rest, lines_).value, cubic);
+    }
+    if (rest.empty() || block.axes == 0) lines_.fail("PVT must have axes and a TIME");
+    rest.remove_prefix(4);
+    cubic.time_s = take_number(rest, lines_).value;
+    if (!rest.empty()) lines_.fail("PVT must end with its TIME");
+    block.cubic = static_cast<std::int32_t>(program_.cubics.size());
+    program_.cubics.push_back(cubic);
   }
 
   std::string name_in(std::string_view text) const {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <vector>
+
 #include "core/message_text.h"
 #include "fabrication/read/aerotech_codes.h"
 #include "fabrication/read/dialects.h"
@@ -101,6 +103,8 @@ class Automation1Reader {
       iso.set_dwell(take_number(text, lines_).value);
     } else if (name == "SetupCoordinatedSpeed") {
       iso.set_feed({'F', take_number(text, lines_)});
+    } else if (name == "MovePvt") {
+      read_cubic(text, iso, block);
     } else if (name == "MoveLinear" || name == "MoveRapid") {
       block.move = name == "MoveLinear" ? NcMove::linear : NcMove::rapid;
       read_axes(text, iso);
@@ -127,6 +131,43 @@ class Automation1Reader {
     }
     if (is_list && !text.starts_with(']')) lines_.fail("needs axes and as many places");
     if (is_list) text.remove_prefix(1);
+  }
+
+  /// [X,C],[1,2],[3,4],0.5: axes, places, velocities, and the time of the move.
+  void read_cubic(std::string_view& text, IsoBlock& iso, NcBlock& block) {
+    constexpr std::string_view needs = "MovePvt needs [axes], [places], [velocities], time";
+    const auto numbers = [&] {
+      std::vector<double> result;
+      if (!text.starts_with('[')) lines_.fail(needs);
+      while (!text.starts_with(']')) {
+        if (!text.starts_with(result.empty() ? '[' : ',')) lines_.fail(needs);
+        text.remove_prefix(1);
+        result.push_back(take_number(text, lines_).value);
+      }
+      text.remove_prefix(1);
+      if (!text.starts_with(',')) lines_.fail(needs);
+      text.remove_prefix(1);
+      return result;
+    };
+    const std::size_t end = text.find("],");
+    if (!text.starts_with('[') || end == std::string_view::npos) lines_.fail(needs);
+    const std::string_view axes = text.substr(1, end - 1);
+    text.remove_prefix(end + 2);
+    const std::vector<double> places = numbers();
+    const std::vector<double> velocities = numbers();
+    const std::size_t count = places.size();
+    if (axes.size() != 2 * count - 1 || velocities.size() != count)
+      lines_.fail("MovePvt needs as many axes as places and velocities");
+    NcCubic cubic;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t axis = axis_index(axes[2 * k]);
+      if (axis == kNcAxes || (k > 0 && axes[2 * k - 1] != ','))
+        lines_.fail("has an axis that is not understood, " + in_quotes(axes));
+      iso.set_cubic(axis, places[k], velocities[k], cubic);
+    }
+    cubic.time_s = take_number(text, lines_).value;
+    block.cubic = static_cast<std::int32_t>(program_.cubics.size());
+    program_.cubics.push_back(cubic);
   }
 
   /// G codes may be small letters; names of axes may not, for it tells capitals apart in them.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -39,6 +40,7 @@ class Runner {
         continue;
       }
       const NcBlock& block = program_.blocks[next_++];
+      if (block.cubic < 0) expect_standstill(block);
       if (stops_before(block)) return stopped();
       if (++carried_out_ > kMostNcBlocks)
         fail(block, fmt::format("the program carries out more than {} lines", kMostNcBlocks));
@@ -149,7 +151,11 @@ class Runner {
     if (is_feed) move_time_s_ = 0.0;
     if (block.move_time_s) move_time_s_ = *block.move_time_s;
     if (block.dwell_s) sink_.dwell(*block.dwell_s, place_of(block), axes_of(position_));
-    if (block.axes != 0) move(block);
+    if (block.begins_cubics) cubics_s_ = 0.0;
+    if (block.cubic >= 0)
+      cubic(block);
+    else if (block.axes != 0)
+      move(block);
     if (block.stop != NcStop::none) stop(block);
   }
 
@@ -162,10 +168,10 @@ class Runner {
     settings_.mist_on.reset();
   }
 
-  void move(const NcBlock& block) {
-    if (!move_) fail(block, "axes move before G0 or G1 says how");
+  /// A motion to where a block's words are, which is where the axes are then.
+  NcMotion motion_of(const NcBlock& block, NcMove move) {
     NcMotion motion;
-    motion.move = *move_;
+    motion.move = move;
     motion.place = place_of(block);
     motion.shortest = block.shortest;
     motion.decimals = block.decimals;
@@ -175,16 +181,101 @@ class Runner {
     for (std::size_t axis = 0; axis < kNcAxes; ++axis)
       if ((block.axes >> axis & 1U) != 0) move_axis(block, axis, motion);
     motion.to = axes_of(position_);
+    return motion;
+  }
+
+  void move(const NcBlock& block) {
+    if (!move_) fail(block, "axes move before G0 or G1 says how");
+    NcMotion motion = motion_of(block, *move_);
     if (motion.move == NcMove::linear) motion.duration_s = duration_of(block, motion);
     if (motion.move == NcMove::linear && motion.duration_s == 0.0) motion.feed_mm_per_min = feed_mm_per_min();
     motion.is_exact_stop = settings_.exact_stop.value_or(true);
     sink_.motion(motion, settings_);
   }
 
+  /// Axes that move on at the end of a block need another that says how.
+  void expect_standstill(const NcBlock& block) const {
+    for (std::size_t axis = 0; axis < kNcAxes; ++axis)
+      if (velocities_[axis] != 0.0)
+        fail(block, fmt::format("{} still moves at the end of the move by velocities before", kNcAxisLetters[axis]));
+  }
+
+  /// Of velocities as written, in mm/s and degrees/s.
+  std::array<double, kNcAxes> velocities_of(const NcBlock& block, const NcCubic& cubic) const {
+    const double per_s = 1.0 / settings_.feed_time_s.value_or(default_feed_time_s());
+    std::array<double, kNcAxes> velocities{};
+    for (std::size_t axis = 0; axis < kNcAxes; ++axis)
+      if ((block.axes >> axis & 1U) != 0)
+        velocities[axis] =
+            cubic.velocities[axis] * per_s * (axis < kFirstRotaryAxis ? settings_.unit_mm.value_or(1.0) : 1.0);
+      else if (velocities_[axis] != 0.0)
+        fail(block, fmt::format("{} still moves and has no word", kNcAxisLetters[axis]));
+    return velocities;
+  }
+
+  double cubic_time_s(const NcBlock& block, const NcCubic& cubic) {
+    double time_s = cubic.time_s;
+    if (has_times_since_begin(program_.dialect)) {
+      if (!cubics_s_) fail(block, "PVT INIT TIME ABS must say since when times count");
+      time_s -= std::exchange(*cubics_s_, cubic.time_s);
+    }
+    if (!(time_s > 0.0)) fail(block, fmt::format("a move by velocities must take time, takes {} s", time_s));
+    return time_s;
+  }
+
+  void cubic(const NcBlock& block) {
+    const NcCubic& cubic = program_.cubics[static_cast<std::size_t>(block.cubic)];
+    // Documents do not agree on what times and velocities are in otherwise.
+    if (has_feeds_of_all_axes(program_.dialect) && settings_.feed_time_s != 1.0)
+      fail(block, "moves by velocities must be in seconds");
+    if ((block.axes & ~known_) != 0) fail(block, "a move by velocities begins at a place that is not known");
+    const double time_s = cubic_time_s(block, cubic);
+    const std::array<double, kNcAxes> from = position_;
+    const std::array<double, kNcAxes> begin = velocities_;
+    NcMotion motion = motion_of(block, NcMove::linear);
+    velocities_ = velocities_of(block, cubic);
+    motion.is_exact_stop = false;
+    const int pieces = pieces_of(from, begin, time_s);
+    motion.duration_s = time_s / pieces;
+    for (int k = 1; k <= pieces; ++k) {
+      motion.goes_on = k < pieces;
+      motion.to =
+          axes_of(motion.goes_on ? place_along(from, begin, time_s, static_cast<double>(k) / pieces) : position_);
+      sink_.motion(motion, settings_);
+      motion.from = motion.to;
+    }
+  }
+
+  /// Hermite's cubic from a place and velocity to those now, at a share of its time.
+  std::array<double, kNcAxes> place_along(const std::array<double, kNcAxes>& from,
+                                          const std::array<double, kNcAxes>& begin, double time_s, double t) const {
+    std::array<double, kNcAxes> at{};
+    for (std::size_t axis = 0; axis < kNcAxes; ++axis)
+      at[axis] = from[axis] + t * t * (3.0 - 2.0 * t) * (position_[axis] - from[axis]) +
+                 t * (1.0 - t) * time_s * ((1.0 - t) * begin[axis] - t * velocities_[axis]);
+    return at;
+  }
+
+  /// So many that their chords, which are beside a curve by an eighth of its bend times their time squared, stay near.
+  int pieces_of(const std::array<double, kNcAxes>& from, const std::array<double, kNcAxes>& begin,
+                double time_s) const {
+    double most = 1.0;
+    for (std::size_t axis = 0; axis < kNcAxes; ++axis) {
+      const double by = position_[axis] - from[axis];
+      const double at_begin = 6.0 * by - time_s * (4.0 * begin[axis] + 2.0 * velocities_[axis]);
+      const double at_end = -6.0 * by + time_s * (2.0 * begin[axis] + 4.0 * velocities_[axis]);
+      const double bend = std::max(std::abs(at_begin), std::abs(at_end));
+      most = std::max(most, bend / (8.0 * (axis < kFirstRotaryAxis ? kCubicPieceMm : kCubicPieceDeg)));
+    }
+    constexpr double kMostPieces = 4096.0;
+    return static_cast<int>(std::min(kMostPieces, std::ceil(std::sqrt(most))));
+  }
+
+  double default_feed_time_s() const { return program_.dialect == NcDialect::pmac ? 1.0 : 60.0; }
+
   /// Without a setting a feed counts mm/min, but for PMAC, which starts with mm/s.
   double feed_mm_per_min() const {
-    const double default_time_s = program_.dialect == NcDialect::pmac ? 1.0 : 60.0;
-    return feed_ * settings_.unit_mm.value_or(1.0) * 60.0 / settings_.feed_time_s.value_or(default_time_s);
+    return feed_ * settings_.unit_mm.value_or(1.0) * 60.0 / settings_.feed_time_s.value_or(default_feed_time_s());
   }
 
   /// Of a linear move; 0 where a feed says how fast it is.
@@ -239,6 +330,8 @@ class Runner {
   std::optional<bool> inverse_time_;
   double move_time_s_ = 0.0;
   std::array<double, kNcAxes> position_{};
+  std::array<double, kNcAxes> velocities_{};  ///< at the end of a move by them, per second
+  std::optional<double> cubics_s_;            ///< since moves by velocities began
   std::uint8_t known_ = 0;
 };
 

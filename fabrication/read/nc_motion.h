@@ -17,7 +17,7 @@ struct NcPlace {
   std::int32_t call_line = 0;  ///< of the call in the main program that led there; 0 in the main program itself
 };
 
-/// One straight move of the axes, or a dwell.
+/// One straight move of the axes, or a straight piece of one by a cubic.
 struct NcMotion {
   NcMove move = NcMove::rapid;
   NcPlace place;
@@ -28,6 +28,7 @@ struct NcMotion {
   double feed_mm_per_min = 0.0;  ///< of a linear move; 0: none was given
   double duration_s = 0.0;       ///< of a linear move whose time is given instead of a feed; 0: by the feed
   bool is_exact_stop = true;     ///< the move ends in its end point
+  bool goes_on = false;          ///< a piece of a move by a cubic, and not its last
   std::uint8_t shortest = 0;     ///< bit i: axis i goes the shortest way to a place within a turn
   std::uint8_t absolute = 0;     ///< bit i: axis i goes to the place that its word counts
   std::uint8_t decimals = 0;     ///< NcBlock::decimals
@@ -67,13 +68,20 @@ struct NcEnd {
   NcSettings settings;  ///< that the program leaves behind
 };
 
+/// By which straight pieces are beside the cubic that they stand for, at most.
+inline constexpr double kCubicPieceMm = 2e-7;
+inline constexpr double kCubicPieceDeg = 2e-7;
+
 /// Most levels of calls, which is above what controllers allow, and most blocks that are carried out.
 inline constexpr std::size_t kDeepestNcCall = 16;
 inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
 
-/// Carries out a program: calls, modal settings, absolute and incremental words.
+/// Carries out a program: calls, modal settings, absolute and incremental words. A move by places, velocities and time
+/// goes along the cubic of each axis that has them at both ends; the sink gets it in straight pieces.
 /// \throw InputError naming file and line: a linear move under inverse time without F > 0, axes that move before G0 or
-/// G1, an incremental word for an axis whose position is not yet known, subroutines that call each other without end
+/// G1, an incremental word for an axis whose position is not yet known, subroutines that call each other without end;
+/// a move by velocities that takes no time, that leaves out an axis which still moves, or that nothing brings to a
+/// standstill
 NcEnd run_nc(const NcProgram& program, NcSink& sink);
 
 }  // namespace retrace::fabrication

@@ -24,6 +24,11 @@ constexpr bool has_own_texts(NcDialect dialect) {
   return dialect == NcDialect::pmac || dialect == NcDialect::a3200 || dialect == NcDialect::automation1;
 }
 
+/// Whether moves by places, velocities and times say how long it is since such moves began.
+constexpr bool has_times_since_begin(NcDialect dialect) {
+  return dialect == NcDialect::a3200;
+}
+
 /// Whether a feed is the speed of all axes of a line together, mm and degrees alike, where rotary axes move too.
 constexpr bool has_feeds_of_all_axes(NcDialect dialect) {
   return dialect == NcDialect::a3200 || dialect == NcDialect::automation1;
@@ -78,6 +83,12 @@ inline constexpr std::uint16_t kRoundingOff = 1U << 14U;  ///< no arcs between l
 template <class Value>
 using Setting = std::optional<Value>;
 
+/// What a line says of a move by places, velocities and time, beside its places.
+struct NcCubic {
+  std::array<double, kNcAxes> velocities{};  ///< at the move's end, as written
+  double time_s = 0.0;                       ///< of the move, or since such moves began
+};
+
 /// What one line of a program asks for, whatever the dialect. Everything is carried out in this order: settings,
 /// dwell, move, stop, call, return, end.
 struct NcBlock {
@@ -102,7 +113,9 @@ struct NcBlock {
   Setting<bool> mist_on;
   Setting<double> dwell_s;
   NcStop stop = NcStop::none;
-  std::int32_t call = -1;  ///< index of a subroutine
+  std::int32_t call = -1;      ///< index of a subroutine
+  std::int32_t cubic = -1;     ///< index of what the line says of a move by velocities
+  bool begins_cubics = false;  ///< times of such moves count from here
   bool returns = false;
   bool ends = false;
 
@@ -122,6 +135,7 @@ struct NcProgram {
   NcDialect dialect = NcDialect::rs274ngc;
   std::vector<NcBlock> blocks;  ///< of main program and subroutines, in the order of the file
   std::vector<NcSubroutine> subroutines;
+  std::vector<NcCubic> cubics;
   std::size_t main_first = 0;
   std::size_t main_last = 0;  ///< block behind the last of the main program
   std::int32_t lines = 0;

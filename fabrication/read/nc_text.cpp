@@ -226,6 +226,11 @@ void IsoBlock::set_axis(std::size_t axis, double value) {
   block_.words[axis] = value;
 }
 
+void IsoBlock::set_cubic(std::size_t axis, double place, double velocity, NcCubic& cubic) {
+  set_axis(axis, place);
+  cubic.velocities[axis] = velocity;
+}
+
 void IsoBlock::set_dwell(double seconds) {
   if (block_.dwell_s) lines_.fail("has two times of dwell");
   if (seconds < 0.0) lines_.fail(fmt::format("a dwell must be >= 0, got {}", seconds));

@@ -115,6 +115,8 @@ class IsoBlock {
   void set_spindle_speed(const NcWord& word);
   void set_axis(std::size_t axis, double value);
   void set_dwell(double seconds);
+  /// A place and a velocity of an axis. \param cubic of the block
+  void set_cubic(std::size_t axis, double place, double velocity, NcCubic& cubic);
   bool wants_dwell() const { return wants_dwell_; }
   /// \throw InputError for words that make no sense together
   void finish();

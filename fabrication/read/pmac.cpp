@@ -48,6 +48,10 @@ class PmacReader {
     NcBlock block;
     block.line = lines_.number();
     IsoBlock iso(lines_, block);
+    if (text.starts_with("PVT")) {
+      read_cubic(text.substr(3), iso, block);
+      text = {};
+    }
     while (!text.empty()) {
       read_statement(text, iso, block);
       text = trimmed(text);
@@ -123,6 +127,23 @@ class PmacReader {
       block.say(nc_said::kRadiusOff);
     else
       lines_.fail("is not understood from " + in_quotes(whole));
+  }
+
+  /// PVT with its time in ms, then places and velocities. PMAC keeps the mode and takes velocities that are left out
+  /// for 0; here each line says all.
+  void read_cubic(std::string_view text, IsoBlock& iso, NcBlock& block) {
+    NcCubic cubic;
+    cubic.time_s = number_behind(text) / 1000.0;
+    for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+      const NcWord word = take_word(text, lines_);
+      const std::size_t axis = axis_index(word.letter);
+      if (axis == kNcAxes || !text.starts_with(':')) lines_.fail("PVT must have axes, each with place:velocity");
+      text.remove_prefix(1);
+      iso.set_cubic(axis, word.number.value, take_number(text, lines_).value, cubic);
+    }
+    if (block.axes == 0) lines_.fail("PVT must have axes in its line");
+    block.cubic = static_cast<std::int32_t>(program_.cubics.size());
+    program_.cubics.push_back(cubic);
   }
 
   void set_distance(bool absolute, NcBlock& block) {

@@ -31,6 +31,9 @@ struct PathOptions {
   double approach_mm_per_min = 5.0;  ///< down to where a cut begins
   /// Of C, from a standstill to the spindle's speed and back at the ends of a spiral; nothing: at once.
   std::optional<double> spin_deg_per_s2 = std::nullopt;
+  /// By which cubics between points with velocities may leave a spiral, for controls that have such moves; nothing:
+  /// they too get straight moves.
+  std::optional<double> cubic_error_nm = std::nullopt;
 };
 
 /// Limits of a machine; nothing: none.

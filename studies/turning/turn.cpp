@@ -33,20 +33,34 @@ std::string comment_of(const std::string& text) {
   return result;
 }
 
-std::vector<std::string> header_of(const TurningResult& r) {
+std::vector<std::string> header_of(const TurningResult& r, std::size_t points, double time_s) {
   const turning::TurningTool& tool = r.part.tool;
   return {comment_of(r.part.title.empty() ? "turned part" : r.part.title),
           fmt::format("nose radius {} mm, rake {} deg, skew {} deg", shortest(tool.nose_radius_mm),
                       shortest(tool.rake_deg), shortest(tool.skew_deg)),
-          fmt::format("{} points, {} s", r.points, fixed(r.time_s, 1))};
+          fmt::format("{} points, {} s", points, fixed(time_s, 1))};
 }
 
 void write_programs(TurningResult& r) {
-  const auto program =
-      turning::turning_program(r.passes, r.part.path, std::filesystem::path(r.file).stem().string(), header_of(r));
-  for (const fabrication::Dialect& dialect : fabrication::dialects())
+  const std::string name = std::filesystem::path(r.file).stem().string();
+  const auto straight = turning::turning_program(r.passes, r.part.path, name, header_of(r, r.points, r.time_s));
+  fabrication::Program by_cubics;
+  if (r.cubics) {
+    const std::vector<turning::CubicPoint>& points = r.cubics->path.points;
+    double time_s = 0.0;
+    for (const turning::CubicPoint& point : points) time_s += point.place.seconds;
+    by_cubics = turning::turning_program(r.cubics->path, r.part.path, name, header_of(r, points.size(), time_s));
+  }
+  for (const fabrication::Dialect& dialect : fabrication::dialects()) {
+    const bool has_cubics = r.has_cubics(dialect.name);
+    const fabrication::Program& program = has_cubics ? by_cubics : straight;
     r.programs.push_back(
         {std::string(dialect.name), "part" + std::string(dialect.ending), fabrication::nc_text(program, dialect.name)});
+    if (!has_cubics || r.cubics->bytes > 0) continue;
+    r.cubics->file = r.programs.back().file;
+    r.cubics->bytes = r.programs.back().text.size();
+    r.cubics->straight_bytes = fabrication::nc_text(straight, dialect.name).size();
+  }
   if (r.part.path.servo != turning::Servo::fast) return;
   CsvWriter csv("c_deg,stroke_mm");
   for (const turning::PathPoint& p : r.passes.front())
@@ -63,27 +77,43 @@ bool near(const std::vector<double>& a, const std::vector<double>& b, double mos
                     [most](double one, double other) { return std::abs(one - other) <= most; });
 }
 
+/// Of the ends of blocks: pieces of a cubic are as many as rounded velocities make them.
+std::vector<double> at_ends(const turning::CutPass& pass, const std::vector<double>& values) {
+  std::vector<double> ends;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (i == 0 || pass.block_s[i] > 0.0) ends.push_back(values[i]);
+  return ends;
+}
+
 bool same_cuts(const std::vector<turning::CutPass>& a, const std::vector<turning::CutPass>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& other) {
-    return near(one.x_mm, other.x_mm, kSameMm) && near(one.y_mm, other.y_mm, kSameMm) &&
-           near(one.z_mm, other.z_mm, kSameMm) && near(one.c_rad, other.c_rad, kSameRad);
+    const auto same = [&](std::vector<double> turning::CutPass::*values, double most) {
+      return near(at_ends(one, one.*values), at_ends(other, other.*values), most);
+    };
+    return same(&turning::CutPass::x_mm, kSameMm) && same(&turning::CutPass::y_mm, kSameMm) &&
+           same(&turning::CutPass::z_mm, kSameMm) && same(&turning::CutPass::c_rad, kSameRad);
   });
 }
 
-/// The cuts of the reference's text; the others must read as the same.
-turning::TurningCuts read_back(const TurningResult& r, fabrication::FindingList& findings) {
-  turning::TurningCuts reference;
+/// Judges the programs by cubics, or the others: the first of them; the rest must read as the same.
+turning::TurningCheck check_text(const TurningResult& r, bool by_cubics, fabrication::FindingList& findings) {
+  std::optional<turning::TurningCuts> reference;
+  std::string file;
   for (std::size_t d = 0; d < r.programs.size(); ++d) {
     const TurningText& program = r.programs[d];
+    if (r.has_cubics(program.dialect) != by_cubics) continue;
     turning::TurningCuts cuts = turning::read_cuts(
         r.part, {fabrication::parse_nc(program.text, program.file, static_cast<fabrication::NcDialect>(d))}, findings);
-    if (d == 0)
+    if (!reference) {
       reference = std::move(cuts);
-    else if (!same_cuts(reference.passes, cuts.passes))
-      findings.add({"differs", program.file, 0, -1, fmt::format("moves otherwise than {}", r.programs.front().file),
-                    0.0, 0.0, 1});
+      file = program.file;
+    } else if (!same_cuts(reference->passes, cuts.passes)) {
+      findings.add({"differs", program.file, 0, -1, fmt::format("moves otherwise than {}", file), 0.0, 0.0, 1});
+    }
   }
-  return reference;
+  std::optional<turning::StrokeTable> strokes;
+  if (!r.servo_csv.empty()) strokes = {"servo.csv", r.servo_csv};
+  return turning::check_turning(r.part, std::move(*reference), strokes, findings);
 }
 
 /// Two turns round the largest jump of Z's acceleration.
@@ -120,6 +150,10 @@ void find_profile(TurningResult& r, const turning::Envelope& envelope) {
 
 }  // namespace
 
+bool TurningResult::has_cubics(std::string_view dialect) const {
+  return cubics && fabrication::takes_cubics(dialect);
+}
+
 TurningResult turn(const std::string& part_file) {
   TurningResult r{part_file, turning::parse_turned_part(read_file(part_file), part_file),
                   {},        0,
@@ -127,7 +161,8 @@ TurningResult turn(const std::string& part_file) {
                   {},        {},
                   {},        "",
                   "",        {},
-                  {},        {}};
+                  {},        {},
+                  {}};
   const turning::TurnedPart& part = r.part;
   r.passes = turning::make_path(part.surface, part.tool, part.path, {part_file, 0, "path"});
   for (const turning::Pass& pass : r.passes) r.points += pass.size();
@@ -135,11 +170,15 @@ TurningResult turn(const std::string& part_file) {
   r.clearance = turning::clearance_figures(part.tool, turning::slopes_along(part.surface, part.path));
   r.finish = turning::finish_figures(turning::effective_radius_mm(part.tool), part.path.feed_mm);
   for (int axis = 0; axis < 4; ++axis) r.axes[static_cast<std::size_t>(axis)] = turning::axis_figures(r.passes, axis);
+  if (part.path.cubic_error_nm)
+    r.cubics = {turning::cubic_path(part.surface, part.tool, part.path, 1.0 / part.machine.blocks_per_s.value_or(1e9),
+                                    {part_file, 0, "path.cubic_error_nm"}),
+                {},
+                {}};
   fabrication::FindingList findings;
   write_programs(r);
-  std::optional<turning::StrokeTable> strokes;
-  if (!r.servo_csv.empty()) strokes = {"servo.csv", r.servo_csv};
-  r.check = turning::check_turning(part, read_back(r, findings), strokes, findings);
+  r.check = check_text(r, false, findings);
+  if (r.cubics) r.cubics->check = check_text(r, true, findings);
   r.findings = findings.take();
   find_stretch(r);
   if (!r.check.envelope) return r;

@@ -4,13 +4,16 @@
 // judges the text of programs.
 
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fabrication/check/findings.h"
 #include "fabrication/turning/check/turning_check.h"
 #include "fabrication/turning/finish.h"
 #include "fabrication/turning/part.h"
+#include "fabrication/turning/plan/cubic_path.h"
 #include "fabrication/turning/plan/path.h"
 
 namespace retrace::studies {
@@ -28,6 +31,15 @@ struct TurningStretch {
   std::vector<geometry::Vec2> profile;             ///< (distance along the radius mm, deviation nm) of a few cuts
 };
 
+/// What controls that join points by cubics get in place of straight moves.
+struct TurnedByCubics {
+  fabrication::turning::CubicPath path;
+  fabrication::turning::TurningCheck check;
+  std::string file;                ///< the first of the programs by cubics
+  std::size_t bytes = 0;           ///< of it
+  std::size_t straight_bytes = 0;  ///< that it would have of straight moves
+};
+
 struct TurningResult {
   std::string file;  ///< of the part
   fabrication::turning::TurnedPart part;
@@ -42,9 +54,12 @@ struct TurningResult {
   std::string servo_csv;     ///< strokes of a fast tool servo; empty without
   fabrication::turning::TurningCheck check;
   TurningStretch stretch;
+  std::optional<TurnedByCubics> cubics;        ///< where the part asks for them
   std::vector<fabrication::Finding> findings;  ///< none: the programs pass
 
   bool passes_inspection() const { return findings.empty(); }
+  /// Whether the program of a dialect goes by cubics.
+  bool has_cubics(std::string_view dialect) const;
 };
 
 /// Plans the path of a part, writes its programs, reads their text back and inspects what it leaves.

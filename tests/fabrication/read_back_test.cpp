@@ -177,7 +177,7 @@ TEST(ReadBack, TimesOfAnAerotechsPathAreThoseOfItsWays) {
     const std::string text = nc_text(program, kNcDialectWords[static_cast<std::size_t>(dialect)]);
     EXPECT_DOUBLE_EQ(record_of(text, dialect).motions.back().duration_s, 2.0) << text;
   }
-  program.items.emplace_back(Path{{cut}});
+  program.items.emplace_back(Path{{cut}, {}});
   EXPECT_EQ(refusal_of([&] { nc_text(program, "a3200"); }),
             "--dialect: a3200 cannot say how long a move of a path takes that goes nowhere: its time is that of its "
             "way");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/angle.h"
 #include "core/error.h"
@@ -35,9 +36,14 @@ void CutRecorder::motion(const NcMotion& motion, const NcSettings&) {
     pass_.z_mm.push_back(p.z_mm);
     pass_.c_rad.push_back(p.c_deg * kDegree);
   };
-  if (pass_.x_mm.empty()) add(motion.from, 0.0);
+  if (pass_.x_mm.empty()) {
+    add(motion.from, 0.0);
+    pass_.block_s.push_back(0.0);
+  }
   add(motion.to, motion.duration_s);
   pass_.seconds += motion.duration_s;
+  block_s_ += motion.duration_s;
+  pass_.block_s.push_back(motion.goes_on ? 0.0 : std::exchange(block_s_, 0.0));
 }
 
 void CutRecorder::dwell(double, const NcPlace&, const AxisPositions&) {}

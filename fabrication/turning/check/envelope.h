@@ -22,8 +22,10 @@ struct CutPass {
   std::vector<double> c_rad;
   std::vector<double> duration_s;  ///< of the block that ends there; of the first 0
   std::vector<std::int32_t> line;  ///< likewise
-  std::vector<double> servo_mm;    ///< what a servo adds to the slide's Z; empty: nothing
-  std::size_t program = 0;         ///< that it is of
+  /// Of the whole block that ends there; 0 where a point lies within a move by a cubic.
+  std::vector<double> block_s;
+  std::vector<double> servo_mm;  ///< what a servo adds to the slide's Z; empty: nothing
+  std::size_t program = 0;       ///< that it is of
   double seconds = 0.0;
 
   std::size_t size() const { return x_mm.size(); }
@@ -44,6 +46,7 @@ class CutRecorder : public NcSink {
   void end_pass();
 
   CutPass pass_;
+  double block_s_ = 0.0;  ///< of a block that goes on
   std::vector<CutPass> passes_;
   std::vector<Finding> findings_;
 };

@@ -65,20 +65,50 @@ class Worst {
   std::int64_t count_ = 0;
 };
 
+/// Time of the block that each point of a pass is in or ends.
+std::vector<double> whole_blocks_s(const CutPass& pass) {
+  std::vector<double> seconds = pass.block_s;
+  for (std::size_t i = seconds.size(); i-- > 1;)
+    if (seconds[i] == 0.0 && i + 1 < seconds.size()) seconds[i] = seconds[i + 1];
+  return seconds;
+}
+
+/// The ends of blocks alone, for what has steps between moves by cubics: their acceleration.
+CutPass block_ends(const CutPass& pass) {
+  CutPass ends;
+  ends.program = pass.program;
+  for (std::size_t i = 0; i < pass.size(); ++i) {
+    if (i > 0 && pass.block_s[i] == 0.0) continue;
+    ends.x_mm.push_back(pass.x_mm[i]);
+    ends.y_mm.push_back(pass.y_mm[i]);
+    ends.z_mm.push_back(pass.z_mm[i]);
+    ends.c_rad.push_back(pass.c_rad[i]);
+    ends.duration_s.push_back(pass.block_s[i]);
+    ends.block_s.push_back(pass.block_s[i]);
+    ends.line.push_back(pass.line[i]);
+    if (!pass.servo_mm.empty()) ends.servo_mm.push_back(pass.servo_mm[i]);
+  }
+  return ends;
+}
+
 /// Difference quotients of a position over the blocks of a pass, by the index of the block's end or of the node.
 class Quotients {
  public:
   Quotients(const CutPass& pass, const std::function<double(std::size_t)>& position, double half_word)
-      : pass_(pass), velocity_(pass.size()) {
+      : pass_(pass), block_s_(whole_blocks_s(pass)), velocity_(pass.size()), noise_(pass.size(), 0.0) {
     for (std::size_t i = 1; i < pass.size(); ++i) {
       const double dt = pass.duration_s[i];
       if (!(dt > 0.0)) continue;
       const double v = (position(i) - position(i - 1)) / dt;
-      velocity_[i] = {v, 2.0 * half_word / dt + std::abs(v) * kHalfWordS / dt};
+      // Rounded ends change the velocity of a straight move by their difference over its time, that of a cubic by half
+      // as much again in its middle and its acceleration by six times it over the time squared.
+      const double most = dt < block_s_[i] ? 3.0 : 1.0;
+      velocity_[i] = {v, (most * 2.0 * half_word + std::abs(v) * kHalfWordS) / block_s_[i]};
+      noise_[i] = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(position(i)) / dt;
     }
   }
 
-  Figure velocity(std::size_t block) const { return velocity_[block]; }
+  Figure velocity(std::size_t block) const { return {velocity_[block].value, velocity_[block].doubt + noise_[block]}; }
 
   /// From the block before node i to the one behind it; at the ends of a pass from and to a standstill.
   Figure acceleration(std::size_t i) const {
@@ -86,7 +116,9 @@ class Quotients {
     const Figure after = i + 1 < pass_.size() ? velocity_[i + 1] : Figure{};
     const double s = (i > 0 ? pass_.duration_s[i] : 0.0) + (i + 1 < pass_.size() ? pass_.duration_s[i + 1] : 0.0);
     if (!(s > 0.0)) return {};
-    return {2.0 * (after.value - before.value) / s, 2.0 * (after.doubt + before.doubt) / s};
+    const double blocks_s = (i > 0 ? block_s_[i] : 0.0) + (i + 1 < pass_.size() ? block_s_[i + 1] : 0.0);
+    const double noise = (i > 0 ? noise_[i] : 0.0) + (i + 1 < pass_.size() ? noise_[i + 1] : 0.0);
+    return {2.0 * (after.value - before.value) / s, 2.0 * (after.doubt + before.doubt) / blocks_s + 2.0 * noise / s};
   }
 
   /// \pre 2 <= i < size - 2
@@ -100,7 +132,9 @@ class Quotients {
 
  private:
   const CutPass& pass_;
-  std::vector<Figure> velocity_;
+  std::vector<double> block_s_;
+  std::vector<Figure> velocity_;  ///< its doubt is that of words alone
+  std::vector<double> noise_;     ///< of numbers of 53 bits, in a velocity
 };
 
 /// The passes of one program.
@@ -131,8 +165,11 @@ void check_axis(const AxisLimits& limits, std::size_t axis, const TurningCuts& c
     for (std::size_t i = 1; i < pass.size(); ++i) {
       speed.add(q.velocity(i), pass.line[i]);
       if (i + 1 < pass.size()) acceleration.add(q.acceleration(i), pass.line[i + 1]);
-      if (i >= 2 && i + 2 < pass.size()) jerk.add(q.jerk(i), pass.line[i + 1]);
     }
+    const CutPass ends = block_ends(pass);
+    const Quotients by_block(
+        ends, [&](std::size_t i) { return position_of(ends, axis, i); }, kHalfWordMm);
+    for (std::size_t i = 2; i + 2 < ends.size(); ++i) jerk.add(by_block.jerk(i), ends.line[i + 1]);
   });
   motion.speed_mm_per_s = std::max(motion.speed_mm_per_s, speed.most());
   motion.acceleration_mm_per_s2 = std::max(motion.acceleration_mm_per_s2, acceleration.most());
@@ -199,7 +236,8 @@ void check_blocks(const TurnedPart& part, const TurningCuts& cuts, std::size_t p
       const double dt = pass.duration_s[i];
       if (!(dt > 0.0)) continue;
       figures.time_s += dt;
-      rate.add({1.0 / dt, kHalfWordS / (dt * dt)}, pass.line[i]);
+      const double block_s = pass.block_s[i];
+      if (block_s > 0.0) rate.add({1.0 / block_s, kHalfWordS / (block_s * block_s)}, pass.line[i]);
       const double way = std::hypot(pass.x_mm[i] - pass.x_mm[i - 1], pass.y_mm[i] - pass.y_mm[i - 1]);
       feed.add({60.0 * way / dt, 60.0 * (3.0 * kHalfWordMm + way * kHalfWordS / dt) / dt}, pass.line[i]);
     }

@@ -25,9 +25,10 @@ struct MotionFigures {
   double time_s = 0.0;  ///< of cuts
 };
 
-/// Speed, acceleration and jerk of X, Y, Z and a servo between blocks, and of C, whose acceleration is that from a
-/// standstill and back as well where the machine limits it; C's speed and the speed along the lines of a raster against
-/// the path's; blocks in a second. Adds the worst of every kind, axis and program.
+/// Speed, acceleration and jerk of X, Y, Z and a servo between blocks and within moves by cubics, whose acceleration
+/// may have steps where they meet, so that jerk is that from block to block; and of C, whose acceleration is that from
+/// a standstill and back as well where the machine limits it; C's speed and the speed along the lines of a raster
+/// against the path's; blocks in a second. Adds the worst of every kind, axis and program.
 MotionFigures check_motion(const TurnedPart& part, const TurningCuts& cuts, FindingList& findings);
 
 }  // namespace retrace::fabrication::turning

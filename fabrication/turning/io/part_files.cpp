@@ -47,6 +47,13 @@ PathOptions read_path(const Document& file, const TurningTool& tool) {
     path.sampling = file.choice<Sampling>("path.sampling");
     path.servo = file.choice<Servo>("path.servo");
     path.spin_deg_per_s2 = file.number_if("machine.c_acceleration_deg_per_s2");
+    path.cubic_error_nm = file.number_if("path.cubic_error_nm");
+    if (path.cubic_error_nm && !path.spin_deg_per_s2)
+      file.fail("path.cubic_error_nm",
+                "needs machine.c_acceleration_deg_per_s2: moves by velocities begin and end at a standstill");
+    if (path.cubic_error_nm && path.servo == Servo::fast)
+      file.fail("path.cubic_error_nm",
+                "must not be given with a fast tool servo, whose strokes belong to straight moves");
   }
   if (path.sampling == Sampling::arc)
     path.arc_mm = 1e-3 * number("arc_um");

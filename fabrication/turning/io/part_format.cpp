@@ -61,6 +61,10 @@ constexpr Row kPathRows[] = {
      "`\"fast\"`: Z follows the mean over a turn, the rest is the stroke in `servo.csv`.", kAngleOnly},
     {"servo", Word{only(kServos, "slow")}, "slow", "A fast tool servo goes by the spindle's angle.", Access(),
      kArcOnly},
+    {"cubic_error_nm", Number{{.low = 1e-2, .high = 1e4}}, kNone,
+     "Controls that join points by cubics (`pmac`, `a3200`, `automation1`) get places, velocities and times, as few as "
+     "stay so near to the spiral; it then needs `machine.c_acceleration_deg_per_s2`.",
+     kSpiralOnly},
     geometry::kRegionSizeRow,
     {"cutting_mm_per_min", Number{{.low = 0.1, .high = 1e5}}, kRequired, "Along the lines.", kRasterOnly}};
 constexpr std::string_view kFeedKeys[] = {"feed_um", "scallop_nm"};

@@ -10,6 +10,7 @@
 #include "core/math/jets.h"
 #include "core/math/partials.h"
 #include "fabrication/turning/plan/polynomial_spiral.h"
+#include "fabrication/turning/plan/spiral.h"
 
 namespace retrace::fabrication::turning {
 namespace {
@@ -19,7 +20,6 @@ using jets::Gradient;
 using jets::Jet2;
 
 using geometry::Vec2;
-constexpr std::size_t kMostPoints = std::size_t{1} << 26;
 
 /// Angles of the spindle at the points of a spiral, in turns.
 std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& where) {
@@ -27,8 +27,9 @@ std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& wher
   const double turns = start / o.feed_mm;
   const double mean_arc = std::numbers::pi * start;
   const double count = o.sampling == Sampling::angle ? turns * o.points_per_turn : turns * mean_arc / o.arc_mm;
-  if (!(count < static_cast<double>(kMostPoints)))
-    throw InputError(where, fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPoints, count));
+  if (!(count < static_cast<double>(kMostPathPoints)))
+    throw InputError(where,
+                     fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPathPoints, count));
   std::vector<double> result;
   result.reserve(static_cast<std::size_t>(count) + 2);
   if (o.sampling == Sampling::angle) {
@@ -36,12 +37,9 @@ std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& wher
     for (std::size_t i = 0; i <= whole; ++i) result.push_back(static_cast<double>(i) / o.points_per_turn);
     return result;
   }
-  // Near the centre equal lengths would be few points a turn: at least 24.
-  constexpr double kMostStep = 1.0 / 24.0;
   for (double turn = 0.0; turn < turns;) {
     result.push_back(turn);
-    const double r = o.feed_mm * (turns - turn);
-    turn += std::min(kMostStep, o.arc_mm / (kTurn * r));
+    turn += turns_between_points(o, o.feed_mm * (turns - turn));
   }
   return result;
 }
@@ -60,26 +58,16 @@ class TouchForecast {
 
 Pass spiral(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, const InputLocation& where) {
   if (const auto pass = polynomial_spiral(surface, tool, o)) return *pass;
-  const NoseCompensation nose(surface, tool, TouchMap(surface, tool, o.radius_mm + o.overrun_mm));
-  const double skew = tool.skew_deg * kDegree;
+  const SpiralPlaces places(surface, tool, o);
   Pass pass;
-  TouchForecast forecast(nose.end_rad());
+  TouchForecast forecast(places.end_rad());
   double last = 0.0;
   const std::vector<double> all_turns = spiral_turns(o, where);
   pass.reserve(all_turns.size());
   for (const double turns : all_turns) {
-    const double r = o.radius_mm + o.overrun_mm - o.feed_mm * turns;
-    const double c = kTurn * (turns - std::floor(turns));
-    const Vec2 across(std::cos(c), -std::sin(c));
-    const Vec2 cut(-std::sin(c), -std::cos(c));
-    PathPoint p;
-    p.x_mm = r * std::cos(skew);
-    p.y_mm = tool.skew_deg == 0.0 ? 0.0 : -r * std::sin(skew);
-    p.c_deg = 360.0 * turns;
-    p.seconds = (turns - last) * 60.0 / o.spindle_rpm;
-    const Vec2 tip = p.x_mm * across - p.y_mm * cut;
     double angle = forecast.next();
-    p.z_mm = nose.height_mm(tip.x(), tip.y(), across, cut, angle);
+    PathPoint p = places.at(turns, angle);
+    p.seconds = (turns - last) * 60.0 / o.spindle_rpm;
     forecast.add(angle);
     last = turns;
     pass.push_back(p);
@@ -91,9 +79,9 @@ std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool
                          const InputLocation& where) {
   const double lines = std::floor(o.height_mm / o.feed_mm + 1e-9) + 1.0;
   const double points = std::max(1.0, std::ceil(o.width_mm / o.arc_mm - 1e-9));
-  if (!(lines * points < static_cast<double>(kMostPoints)))
-    throw InputError(where,
-                     fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPoints, lines * points));
+  if (!(lines * points < static_cast<double>(kMostPathPoints)))
+    throw InputError(
+        where, fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPathPoints, lines * points));
   const NoseCompensation nose(surface, tool, TouchMap(surface, tool, 0.5 * std::hypot(o.width_mm, o.height_mm)));
   // The rake face is square to the machine's Y: a skew turns the part against it, the lines with the part.
   const double cosine = std::cos(tool.skew_deg * kDegree);
@@ -122,31 +110,10 @@ std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool
   return passes;
 }
 
-/// When C stands at an angle if it goes from a standstill to the spindle's speed and back at an even acceleration.
-class SpinTimes {
- public:
-  SpinTimes(double whole_deg, double speed_deg_per_s, double acceleration)
-      : whole_(whole_deg),
-        acceleration_(acceleration),
-        speed_(std::min(speed_deg_per_s, std::sqrt(acceleration * whole_deg))) {}
-
-  double at(double c_deg) const {
-    const double ramp = 0.5 * speed_ * speed_ / acceleration_;
-    const double end_s = (whole_ - 2.0 * ramp) / speed_ + 2.0 * speed_ / acceleration_;
-    if (c_deg < ramp) return std::sqrt(2.0 * std::max(0.0, c_deg) / acceleration_);
-    if (c_deg > whole_ - ramp) return end_s - std::sqrt(2.0 * std::max(0.0, whole_ - c_deg) / acceleration_);
-    return speed_ / acceleration_ + (c_deg - ramp) / speed_;
-  }
-
- private:
-  double whole_;
-  double acceleration_;
-  double speed_;
-};
-
 void spin_up_and_down(Pass& pass, double spindle_rpm, double acceleration_deg_per_s2) {
   const SpinTimes times(pass.back().c_deg, 6.0 * spindle_rpm, acceleration_deg_per_s2);
-  for (std::size_t i = 1; i < pass.size(); ++i) pass[i].seconds = times.at(pass[i].c_deg) - times.at(pass[i - 1].c_deg);
+  for (std::size_t i = 1; i < pass.size(); ++i)
+    pass[i].seconds = times.time_s(pass[i].c_deg) - times.time_s(pass[i - 1].c_deg);
 }
 
 /// Splits Z of a spiral by angles: the slide follows the mean over the turn round each point, the servo the rest. In

@@ -2,6 +2,7 @@
 
 // The tool path of freeform turning with compensation of the nose radius, and speed, acceleration and jerk of its axes.
 
+#include <cstddef>
 #include <vector>
 
 #include "core/error.h"
@@ -21,6 +22,9 @@ struct PathPoint {
   double seconds = 0.0;   ///< since the point before it; 0 for the first
   double servo_mm = 0.0;  ///< of z, what a fast tool servo adds to the slide
 };
+
+/// Of a path, at most.
+inline constexpr std::size_t kMostPathPoints = std::size_t{1} << 26;
 
 /// Points that are cut without lifting the tool.
 using Pass = std::vector<PathPoint>;

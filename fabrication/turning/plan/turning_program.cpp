@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace retrace::fabrication::turning {
 namespace {
@@ -25,27 +26,69 @@ Path path_of(const Pass& pass, Words at, double blend_mm) {
   return path;
 }
 
+/// The same by cubics. All axes have words but Y where it stands.
+Path path_of(const CubicPath& cubics, bool has_y) {
+  Path path;
+  for (auto point = cubics.points.begin() + 1; point != cubics.points.end(); ++point) {
+    Move& move = path.moves.emplace_back(Move{Motion::plough, words_of(point->place), 0.0, point->place.seconds});
+    if (!has_y) move.to[kY].reset();
+    path.end_velocities.push_back(point->velocities);
+  }
+  return path;
+}
+
+/// Programs of cuts: each is reached high above the part, then from above.
+class ProgramMaker {
+ public:
+  ProgramMaker(const PathOptions& options, double highest_mm) : options_(options) {
+    raise_.to[kZ] = nanometres(highest_mm + options.clear_mm);
+  }
+
+  void add(const PathPoint& start, Path path) {
+    Move over{Motion::rapid, words_of(start), 0.0, 0.0};
+    Move down{Motion::translate, {}, options_.approach_mm_per_min, 0.0};
+    std::swap(over.to[kZ], down.to[kZ]);
+    items_.insert(items_.end(), {raise_, over, down, std::move(path)});
+  }
+
+  Program take(const std::string& name, const std::vector<std::string>& header) {
+    Program program;
+    program.name = name;
+    program.header = header;
+    program.items = std::move(items_);
+    program.items.emplace_back(raise_);
+    return program;
+  }
+
+ private:
+  const PathOptions& options_;
+  Move raise_;
+  std::vector<Item> items_;
+};
+
 }  // namespace
 
 Program turning_program(const std::vector<Pass>& passes, const PathOptions& options, const std::string& name,
                         const std::vector<std::string>& header) {
-  Program program;
-  program.name = name;
-  program.header = header;
-  double highest = -1e300;
+  double highest_mm = -1e300;
   for (const Pass& pass : passes)
-    for (const PathPoint& p : pass) highest = std::max(highest, p.z_mm);
-  Move raise;
-  raise.to[kZ] = nanometres(highest + options.clear_mm);
-  for (const Pass& pass : passes) {
-    const Words at = words_of(pass.front());
-    Move over{Motion::rapid, at, 0.0, 0.0};
-    Move down{Motion::translate, {}, options.approach_mm_per_min, 0.0};
-    std::swap(over.to[kZ], down.to[kZ]);
-    program.items.insert(program.items.end(), {raise, over, down, path_of(pass, at, options.blend_mm)});
+    for (const PathPoint& p : pass) highest_mm = std::max(highest_mm, p.z_mm);
+  ProgramMaker maker(options, highest_mm);
+  for (const Pass& pass : passes) maker.add(pass.front(), path_of(pass, words_of(pass.front()), options.blend_mm));
+  return maker.take(name, header);
+}
+
+Program turning_program(const CubicPath& cubics, const PathOptions& options, const std::string& name,
+                        const std::vector<std::string>& header) {
+  double highest_mm = -1e300;
+  bool has_y = false;
+  for (const CubicPoint& point : cubics.points) {
+    highest_mm = std::max(highest_mm, point.highest_mm);
+    has_y = has_y || point.place.y_mm != 0.0;
   }
-  program.items.emplace_back(raise);
-  return program;
+  ProgramMaker maker(options, highest_mm);
+  maker.add(cubics.points.front().place, path_of(cubics, has_y));
+  return maker.take(name, header);
 }
 
 }  // namespace retrace::fabrication::turning

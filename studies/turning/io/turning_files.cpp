@@ -76,6 +76,16 @@ Json motion_json(const turning::AxisMotion& m) {
           {"jerk_mm_per_s3", m.jerk_mm_per_s3}};
 }
 
+Json cubics_json(const TurningResult& r) {
+  Json json = {{"moves", r.cubics->path.points.size() - 1},
+               {"error_nm", r.cubics->path.error_nm},
+               {"file", r.cubics->file},
+               {"bytes", r.cubics->bytes},
+               {"bytes_of_straight_moves", r.cubics->straight_bytes}};
+  add_judged(r.part, r.cubics->check, json);
+  return json;
+}
+
 }  // namespace
 
 std::string turning_json(const TurningResult& r) {
@@ -98,6 +108,7 @@ std::string turning_json(const TurningResult& r) {
                {"axes", {{"x", axis_json(r.axes[0])}, {"y", axis_json(r.axes[1])}, {"z", axis_json(r.axes[2])}}}};
   if (!r.servo_csv.empty()) json["axes"]["servo"] = axis_json(r.axes[3]);
   json["programs"] = std::move(programs);
+  if (r.cubics) json["cubics"] = cubics_json(r);
   json["verification"] = verification_of(r);
   return result_text("retrace.turning/1", json, r.part.warnings);
 }
@@ -150,6 +161,13 @@ std::string turning_table(const TurningResult& r) {
   row("form error of the programs", r.check.inspection.form_error_nm, 3, "nm");
   row("deepest cut below the surface", r.check.inspection.interference_nm, 3, "nm");
   row("scallops, mean", r.check.inspection.scallop_nm, 3, "nm");
+  if (r.cubics) {
+    const double share = static_cast<double>(r.cubics->bytes) / static_cast<double>(r.cubics->straight_bytes);
+    row("moves by cubics", static_cast<double>(r.cubics->path.points.size() - 1), 0, "");
+    row("their distance from the spiral", r.cubics->path.error_nm, 3, "nm");
+    row("form error of their programs", r.cubics->check.inspection.form_error_nm, 3, "nm");
+    row(("size of " + r.cubics->file + " for straight moves'").c_str(), 100.0 * share, 1, "%");
+  }
   text += fmt::format("  {:<34} {:>10}\n", "verdict", r.passes_inspection() ? "pass" : "fail");
   for (const fabrication::Finding& finding : r.findings) text += "  " + text_of(finding) + "\n";
   return text;

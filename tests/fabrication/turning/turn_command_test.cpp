@@ -52,6 +52,20 @@ TEST_F(Turn, WritesProgramsInAllDialectsAndInspectsThem) {
   EXPECT_TRUE(folder_.read("out/maps.png").starts_with("\x89PNG"));
 }
 
+TEST_F(Turn, ControlsThatJoinPointsByCubicsGetFewMoves) {
+  const Json json = turned(kPart + "cubic_error_nm = 1\n[machine]\nc_acceleration_deg_per_s2 = 1000\n");
+  EXPECT_EQ(json["verification"]["verdict"], "pass");
+  const Json& cubics = json["cubics"];
+  EXPECT_LE(cubics["error_nm"].get<double>(), 1.0);
+  EXPECT_LT(20 * cubics["moves"].get<int>(), json["points"].get<int>());
+  EXPECT_LT(10 * cubics["bytes"].get<int>(), cubics["bytes_of_straight_moves"].get<int>());
+  EXPECT_LT(cubics["form_error_nm"].get<double>(), 2.0);
+  for (const char* file : {"part.pmc", "part.pgm", "part.ascript", "part.ngc"}) {
+    const Outcome verified = retrace(folder_, {"verify", "part.toml", std::string("out/") + file});
+    EXPECT_EQ(verified.code, 0) << verified.out;
+  }
+}
+
 TEST_F(Turn, WritesNothingWithoutAFolder) {
   folder_.write("part.toml", kHead + kBase + kTool + kPath + "points_per_turn = 90\n");
   const Outcome outcome = retrace(folder_, {"turn", "part.toml"});
