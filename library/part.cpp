@@ -1,7 +1,11 @@
 #include "retrace/part.h"
 
 #include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/message_text.h"
 #include "library/content.h"
+#include "raytrace/sampling/threads.h"
+#include "studies/appearance/io/appearance_files.h"
 #include "studies/solids/io/solid_files.h"
 #include "studies/solids/solids.h"
 
@@ -45,6 +49,33 @@ ExportResult export_solid(const Design& design, const std::filesystem::path& fil
   const studies::Solid solid = solid_of(design, request);
   write_file_atomically(file, studies::solid_text(solid, format));
   return {solid.warnings, studies::solid_json(solid, file.string()), studies::solid_table(solid)};
+}
+
+MaterialResult export_material(const Design& design, const std::filesystem::path& file, const MaterialRequest& request,
+                               const Running& running) {
+  const auto format = studies::appearance_format(file.string());
+  if (!format) throw InputError({"", 0, "file"}, "must end in .json, .xml or .glsl, got " + in_quotes(file.string()));
+  studies::AppearanceRequest of_study;
+  of_study.apertures = {Angle::from_deg(request.source_arcmin / 60.0), Angle::from_deg(request.receiver_arcmin / 60.0)};
+  of_study.window_deg = request.window_deg;
+  of_study.entrance_deg = request.entrance_deg;
+  of_study.error = request.error;
+  of_study.most_directions = request.most_directions;
+  studies::AppearanceResult found;
+  raytrace::run_with_threads(running.threads, [&] {
+    found = studies::compute_appearance(design.content().design, of_study, running.progress, running.cancellation);
+  });
+  MaterialResult result;
+  result.complete = found.complete;
+  if (!found.complete) return result;
+  const std::filesystem::path values = std::filesystem::path(file).replace_extension(".csv");
+  const studies::AppearanceText text = studies::appearance_text(found, *format, values.filename().string());
+  if (format == studies::AppearanceFormat::table) write_file_atomically(values, text.values);
+  write_file_atomically(file, text.text);
+  result.warnings = found.warnings;
+  result.json = studies::appearance_json(found, text, file.string());
+  result.table = studies::appearance_table(found, text);
+  return result;
 }
 
 }  // namespace retrace

@@ -179,6 +179,21 @@ void bind_part(py::module_& module) {
       return export_solid(design, file, request);
     });
   });
+  py::class_<MaterialRequest>(module, "MaterialRequest")
+      .def(py::init<>())
+      .def_readwrite("entrance_deg", &MaterialRequest::entrance_deg)
+      .def_readwrite("window_deg", &MaterialRequest::window_deg)
+      .def_readwrite("source_arcmin", &MaterialRequest::source_arcmin)
+      .def_readwrite("receiver_arcmin", &MaterialRequest::receiver_arcmin)
+      .def_readwrite("error", &MaterialRequest::error)
+      .def_readwrite("most_directions", &MaterialRequest::most_directions);
+  result_class<MaterialResult>(module, "MaterialResult").def_readonly("complete", &MaterialResult::complete);
+  module.def("export_material", [](const Design& design, const std::filesystem::path& file,
+                                   const MaterialRequest& request, const py::object& progress, unsigned threads) {
+    return watched(progress, threads, [design, file, request](const Running& running) {
+      return export_material(design, file, request, running);
+    });
+  });
   module.def("mesh", [](const Design& design, const std::string& what, const std::optional<double>& block_mm) {
     Mesh made = watched(py::none(), 0, [design, request = SolidRequest{what, block_mm}](const Running&) {
       return mesh(design, request);

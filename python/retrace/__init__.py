@@ -15,7 +15,17 @@ from ._design import Design
 from ._errors import BudgetError, Error, InputError, OutputError
 from ._fabrication import Fabrication, Job, Verification, fabricate, job, verify
 from ._light import Footprint, PhotometryResult, RreResult, footprint, photometry, rre
-from ._part import ExportResult, FaceKind, Inspection, Mesh, export, inspect, mesh
+from ._part import (
+    ExportResult,
+    FaceKind,
+    Inspection,
+    MaterialResult,
+    Mesh,
+    export,
+    export_material,
+    inspect,
+    mesh,
+)
 from ._rays import RayAccount, RaysResult, TracedRays, rays, trace
 from ._report import Page, report
 from ._results import Columns, Drawing, Result
@@ -46,6 +56,7 @@ __all__ = [
     "InputError",
     "Inspection",
     "Job",
+    "MaterialResult",
     "Mesh",
     "MetrologyResult",
     "Optimum",
@@ -61,6 +72,7 @@ __all__ = [
     "TracedRays",
     "Verification",
     "export",
+    "export_material",
     "fabricate",
     "footprint",
     "image",

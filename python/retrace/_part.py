@@ -10,12 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arguments import PathLike, checked, number, path, word
+from ._arguments import PathLike, checked, give, number, path, thread_count, whole, word
 from ._design import AnyDesign, design_of
 from ._options import OPTIONS
+from ._progress import Progress, teller
 from ._results import Array, Result, needed
 
-__all__ = ["ExportResult", "FaceKind", "Inspection", "Mesh", "export", "inspect", "mesh"]
+__all__ = [
+    "ExportResult",
+    "FaceKind",
+    "Inspection",
+    "MaterialResult",
+    "Mesh",
+    "export",
+    "export_material",
+    "inspect",
+    "mesh",
+]
 
 _SOLIDS = ("element", "array", "mould")
 
@@ -76,6 +87,12 @@ class ExportResult(Result):
     _told = ("file", "triangles", "volume_mm3")
 
 
+class MaterialResult(Result):
+    """A part's reflection that was written as a material."""
+
+    _told = ("file", "directions")
+
+
 class Inspection(Result):
     """What a design is, before any light is traced. Drawings: plan, section, front, view."""
 
@@ -109,6 +126,39 @@ def export(
             _block(block_mm),
         )
     )
+
+
+@checked(OPTIONS["export"])
+def export_material(
+    design: AnyDesign,
+    file: PathLike,
+    *,
+    entrance_deg: float = 20.0,
+    window_deg: float = 1.0,
+    source_arcmin: float = 10.0,
+    receiver_arcmin: float = 10.0,
+    error: float = 0.02,
+    most_directions: int = 400,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> MaterialResult:
+    """Writes how a part sends light back as a material for renderers and simulators: a table (.json, with
+    a .csv beside it), a BSDF of Radiance (.xml) or lobes in a shader (.glsl), as `retrace export`."""
+    taken = design_of(design)
+    request = give(
+        _core.MaterialRequest(),
+        entrance_deg=number("entrance_deg", entrance_deg, 1, 40),
+        window_deg=number("window_deg", window_deg, 0.1, 5),
+        source_arcmin=number("source_arcmin", source_arcmin, 0),
+        receiver_arcmin=number("receiver_arcmin", receiver_arcmin, 0),
+        error=number("error", error, 0.001, 0.5),
+        most_directions=whole("most_directions", most_directions, 64, 10000),
+    )
+    count = thread_count(threads)
+    with teller(progress, "material") as tell:
+        return MaterialResult(
+            _core.export_material(taken._core, path("file", file), request, tell, count)
+        )
 
 
 @checked(OPTIONS["inspect"])

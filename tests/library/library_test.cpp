@@ -240,6 +240,32 @@ TEST(Library, MeshIsClosedAndTheSameAsTheExportedOne) {
   EXPECT_EQ(folder.read("library.stl"), folder.read("program.stl"));
 }
 
+TEST(Library, MaterialIsThatOfTheProgram) {
+  const TemporaryFolder folder;
+  const std::string file = example("rtp_single_0p45mm.toml");
+  MaterialRequest request;
+  request.entrance_deg = 2.0;
+  request.window_deg = 0.2;
+  request.most_directions = 64;
+  for (const char* ending : {"json", "xml", "glsl"}) {
+    const std::string name = std::string("material.") + ending;
+    retrace(folder, {"export", file, "told/" + name, "--entrance-deg=2", "--window-deg=0.2", "--most-directions=64",
+                     "--quiet"});
+    const MaterialResult result = export_material(Design::load(file), folder.path() / name, request);
+    EXPECT_TRUE(result.complete);
+    EXPECT_EQ(folder.read(name), folder.read("told/" + name));
+  }
+  EXPECT_EQ(folder.read("material.csv"), folder.read("told/material.csv"));
+  EXPECT_THROW(export_material(Design::load(file), folder.path() / "material.osl", request), InputError);
+  request.error = 0.0;
+  EXPECT_THROW(export_material(Design::load(file), folder.path() / "other.json", request), InputError);
+  Cancellation cancellation;
+  cancellation.request();
+  EXPECT_FALSE(
+      export_material(Design::load(file), folder.path() / "other.json", {}, {nullptr, &cancellation, 0}).complete);
+  EXPECT_FALSE(fs::exists(folder.path() / "other.json"));
+}
+
 TEST(Library, ADesignIsCutAndReadBack) {
   const TemporaryFolder folder;
   const std::string file = example("rtp_brick_5mm.toml");

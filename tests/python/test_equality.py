@@ -159,6 +159,35 @@ class Equality(unittest.TestCase):
 
                 self.walk(program.designs(), of_program, of_package, least=8)
 
+    def test_export_material(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file_of_program = os.path.join(folder, "part.json")
+
+            def of_package(file):
+                found = program.answer(
+                    rt.export_material,
+                    file,
+                    file_of_program,
+                    entrance_deg=2,
+                    window_deg=0.2,
+                    most_directions=64,
+                )
+                return (*found, self.content(file_of_program))
+
+            def of_program(file):
+                found = program.document(
+                    "export",
+                    file,
+                    file_of_program,
+                    "--entrance-deg=2",
+                    "--window-deg=0.2",
+                    "--most-directions=64",
+                )
+                return (*found, self.content(file_of_program))
+
+            names = ["rtp_single_0p45mm.toml", "beads_n193.toml"]
+            self.walk(map(program.example, names), of_program, of_package, least=1)
+
     @staticmethod
     def content(file):
         """Of a file, which is removed."""

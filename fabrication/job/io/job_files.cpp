@@ -98,7 +98,9 @@ constexpr Condition kOfVTools[] = {is("strategy", only(kStrategyWords, "dmc"))};
 
 constexpr Row kJobRows[] = {
     {"title", Text{}, kNone, "For people.", access<&Job::title>},
-    {"design", Text{}, kNone, "The file that the job was made from, from the job's folder. As-machined parts take their plate from it.", access<&Job::design>},
+    {"design", Text{}, kNone,
+     "The file that the job was made from, from the job's folder. As-machined parts take their plate from it.",
+     access<&Job::design>},
     {"notes", Texts{}, kNone, "For people.", access<&Job::notes>},
     {"machine", Text{}, kRequired,
      "`\"ideal\"`, `\"paper\"`, `\"thesis\"`, `\"ideal-dmc\"`, or a [machine file](machine_file.md) (a name with an "

@@ -56,8 +56,10 @@ SolidFormat solid_format(const std::string& file) {
   if (ending == ".obj") return SolidFormat::obj;
   if (ending == ".glb") return SolidFormat::gltf;
   if (ending == ".step" || ending == ".stp") return SolidFormat::step;
-  throw InputError({"", 0, "--out"},
-                   fmt::format("must end in .stl, .obj, .glb, .step or .stp, got {}", in_quotes(file)));
+  throw InputError(
+      {"", 0, "--out"},
+      fmt::format("must end in .stl, .obj, .glb, .step or .stp, of a material in .json, .xml or .glsl, got {}",
+                  in_quotes(file)));
 }
 
 std::string solid_text(const Solid& solid, SolidFormat format) {

@@ -107,31 +107,54 @@ std::vector<double> errors_of(const std::vector<Reading>& truth, const std::vect
   return errors;
 }
 
-TEST(Material, IsWithinTwoPercentOfPhotometryByItsExampleReader) {
-  const TemporaryFolder folder;
-  folder.write("d.toml", cubes("0.5"));
-  const std::vector<Reading> truth = readings(folder);
-  ASSERT_EQ(retrace(folder, export_of("m.json")).code, 0);
+/// What a table says of geometries, by the reader of the examples.
+std::vector<Triple> read_by_example(const TemporaryFolder& folder, const std::vector<Reading>& at) {
   std::ostringstream geometries;
   geometries.precision(12);
-  for (const Reading& at : truth) {
-    const Triple angles = intrinsic_deg(at);
-    geometries << at.observation_deg << ' ' << angles[0] << ' ' << angles[1] << ' ' << angles[2] << '\n';
+  for (const Reading& reading : at) {
+    const Triple angles = intrinsic_deg(reading);
+    geometries << reading.observation_deg << ' ' << angles[0] << ' ' << angles[1] << ' ' << angles[2] << '\n';
   }
   Child reader(folder.path(),
                {RETRACE_PYTHON, "-B", RETRACE_SOURCE_DIR "/examples/material/read_material.py", "m.json"},
                geometries.str());
   const Outcome outcome = reader.wait();
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
   std::istringstream lines(outcome.out);
+  std::vector<Triple> told;
+  for (Triple rgb{}; lines >> rgb[0] >> rgb[1] >> rgb[2];) told.push_back(rgb);
+  EXPECT_EQ(told.size(), at.size()) << outcome.out;
+  return told;
+}
+
+TEST(Material, IsWithinTwoPercentOfPhotometryByItsExampleReader) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", cubes("0.5"));
+  const std::vector<Reading> truth = readings(folder);
+  ASSERT_EQ(retrace(folder, export_of("m.json")).code, 0);
   std::vector<double> told;
-  for (Triple rgb{}; lines >> rgb[0] >> rgb[1] >> rgb[2];)
+  for (const Triple& rgb : read_by_example(folder, truth))
     told.push_back(0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]);
-  ASSERT_EQ(told.size(), truth.size()) << outcome.out;
+  ASSERT_EQ(told.size(), truth.size());
   EXPECT_LT(errors_of(truth, told).back(), 0.02);
   const Json header = folder.json("m.json");
   EXPECT_EQ(header.at("schema"), "retrace.material/1");
   EXPECT_LT(header.at("error").at("of_95_percent"), 0.02);
+}
+
+/// By the compiler of Khronos, for desktops and browsers.
+TEST(Material, TheShaderCompiles) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", cubes("0.5"));
+  ASSERT_EQ(retrace(folder, export_of("m.glsl")).code, 0);
+  for (const char* version : {"#version 330\n", "#version 300 es\nprecision highp float;\n"}) {
+    folder.write("m.frag", version + folder.read("m.glsl") +
+                               "out vec4 colour;\nvoid main() {\n  colour = vec4(retrace_brdf(vec3(0.0, 0.0, 1.0), "
+                               "normalize(gl_FragCoord.xyz)), 1.0);\n}\n");
+    Child compiler(folder.path(), {"/usr/bin/env", "glslangValidator", "m.frag"}, "");
+    const Outcome outcome = compiler.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  }
 }
 
 TEST(Material, LobesOfAShaderAreAsFarOffAsTheySay) {

@@ -58,8 +58,9 @@ TEST(Export, AnElementOfAnEndlessArrayIsWritten) {
 
 TEST(Export, WhatCannotBeIsRefusedAndNothingWritten) {
   const TemporaryFolder folder;
-  expect_refused(retrace(folder, {"export", kPrism, "-o", "a.dxf"}),
-                 "--out: must end in .stl, .obj, .glb, .step or .stp, got \"a.dxf\"");
+  expect_refused(
+      retrace(folder, {"export", kPrism, "-o", "a.dxf"}),
+      "--out: must end in .stl, .obj, .glb, .step or .stp, of a material in .json, .xml or .glsl, got \"a.dxf\"");
   expect_refused(retrace(folder, {"export", kPrism, "-o", "a.stl", "--what", "tool"}),
                  "--what: must be \"element\", \"array\" or \"mould\", got \"tool\"");
   expect_refused(retrace(folder, {"export", kPrism, "a.stl", "-o", "b.stl"}),
