@@ -247,6 +247,7 @@ TEST(Library, MaterialIsThatOfTheProgram) {
   request.entrance_deg = 2.0;
   request.window_deg = 0.2;
   request.most_directions = 64;
+  fs::create_directory(folder.path() / "told");
   for (const char* ending : {"json", "xml", "glsl"}) {
     const std::string name = std::string("material.") + ending;
     retrace(folder, {"export", file, "told/" + name, "--entrance-deg=2", "--window-deg=0.2", "--most-directions=64",

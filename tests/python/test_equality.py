@@ -3,6 +3,7 @@ command; or the same error."""
 
 import json
 import os
+import re
 import tempfile
 import unittest
 
@@ -218,7 +219,9 @@ class Equality(unittest.TestCase):
                         job_file = os.path.join(folder, "job.toml")
                         program.run("job", file, *options, "-o", job_file)
                         with open(job_file, encoding="utf-8") as text:
-                            self.assertEqual(job.text, text.read())
+                            # A text that lies nowhere yet names its design by the file alone.
+                            told = re.sub(r'(?m)^design = ".*/', 'design = "', text.read())
+                        self.assertEqual(job.text, told)
                         made = program.document("fabricate", "job.toml", "-o", "nc", folder=folder)
                         self.assertEqual(program.answer(rt.fabricate, job), made)
                         if made[0] is None:
