@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 39d4a24daa0889b9c5b906c7740211e21e346b2307ba42aff97502fe37d7d171 */
+/* made by tools/live_page; engine.wasm.gz 75abfd440e8373f0a3c735070d279d5068c7005bb14d7de145d621971272ee60 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

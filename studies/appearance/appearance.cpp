@@ -102,7 +102,7 @@ struct PlannedCell {
 /// Of x, y or z, without the mirror image, which goes where a mirror's does and not back to the source.
 Photometer photometer_of(const Design& design, const PhotometryRequest& request, std::size_t response,
                          std::size_t parts) {
-  Photometer photometer(design, request_of_response(request, design, response), parts,
+  Photometer photometer(design, request_of_response(request, response), parts,
                         static_cast<PhotometricResponse>(response));
   photometer.leave_out_mirror_image();
   return photometer;

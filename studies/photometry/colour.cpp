@@ -34,7 +34,7 @@ std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Desig
       materials::tristimulus(lamp_power(request.light), materials::shipped_colour_matching());
   std::vector<MeasuredTristimulus> measured(settings.size());
   for (std::size_t k = 0; k < sent.size(); ++k) {
-    Photometer one(design, request_of_response(request, design, k), kColourParts, static_cast<PhotometricResponse>(k));
+    Photometer one(design, request_of_response(request, k), kColourParts, static_cast<PhotometricResponse>(k));
     if (!photometer.is_exact()) one.leave_exact();
     const auto readings = one.measure(settings, nullptr, cancel);
     if (!readings) return std::nullopt;
@@ -97,16 +97,10 @@ std::string reason_of(const PhotometricColour& colour, const PhotometryRequest& 
 
 }  // namespace
 
-PhotometryRequest request_of_response(const PhotometryRequest& request, const Design& design, std::size_t response) {
+PhotometryRequest request_of_response(const PhotometryRequest& request, std::size_t response) {
   PhotometryRequest one = request;
   one.rays = std::max<std::uint64_t>(1, request.rays / 3);
   one.seed = request.seed + kSeedStep * static_cast<std::uint32_t>(response + 1);
-  const auto* const own = std::get_if<std::vector<SpectralAbsorption>>(&design.substance.absorption_per_mm);
-  if (own != nullptr && one.dye_absorption_per_mm.values.empty())
-    for (const SpectralAbsorption& at : *own) {
-      one.dye_absorption_per_mm.wavelengths_nm.push_back(at.wavelength_nm);
-      one.dye_absorption_per_mm.values.push_back(at.per_mm);
-    }
   return one;
 }
 

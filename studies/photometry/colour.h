@@ -9,9 +9,8 @@
 
 namespace retrace::studies {
 
-/// The request of one response: with the rays of a direction shared by the three, and with the absorption of a coloured
-/// design as its dye, which changes nothing but where the wavelengths are placed. \param response x, y or z
-PhotometryRequest request_of_response(const PhotometryRequest& request, const Design& design, std::size_t response);
+/// The request of one response: with the rays of a direction shared by the three. \param response x, y or z
+PhotometryRequest request_of_response(const PhotometryRequest& request, std::size_t response);
 
 /// Measures the colour where the standard asks for it, or at its first test point: the tristimulus values of the
 /// returned light, each with wavelengths of its own. Nothing if it was cancelled.

@@ -28,11 +28,22 @@ struct WeighedLight {
   std::vector<double> weights;
 };
 
-/// Where a dye takes most of the light, wavelengths are best placed where some is left: by the flux behind the dye on a
+/// What a design's body takes of the light, wavelength by wavelength; empty where it is one number or the material's.
+materials::SpectralCurve absorption_per_mm(const Design& design) {
+  materials::SpectralCurve curve;
+  if (const auto* const given = std::get_if<std::vector<SpectralAbsorption>>(&design.substance.absorption_per_mm))
+    for (const SpectralAbsorption& at : *given) {
+      curve.wavelengths_nm.push_back(at.wavelength_nm);
+      curve.values.push_back(at.per_mm);
+    }
+  return curve;
+}
+
+/// Where a body takes most of the light, wavelengths are best placed where some is left: by the flux that is left on a
 /// way through the part and back, which the weights take out again. \param response to the lamp's light
 WeighedLight lamp_light(materials::SpectralCurve power, const materials::SpectralCurve& response,
-                        const materials::SpectralCurve& dye, double way_mm, std::size_t parts) {
-  const auto transmittance = [&](double w) { return dye.values.empty() ? 1.0 : std::exp(-dye.at(w) * way_mm); };
+                        const materials::SpectralCurve& body, double way_mm, std::size_t parts) {
+  const auto transmittance = [&](double w) { return body.values.empty() ? 1.0 : std::exp(-body.at(w) * way_mm); };
   double before = 0.0;
   double behind = 0.0;
   for (std::size_t k = 0; k < power.values.size(); ++k) {
@@ -177,7 +188,7 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
   } else {
     const WeighedLight light =
         lamp_light(lamp_power(request.light), materials::shipped_colour_matching()[static_cast<std::size_t>(response)],
-                   request.dye_absorption_per_mm, way_through_mm(design_), parts);
+                   absorption_per_mm(design_), way_through_mm(design_), parts);
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }

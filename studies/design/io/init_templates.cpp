@@ -121,8 +121,8 @@ spindle_direction = "clockwise"   # M3; or "counterclockwise", M4
 # depth_of_cut_mm = 1             # of a pass
 # clear_mm = 2                    # height over the blank of moves beside the cut
 # nose_radius_mm = 0              # of the tool
-# spindle_start = "M103"          # for --dialect pmac, which has no spindle words of its own: the line that starts the
-# spindle_stop = "M105"           # spindle at that speed, and the one that stops it, as your control wants them
+# spindle_start = "M103"          # for --dialect pmac, a3200 and automation1, which have no spindle words of their own:
+# spindle_stop = "M105"           # the lines that start the spindle at that speed and stop it, as your control wants them
 )";
 
 }  // namespace

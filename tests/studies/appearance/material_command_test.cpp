@@ -142,6 +142,39 @@ TEST(Material, IsWithinTwoPercentOfPhotometryByItsExampleReader) {
   EXPECT_LT(header.at("error").at("of_95_percent"), 0.02);
 }
 
+/// Parts of coloured bodies: chromaticity from red, green and blue by the primaries of sRGB (IEC 61966-2-1), against
+/// the colour that the photometer tells. The second is so red that it lies outside of what sRGB shows.
+TEST(Material, ColoursAreThoseOfPhotometry) {
+  for (const char* absorption : {"[[380, 0.4], [480, 0.2], [560, 0.05], [780, 0.02]]",
+                                 "[[380, 3], [560, 2.5], [600, 0.3], [640, 0.01], [780, 0]]"}) {
+    const TemporaryFolder folder;
+    std::string design = cubes("0.5");
+    design.replace(design.find("refractive_index"), 0, std::string("absorption_per_mm = ") + absorption + "\n");
+    folder.write("d.toml", design);
+    ASSERT_EQ(retrace(folder, export_of("m.json")).code, 0);
+    std::vector<Reading> at = {{0.1, 3.0, 1.0, 0.0}, {0.2, 0.5, -4.0, 20.0}, {0.3, -6.0, 2.0, 77.0}};
+    std::vector<Triple> told = read_by_example(folder, at);
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      std::ostringstream row;
+      row.precision(15);
+      row << "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\nS,,white," << at[k].observation_deg
+          << ',' << at[k].v_deg << ',' << at[k].h_deg << ",1,cd/lx/m2,read\n";
+      folder.write("limits.csv", row.str());
+      const Json json = retrace_json(folder, {"photometry", "d.toml", "--standard", "limits.csv", "--area-cm2", "10",
+                                              "--light", "d65", "--rotation", std::to_string(at[k].turn_deg),
+                                              "--source-arcmin", "20", "--receiver-arcmin", "20", "--no-advice"});
+      const auto& [r, g, b] = told[k];
+      const double x = 0.4124 * r + 0.3576 * g + 0.1805 * b;
+      const double y = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+      const double z = 0.0193 * r + 0.1192 * g + 0.9505 * b;
+      EXPECT_NEAR(x / (x + y + z), json.at("chromaticity").at("x").get<double>(), 0.002) << k;
+      EXPECT_NEAR(y / (x + y + z), json.at("chromaticity").at("y").get<double>(), 0.002) << k;
+      const double r_a = json.at("points").at(0).at("r_a_cd_per_lx_m2").get<double>();
+      EXPECT_NEAR(y, r_a, 0.02 * r_a) << k;
+    }
+  }
+}
+
 /// By the compiler of Khronos, for desktops and browsers.
 TEST(Material, TheShaderCompiles) {
   const TemporaryFolder folder;
