@@ -222,6 +222,8 @@ class Equality(unittest.TestCase):
                             # A text that lies nowhere yet names its design by the file alone.
                             told = re.sub(r'(?m)^design = ".*/', 'design = "', text.read())
                         self.assertEqual(job.text, told)
+                        with open(job_file, "w", encoding="utf-8") as text:
+                            text.write(job.text)
                         made = program.document("fabricate", "job.toml", "-o", "nc", folder=folder)
                         self.assertEqual(program.answer(rt.fabricate, job), made)
                         if made[0] is None:
