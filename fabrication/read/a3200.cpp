@@ -127,8 +127,7 @@ class A3200Reader {
     rest.remove_prefix(4);
     cubic.time_s = take_number(rest, lines_).value;
     if (!rest.empty()) lines_.fail("PVT must end with its TIME");
-    block.cubic = static_cast<std::int32_t>(program_.cubics.size());
-    program_.cubics.push_back(cubic);
+    program_.set_cubic(block, cubic);
   }
 
   std::string name_in(std::string_view text) const {

@@ -166,8 +166,7 @@ class Automation1Reader {
       iso.set_cubic(axis, places[k], velocities[k], cubic);
     }
     cubic.time_s = take_number(text, lines_).value;
-    block.cubic = static_cast<std::int32_t>(program_.cubics.size());
-    program_.cubics.push_back(cubic);
+    program_.set_cubic(block, cubic);
   }
 
   /// G codes may be small letters; names of axes may not, for it tells capitals apart in them.

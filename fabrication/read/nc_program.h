@@ -144,6 +144,12 @@ struct NcProgram {
   std::int32_t stop_line = 0;
   /// What is missing of a file that stops in the middle; nothing if it is whole.
   std::optional<std::string> truncated;
+
+  /// Keeps what a block says of a move by velocities.
+  void set_cubic(NcBlock& block, const NcCubic& cubic) {
+    block.cubic = static_cast<std::int32_t>(cubics.size());
+    cubics.push_back(cubic);
+  }
 };
 
 /// Longest line of a program, and longest program, that is read.

@@ -142,8 +142,7 @@ class PmacReader {
       iso.set_cubic(axis, word.number.value, take_number(text, lines_).value, cubic);
     }
     if (block.axes == 0) lines_.fail("PVT must have axes in its line");
-    block.cubic = static_cast<std::int32_t>(program_.cubics.size());
-    program_.cubics.push_back(cubic);
+    program_.set_cubic(block, cubic);
   }
 
   void set_distance(bool absolute, NcBlock& block) {

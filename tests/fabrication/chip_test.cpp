@@ -147,12 +147,7 @@ Job any_prisms() {
       *rc::gen::weightedElement<double>({{3, 90.0}, {1, 60.0}, {1, 120.0}, {1, 0.01 * *rc::gen::inRange(6000, 12001)}});
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
   job.tool.clearance_deg = *rc::gen::inRange(2, 11);
-  const double widest_deg = std::min(prism.apex_angle_deg - 12.5 - job.tool.clearance_deg, 70.0);
-  // Rake faces of plunges along both facets that do not cross leave a fin over the root.
-  const double least_deg = job.strategy == Strategy::unidirectional
-                               ? 40.0
-                               : std::max(40.0, 0.5 * prism.apex_angle_deg + 2.0 - job.tool.clearance_deg);
-  job.tool.wedge_deg = std::min(widest_deg, least_deg + *rc::gen::inRange(0, 25));
+  job.tool.wedge_deg = wedge_deg(job, *rc::gen::inRange(0, 25));
   job.tool.edge_radius_um = *rc::gen::element(0.0, 0.0, 0.5, 3.0);
   job.tool.width_mm = *rc::gen::element(0.451, 0.451, 0.2, 0.3);
   job.workpiece.kind = *rc::gen::element(WorkpieceKind::mould, WorkpieceKind::direct);

@@ -2,6 +2,8 @@
 
 // Small jobs for tests.
 
+#include <algorithm>
+
 #include "fabrication/job/job.h"
 
 namespace retrace::fabrication::test {
@@ -23,6 +25,16 @@ inline Job square_job(int n, geometry::Arrangement arrangement = geometry::Arran
   job.tool.width_mm = 0.451;
   job.process = thesis_process();
   return job;
+}
+
+/// A wedge angle that the checks of a job of prisms let through: so much above the least, no more than the greatest.
+inline double wedge_deg(const Job& job, int above_deg) {
+  const double apex_deg = prism_of(job).apex_angle_deg;
+  const double widest_deg = std::min(apex_deg - 12.5 - job.tool.clearance_deg, 70.0);
+  // Rake faces of plunges along both facets that do not cross leave a fin over the root.
+  const double least_deg =
+      job.strategy == Strategy::unidirectional ? 40.0 : std::max(40.0, 0.5 * apex_deg + 2.0 - job.tool.clearance_deg);
+  return std::min(widest_deg, least_deg + above_deg);
 }
 
 }  // namespace retrace::fabrication::test

@@ -373,12 +373,7 @@ RC_GTEST_PROP(LeastChip, OfAnyPrisms, ()) {
   prism.apex_angle_deg = *rc::gen::element(90.0, 60.0, 75.0, 120.0);
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
   job.tool.clearance_deg = *rc::gen::inRange(2, 11);
-  const double widest_deg = std::min(prism.apex_angle_deg - 12.5 - job.tool.clearance_deg, 70.0);
-  // Rake faces of plunges along both facets that do not cross leave a fin over the root.
-  const double least_deg = job.strategy == Strategy::unidirectional
-                               ? 40.0
-                               : std::max(40.0, 0.5 * prism.apex_angle_deg + 2.0 - job.tool.clearance_deg);
-  job.tool.wedge_deg = std::min(widest_deg, least_deg + *rc::gen::inRange(0, 25));
+  job.tool.wedge_deg = wedge_deg(job, *rc::gen::inRange(0, 25));
   job.tool.edge_radius_um = *rc::gen::element(0.0, 0.5, 3.0);
   job.process.roughing_depth_um = 1e-2 * *rc::gen::inRange(1500, 6000);
   job.process.finishing_depth_um = *rc::gen::inRange(3, 8);

@@ -73,6 +73,11 @@ std::vector<double> whole_blocks_s(const CutPass& pass) {
   return seconds;
 }
 
+/// Whether points of it lie within blocks. The first, before all blocks, has no time of one either.
+bool has_cubics(const CutPass& pass) {
+  return std::count(pass.block_s.begin(), pass.block_s.end(), 0.0) > 1;
+}
+
 /// The ends of blocks alone, for what has steps between moves by cubics: their acceleration.
 CutPass block_ends(const CutPass& pass) {
   CutPass ends;
@@ -166,10 +171,13 @@ void check_axis(const AxisLimits& limits, std::size_t axis, const TurningCuts& c
       speed.add(q.velocity(i), pass.line[i]);
       if (i + 1 < pass.size()) acceleration.add(q.acceleration(i), pass.line[i + 1]);
     }
+    const auto add_jerk = [&](const CutPass& nodes, const Quotients& of_nodes) {
+      for (std::size_t i = 2; i + 2 < nodes.size(); ++i) jerk.add(of_nodes.jerk(i), nodes.line[i + 1]);
+    };
+    if (!has_cubics(pass)) return add_jerk(pass, q);
     const CutPass ends = block_ends(pass);
-    const Quotients by_block(
-        ends, [&](std::size_t i) { return position_of(ends, axis, i); }, kHalfWordMm);
-    for (std::size_t i = 2; i + 2 < ends.size(); ++i) jerk.add(by_block.jerk(i), ends.line[i + 1]);
+    add_jerk(ends, Quotients(
+                       ends, [&](std::size_t i) { return position_of(ends, axis, i); }, kHalfWordMm));
   });
   motion.speed_mm_per_s = std::max(motion.speed_mm_per_s, speed.most());
   motion.acceleration_mm_per_s2 = std::max(motion.acceleration_mm_per_s2, acceleration.most());
