@@ -424,11 +424,11 @@ RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
     const auto view = views.find({region.element, region.facet});
     if (view == views.end()) continue;
     const Groove& groove = grooves[region.element];
-    const auto pitch = [&](Eigen::Index axis) {
+    const auto pitch = [&, facet = region.facet](Eigen::Index axis) {
       // Directions of the edge and of its way: the rows of what takes places on the facet to them.
       return pitch_mm(map, result.part_from_map,
-                      view->second.of_up[axis] * groove.facets[region.facet].up_slope +
-                          view->second.of_along[axis] * groove.level_of(region.facet));
+                      view->second.of_up[axis] * groove.facets[facet].up_slope +
+                          view->second.of_along[axis] * groove.level_of(facet));
     };
     FacetRest rest;
     rest.at = {region.element, region.facet};
