@@ -5,26 +5,35 @@
 namespace retrace::geometry {
 namespace {
 
-/// Keeps `axis * sign * coordinate <= sign * bound`.
-Polygon clip_axis(const Polygon& polygon, Eigen::Index axis, double sign, double bound, double tolerance_mm) {
+/// Keeps what does not lie beyond a border. \param beyond how far a place does, mm \param settle puts a place on the
+/// border, where rounding left it beside
+template <class Beyond, class Settle>
+Polygon clip_at(const Polygon& polygon, const Beyond& beyond, const Settle& settle, double tolerance_mm) {
   Polygon kept;
   kept.reserve(polygon.size() + 2);
   bool reaches_inside = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec2& a = polygon[i];
     const Vec2& b = polygon[(i + 1) % polygon.size()];
-    const double da = sign * (a[axis] - bound);
-    const double db = sign * (b[axis] - bound);
+    const double da = beyond(a);
+    const double db = beyond(b);
     if (da < -tolerance_mm) reaches_inside = true;
     if (da <= tolerance_mm) kept.push_back(a);
     const bool crosses = (da < -tolerance_mm && db > tolerance_mm) || (da > tolerance_mm && db < -tolerance_mm);
-    if (!crosses) continue;
-    Vec2 cut = a + (b - a) * (da / (da - db));
-    cut[axis] = bound;
-    kept.push_back(cut);
+    if (crosses) kept.push_back(settle(Vec2(a + (b - a) * (da / (da - db)))));
   }
   if (!reaches_inside) kept.clear();
   return kept;
+}
+
+/// Keeps `sign * coordinate <= sign * bound`.
+Polygon clip_axis(const Polygon& polygon, Eigen::Index axis, double sign, double bound, double tolerance_mm) {
+  const auto settle = [&](Vec2 cut) {
+    cut[axis] = bound;
+    return cut;
+  };
+  return clip_at(
+      polygon, [&](const Vec2& p) { return sign * (p[axis] - bound); }, settle, tolerance_mm);
 }
 
 }  // namespace
@@ -76,6 +85,28 @@ Polygon clip(const Polygon& polygon, const Rectangle& rectangle, double toleranc
   }
   if (result.size() < 3) result.clear();
   return result;
+}
+
+Polygon clip(const Polygon& polygon, const Polygon& region, double tolerance_mm) {
+  Polygon result = polygon;
+  for (std::size_t k = 0; k < region.size() && !result.empty(); ++k) {
+    const Vec2& from = region[k];
+    const Vec2 along = (region[(k + 1) % region.size()] - from).normalized();
+    const auto beyond = [&](const Vec2& p) { return along.y() * (p - from).x() - along.x() * (p - from).y(); };
+    result = clip_at(
+        result, beyond, [](const Vec2& cut) { return cut; }, tolerance_mm);
+  }
+  if (result.size() < 3) result.clear();
+  return result;
+}
+
+bool is_convex(const Polygon& polygon, double tolerance_mm) {
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 a = polygon[(k + 1) % polygon.size()] - polygon[k];
+    const Vec2 b = polygon[(k + 2) % polygon.size()] - polygon[(k + 1) % polygon.size()];
+    if (a.x() * b.y() - a.y() * b.x() < -tolerance_mm * (a.norm() + b.norm())) return false;
+  }
+  return true;
 }
 
 bool contains(const Rectangle& r, const Polygon& polygon, double tolerance_mm) {

@@ -33,6 +33,12 @@ Rectangle moved(const Rectangle& rectangle, const Vec2& by);
 /// when nothing wider than the tolerance is left.
 Polygon clip(const Polygon& polygon, const Rectangle& rectangle, double tolerance_mm);
 
+/// The same of a convex polygon in place of the rectangle.
+Polygon clip(const Polygon& polygon, const Polygon& region, double tolerance_mm);
+
+/// Whether a counter-clockwise polygon turns left at every vertex, or runs straight on up to the tolerance.
+bool is_convex(const Polygon& polygon, double tolerance_mm);
+
 /// True if every vertex lies in the rectangle widened by `tolerance_mm`.
 bool contains(const Rectangle& rectangle, const Polygon& polygon, double tolerance_mm);
 

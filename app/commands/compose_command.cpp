@@ -3,6 +3,10 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
@@ -36,8 +40,41 @@ std::string zone_design(const studies::Study& study, const studies::Composition&
   return studies::zone_design_text(study, *composition.best, zone);
 }
 
+struct ComposeOptions : StudyOptions {
+  std::string design;
+  std::string layout = "stripes";
+  std::optional<double> x_length_mm;
+  std::optional<double> y_length_mm;
+};
+
+std::vector<Argument> compose_arguments(ComposeOptions& options) {
+  std::vector<Argument> all = study_arguments(options);
+  all.push_back(
+      {"--design FILE", "write the design of the whole part, with its zones", &options.design, files(".toml")});
+  all.push_back({"--layout WORD", "how its zones lie: stripes, blocks or rows", &options.layout,
+                 one_of(words_of(studies::kZoneLayouts))});
+  for (const auto& [name, help, length] :
+       {std::tuple{"--x-length-mm L", "of that part, with the other one [those of the study's design]",
+                   &options.x_length_mm},
+        {"--y-length-mm L", "likewise", &options.y_length_mm}}) {
+    all.push_back({name, help, length});
+    all.back().traits.needs = "--design";
+  }
+  return all;
+}
+
+studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
+  studies::ZonedDesignRequest request;
+  request.layout = studies::read_zone_layout(options.layout);
+  if (options.x_length_mm.has_value() != options.y_length_mm.has_value())
+    throw InputError({"", 0, options.x_length_mm ? "--y-length-mm" : "--x-length-mm"},
+                     "missing beside the other length");
+  if (options.x_length_mm) request.size_mm = {*options.x_length_mm, *options.y_length_mm};
+  return request;
+}
+
 /// \param session null without MPI
-ExitCode compose_part(const StudyOptions& options, const CommonOptions& common, studies::MpiSession* session) {
+ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
   const studies::ComposeRequest request = studies::read_compose(study);
@@ -48,6 +85,11 @@ ExitCode compose_part(const StudyOptions& options, const CommonOptions& common, 
   files.add_drawing("composition", [&] { return report::composition_plot(study, request, composition); });
   for (std::size_t zone = 0; zone < studies::most_zone_designs(request); ++zone)
     files.add(fmt::format("zone_{}.toml", zone + 1), [&, zone] { return zone_design(study, composition, zone); });
+  const studies::ZonedDesignRequest zoned = zoned_design_of(options);
+  if (!options.design.empty()) studies::check_zoned_design(study, zoned);
+  files.add_named("--design", options.design, [&] {
+    return composition.best ? studies::zoned_design_text(study, *composition.best, zoned) : std::string();
+  });
   const std::filesystem::path file = files.reserve("composition.sqlite");
   files.prepare();
   studies::ResultStore store(file, studies::compose_layout(study), if_exists_of(options));
@@ -70,7 +112,7 @@ ExitCode compose_part(const StudyOptions& options, const CommonOptions& common, 
   return code;
 }
 
-ExitCode run_compose(const StudyOptions& options, const CommonOptions& common) {
+ExitCode run_compose(const ComposeOptions& options, const CommonOptions& common) {
   check_study_options(options, common);
   return run_on_ranks(
       common, slots(common), [&](studies::MpiSession* session) { return compose_part(options, common, session); },
@@ -92,11 +134,11 @@ Command compose_command() {
           .manual =
               "Looks for the cells, and their shares of the area, that make the worst of all goals as good as it can "
               "be, by linear programming; says what binds and at what price. Cells that were looked at are kept in "
-              "`composition.sqlite` in the output folder and serve the next run. Exits with 1 if no part reaches "
-              "what is asked.",
+              "`composition.sqlite` in the output folder and serve the next run. `--design` writes the part with its "
+              "zones as one design. Exits with 1 if no part reaches what is asked.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.composition/1", "retrace.design/1"},
-          .begin = begins(study_arguments, run_compose)};
+          .begin = begins(compose_arguments, run_compose)};
 }
 
 }  // namespace retrace::app

@@ -13,6 +13,7 @@
 #include "geometry/part/substrate_part.h"
 #include "geometry/part/tiling.h"
 #include "geometry/part/welded_part.h"
+#include "geometry/part/zones.h"
 
 namespace retrace::geometry {
 namespace {
@@ -127,6 +128,12 @@ InnerWalls inner_walls(const Part& part, const Vec3& towards) {
 
 namespace {
 
+void check_plate(const Part& part) {
+  if (part.thickness_mm <= part.top_mm)
+    throw InputError(
+        fmt::format("body.thickness_mm must be above {} mm, the highest rim, got {}", part.top_mm, part.thickness_mm));
+}
+
 Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* planes, double elements_per_patch) {
   Part part;
   part.spec = spec;
@@ -136,9 +143,7 @@ Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* plane
   part.size_mm = bounding_box(aperture_outline(spec.element)).size().minCoeff();
   add_surface(part, planes, origin_mm, elements_per_patch);
   if (!is_nominal(spec, planes)) measure_layer(part);
-  if (part.thickness_mm <= part.top_mm)
-    throw InputError(
-        fmt::format("body.thickness_mm must be above {} mm, the highest rim, got {}", part.top_mm, part.thickness_mm));
+  check_plate(part);
   measure(part);
   return part;
 }
@@ -155,6 +160,16 @@ Part build_part(const PartSpec& spec, const FacetPlanes& planes) {
   if (part.elements_full != given)
     throw InputError(
         fmt::format("{} of the {} elements are no whole elements of the array", given - part.elements_full, given));
+  return part;
+}
+
+Part build_part(const ZonedSpec& spec) {
+  Part part;
+  part.thickness_mm = spec.thickness_mm;
+  add_zones(part, spec);
+  measure_layer(part);
+  check_plate(part);
+  measure(part);
   return part;
 }
 

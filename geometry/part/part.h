@@ -19,6 +19,12 @@ struct Placement {
   double height_mm = 0.0;  ///< along z; other than 0 on a base alone
 };
 
+/// How many elements a zone of a part has.
+struct ZoneElements {
+  std::int64_t full = 0;
+  std::int64_t partial = 0;  ///< cut by a border of the zone
+};
+
 /// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below it
 /// the elements, whose rims lie on z = 0 but for errors of angle and cant. A finite part is the prism over a convex
 /// outline, open at the bottom only where the back surface ends it; an infinite one repeats with a rectangular period.
@@ -41,6 +47,7 @@ struct Part {
   Vec2 lattice_anchor_mm = Vec2::Zero();
   std::int64_t elements_full = 0;  ///< finite: whole elements; infinite: elements per period
   std::int64_t elements_partial = 0;
+  std::vector<ZoneElements> zones;    ///< parts of zones
   double entrance_area_mm2 = 0.0;     ///< infinite: of one period
   double retro_facet_area_mm2 = 0.0;  ///< infinite: of one period
 

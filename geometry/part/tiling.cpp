@@ -49,15 +49,6 @@ std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block
           Rectangle{{block.lower.x(), block.upper.y()}, {block.upper.x(), extent.upper.y()}}};
 }
 
-bool is_convex(const Polygon& polygon, double tolerance_mm) {
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec2 a = polygon[(k + 1) % polygon.size()] - polygon[k];
-    const Vec2 b = polygon[(k + 2) % polygon.size()] - polygon[(k + 1) % polygon.size()];
-    if (a.x() * b.y() - a.y() * b.x() < -tolerance_mm * (a.norm() + b.norm())) return false;
-  }
-  return true;
-}
-
 /// A plane that is told in a frame of its own.
 HeightPlane placed_plane(const HeightPlane& own, const SubstrateFrame& frame) {
   const Vec3 normal = own.slope.x() * frame.along_u + own.slope.y() * frame.along_v - frame.normal;
@@ -100,6 +91,19 @@ class Tiler {
       for (std::int64_t i = all.lower[0]; i < all.upper[0]; i += step[0])
         add_piece({{i, j}, {std::min(i + step[0], all.upper[0]), std::min(j + step[1], all.upper[1])}}, origin_mm);
     check_cover();
+  }
+
+  ArrayTiles all_tiles() {
+    const IndexRange all = sheet_.indices();
+    here_.emplace(sheet_, all.lower[0], all.lower[1], true);
+    Piece piece;
+    collect(piece, all);
+    for (Tile& tile : tiles_) {
+      tile.outline = moved(std::move(tile.outline), here_->origin_mm());
+      tile.plane.height_mm -= tile.plane.slope.dot(here_->origin_mm());
+      if (tile.middle_mm) *tile.middle_mm += here_->origin_mm();
+    }
+    return {std::move(tiles_), piece.full, piece.partial};
   }
 
   void add_periods() {
@@ -169,6 +173,15 @@ class Tiler {
 
   /// The tiles of a range of the lattice and of one more cell all round, welded to a patch.
   void fill(Piece& piece, const IndexRange& range) {
+    collect(piece, range);
+    for (const Tile& tile : tiles_) piece.area_mm2 += tile.owned ? area(tile.outline) : 0.0;
+    if (std::none_of(tiles_.begin(), tiles_.end(), [](const Tile& tile) { return tile.owned; })) return;
+    piece.patch = static_cast<std::uint32_t>(part_.patches.size());
+    part_.patches.push_back(build_patch(tiles_, here_->block_in_plan(), part_.size_mm));
+  }
+
+  /// \param piece counts its elements
+  void collect(Piece& piece, const IndexRange& range) {
     tiles_.clear();
     std::uint32_t number = 0;
     for (std::int64_t j = range.lower[1] - 1; j <= range.upper[1]; ++j)
@@ -185,10 +198,6 @@ class Tiler {
           ++number;
         }
       }
-    for (const Tile& tile : tiles_) piece.area_mm2 += tile.owned ? area(tile.outline) : 0.0;
-    if (std::none_of(tiles_.begin(), tiles_.end(), [](const Tile& tile) { return tile.owned; })) return;
-    piece.patch = static_cast<std::uint32_t>(part_.patches.size());
-    part_.patches.push_back(build_patch(tiles_, here_->block_in_plan(), part_.size_mm));
   }
 
   /// A cell of the lattice: its period, and which of the period's it is.
@@ -325,6 +334,13 @@ class Tiler {
 void add_array(Part& part, const ArraySheet& sheet, const FacetPlanes* planes, const Vec2& origin_mm,
                double elements_per_patch) {
   Tiler(part, sheet, planes).add_all(origin_mm, elements_per_patch);
+}
+
+ArrayTiles array_tiles(const PartSpec& spec) {
+  const ArraySheet sheet(spec);
+  Part part;
+  part.spec = spec;
+  return Tiler(part, sheet, nullptr).all_tiles();
 }
 
 void add_periods(Part& part, const ArraySheet& sheet) {

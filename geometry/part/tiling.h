@@ -2,6 +2,9 @@
 
 // Internal to geometry: builds the back surface of a part from cells that stand on a plane or on a substrate.
 
+#include <cstdint>
+#include <vector>
+
 #include "geometry/elements/array_sheet.h"
 #include "geometry/elements/facet_planes.h"
 #include "geometry/part/part.h"
@@ -16,10 +19,19 @@ namespace retrace::geometry {
 void add_array(Part& part, const ArraySheet& sheet, const FacetPlanes* planes, const Vec2& origin_mm,
                double elements_per_patch);
 
-/// The same of an infinite array: some periods of it.
+/// What stands on an array's extent, which begins at the origin.
+struct ArrayTiles {
+  std::vector<Tile> tiles;
+  std::int64_t full = 0;  ///< elements
+  std::int64_t partial = 0;
+};
+/// \pre a finite array on the plane z = 0, not `single` \throw InputError where it is smaller than one element
+ArrayTiles array_tiles(const PartSpec& spec);
+
+/// Adds an infinite array: some periods of it.
 void add_periods(Part& part, const ArraySheet& sheet);
 
-/// The same of an element by itself.
+/// Adds an element by itself.
 void add_single(Part& part, const FacetPlanes* planes, const Vec2& origin_mm);
 
 }  // namespace retrace::geometry

@@ -16,6 +16,7 @@
 #include "core/schema/document.h"
 #include "geometry/elements/element_choice.h"
 #include "geometry/elements/part_spec.h"
+#include "geometry/part/zones.h"
 #include "raytrace/balls/ball_layer.h"
 #include "raytrace/light/stokes.h"
 
@@ -144,8 +145,15 @@ struct Plate {
   double thickness_mm = 0.0;
 };
 
+/// A plate whose regions have elements of their own.
+struct ZonedPart {
+  geometry::PartSpec base;                        ///< what zones have where they change nothing
+  std::vector<std::vector<std::string>> changes;  ///< of each zone, each KEY=VALUE
+  geometry::ZonedSpec spec;
+};
+
 /// What a design is the design of.
-using Shape = std::variant<ElementArray, PartMesh, Plate, raytrace::BallLayer>;
+using Shape = std::variant<ElementArray, PartMesh, Plate, ZonedPart, raytrace::BallLayer>;
 
 /// A face through which light enters, in place of the plane one.
 struct EntranceFile {
@@ -297,6 +305,7 @@ struct Design {
   const ElementArray* elements() const { return std::get_if<ElementArray>(&shape); }
   const raytrace::BallLayer* balls() const { return std::get_if<raytrace::BallLayer>(&shape); }
   const PartMesh* mesh() const { return std::get_if<PartMesh>(&shape); }
+  const ZonedPart* zoned() const { return std::get_if<ZonedPart>(&shape); }
   /// What single elements differ in; null without it.
   const ArrayMask* mask() const;
   const FacetPlanesFile* facet_planes() const;
@@ -320,7 +329,7 @@ struct Design {
 struct Takes {
   std::string_view what;  ///< asks, such as "retrace job"
   bool balls = false;
-  bool solids = false;  ///< meshes and plates
+  bool solids = false;  ///< meshes, plates and parts of zones
   bool substrates = true;
   bool entrances = false;
   bool wet_backs = false;

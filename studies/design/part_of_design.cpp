@@ -11,6 +11,7 @@
 #include "geometry/part/faceted_solid.h"
 #include "geometry/part/mesh_part.h"
 #include "geometry/part/plate.h"
+#include "geometry/part/zones.h"
 #include "studies/design/design_part.h"
 
 namespace retrace::studies {
@@ -83,6 +84,7 @@ geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::str
 geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings) {
   if (const Plate* const plate = std::get_if<Plate>(&design.shape))
     return geometry::build_plate({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
+  if (const ZonedPart* const zoned = design.zoned()) return geometry::build_part(zoned->spec);
   if (!design.mesh()) return part_of(design);
   const geometry::TriangleMesh mesh = mesh_of_design(design, warnings);
   try {

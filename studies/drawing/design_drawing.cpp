@@ -218,6 +218,11 @@ std::string arrangement_text(const Part& part) {
   return text;
 }
 
+std::string zones_text(const Part& part) {
+  return fmt::format("{} zones, {} full elements, {} cut by their borders", part.zones.size(), part.elements_full,
+                     part.elements_partial);
+}
+
 }  // namespace
 
 DesignDrawing draw_design(const Design& design, const Part& part) {
@@ -225,7 +230,7 @@ DesignDrawing draw_design(const Design& design, const Part& part) {
   drawing.title = short_name(design);
   const ArrayFigures a = array_figures(design, part);
   if (!design.elements()) {
-    drawing.remarks.emplace_back("part read from a mesh");
+    drawing.remarks.push_back(design.zoned() ? zones_text(part) : "part read from a mesh");
     drawing.plan.push_back(panel_of(part, a.extent_mm, "Seen from the light"));
     PlanPanel& panel = drawing.plan.back();
     panel.section_y_mm = a.section_y_mm;

@@ -129,7 +129,7 @@ DesignView view_of(const Part& part) {
 DesignView view_of(const Design& design) {
   std::vector<std::string> remarks;
   DesignView view;
-  if (!design.elements()) {
+  if (!design.elements() && !design.zoned()) {
     view = view_of_mesh(design);
   } else {
     const Design piece = piece_of(design, remarks);

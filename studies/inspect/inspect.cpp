@@ -43,18 +43,22 @@ geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_
   return small;
 }
 
+std::string finding_of(const geometry::Part& part) {
+  const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
+  // Errors of angle and cant may leave neighbours at such heights that the part touches itself where more than three
+  // cells meet.
+  return report.ok()           ? "closed, free of self-intersections"
+         : !report.is_closed   ? "not closed"
+         : !report.is_manifold ? "closed, touches itself along edges"
+                               : "crosses itself";
+}
+
 std::string boundary_finding(const Design& design, double element_mm) {
   bool is_whole = design.facet_planes() != nullptr || design.mask() != nullptr;
   const geometry::Part part =
       is_whole ? part_of(design) : geometry::build_part(part_to_check(design.part(), element_mm, is_whole));
   if (part.placements.size() != 1) return "not checked: the elements differ too much in size from their array";
-  const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
-  // Errors of angle and cant may leave neighbours at such heights that the part touches itself where more than three
-  // cells meet.
-  const std::string finding = report.ok()           ? "closed, free of self-intersections"
-                              : !report.is_closed   ? "not closed"
-                              : !report.is_manifold ? "closed, touches itself along edges"
-                                                    : "crosses itself";
+  const std::string finding = finding_of(part);
   return is_whole ? finding : finding + " (checked on a smaller array of the same elements)";
 }
 
@@ -195,6 +199,14 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
 
 namespace {
 
+void add_zones(Inspection& result, const OpticalModel& model) {
+  const geometry::Part& part = model.part;
+  result.zones = report_zones(result.design, model);
+  result.boundary = static_cast<double>(part.elements_full + part.elements_partial) <= kElementsToCheck
+                        ? finding_of(part)
+                        : "not checked: more than 1000 elements";
+}
+
 /// \pre model.wet_elements
 WetReport report_wet_back(const Design& design, const OpticalModel& model) {
   WetReport wet{model.wet_elements->count(), model.wet_elements->of_all(), {}};
@@ -224,6 +236,10 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
   result.light = model.spectral;
   result.wavelength_nm = model.wavelength_nm;
   if (model.entrance) result.entrance = report_entrance(*model.entrance, part);
+  if (design.zoned()) {
+    add_zones(result, model);
+    return result;
+  }
   if (!design.elements()) {
     // make_model() refuses one that is not; what was mended is in the warnings.
     result.boundary = result.warnings.empty() ? "closed, free of self-intersections" : "see warnings";

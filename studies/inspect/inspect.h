@@ -17,6 +17,7 @@
 #include "studies/inspect/coating_report.h"
 #include "studies/inspect/entrance_report.h"
 #include "studies/inspect/entrance_state_report.h"
+#include "studies/inspect/zone_report.h"
 
 namespace retrace::studies {
 
@@ -71,7 +72,8 @@ struct Inspection {
   std::optional<EntranceReport> entrance;  ///< of a part with one; limits of total reflection are those of light that
                                            ///< enters through a plane
   std::optional<WetReport> wet_back;
-  std::optional<FormReport> form;  ///< of facets that have one
+  std::optional<ZonesReport> zones;  ///< of a part of zones
+  std::optional<FormReport> form;    ///< of facets that have one
   CoatingReports coating;
   std::optional<EntranceStateReport> entrance_state;  ///< of a face that is not clean
   double dead_zone_share = 0.0;                       ///< of an element's plan that rounded and chamfered edges take

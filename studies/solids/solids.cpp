@@ -88,7 +88,14 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
     check_taken(solid.design, {.what = fmt::format("--what {}", name_of(solid.what)), .wet_backs = true});
-  solid.mesh = geometry::boundary_of(mesh_of_design(solid.design, &solid.warnings));
+  if (solid.design.zoned()) {
+    const geometry::Part part = part_of_design(solid.design, &solid.warnings);
+    solid.elements_full = part.elements_full;
+    solid.elements_partial = part.elements_partial;
+    solid.mesh = geometry::closed_boundary(part);
+  } else {
+    solid.mesh = geometry::boundary_of(mesh_of_design(solid.design, &solid.warnings));
+  }
   measure(solid);
   add_warnings(solid);
   return solid;

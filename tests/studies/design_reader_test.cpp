@@ -197,13 +197,13 @@ TEST(DesignReader, UnknownKeysAreNamedWithASuggestion) {
   EXPECT_EQ(complaint(with_line(11, "colour = \"red\"")),
             "d.toml:11: body.colour: unknown key (allowed: thickness_mm, material, catalogue, refractive_index, "
             "temperature_c, absorption_per_mm, facet_coating, back_index)");
-  EXPECT_EQ(
-      complaint(with_line(11, "[boddy]\nx = 1")),
-      "d.toml:11: boddy: unknown table, did you mean \"body\"? (allowed: element, array, base, part, front, body, "
-      "wet_back, coating, entrance, light, detector, surface, form, idealisation)");
+  EXPECT_EQ(complaint(with_line(11, "[boddy]\nx = 1")),
+            "d.toml:11: boddy: unknown table, did you mean \"body\"? (allowed: element, array, base, zone, part, "
+            "front, body, "
+            "wet_back, coating, entrance, light, detector, surface, form, idealisation)");
   EXPECT_EQ(complaint("titel = \"x\"\n" + joined(kLines)),
             "d.toml:1: titel: unknown key, did you mean \"title\"? (allowed: schema, title, element, array, base, "
-            "part, front, body, wet_back, coating, entrance, light, detector, surface, form, idealisation)");
+            "zone, part, front, body, wet_back, coating, entrance, light, detector, surface, form, idealisation)");
   EXPECT_EQ(complaint("thickness_mm = 2\n" + joined(kLines)),
             "d.toml:1: thickness_mm: unknown key at the top level, it belongs in [body]");
 }
@@ -327,10 +327,10 @@ TEST(DesignReader, ErrorsInOverridesNameTheOverride) {
   EXPECT_EQ(set_complaint({"element.base_mm=0.4mm"}),
             "--set element.base_mm=0.4mm: element.base_mm: must be a number, got \"0.4mm\"");
   EXPECT_EQ(set_complaint({"element.base_mm="}), "--set element.base_mm=: element.base_mm: must be a number, got \"\"");
-  EXPECT_EQ(
-      set_complaint({"elemnt.base_mm=1"}),
-      "--set elemnt.base_mm=1: elemnt: unknown table, did you mean \"element\"? (allowed: element, array, base, part, "
-      "front, body, wet_back, coating, entrance, light, detector, surface, form, idealisation)");
+  EXPECT_EQ(set_complaint({"elemnt.base_mm=1"}),
+            "--set elemnt.base_mm=1: elemnt: unknown table, did you mean \"element\"? (allowed: element, array, base, "
+            "zone, part, "
+            "front, body, wet_back, coating, entrance, light, detector, surface, form, idealisation)");
   EXPECT_EQ(set_complaint({"element=3"}), "--set element=3: element: must be a table, got 3");
   const std::string form = ": must be of the form KEY=VALUE, such as element.base_mm=0.5";
   for (const std::string text : {"", "x", "=3", "[body]", "# x", "a b=3"})

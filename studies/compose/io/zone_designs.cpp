@@ -3,14 +3,107 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "studies/design/io/design_document.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/design/io/zone_reader.h"
 #include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies {
+namespace {
+
+using geometry::Rectangle, geometry::Vec2;
+
+constexpr std::string_view kTurn = "analysis.rotation_deg";
+/// Rows of a zone are at least so many elements high, so that whole ones have room.
+constexpr double kElementsOfRow = 4.0;
+
+/// Blocks of these shares, which are told from `first` on, in a rectangle: halves of about the same area, each divided
+/// in turn along its longer side.
+void add_blocks(const std::vector<double>& shares, std::size_t first, std::size_t end, const Rectangle& room,
+                std::vector<std::vector<Rectangle>>& regions) {
+  if (end - first == 1) {
+    regions[first] = {room};
+    return;
+  }
+  double all = 0.0;
+  for (std::size_t k = first; k < end; ++k) all += shares[k];
+  std::size_t middle = first + 1;
+  double before = shares[first];
+  while (middle + 1 < end && before + 0.5 * shares[middle] < 0.5 * all) before += shares[middle++];
+  const Eigen::Index axis = room.size().x() >= room.size().y() ? 0 : 1;
+  Rectangle lower = room;
+  Rectangle upper = room;
+  lower.upper[axis] = upper.lower[axis] = room.lower[axis] + before / all * room.size()[axis];
+  add_blocks(shares, first, middle, lower, regions);
+  add_blocks(shares, middle, end, upper, regions);
+}
+
+std::vector<std::vector<Rectangle>> blocks_of(const std::vector<double>& shares, const Vec2& size_mm) {
+  std::vector<std::vector<Rectangle>> regions(shares.size());
+  add_blocks(shares, 0, shares.size(), {Vec2::Zero(), size_mm}, regions);
+  return regions;
+}
+
+/// \param element_mm height of the highest element
+std::vector<std::vector<Rectangle>> rows_of(const std::vector<double>& shares, const Vec2& size_mm, double element_mm) {
+  const double least = *std::ranges::min_element(shares);
+  const double bands = std::max(1.0, std::floor(least * size_mm.y() / (kElementsOfRow * element_mm)));
+  std::vector<std::vector<Rectangle>> regions(shares.size());
+  double from = 0.0;
+  for (double band = 0.0; band < bands; band += 1.0) {
+    double share = 0.0;
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      share += shares[k];
+      const double to = k + 1 == shares.size() ? (band + 1.0) / bands : (band + share) / bands;
+      regions[k].push_back({{0.0, from * size_mm.y()}, {size_mm.x(), to * size_mm.y()}});
+      from = to;
+    }
+  }
+  return regions;
+}
+
+std::string regions_text(const std::vector<Rectangle>& regions) {
+  std::string text;
+  for (const Rectangle& r : regions)
+    text += fmt::format("{}[{}, {}, {}, {}]", text.empty() ? "" : ", ", shortest(r.lower.x()), shortest(r.lower.y()),
+                        shortest(r.upper.x()), shortest(r.upper.y()));
+  return fmt::format("rectangles_mm = [{}]\n", text);
+}
+
+/// What of the parameters a zone sets.
+std::string changes_text(const Study& study, const PointValues& values) {
+  std::string text;
+  for (std::size_t k = 0; k < study.parameters.size(); ++k)
+    for (const std::string& key : study.parameters[k].keys)
+      if (may_set_in_zone(key)) text += fmt::format("{}'{}={}'", text.empty() ? "" : ", ", key, values[k].toml);
+  return text.empty() ? text : fmt::format("set = [{}]\n", text);
+}
+
+/// The design all over the part, finite and of that size.
+Design whole_design(const Study& study, const PointValues& values, const ZonedDesignRequest& request) {
+  const Design design = make_candidate(study, values).design();
+  if (!request.size_mm) return design;
+  try {
+    return with(design, std::vector<std::string>{"array.extent=\"finite\"",
+                                                 fmt::format("array.x_length_mm={}", shortest(request.size_mm->x())),
+                                                 fmt::format("array.y_length_mm={}", shortest(request.size_mm->y()))});
+  } catch (const InputError& error) {
+    throw InputError({"", 0, "--design"}, fmt::format("{}: {}", error.where().key, error.text()));
+  }
+}
+
+double height_of(const Study& study, const Zone& zone) {
+  const geometry::PartSpec part = make_candidate(study, zone.cell.values).design().part();
+  return geometry::bounding_box(geometry::aperture_outline(part.element)).size().y();
+}
+
+}  // namespace
 
 std::size_t most_zone_designs(const ComposeRequest& request) {
   return std::min<std::size_t>(100, request.most_zones.value_or(100));
@@ -24,6 +117,55 @@ std::string zone_design_text(const Study& study, const PartOfZones& part, std::s
   if (const double turn_deg = candidate.analysis().rotation_deg; turn_deg != 0.0)
     comment += fmt::format(", turned by {} degrees (--rotation of retrace photometry)", shortest(turn_deg));
   return design_text(candidate.design(), comment + "\n");
+}
+
+ZoneLayout read_zone_layout(const std::string& word) {
+  const auto* const found = std::ranges::find(kZoneLayouts, word);
+  if (found == std::end(kZoneLayouts))
+    throw InputError({"", 0, "--layout"},
+                     fmt::format("must be {}, got {}", alternatives(kZoneLayouts), in_quotes(word)));
+  return static_cast<ZoneLayout>(found - std::begin(kZoneLayouts));
+}
+
+void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
+  for (const Parameter& parameter : study.parameters)
+    for (const std::string& key : parameter.keys)
+      if (key != kTurn && !may_set_in_zone(key))
+        throw InputError(parameter.location,
+                         fmt::format("--design: zones of a part cannot differ in {}, which is one all over it", key));
+  const Design design = whole_design(study, some_values(study), request);
+  if (design.is_endless())
+    throw InputError({"", 0, "--x-length-mm"},
+                     "missing: the design of the study is endless, and a part of zones is not");
+  if (design.part().array.arrangement == geometry::Arrangement::single)
+    throw InputError({"", 0, "--design"}, "the design of the study is a single element, which has no room for zones");
+}
+
+std::string zoned_design_text(const Study& study, const PartOfZones& part, const ZonedDesignRequest& request) {
+  const Design whole = whole_design(study, part.zones.front().cell.values, request);
+  const Vec2 size_mm(whole.part().array.x_length_mm, whole.part().array.y_length_mm);
+  std::vector<double> shares;
+  double element_mm = 0.0;
+  for (const Zone& zone : part.zones) {
+    shares.push_back(zone.share);
+    element_mm = std::max(element_mm, height_of(study, zone));
+  }
+  std::vector<std::vector<Rectangle>> regions;
+  if (request.layout == ZoneLayout::blocks) regions = blocks_of(shares, size_mm);
+  if (request.layout == ZoneLayout::rows) regions = rows_of(shares, size_mm, element_mm);
+  std::string text = design_text(whole, fmt::format("# The {} zones of {} in {}.\n", part.zones.size(),
+                                                    std::filesystem::path(study.source).filename().string(),
+                                                    kZoneLayouts[static_cast<std::size_t>(request.layout)]));
+  for (std::size_t k = 0; k < part.zones.size(); ++k) {
+    const PointValues& values = part.zones[k].cell.values;
+    text += "\n[[zone]]\n";
+    text += regions.empty() ? fmt::format("share = {}\n", shortest(shares[k])) : regions_text(regions[k]);
+    const double turn_deg = make_candidate(study, values).analysis().rotation_deg;
+    if (turn_deg != 0.0) text += fmt::format("rotation_deg = {}\n", shortest(turn_deg));
+    text += changes_text(study, values);
+  }
+  parse_design(text, "--design");  // refuses what is too small for its elements
+  return text;
 }
 
 }  // namespace retrace::studies

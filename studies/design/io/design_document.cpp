@@ -128,6 +128,30 @@ void set_balls(Document& document, const raytrace::BallLayer& balls) {
   array.set("gap_mm", *balls.pitch_mm - balls.diameter_mm);
 }
 
+/// [[x_from, y_from, x_to, y_to], ...] of regions that are boxes; else the corners of the one that there is.
+void set_regions(Keys& keys, const std::vector<geometry::Polygon>& regions) {
+  std::vector<std::vector<double>> boxes;
+  for (const geometry::Polygon& region : regions) {
+    const geometry::Rectangle box = geometry::bounding_box(region);
+    if (region == geometry::to_polygon(box))
+      boxes.push_back({box.lower.x(), box.lower.y(), box.upper.x(), box.upper.y()});
+  }
+  if (boxes.size() == regions.size()) return keys.set("rectangles_mm", std::move(boxes));
+  std::vector<std::vector<double>> corners;
+  for (const geometry::Vec2& p : regions.front()) corners.push_back({p.x(), p.y()});
+  keys.set("polygon_mm", std::move(corners));
+}
+
+void set_zones(Document& document, const ZonedPart& part) {
+  document.set("zone", {});
+  for (std::size_t k = 0; k < part.spec.zones.size(); ++k) {
+    Keys zone(document, schema::path_of_entry("zone", k));
+    set_regions(zone, part.spec.zones[k].regions);
+    zone.set("rotation_deg", part.spec.zones[k].rotation_deg);
+    if (!part.changes[k].empty()) zone.set("set", part.changes[k]);
+  }
+}
+
 /// The tables that say what is designed.
 void set_shape(Document& document, const Shape& shape) {
   std::visit(Overloaded{[&](const ElementArray& array) {
@@ -142,6 +166,11 @@ void set_shape(Document& document, const Shape& shape) {
                           part.set("allow_open", mesh.allow_open);
                         },
                         [&](const Plate& plate) { Keys(document, "part").set("plate_mm", list_of(plate.size_mm)); },
+                        [&](const ZonedPart& part) {
+                          set_element(document, part.base.element);
+                          set_array(document, {part.base, {}, {}});
+                          set_zones(document, part);
+                        },
                         [&](const raytrace::BallLayer& balls) { set_balls(document, balls); }},
              shape);
 }
@@ -334,13 +363,13 @@ void set_edges(Keys& keys, const EdgeShape& edges) {
 
 void set_surface(Document& document, const Design& design) {
   Keys keys(document, "surface");
-  const ElementArray* const elements = design.elements();
-  if (elements != nullptr) set_angle_errors(keys, elements->part);
+  const PartSpec* const part = design.elements() ? &design.part() : design.zoned() ? &design.zoned()->base : nullptr;
+  if (part != nullptr) set_angle_errors(keys, *part);
   set_texture(keys, design.surface);
-  if (elements == nullptr) return;
-  set_edges(keys, elements->part.edges);
+  if (part == nullptr) return;
+  set_edges(keys, part->edges);
   std::size_t index = 0;
-  for (const Scratch& scratch : elements->part.scratches) {
+  for (const Scratch& scratch : part->scratches) {
     document.set("surface.scratches", {});
     Keys entry(document, schema::path_of_entry("surface.scratches", index++));
     entry.set_choice("facet", scratch.facet);

@@ -62,6 +62,17 @@ const Table kCoatingTables[] = {
      .shape = kLayerShape,
      .when = kEntranceTable}};
 
+constexpr Condition kWithZones[] = {kNoMesh,
+                                    kNoPlate,
+                                    kTableOfNoBall,
+                                    without("base", "not allowed together with [base]"),
+                                    without("wet_back", "not allowed together with [wet_back]"),
+                                    without("form", "not allowed together with [form]"),
+                                    without("array.mask", "not allowed together with array.mask"),
+                                    without("part.facets", "not allowed together with facets in [part]")};
+constexpr std::string_view kWhereAreZones[] = {"share", "rectangles_mm", "polygon_mm"};
+constexpr Rule kZoneRules[] = {
+    OneOf{kWhereAreZones, "must have one of share, rectangles_mm and polygon_mm, which say where it is"}};
 constexpr std::string_view kWhichAreWet[] = {"share", "rectangle_mm", "disc_mm", "half_plane"};
 constexpr Rule kWetBackRules[] = {
     OneOf{kWhichAreWet, "must have one of share, rectangle_mm, disc_mm and half_plane, which say where it is wet"}};
@@ -91,6 +102,12 @@ const Table kTables[] = {
      .rows = geometry::substrate_rows(),
      .presence = Presence::optional,
      .when = kWithPlanes},
+    {.name = "zone",
+     .meaning = "A region of a finite part whose elements are not those of the others. Zones cover the part.",
+     .rows = zone_rows(),
+     .rules = kZoneRules,
+     .presence = Presence::list,
+     .when = kWithZones},
     {.name = "part",
      .meaning = "A mesh or a plate in place of elements, or planes of single facets.",
      .rows = part_rows(),

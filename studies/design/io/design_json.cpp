@@ -63,6 +63,7 @@ std::string short_name(const Design& design) {
                  [](const Plate& plate) {
                    return fmt::format("plate {} x {} mm", shortest(plate.size_mm[0]), shortest(plate.size_mm[1]));
                  },
+                 [](const ZonedPart& zoned) { return fmt::format("part of {} zones", zoned.spec.zones.size()); },
                  [](const raytrace::BallLayer& balls) {
                    return fmt::format("{} {} mm", balls.pitch_mm ? "balls" : "ball", shortest(balls.diameter_mm));
                  }},

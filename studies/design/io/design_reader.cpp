@@ -20,6 +20,7 @@
 #include "studies/design/io/design_document.h"
 #include "studies/design/io/design_format.h"
 #include "studies/design/io/part_reader.h"
+#include "studies/design/io/zone_reader.h"
 
 namespace retrace::studies {
 namespace fs = std::filesystem;
@@ -50,6 +51,7 @@ Shape read_shape(const Document& document) {
   if (document.has("part.plate_mm"))
     return Plate{pair_of(document, "part.plate_mm"), document.number("body.thickness_mm")};
   if (document.has("part.mesh")) return read_mesh(document);
+  if (document.has("zone")) return read_zones(document);
   if (has_elements(document)) return read_elements(document);
   return read_balls(document);
 }
@@ -338,11 +340,12 @@ const FacetPlanesFile* Design::facet_planes() const {
 }
 
 double Design::thickness_mm() const {
-  return std::visit(
-      Overloaded{[](const ElementArray& array) { return array.part.thickness_mm; },
-                 [](const PartMesh& mesh) { return mesh.thickness_mm.value_or(0.0); },
-                 [](const Plate& plate) { return plate.thickness_mm; }, [](const raytrace::BallLayer&) { return 0.0; }},
-      shape);
+  return std::visit(Overloaded{[](const ElementArray& array) { return array.part.thickness_mm; },
+                               [](const PartMesh& mesh) { return mesh.thickness_mm.value_or(0.0); },
+                               [](const Plate& plate) { return plate.thickness_mm; },
+                               [](const ZonedPart& zoned) { return zoned.spec.thickness_mm; },
+                               [](const raytrace::BallLayer&) { return 0.0; }},
+                    shape);
 }
 
 void check_taken(const Design& design, const Takes& takes) {
@@ -358,6 +361,7 @@ void check_taken(const Design& design, const Takes& takes) {
                         },
                         [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
+                        [&](const ZonedPart&) { refuse_solid("zone", "part of zones"); },
                         [&](const raytrace::BallLayer&) {
                           if (!takes.balls)
                             throw InputError(design.where("element.kind"),

@@ -13,6 +13,7 @@ std::span<const schema::Row> element_rows();
 std::span<const schema::Row> array_rows();
 std::span<const schema::Row> part_rows();
 std::span<const schema::Row> entrance_rows();
+std::span<const schema::Row> zone_rows();
 std::span<const schema::Row> body_rows();
 std::span<const schema::Row> wet_back_rows();
 std::span<const schema::Row> layer_rows();

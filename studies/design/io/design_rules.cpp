@@ -19,6 +19,7 @@
 #include "geometry/part/substrate_part.h"
 #include "studies/design/io/optics_checks.h"
 #include "studies/design/io/part_reader.h"
+#include "studies/design/io/zone_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -376,6 +377,7 @@ constexpr schema::Words kEntranceFaceKeys = {"entrance.layers",
                                              "idealisation.entrance",
                                              "front.turned",
                                              "front.mesh"};
+constexpr schema::Words kZoneKeys = {"zone", "array.extent", "array.x_offset_mm", "array.y_offset_mm"};
 constexpr schema::Words kEntranceKeys = {"front.turned", "front.mesh", "array.extent"};
 
 using schema::check_by;
@@ -448,6 +450,11 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kMirrorKeys, "A bowl behind balls (`mirror_offset_mm` > 0) needs a mirror: aluminium or ideal.",
                   check_by<check_ball_mirror>},
     schema::Check{kFormKeys, "Terms of a form are at most 45, each of degree 8 at most.", check_by<check_form>},
+    schema::Check{
+        kZoneKeys,
+        "Zones cover a finite part without margins, each place once, with at most 1000 regions and 1e5 elements, "
+        "in arrays that are neither `single` nor `pins`.",
+        check_by<check_zones>},
     schema::Check{kEntranceKeys, "A `[front]` has one file and a finite part.", check_by<check_entrance>}};
 
 }  // namespace

@@ -146,6 +146,20 @@ constexpr Row kEntranceRows[] = {
     {"centre_mm", Numbers{2, kPlace, "places, x and y"}, Computed{"the part's middle"},
      "`[x, y]`: where in the part's plane the file's origin lies."}};
 
+constexpr Row kZoneRows[] = {
+    {"share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
+     "Of the part's area, as a stripe over its whole height; stripes stand side by side along x, in their order, and "
+     "their shares add to 1."},
+    {"rectangles_mm", NumberRows{4, kPlace, 1, 1000, "rectangles"}, kNone,
+     "`[[x_from, y_from, x_to, y_to], ...]`: rectangles of the part's plan, each with an array of its own."},
+    {"polygon_mm", NumberRows{2, kPlace, 3, 100, "points"}, kNone,
+     "`[[x, y], ...]`: the corners of a convex polygon of the part's plan."},
+    {"rotation_deg", Number{kAzimuth}, 0.0,
+     "By which its elements are turned in the plane, from +x towards +y, about the middle of the region's box."},
+    {"set", Texts{}, kNone,
+     "`[\"KEY=VALUE\", ...]`: what is other than the design says, as with `--set`: keys of `[element]`, of `[array]` "
+     "but for extent, lengths, margins and mask, and angles and edges of `[surface]`."}};
+
 }  // namespace
 
 std::span<const Row> element_rows() {
@@ -156,6 +170,9 @@ std::span<const Row> array_rows() {
 }
 std::span<const Row> part_rows() {
   return kPartRows;
+}
+std::span<const Row> zone_rows() {
+  return kZoneRows;
 }
 std::span<const Row> entrance_rows() {
   return kEntranceRows;

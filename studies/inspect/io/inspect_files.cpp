@@ -238,16 +238,52 @@ std::string ball_json(const Inspection& i) {
   return result_text("retrace.inspect/1", json, i.warnings);
 }
 
+/// Of a part of zones: how large each is, and what fills it; how much light meets two of them.
+std::string zones_text(const Inspection& i) {
+  std::string text;
+  if (!i.zones) return text;
+  for (std::size_t k = 0; k < i.zones->zones.size(); ++k) {
+    const ZoneReport& zone = i.zones->zones[k];
+    std::string changes;
+    for (const std::string& change : i.design.zoned()->changes[k]) changes += "; " + change;
+    const double turn_deg = i.design.zoned()->spec.zones[k].rotation_deg;
+    text += fmt::format("  {:<20}{} %, {} full elements, {} cut, light wanders {} mm{}{}\n",
+                        fmt::format("zone {}", k + 1), fixed(100.0 * zone.area_mm2 / i.entrance_area_mm2, 3),
+                        zone.elements.full, zone.elements.partial, fixed(zone.wander_mm, 4),
+                        turn_deg != 0.0 ? fmt::format("; turned by {}", shortest(turn_deg)) : "", printable(changes));
+  }
+  for (const ZoneCrossing& crossing : i.zones->crossings)
+    text += fmt::format("  {:<20}{} % of what comes back from {} degrees meets two zones\n", "",
+                        fixed(100.0 * crossing.share, 2), shortest(crossing.incidence_deg));
+  return text;
+}
+
+nlohmann::ordered_json zones_json(const ZonesReport& report) {
+  nlohmann::ordered_json json = {{"zones", nlohmann::ordered_json::array()},
+                                 {"meets_two_zones", nlohmann::ordered_json::array()}};
+  for (const ZoneReport& zone : report.zones)
+    json["zones"].push_back({{"area_mm2", zone.area_mm2},
+                             {"elements_full", zone.elements.full},
+                             {"elements_partial", zone.elements.partial},
+                             {"wander_mm", zone.wander_mm}});
+  for (const ZoneCrossing& crossing : report.crossings)
+    json["meets_two_zones"].push_back({{"incidence_deg", crossing.incidence_deg}, {"share", crossing.share}});
+  return json;
+}
+
 }  // namespace
 
 std::string inspect_json(const Inspection& i) {
   if (i.balls) return ball_json(i);
   nlohmann::ordered_json json = common_json(i);
-  if (!i.design.elements()) {
+  if (i.zones) json.update(zones_json(*i.zones));
+  if (i.design.zoned()) {
+    json.erase("full_element_share");
+  } else if (!i.design.elements()) {
     // A mesh tells no elements.
     for (const char* key : {"elements_full", "elements_partial", "full_element_share"}) json.erase(key);
-    json["thickness_mm"] = i.thickness_mm;
   }
+  if (!i.design.elements()) json["thickness_mm"] = i.thickness_mm;
   if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
   add_coating(i, json);
   add_entrance_state(i, json);
@@ -266,6 +302,7 @@ namespace {
 
 std::string mesh_text(const Inspection& i) {
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));
+  text += zones_text(i);
   text += fmt::format("  depth               {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  plate               {} mm\n", fixed(i.thickness_mm, 6));
   text += entrance_text(i);

@@ -61,6 +61,51 @@ TEST(ComposeCommand, WritesZonesThatMakeThePart) {
   }
 }
 
+TEST(ComposeCommand, WritesThePartOfZones) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
+  const Outcome outcome = retrace(folder, compose({"--design", "part.toml", "--layout", "rows", "--x-length-mm", "90",
+                                                   "--y-length-mm", "60", "--quiet"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json zones = folder.json("out/composition.json").at("zones");
+  ASSERT_EQ(zones.size(), 2U);
+  const Json inspected = retrace_json(folder, {"inspect", "part.toml"});
+  ASSERT_EQ(inspected.at("zones").size(), 2U);
+  for (std::size_t z = 0; z < 2; ++z)
+    EXPECT_NEAR(inspected.at("zones").at(z).at("area_mm2").get<double>(), 5400.0 * zones[z].at("share").get<double>(),
+                1e-6);
+  // Two or more rows of each, of which the narrower ones are four elements high.
+  EXPECT_GE(inspected.at("design").at("zone").at(0).at("rectangles_mm").size(), 2U);
+}
+
+TEST(ComposeCommand, RefusesPartsOfZonesThatMeanNothing) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
+  const auto refused = [&](const Arguments& more) {
+    const Outcome outcome = retrace(folder, compose(more));
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    return outcome.err;
+  };
+  EXPECT_EQ(refused({"--design", "part.toml"}),
+            "retrace: --x-length-mm: missing: the design of the study is endless, and a part of zones is not\n");
+  EXPECT_EQ(refused({"--design", "part.toml", "--x-length-mm", "90"}),
+            "retrace: --y-length-mm: missing beside the other length\n");
+  EXPECT_EQ(refused({"--design", "part.toml", "--layout", "spirals"}),
+            "retrace: --layout: must be \"stripes\", \"blocks\" or \"rows\", got \"spirals\"\n");
+  EXPECT_EQ(
+      refused({"--design", "part.toml", "--x-length-mm", "1", "--y-length-mm", "1"}),
+      "retrace: --design: array.x_length_mm: must be >= 1.632993161855452 to hold one element of 1.632993161855452 "
+      "mm, got 1\n");
+  folder.write("study.toml", "design = \"" + example("honeycomb_infinite.toml") +
+                                 "\"\n[[parameter]]\nkey = \"body.back_index\"\nfrom = 1\nto = 1.1\n"
+                                 "[[quantity]]\nkind = \"rre\"\nname = \"g\"\nincidence_deg = 35\n"
+                                 "[compose]\nmaximize = \"g\"\n");
+  EXPECT_EQ(refused({"--design", "part.toml", "--x-length-mm", "90", "--y-length-mm", "60"}),
+            "retrace: study.toml:2: parameter[1]: --design: zones of a part cannot differ in body.back_index, which is "
+            "one all over it\n");
+  EXPECT_TRUE(folder.names().size() == 1) << "nothing is written";
+}
+
 TEST(ComposeCommand, GoesOnWithItsStore) {
   const TemporaryFolder folder;
   folder.write("study.toml", study("most_zones = 1\nrounds = 0\n"));

@@ -115,5 +115,51 @@ TEST(RealCells, AreWrittenAsTheDesignsOfTheirZones) {
   for (std::size_t k = 0; k < kGoals; ++k) EXPECT_NEAR(part[k], composition.best->mixture.goals[k], 1e-9);
 }
 
+TEST(RealCells, AreWrittenAsOnePartOfZones) {
+  const Study study = study_of_corners(kThreeZones);
+  const Composition composition = composed(study);
+  ASSERT_TRUE(composition.best && composition.best->zones.size() > 1);
+  for (const ZoneLayout layout : {ZoneLayout::stripes, ZoneLayout::blocks, ZoneLayout::rows}) {
+    const ZonedDesignRequest request{layout, geometry::Vec2(80.0, 60.0)};
+    const Design design = parse_design(zoned_design_text(study, *composition.best, request), "part.toml");
+    ASSERT_NE(design.zoned(), nullptr);
+    const geometry::ZonedSpec& spec = design.zoned()->spec;
+    ASSERT_EQ(spec.zones.size(), composition.best->zones.size());
+    for (std::size_t z = 0; z < spec.zones.size(); ++z) {
+      const Zone& zone = composition.best->zones[z];
+      const Candidate cell = make_candidate(study, zone.cell.values);
+      EXPECT_NEAR(geometry::area(spec.zones[z]) / spec.area_mm2(), zone.share, 1e-9);
+      EXPECT_EQ(spec.zones[z].rotation_deg, cell.analysis().rotation_deg);
+      EXPECT_EQ(geometry::cant_of(spec.zones[z].elements.element).deg,
+                geometry::cant_of(cell.design().part().element).deg);
+    }
+  }
+}
+
+// Traced whole the part has what endless arrays of its zones have, weighted by their shares, but for what borders take.
+TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
+  const Study study = study_of_corners(kThreeZones);
+  const Composition composition = composed(study);
+  ASSERT_TRUE(composition.best && composition.best->zones.size() > 1);
+  const auto by_rays = [&](const Design& design, double rotation_deg, Engine engine) {
+    AnalysisSettings analysis = make_candidate(study, composition.best->zones[0].cell.values).analysis();
+    analysis.rotation_deg = rotation_deg;
+    analysis.engine = engine;
+    analysis.cutoff.reset();
+    analysis.target_error = 1e-3;
+    return goals_of(study, {design, analysis, {}});
+  };
+  Goals sum{};
+  for (const Zone& zone : composition.best->zones) {
+    const Candidate cell = make_candidate(study, zone.cell.values);
+    const Goals goals = by_rays(cell.design(), cell.analysis().rotation_deg, Engine::cell);
+    for (std::size_t k = 0; k < kGoals; ++k) sum[k] += zone.share * goals[k];
+  }
+  const ZonedDesignRequest request{ZoneLayout::stripes, geometry::Vec2(240.0, 180.0)};
+  const Goals whole =
+      by_rays(parse_design(zoned_design_text(study, *composition.best, request), "part.toml"), 0.0, Engine::embree);
+  for (std::size_t k = 0; k < kGoals; ++k) EXPECT_NEAR(whole[k], sum[k], 0.02 * sum[k]) << k;
+}
+
 }  // namespace
 }  // namespace retrace::testing::real_cells_test

@@ -1,0 +1,216 @@
+#include "studies/design/io/zone_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "core/schema/reader.h"
+#include "studies/design/io/design_format.h"
+#include "studies/design/io/part_reader.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Polygon, geometry::Vec2, schema::Document;
+
+constexpr std::string_view kZone = "zone";
+/// The whole back is one patch in memory.
+constexpr double kMostElements = 1e5;
+constexpr std::size_t kMostRegions = 1000;
+constexpr std::size_t kMostSetBytes = 4096;
+/// By which shares may miss their sum of 1.
+constexpr double kShareRounding = 1e-6;
+
+// What single zones may change; a table's name with a dot stands for all of its keys.
+constexpr std::array<std::string_view, 16> kOfZones = {"element.",
+                                                       "array.arrangement",
+                                                       "array.partial_elements",
+                                                       "array.x_gap_mm",
+                                                       "array.y_gap_mm",
+                                                       "array.overlap_percent",
+                                                       "array.shifted_rows",
+                                                       "surface.dihedral_error_arcmin",
+                                                       "surface.facet_tilt_arcmin",
+                                                       "surface.angle_error_sigma_arcmin",
+                                                       "surface.angle_error_seed",
+                                                       "surface.root_radius_um",
+                                                       "surface.root_chamfer_um",
+                                                       "surface.rim_radius_um",
+                                                       "surface.rim_chamfer_um",
+                                                       "surface.edge_chords"};
+
+std::string entry_of(std::size_t zone) {
+  return schema::path_of_entry(kZone, zone);
+}
+
+/// The key of a change; empty if it is none.
+std::string key_of(const std::string& change) {
+  const std::size_t equals = change.find('=');
+  if (equals == std::string::npos) return {};
+  std::string key = change.substr(0, equals);
+  key.erase(key.find_last_not_of(" \t") + 1);
+  return key;
+}
+
+void check_changes(const Document& document, std::size_t zone) {
+  const std::string key = entry_of(zone) + ".set";
+  if (!document.has(key)) return;
+  for (const std::string& change : document.texts(key)) {
+    const std::string name = key_of(change);
+    if (name.empty()) document.fail(key, fmt::format("must be texts KEY=VALUE, got {}", in_quotes(change)));
+    if (!may_set_in_zone(name))
+      document.fail(key,
+                    fmt::format("must set keys of [element], of [array] but for lengths and margins, or angles and "
+                                "edges of [surface], got {}",
+                                in_quotes(change)));
+  }
+}
+
+/// The design without elements: of zones of another kind all that is not set is as by default.
+std::string text_without_elements(const Document& document) {
+  return fmt::format("[array]\nx_length_mm = {}\ny_length_mm = {}\n[body]\nthickness_mm = {}\n",
+                     shortest(document.number("array.x_length_mm")), shortest(document.number("array.y_length_mm")),
+                     shortest(document.number("body.thickness_mm")));
+}
+
+/// The design as it is all over a zone.
+Document document_of_zone(const Document& document, std::size_t zone) {
+  const std::string key = entry_of(zone) + ".set";
+  const auto changes = document.has(key) ? document.texts(key) : std::vector<std::string>();
+  const bool is_of_another_kind =
+      std::ranges::any_of(changes, [](const std::string& change) { return key_of(change) == "element.kind"; });
+  try {
+    Document changed = is_of_another_kind ? schema::read_document(design_format(), text_without_elements(document),
+                                                                  document.source(), kMostSetBytes, changes)
+                                          : schema::with(design_format(), document, changes);
+    for (std::size_t k = changed.count(kZone); k-- > 0;) changed.drop(entry_of(k));
+    if (changed.has(kZone)) changed.drop(kZone);
+    schema::check(changed, design_format().root, "", &changed);
+    return changed;
+  } catch (const InputError& error) {
+    document.fail(document.has(key) ? key : entry_of(zone),
+                  error.where().key.empty() ? error.text() : error.where().key + " " + error.text());
+  }
+}
+
+/// Side by side along x, in their order.
+void lay_out_stripes(const Document& document, geometry::ZonedSpec& spec) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < spec.zones.size(); ++k) {
+    const std::string key = entry_of(k) + ".share";
+    if (!document.has(key)) document.fail(entry_of(k), "must have share as the other zones do: all have one, or none");
+    sum += document.number(key);
+  }
+  if (std::abs(sum - 1.0) > kShareRounding)
+    document.fail(entry_of(spec.zones.size() - 1) + ".share",
+                  fmt::format("shares of all zones must add to 1, got {}", shortest(sum)));
+  double from_mm = 0.0;
+  double share = 0.0;
+  for (std::size_t k = 0; k < spec.zones.size(); ++k) {
+    share += document.number(entry_of(k) + ".share");
+    const double to_mm = k + 1 == spec.zones.size() ? spec.size_mm.x() : share / sum * spec.size_mm.x();
+    spec.zones[k].regions = {geometry::to_polygon({{from_mm, 0.0}, {to_mm, spec.size_mm.y()}})};
+    from_mm = to_mm;
+  }
+}
+
+std::vector<Polygon> rectangles_of(const Document& document, const std::string& key) {
+  std::vector<Polygon> regions;
+  for (const std::vector<double>& r : document.rows(key)) {
+    if (!(r[0] < r[2] && r[1] < r[3]))
+      document.fail(
+          key, fmt::format("must have the least corner of each first, both lengths > 0, got [{}]", fmt::join(r, ", ")));
+    regions.push_back(geometry::to_polygon({{r[0], r[1]}, {r[2], r[3]}}));
+  }
+  return regions;
+}
+
+Polygon polygon_of(const Document& document, const std::string& key) {
+  Polygon polygon;
+  for (const std::vector<double>& p : document.rows(key)) polygon.emplace_back(p[0], p[1]);
+  if (geometry::area(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
+  if (!(geometry::area(polygon) > 0.0) || !geometry::is_convex(polygon, 0.0))
+    document.fail(key, "must be the corners of a convex polygon, one after another");
+  return polygon;
+}
+
+void read_regions(const Document& document, geometry::ZonedSpec& spec) {
+  const auto has_share = [&](std::size_t k) { return document.has(entry_of(k) + ".share"); };
+  std::size_t regions = 0;
+  for (std::size_t k = 0; k < spec.zones.size(); ++k) {
+    if (has_share(k)) return lay_out_stripes(document, spec);
+    const std::string rectangles = entry_of(k) + ".rectangles_mm";
+    spec.zones[k].regions = document.has(rectangles)
+                                ? rectangles_of(document, rectangles)
+                                : std::vector<Polygon>{polygon_of(document, entry_of(k) + ".polygon_mm")};
+    regions += spec.zones[k].regions.size();
+  }
+  if (regions > kMostRegions)
+    document.fail(kZone, fmt::format("must have at most {} regions in all, got {}", kMostRegions, regions));
+}
+
+void check_room(const Document& document, std::size_t number, const geometry::PartZone& zone) {
+  const Vec2 element = geometry::bounding_box(geometry::aperture_outline(zone.elements.element)).size();
+  for (const Polygon& region : zone.regions) {
+    const Vec2 room = geometry::bounding_box(region).size();
+    const bool is_turned = zone.rotation_deg != 0.0;
+    if (is_turned ? room.maxCoeff() < element.minCoeff() : (room.array() < element.array() * (1.0 - 1e-9)).any())
+      document.fail(entry_of(number),
+                    fmt::format("has a region of {} x {} mm, too small for one element of {} x {} mm",
+                                shortest(room.x()), shortest(room.y()), shortest(element.x()), shortest(element.y())));
+  }
+}
+
+/// What the whole part is like must be what zones can have.
+void check_whole(const Document& document, const geometry::PartSpec& part) {
+  const auto refuse = [&](std::string_view key, std::string_view text) {
+    document.fail(key, fmt::format("{} together with [[zone]]", text));
+  };
+  if (part.array.extent == geometry::Extent::infinite) refuse("array.extent", "\"infinite\" is not allowed");
+  if (part.array.x_offset_mm > 0.0) refuse("array.x_offset_mm", "must be 0");
+  if (part.array.y_offset_mm > 0.0) refuse("array.y_offset_mm", "must be 0");
+}
+
+}  // namespace
+
+bool may_set_in_zone(std::string_view key) {
+  return std::ranges::any_of(kOfZones,
+                             [&](std::string_view of) { return of.back() == '.' ? key.starts_with(of) : key == of; });
+}
+
+ZonedPart read_zones(const Document& document) {
+  ZonedPart part;
+  part.base = read_part(document);
+  check_whole(document, part.base);
+  part.spec.size_mm = {part.base.array.x_length_mm, part.base.array.y_length_mm};
+  part.spec.thickness_mm = part.base.thickness_mm;
+  part.spec.zones.resize(document.count(kZone));
+  read_regions(document, part.spec);
+  for (std::size_t k = 0; k < part.spec.zones.size(); ++k) {
+    check_changes(document, k);
+    const Document changed = document_of_zone(document, k);
+    const std::string arrangement = changed.text("array.arrangement");
+    if (arrangement == "single" || arrangement == "pins" || !has_elements(changed))
+      document.fail(entry_of(k), "must have an array of prisms or cube corners, neither \"single\" nor \"pins\"");
+    part.spec.zones[k].elements = read_part(changed);
+    part.spec.zones[k].rotation_deg = document.number(entry_of(k) + ".rotation_deg");
+    check_room(document, k, part.spec.zones[k]);
+    const std::string set = entry_of(k) + ".set";
+    part.changes.push_back(document.has(set) ? document.texts(set) : std::vector<std::string>());
+  }
+  if (const auto fault = geometry::fault_of_zones(part.spec)) document.fail(entry_of(fault->zone), fault->text);
+  if (const double elements = geometry::element_estimate(part.spec); elements > kMostElements)
+    document.fail(kZone, fmt::format("a part of zones may have at most {:.0f} elements, it would have some {:.0f}",
+                                     kMostElements, elements));
+  return part;
+}
+
+void check_zones(const Document& document) {
+  if (document.has(kZone)) read_zones(document);
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,125 @@
+#include "studies/inspect/zone_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "raytrace/faces/exact_surface.h"
+#include "raytrace/paths/light_path.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Polygon, geometry::Vec2;
+
+/// Places of the entrance face from which light is followed, from one direction.
+constexpr int kPlaces = 4096;
+constexpr double kIncidences[] = {0.0, 20.0};
+constexpr int kAzimuths = 4;
+/// What comes back: errors of angle may be larger than the acceptance cone.
+constexpr double kBackDeg = 5.0;
+
+bool is_in(const Vec2& p, const Polygon& region) {
+  for (std::size_t k = 0; k < region.size(); ++k) {
+    const Vec2 along = region[(k + 1) % region.size()] - region[k];
+    const Vec2 to = p - region[k];
+    if (along.x() * to.y() - along.y() * to.x() < 0.0) return false;
+  }
+  return true;
+}
+
+class Wanderer {
+ public:
+  Wanderer(const Design& design, const OpticalModel& model)
+      : zones_(design.zoned()->spec.zones),
+        model_(model),
+        optics_(model.optics),
+        size_mm_(design.zoned()->spec.size_mm),
+        surface_(model.part, 0.5 * size_mm_) {
+    optics_.facet_scatter = surface_models::Smooth{};
+  }
+
+  /// How light of one direction that comes back goes; by its zone the sum of ways, their number and what changes zones.
+  struct Way {
+    double power = 0.0;
+    double power_times_mm = 0.0;
+    double power_that_changes = 0.0;
+  };
+  std::vector<Way> follow(double incidence_deg, double azimuth_deg) const {
+    raytrace::Illumination from;
+    from.incidence = Angle::from_deg(incidence_deg);
+    from.azimuth = Angle::from_deg(azimuth_deg);
+    std::vector<Way> ways(zones_.size());
+    for (int k = 0; k < kPlaces; ++k) add(from, place(k), ways);
+    return ways;
+  }
+
+ private:
+  /// A place of the plate: the k-th point of a sequence that covers it evenly (Roberts 2018, of the plastic number).
+  Vec2 place(int k) const {
+    constexpr double plastic = 1.32471795724474602596;
+    const auto part = [&](double step) { return std::fmod(0.5 + (k + 1) * step, 1.0); };
+    return Vec2(part(1.0 / plastic), part(1.0 / (plastic * plastic))).cwiseProduct(size_mm_);
+  }
+
+  std::optional<std::size_t> zone_at(const Vec2& p) const {
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+      if (std::ranges::any_of(zones_[z].regions, [&](const Polygon& region) { return is_in(p, region); })) return z;
+    return std::nullopt;
+  }
+
+  void add(const raytrace::Illumination& from, const Vec2& entry_mm, std::vector<Way>& ways) const {
+    const raytrace::LightPath path =
+        raytrace::strongest_path(model_.part, surface_, 0.5 * size_mm_, optics_, from, kBackDeg, entry_mm);
+    if (!path.is_returned) return;
+    const auto is_back = [](const raytrace::PathStep& step) {
+      return step.role != geometry::FacetRole::entrance && step.role != geometry::FacetRole::side;
+    };
+    const auto first = std::ranges::find_if(path.steps, is_back);
+    if (first == path.steps.end()) return;
+    const auto last = std::find_if(path.steps.rbegin(), path.steps.rend(), is_back);
+    const Vec2 begin = first->at_mm.head<2>();
+    const Vec2 end = last->at_mm.head<2>();
+    const std::optional<std::size_t> zone = zone_at(begin);
+    if (!zone) return;
+    Way& way = ways[*zone];
+    way.power += path.power;
+    way.power_times_mm += path.power * (end - begin).norm();
+    if (zone_at(end).value_or(*zone) != *zone) way.power_that_changes += path.power;
+  }
+
+  const std::vector<geometry::PartZone>& zones_;
+  const OpticalModel& model_;
+  raytrace::Optics optics_;
+  Vec2 size_mm_;
+  raytrace::ExactSurface surface_;
+};
+
+}  // namespace
+
+ZonesReport report_zones(const Design& design, const OpticalModel& model) {
+  const Wanderer wanderer(design, model);
+  const std::vector<geometry::PartZone>& zones = design.zoned()->spec.zones;
+  ZonesReport report;
+  for (std::size_t z = 0; z < zones.size(); ++z)
+    report.zones.push_back({geometry::area(zones[z]), model.part.zones[z], 0.0});
+  if (design.entrance) return report;  // paths are those behind a plane
+  for (const double incidence_deg : kIncidences) {
+    double power = 0.0;
+    double changed = 0.0;
+    const int azimuths = incidence_deg == 0.0 ? 1 : kAzimuths;
+    for (int a = 0; a < azimuths; ++a) {
+      const std::vector<Wanderer::Way> ways = wanderer.follow(incidence_deg, 360.0 * a / azimuths);
+      for (std::size_t z = 0; z < ways.size(); ++z) {
+        power += ways[z].power;
+        changed += ways[z].power_that_changes;
+        if (incidence_deg == 0.0 && ways[z].power > 0.0)
+          report.zones[z].wander_mm = ways[z].power_times_mm / ways[z].power;
+      }
+    }
+    report.crossings.push_back({incidence_deg, power > 0.0 ? changed / power : 0.0});
+  }
+  return report;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,226 @@
+// Parts of zones: one zone is the part itself, rectangles are the parts that they would be alone, turned zones have the
+// turned facets, and every boundary is closed whatever meets at it.
+
+#include "geometry/part/zones.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "geometry/part/faceted_solid.h"
+#include "tests/geometry/part_checks.h"
+
+namespace retrace::geometry::zones_test {
+namespace {
+
+PartSpec prisms(double base_mm, double width_mm, Arrangement arrangement = Arrangement::aligned) {
+  PartSpec spec;
+  spec.element = RtpElement{base_mm, width_mm, 90.0};
+  spec.array.arrangement = arrangement;
+  return spec;
+}
+PartSpec hexagons(double aperture_mm, const Cant& cant = {}) {
+  PartSpec spec;
+  spec.element = HexagonalCube{aperture_mm, cant};
+  spec.array.arrangement = Arrangement::honeycomb;
+  return spec;
+}
+PartSpec triangles(double aperture_mm) {
+  PartSpec spec;
+  spec.element = TriangularCube{aperture_mm, {}};
+  spec.array.arrangement = Arrangement::triangular;
+  return spec;
+}
+std::vector<PartSpec> kinds() {
+  std::vector<PartSpec> all = {prisms(0.5, 0.5),
+                               prisms(0.7, 0.4, Arrangement::offset),
+                               prisms(0.6, 0.6, Arrangement::checker),
+                               hexagons(0.9),
+                               hexagons(0.8, {5.0, 30.0}),
+                               triangles(1.1)};
+  PartSpec gaps = prisms(0.5, 0.6);
+  gaps.array.x_gap_mm = 0.05;
+  gaps.array.y_gap_mm = 0.1;
+  all.push_back(gaps);
+  PartSpec errors = hexagons(1.0);
+  errors.angle_errors = {{30.0, -10.0, 5.0}, {0.0, 20.0, 0.0}};
+  all.push_back(errors);
+  PartSpec edges = hexagons(1.0);
+  edges.edges.root_radius_mm = 0.03;
+  edges.edges.rim_chamfer_mm = 0.02;
+  all.push_back(edges);
+  PartSpec tilted = prisms(0.5, 0.5);
+  tilted.random_tilts = {5.0, 3};
+  all.push_back(tilted);
+  return all;
+}
+
+Polygon box(double x0, double y0, double x1, double y1) {
+  return to_polygon({{x0, y0}, {x1, y1}});
+}
+ZonedSpec plate(const Vec2& size_mm, std::vector<PartZone> zones) {
+  return {size_mm, 0.8, std::move(zones)};
+}
+Part alone(PartSpec spec, const Vec2& size_mm) {
+  spec.array.x_length_mm = size_mm.x();
+  spec.array.y_length_mm = size_mm.y();
+  spec.thickness_mm = 0.8;
+  return build_part(spec);
+}
+
+/// Where four cells of unlike heights meet, a part may touch itself along an upright edge, as arrays with errors of
+/// angle do; it is closed, and holds what it should, all the same.
+void expect_closed(const Part& part) {
+  const BoundaryMesh mesh = closed_boundary(part);
+  const BoundaryReport report = check_boundary(mesh);
+  EXPECT_TRUE(report.is_closed);
+  EXPECT_EQ(report.self_intersects, !report.is_manifold);
+  EXPECT_NEAR(volume_mm3(mesh), part.entrance_area_mm2 * part.thickness_mm + volume_below(part), 1e-8);
+}
+
+TEST(Zones, OneZoneIsThePartItself) {
+  const std::vector<PartSpec> all = kinds();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    SCOPED_TRACE(k);
+    const PartSpec& kind = all[k];
+    const Part part = alone(kind, {5.3, 4.1});
+    const Part zoned = build_part(plate({5.3, 4.1}, {{{box(0, 0, 5.3, 4.1)}, 0.0, kind}}));
+    ASSERT_EQ(zoned.patches.size(), 1U);
+    ASSERT_EQ(zoned.patches[0].facets.size(), part.patches[0].facets.size());
+    EXPECT_EQ(zoned.elements_full, part.elements_full);
+    EXPECT_EQ(zoned.elements_partial, part.elements_partial);
+    EXPECT_NEAR(zoned.element_depth_mm, part.element_depth_mm, 1e-12);
+    EXPECT_NEAR(zoned.retro_facet_area_mm2, part.retro_facet_area_mm2, 1e-9);
+    for (std::size_t f = 0; f < part.patches[0].facets.size(); ++f) {
+      const PatchFacet& a = zoned.patches[0].facets[f];
+      const PatchFacet& b = part.patches[0].facets[f];
+      // Whatever stands upright within the part is an inner wall of zones.
+      EXPECT_EQ(a.role, b.role == FacetRole::border_wall ? FacetRole::inner_wall : b.role);
+      EXPECT_LT((a.normal - b.normal).norm(), 1e-10);  // walls are as short as 1e-3 mm, of corners good to 1e-15
+    }
+  }
+}
+
+TEST(Zones, RectanglesHoldWhatTheyWouldHoldAlone) {
+  const std::vector<PartSpec> all = kinds();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    SCOPED_TRACE(k);
+    const PartSpec& left = all[k];
+    const PartSpec& right = all[(k + 3) % all.size()];
+    const Part part = build_part(plate({5.0, 3.0}, {{{box(0, 0, 2.3, 3.0)}, 0.0, left},
+                                                    {{box(2.3, 0, 5.0, 1.4), box(2.3, 1.4, 5.0, 3.0)}, 0.0, right}}));
+    expect_closed(part);
+    const Part alone_left = alone(left, {2.3, 3.0});
+    const Part below = alone(right, {2.7, 1.4});
+    const Part above = alone(right, {2.7, 1.6});
+    ASSERT_EQ(part.zones.size(), 2U);
+    EXPECT_EQ(part.zones[0].full, alone_left.elements_full);
+    EXPECT_EQ(part.zones[0].partial, alone_left.elements_partial);
+    EXPECT_EQ(part.zones[1].full, below.elements_full + above.elements_full);
+    EXPECT_EQ(part.zones[1].partial, below.elements_partial + above.elements_partial);
+    EXPECT_NEAR(volume_below(part), volume_below(alone_left) + volume_below(below) + volume_below(above), 1e-9);
+    EXPECT_NEAR(part.retro_facet_area_mm2,
+                alone_left.retro_facet_area_mm2 + below.retro_facet_area_mm2 + above.retro_facet_area_mm2, 1e-9);
+  }
+}
+
+/// Area of the retro facets in plan of those whose normals are turned ones of others. \return the share of it
+double share_of_turned(const Part& turned, const Part& other, double deg) {
+  const Eigen::AngleAxisd turn(deg * std::numbers::pi / 180.0, Vec3::UnitZ());
+  double all = 0.0;
+  double found = 0.0;
+  for (const PatchFacet& facet : turned.patches[0].facets) {
+    if (facet.role != FacetRole::retro_facet) continue;
+    const double plan_mm2 = facet_area(turned.patches[0], facet) * -facet.normal.z();
+    all += plan_mm2;
+    const bool is_found = std::ranges::any_of(other.patches[0].facets, [&](const PatchFacet& f) {
+      return f.role == FacetRole::retro_facet && (turn * f.normal - facet.normal).norm() < 1e-12;
+    });
+    found += is_found ? plan_mm2 : 0.0;
+  }
+  EXPECT_NEAR(all, turned.entrance_area_mm2, 1e-9);
+  return found / all;
+}
+
+TEST(Zones, TurnedZonesHaveTheTurnedFacets) {
+  const Vec2 size(4.0, 3.0);
+  for (const PartSpec& kind : {prisms(0.5, 0.5), hexagons(0.9, {4.0, 10.0}), triangles(1.1)})
+    for (const double deg : {17.0, 90.0, -130.0}) {
+      const Part part = build_part(plate(size, {{{box(0, 0, size.x(), size.y())}, deg, kind}}));
+      expect_closed(part);
+      EXPECT_EQ(share_of_turned(part, alone(kind, size), deg), 1.0);
+    }
+}
+
+// Prisms of which whole ones fill a square stand on the same squares when they are turned by 90 degrees.
+TEST(Zones, PrismsTurnedByARightAngleAreWhole) {
+  const Part part = build_part(plate({2.0, 2.0}, {{{box(0, 0, 2, 2)}, 90.0, prisms(0.5, 0.5)}}));
+  EXPECT_EQ(part.elements_full, 16);
+  EXPECT_EQ(part.elements_partial, 0);
+  EXPECT_NEAR(volume_below(part), volume_below(alone(prisms(0.5, 0.5), {2.0, 2.0})), 1e-12);
+}
+
+TEST(Zones, WhateverMeetsIsClosed) {
+  const std::vector<PartSpec> all = kinds();
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const auto any = [&] { return all[std::min(all.size() - 1, static_cast<std::size_t>(unit(random) * 10.0))]; };
+  for (std::size_t trial = 0; trial < 12; ++trial) {
+    SCOPED_TRACE(trial);
+    // Four triangles and quadrilaterals round a place.
+    const Vec2 size(3.0 + unit(random), 2.5 + unit(random));
+    const Vec2 hub = (Vec2(0.3, 0.3) + 0.4 * Vec2(unit(random), unit(random))).cwiseProduct(size);
+    const Polygon corners = to_polygon({Vec2::Zero(), size});
+    std::vector<PartZone> zones;
+    for (std::size_t k = 0; k < 4; ++k)
+      zones.push_back({{{corners[k], corners[(k + 1) % 4], hub}}, std::floor(360.0 * unit(random)), any()});
+    zones[trial % 4].elements.array.partial_elements = PartialElements::omit;
+    const ZonedSpec spec = plate(size, zones);
+    EXPECT_FALSE(fault_of_zones(spec));
+    const Part part = build_part(spec);
+    expect_closed(part);
+    EXPECT_EQ(part.elements_full, part.zones[0].full + part.zones[1].full + part.zones[2].full + part.zones[3].full);
+  }
+}
+
+// Elements that the border of a zone would cut are land, and all facets are those of whole elements.
+TEST(Zones, PartialElementsAreLeftOutIfTheyAreNotWanted) {
+  PartSpec kind = hexagons(0.9);
+  const auto build = [&] {
+    return build_part(
+        plate({4.0, 3.0}, {{{{{0, 0}, {4, 0}, {0, 3}}}, 20.0, kind}, {{{{4, 0}, {4, 3}, {0, 3}}}, 0.0, kind}}));
+  };
+  const Part cut = build();
+  kind.array.partial_elements = PartialElements::omit;
+  const Part whole = build();
+  EXPECT_EQ(whole.elements_full, cut.elements_full);
+  EXPECT_GT(whole.elements_partial, 0);
+  const double cell_mm2 = area(aperture_outline(kind.element));
+  double retro_mm2 = 0.0;
+  for (const PatchFacet& facet : whole.patches[0].facets)
+    if (facet.role == FacetRole::retro_facet) retro_mm2 += facet_area(whole.patches[0], facet) * -facet.normal.z();
+  EXPECT_NEAR(retro_mm2, static_cast<double>(whole.elements_full) * cell_mm2, 1e-9);
+}
+
+TEST(Zones, ThatDoNotCoverThePartAreFound) {
+  const auto fault = [](std::vector<Polygon> a, std::vector<Polygon> b) {
+    const auto found =
+        fault_of_zones(plate({4.0, 3.0}, {{std::move(a), 0.0, hexagons(0.5)}, {std::move(b), 0.0, hexagons(0.5)}}));
+    return found ? std::to_string(found->zone) + " " + found->text : std::string();
+  };
+  EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2, 0, 4, 3)}), "");
+  EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2, 0, 4.001, 3)}), "1 reaches beyond the part");
+  EXPECT_EQ(fault({box(0, 0, 2.1, 3)}, {box(2, 0, 4, 3)}), "1 overlaps zone 1");
+  EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2, 0, 4, 2), box(2, 1, 4, 3)}), "1 overlaps itself");
+  EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2.5, 0, 4, 3)}),
+            "1 and those before it leave 1.5 of 12 mm2 of the part free");
+}
+
+}  // namespace
+}  // namespace retrace::geometry::zones_test

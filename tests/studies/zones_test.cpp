@@ -1,0 +1,208 @@
+// Designs of parts of zones: what is read and refused, written and inspected, and what such parts send back.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "materials/io/material_library.h"
+#include "studies/design/io/design_document.h"
+#include "studies/design/io/design_json.h"
+#include "studies/design/part_of_design.h"
+#include "studies/inspect/inspect.h"
+#include "studies/inspect/io/inspect_files.h"
+#include "studies/photometry/photometry.h"
+#include "studies/rre/rre.h"
+#include "studies/scene/scene.h"
+#include "studies/solids/solids.h"
+#include "tests/studies/design_texts.h"
+
+namespace retrace::studies::zones_test {
+namespace {
+
+const std::string kHalves = "[[zone]]\nshare = 0.5\n[[zone]]\nshare = 0.5\n";
+
+std::string zoned(const std::string& zones, const std::string& element = kHexagonal,
+                  const std::string& array = "x_length_mm = 20; y_length_mm = 10") {
+  return design_of(element, array) + zones;  // zones from line 9 on
+}
+
+Design read(const std::string& zones, const std::string& element = kHexagonal,
+            const std::string& array = "x_length_mm = 20; y_length_mm = 10") {
+  return parse_design(zoned(zones, element, array), "d.toml");
+}
+
+TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
+  const auto refused = [](const std::string& zones) { return complaint(zoned(zones)); };
+  const std::string half = "[[zone]]\nshare = 0.5\n";
+  expect_messages(
+      refused,
+      {{kHalves, ""},
+       {"[[zone]]\n", "d.toml:9: zone[1]: must have one of share, rectangles_mm and polygon_mm, which say where it is"},
+       {"[[zone]]\nshare = 0.5\npolygon_mm = [[0, 0], [1, 0], [0, 1]]\n",
+        "d.toml:11: zone[1].polygon_mm: must have one of share, rectangles_mm and polygon_mm, which say where it is"},
+       {half, "d.toml:10: zone[1].share: shares of all zones must add to 1, got 0.5"},
+       {half + "[[zone]]\nshare = 0\n", "d.toml:12: zone[2].share: must be > 0 and <= 1, got 0"},
+       {half + "[[zone]]\nrectangles_mm = [[10, 0, 20, 10]]\n",
+        "d.toml:11: zone[2]: must have share as the other zones do: all have one, or none"},
+       {"[[zone]]\nrectangles_mm = [[10, 0, 20, 10]]\n" + half,
+        "d.toml:9: zone[1]: must have share as the other zones do: all have one, or none"},
+       {"[[zone]]\nrectangles_mm = [[0, 0, 20, 9]]\n",
+        "d.toml:9: zone[1]: and those before it leave 20 of 200 mm2 of the part free"},
+       {"[[zone]]\nrectangles_mm = [[0, 0, 20, 11]]\n", "d.toml:9: zone[1]: reaches beyond the part"},
+       {"[[zone]]\nrectangles_mm = [[0, 0, 12, 10]]\n[[zone]]\nrectangles_mm = [[10, 0, 20, 10]]\n",
+        "d.toml:11: zone[2]: overlaps zone 1"},
+       {"[[zone]]\nrectangles_mm = [[0, 0, 0, 10]]\n",
+        "d.toml:10: zone[1].rectangles_mm: must have the least corner of each first, both lengths > 0, got [0, 0, 0, "
+        "10]"},
+       {"[[zone]]\npolygon_mm = [[0, 0], [20, 0], [5, 4], [0, 10]]\n",
+        "d.toml:10: zone[1].polygon_mm: must be the corners of a convex polygon, one after another"},
+       {half + half.substr(0, 8) + " \nshare = 0.5\nrotation_deg = 400\n",
+        "d.toml:13: zone[2].rotation_deg: must be >= -360 and <= 360, got 400"},
+       {half + half + "set = [\"element.cant_deg\"]\n",
+        "d.toml:13: zone[2].set: must be texts KEY=VALUE, got \"element.cant_deg\""},
+       {half + half + "set = [\"body.thickness_mm=2\"]\n",
+        "d.toml:13: zone[2].set: must set keys of [element], of [array] but for lengths and margins, or angles and "
+        "edges "
+        "of [surface], got \"body.thickness_mm=2\""},
+       {half + half + "set = [\"element.cant_deg=50\"]\n",
+        "d.toml:13: zone[2].set: element.cant_deg must be >= 0 and <= 30, got 50"},
+       {half + half + "set = [\"element.cant=5\"]\n",
+        "d.toml:13: zone[2].set: element.cant unknown key (allowed: kind, base_mm, width_mm, apex_angle_deg, "
+        "aperture_mm, cant_deg, cant_azimuth_deg, diameter_mm, mirror_offset_mm, mirror_half_angle_deg)"},
+       {half + half + "set = [\"surface.dihedral_error_arcmin=[1, 2]\"]\n",
+        "d.toml:13: zone[2].set: surface.dihedral_error_arcmin must be a number or a list of three, one for each "
+        "dihedral edge, got a list of 2"},
+       {half + half + "set = [\"array.arrangement='single'\"]\n",
+        "d.toml:13: zone[2].set: array.x_length_mm not allowed for arrangement = \"single\", whose extent is the "
+        "element's aperture, got 20"},
+       {half + half + "set = [\"element.aperture_mm=11\"]\n",
+        "d.toml:11: zone[2]: has a region of 10 x 10 mm, too small for one element of 11 x 9.526279441628827 mm"},
+       {kHalves + "[base]\nkind = \"sphere\"\nradius_mm = 100\n", "d.toml:9: zone: not allowed together with [base]"},
+       {kHalves + "[form]\nsink_um = 1\n", "d.toml:9: zone: not allowed together with [form]"},
+       {kHalves + "[wet_back]\nindex = 1.3\nshare = 0.5\n", "d.toml:9: zone: not allowed together with [wet_back]"}});
+}
+
+TEST(ZonedDesign, WholePartsAreFiniteWithoutMargins) {
+  const auto refused = [](const std::string& array) { return complaint(zoned(kHalves, kHexagonal, array)); };
+  EXPECT_EQ(refused("extent = \"infinite\""),
+            "d.toml:5: array.extent: \"infinite\" is not allowed together with [[zone]]");
+  EXPECT_EQ(refused("x_length_mm = 20; y_length_mm = 10; y_offset_mm = 1"),
+            "d.toml:7: array.y_offset_mm: must be 0 together with [[zone]]");
+  EXPECT_EQ(complaint("[element]\nkind = \"ball\"\ndiameter_mm = 1\n" + kHalves),
+            "d.toml:4: zone: not allowed for kind = \"ball\"");
+}
+
+TEST(ZonedDesign, DesignsAreWrittenAsTheyWereRead) {
+  const Design design = read(
+      "[[zone]]\nshare = 0.25\nrotation_deg = 30\n[[zone]]\nshare = 0.75\n"
+      "set = [\"element.cant_deg=5\", \"surface.dihedral_error_arcmin=[1, 2, 3]\"]\n");
+  const std::string text = design_text(design);
+  EXPECT_NE(text.find("[[zone]]\nrectangles_mm = [[0, 0, 5, 10]]\nrotation_deg = 30\n"), std::string::npos) << text;
+  const Design again = parse_design(text, "again.toml");
+  EXPECT_EQ(design_text(again), text);
+  const ZonedPart& part = *again.zoned();
+  ASSERT_EQ(part.spec.zones.size(), 2U);
+  EXPECT_EQ(geometry::cant_of(part.spec.zones[1].elements.element).deg, 5.0);
+  EXPECT_EQ(geometry::cant_of(part.spec.zones[0].elements.element).deg, 0.0);
+  EXPECT_EQ(part.spec.zones[1].elements.angle_errors.dihedral_error_arcmin[2], 3.0);
+  EXPECT_EQ(design_text(design_of_json(to_json(design))), text);
+  const Design thicker = with(design, std::vector<std::string>{"body.thickness_mm=3"});
+  EXPECT_EQ(thicker.zoned()->spec.thickness_mm, 3.0);
+}
+
+TEST(ZonedDesign, QuestionsOfOneKindOfElementAreRefused) {
+  const Design design = read(kHalves);
+  RreRequest footprint;
+  footprint.derivatives = true;
+  EXPECT_EQ(refusal_of([&] { RreStudy({design}, footprint); }),
+            "d.toml:9: zone: --derivatives takes no part of zones, only [element] and [array]");
+}
+
+RreResult rre(const Design& design, Engine engine, double incidence_deg, std::optional<std::uint64_t> rays = {}) {
+  RreRequest request;
+  request.incidence_deg = {incidence_deg};
+  request.azimuth_deg = {30.0};
+  request.engine = engine;
+  request.rays = rays;
+  if (engine == Engine::exact) request.cutoff = 1e-5;
+  return RreStudy({design}, request).run();
+}
+
+// Whole prisms on either side of a border: along the normal light goes from facet to facet of one prism.
+TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
+  const std::string lengths = "x_length_mm = 8; y_length_mm = 4";
+  const Design plain = parse_design(design_of(kRtp, lengths), "d.toml");
+  const Design turned = read("[[zone]]\nshare = 0.5\n[[zone]]\nshare = 0.5\nrotation_deg = 90\n", kRtp, lengths);
+  EXPECT_NEAR(rre(turned, Engine::exact, 0.0).points[0].rre, rre(plain, Engine::exact, 0.0).points[0].rre, 1e-9);
+  const Inspection inspection = inspect(turned, materials::MaterialLibrary::shipped());
+  EXPECT_EQ(inspection.elements_full, 32);
+  EXPECT_EQ(inspection.zones->crossings[0].share, 0.0);
+  // From facet to facet over the roof edge, by twice the distance from it: half the base on the mean.
+  for (const ZoneReport& zone : inspection.zones->zones) EXPECT_NEAR(zone.wander_mm, 0.5, 0.01);
+}
+
+// Unlike cube corners under light askew: the engines agree on the part, which is what its zones are alone but for what
+// happens at the borders of either.
+TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
+  const std::string set = "set = [\"element.cant_deg=8\", \"element.cant_azimuth_deg=40\"]\n";
+  const std::string one = "[[zone]]\nshare = 1\n";
+  const Design part = read("[[zone]]\nshare = 0.5\nrotation_deg = 20\n[[zone]]\nshare = 0.5\n" + set);
+  const RrePoint beams = rre(part, Engine::exact, 15.0).points[0];
+  const RrePoint rays = rre(part, Engine::embree, 15.0, 400'000).points[0];
+  const double exact = beams.rre;
+  EXPECT_GT(rays.rre, exact - 4.0 * rays.std_error);
+  EXPECT_LT(rays.rre,
+            exact + beams.ledger.power[static_cast<std::size_t>(raytrace::Account::truncated)] + 4.0 * rays.std_error);
+  const std::string half = "x_length_mm = 10; y_length_mm = 10";
+  const double left = rre(read(one + "rotation_deg = 20\n", kHexagonal, half), Engine::exact, 15.0).points[0].rre;
+  const double right = rre(read(one + set, kHexagonal, half), Engine::exact, 15.0).points[0].rre;
+  EXPECT_NEAR(exact, 0.5 * (left + right), 0.05 * exact);
+  EXPECT_GT(std::abs(left - right), 0.05 * exact);
+}
+
+// Light of triangular arrays goes through neighbours, so that some of it meets two zones: the more the narrower they
+// are.
+TEST(ZonedDesign, TellHowMuchLightMeetsTwoOfThem) {
+  const auto share = [](const std::string& zones) {
+    return inspect(read(zones, kTriangular), materials::MaterialLibrary::shipped()).zones->crossings[1].share;
+  };
+  const double wide = share(kHalves);
+  const std::string fifth = "[[zone]]\nshare = 0.2\n";
+  const double narrow = share(fifth + fifth + fifth + fifth + fifth);
+  EXPECT_GT(wide, 0.0);
+  EXPECT_GT(narrow, 2.0 * wide);
+  EXPECT_LT(narrow, 0.5);
+}
+
+TEST(ZonedDesign, AreInspectedAndExported) {
+  const Design design = read(
+      "[[zone]]\npolygon_mm = [[0, 0], [20, 0], [0, 10]]\nrotation_deg = 10\n"
+      "[[zone]]\npolygon_mm = [[20, 0], [20, 10], [0, 10]]\n"
+      "set = [\"element.kind='rtp'\", \"element.base_mm=1\", \"element.width_mm=0.8\", \"array.x_gap_mm=0.2\"]\n");
+  const Inspection inspection = inspect(design, materials::MaterialLibrary::shipped());
+  EXPECT_EQ(inspection.boundary, "closed, free of self-intersections");
+  const auto json = nlohmann::json::parse(inspect_json(inspection));
+  ASSERT_EQ(json["zones"].size(), 2U);
+  EXPECT_EQ(json["zones"][0]["area_mm2"], 100.0);
+  EXPECT_EQ(json["elements_full"],
+            json["zones"][0]["elements_full"].get<int>() + json["zones"][1]["elements_full"].get<int>());
+  EXPECT_EQ(json["design"]["zone"][1]["set"].size(), 4U);
+  const std::string text = inspect_text(inspection);
+  EXPECT_NE(text.find("  zone 1              50.000 %, "), std::string::npos) << text;
+  EXPECT_NE(text.find("; turned by 10\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("; element.kind='rtp'; "), std::string::npos) << text;
+  const Solid solid = make_solid(design, {});
+  EXPECT_TRUE(solid.is_manifold);
+  const geometry::Part part = part_of_design(design, nullptr);
+  EXPECT_NEAR(solid.volume_mm3, 200.0 * part.thickness_mm, 0.5 * 200.0 * part.element_depth_mm);
+  EXPECT_EQ(refusal_of([&] {
+              make_solid(design, {SolidKind::mould, {}});
+            }),
+            "d.toml:9: zone: --what mould takes no part of zones, only [element] and [array]");
+}
+
+}  // namespace
+}  // namespace retrace::studies::zones_test
