@@ -165,9 +165,9 @@ class Costs(unittest.TestCase):
         print(f"200 designs: {grown:+.2f} MiB")
         self.assertLess(grown, 4)
 
-    def test_a_call_costs_less_than_a_millisecond_more(self):
-        """Than the library's function, its arrays included: the least of many, as other work makes
-        both longer."""
+    def test_a_call_costs_little_beside_the_librarys(self):
+        """Its arrays included: the least of many, as other work makes both longer, and a ratio, as
+        machines differ (a prism's one direction takes the library half a millisecond)."""
         design = rt.Design.load(PRISM)
         request = _core.RreRequest()
         of_python, of_library = [], []
@@ -178,7 +178,7 @@ class Costs(unittest.TestCase):
             of_library.append(_core.seconds_of_rre([design._core], request))
         more = min(of_python) - min(of_library)
         print(f"a call of rre: {1e3 * min(of_library):.2f} ms, by Python {1e3 * more:.2f} ms more")
-        self.assertLess(more, 1e-3)
+        self.assertLess(more, 4 * min(of_library))
 
     def test_import(self):
         """By the processor's time, beside that of numpy, which it needs, as machines differ."""
