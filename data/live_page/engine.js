@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz c2a077c0eb873f47bf428f8eb37c96d5988d3e5ebf7c2d4df6c46120338c375a */
+/* made by tools/live_page; engine.wasm.gz 1a9c6c259ffe00c90f2721a1094b7d7b8a82963cdb4878067211ad9a079015ec */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;
