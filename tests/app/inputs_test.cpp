@@ -325,7 +325,7 @@ void expect_ends(const std::string& shell, const std::string& message) {
   const TemporaryFolder folder;
   folder.write("plain.toml", kPrisms + kBody);
   Child child(folder.path(), {"/bin/sh", "-c", shell});
-  const Outcome outcome = child.wait(std::chrono::seconds(60));
+  const Outcome outcome = child.wait(patient(60));
   EXPECT_EQ(outcome.code, 2) << outcome.out;
   EXPECT_EQ(outcome.err, "retrace: " + message + "\n");
 }

@@ -49,6 +49,21 @@ enum class Input {
   silent  ///< a pipe that stays open and says nothing
 };
 
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define RETRACE_IS_SANITIZED
+#endif
+#endif
+
+/// A limit on time that programs keep by far, also with sanitizers, which make them some ten times as slow.
+constexpr std::chrono::seconds patient(int seconds) {
+#ifdef RETRACE_IS_SANITIZED
+  return std::chrono::seconds(10 * seconds);
+#else
+  return std::chrono::seconds(seconds);
+#endif
+}
+
 /// A program that runs as a child process, without a shell between. The first argument is the program.
 class Child {
  public:

@@ -29,7 +29,7 @@ class Completion : public testing::TestWithParam<std::string> {
   Arguments completed(const std::string& line) const {
     Arguments run = {"/usr/bin/env", GetParam(), ".ask", line};
     if (GetParam() == "zsh") run.insert(run.begin() + 2, "-f");
-    const Outcome outcome = Child(folder_.path(), run).wait(std::chrono::seconds(60));
+    const Outcome outcome = Child(folder_.path(), run).wait(patient(60));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     Arguments found;

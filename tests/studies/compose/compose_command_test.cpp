@@ -150,14 +150,14 @@ TEST(ComposeCommand, EndsSoonWhenItIsInterrupted) {
   const TemporaryFolder folder;
   folder.write("study.toml", study("rounds = 100\nstarts = 100\nlooks = 10000\n", "1e-6"));
   Child child(folder.path(), with({RETRACE_PROGRAM}, compose({"--quiet"})));
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto deadline = std::chrono::steady_clock::now() + patient(60);
   while (stored_points(folder.path() / "out/composition.sqlite").size() < 5) {
     ASSERT_FALSE(child.has_ended()) << "it was over too soon";
     ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "no cells were stored";
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   child.interrupt();
-  EXPECT_EQ(child.wait(std::chrono::seconds(60)).code, 130);
+  EXPECT_EQ(child.wait(patient(60)).code, 130);
   EXPECT_EQ(folder.json("out/composition.json").at("complete"), false);
 }
 

@@ -168,7 +168,7 @@ TEST_F(Rays, AnInterruptKeepsWhatIsTraced) {
                                "-o", "out.tm25ray", "--json", "r.json"});
   while (child.processor_time_s() < 0.5 && !child.has_ended()) continue;
   child.interrupt();
-  const Outcome outcome = child.wait(std::chrono::seconds(20));
+  const Outcome outcome = child.wait(patient(20));
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   const Json json = folder_.json("r.json");
   EXPECT_FALSE(json["complete"].get<bool>());

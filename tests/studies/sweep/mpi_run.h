@@ -15,7 +15,7 @@
 namespace retrace::test {
 
 /// For anything under MPI to come about.
-inline constexpr std::chrono::seconds kMpiLimit{60};
+inline constexpr std::chrono::seconds kMpiLimit = patient(60);
 /// A rank that is silent for so long is given up.
 inline constexpr int kMpiSilenceS = 3;
 

@@ -43,7 +43,7 @@ TEST(SweepCommand, TwentyKillsLoseNoPointAndRepeatNone) {
       const Child child(folder.path(), sweep_arguments("killed", true));
       // A random moment after the run has got somewhere: how fast the machine is does not matter.
       const std::size_t goal = before.size() + random() % 8;
-      const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+      const auto deadline = std::chrono::steady_clock::now() + patient(60);
       while (stored_points(folder.path() / "killed/sweep.sqlite").size() < goal &&
              std::chrono::steady_clock::now() < deadline)
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -73,7 +73,7 @@ TEST(SweepCommand, TwoProcessesShareOneStore) {
   Child first(folder.path(), sweep_arguments("shared", true));
   Child second(folder.path(), sweep_arguments("shared", true));
   for (Child* child : {&first, &second}) {
-    const Outcome outcome = child->wait(std::chrono::seconds(120));
+    const Outcome outcome = child->wait(patient(120));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
   EXPECT_EQ(folder.read("shared/sweep.csv"), expected);
@@ -87,14 +87,14 @@ TEST(SweepCommand, AnInterruptedRunIsValidAndGoesOn) {
   const TemporaryFolder folder;
   folder.write("study.toml", sweep_study(400));
   Child child(folder.path(), sweep_arguments("out", false));
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto deadline = std::chrono::steady_clock::now() + patient(60);
   while (stored_points(folder.path() / "out/sweep.sqlite").size() < 5) {
     ASSERT_FALSE(child.has_ended()) << "it was over too soon";
     ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "no points were stored";
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   child.interrupt();
-  const Outcome outcome = child.wait(std::chrono::seconds(60));
+  const Outcome outcome = child.wait(patient(60));
   EXPECT_EQ(outcome.code, 130);
   const Json json = folder.json("out/sweep.json");
   EXPECT_EQ(json["complete"], false);

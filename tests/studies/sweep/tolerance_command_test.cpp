@@ -177,7 +177,7 @@ TEST(OptimizeJob, NeedsATool) {
 std::string on_a_terminal(const TemporaryFolder& folder, const std::string& arguments) {
   const Outcome outcome = Child(folder.path(), {"/usr/bin/script", "-qec",
                                                 "'" + std::string(RETRACE_PROGRAM) + "' " + arguments, "/dev/null"})
-                              .wait(std::chrono::seconds(60));
+                              .wait(patient(60));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
   return outcome.out;
 }
