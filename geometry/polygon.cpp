@@ -1,6 +1,8 @@
 #include "geometry/polygon.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace retrace::geometry {
 namespace {
@@ -101,12 +103,27 @@ Polygon clip(const Polygon& polygon, const Polygon& region, double tolerance_mm)
 }
 
 bool is_convex(const Polygon& polygon, double tolerance_mm) {
+  double turned_rad = 0.0;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec2 a = polygon[(k + 1) % polygon.size()] - polygon[k];
     const Vec2 b = polygon[(k + 2) % polygon.size()] - polygon[(k + 1) % polygon.size()];
-    if (a.x() * b.y() - a.y() * b.x() < -tolerance_mm * (a.norm() + b.norm())) return false;
+    const double cross = a.x() * b.y() - a.y() * b.x();
+    if (cross < -tolerance_mm * (a.norm() + b.norm())) return false;
+    turned_rad += std::atan2(cross, a.dot(b));
   }
-  return true;
+  return turned_rad < 3.0 * std::numbers::pi;
+}
+
+double width(const Polygon& polygon) {
+  double least = INFINITY;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 along = (polygon[(k + 1) % polygon.size()] - polygon[k]).normalized();
+    double across = 0.0;
+    for (const Vec2& p : polygon)
+      across = std::max(across, along.x() * (p - polygon[k]).y() - along.y() * (p - polygon[k]).x());
+    least = std::min(least, across);
+  }
+  return least;
 }
 
 bool contains(const Rectangle& r, const Polygon& polygon, double tolerance_mm) {

@@ -36,8 +36,12 @@ Polygon clip(const Polygon& polygon, const Rectangle& rectangle, double toleranc
 /// The same of a convex polygon in place of the rectangle.
 Polygon clip(const Polygon& polygon, const Polygon& region, double tolerance_mm);
 
-/// Whether a counter-clockwise polygon turns left at every vertex, or runs straight on up to the tolerance.
+/// Whether a counter-clockwise polygon turns left at every vertex, or runs straight on up to the tolerance, and goes
+/// round once.
 bool is_convex(const Polygon& polygon, double tolerance_mm);
+
+/// The least distance between two parallel lines that hold a convex polygon between them.
+double width(const Polygon& polygon);
 
 /// True if every vertex lies in the rectangle widened by `tolerance_mm`.
 bool contains(const Rectangle& rectangle, const Polygon& polygon, double tolerance_mm);

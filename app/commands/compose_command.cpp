@@ -53,6 +53,7 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
       {"--design FILE", "write the design of the whole part, with its zones", &options.design, files(".toml")});
   all.push_back({"--layout WORD", "how its zones lie: stripes, blocks or rows", &options.layout,
                  one_of(words_of(studies::kZoneLayouts))});
+  all.back().traits.needs = "--design";
   for (const auto& [name, help, length] :
        {std::tuple{"--x-length-mm L", "of that part, with the other one [those of the study's design]",
                    &options.x_length_mm},
@@ -87,9 +88,8 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
     files.add(fmt::format("zone_{}.toml", zone + 1), [&, zone] { return zone_design(study, composition, zone); });
   const studies::ZonedDesignRequest zoned = zoned_design_of(options);
   if (!options.design.empty()) studies::check_zoned_design(study, zoned);
-  files.add_named("--design", options.design, [&] {
-    return composition.best ? studies::zoned_design_text(study, *composition.best, zoned) : std::string();
-  });
+  std::string part_text;
+  files.add_named("--design", options.design, [&] { return part_text; });
   const std::filesystem::path file = files.reserve("composition.sqlite");
   files.prepare();
   studies::ResultStore store(file, studies::compose_layout(study), if_exists_of(options));
@@ -103,13 +103,23 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   }
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string why_not = studies::why_not_reached(study, request, composition);
+  std::vector<std::string> warnings = remarks_of(session);
+  bool has_design = true;
+  if (!options.design.empty() && composition.best) {
+    try {
+      part_text = studies::zoned_design_text(study, *composition.best, zoned);
+    } catch (const InputError& error) {  // what was found is not lost for that
+      warnings.push_back(fmt::format("{} is not written: {}", options.design, error.what()));
+      has_design = false;
+    }
+  }
   const ExitCode code = files.write(studies::composition_json(study, request, composition, elapsed_s),
-                                    studies::composition_text(study, request, composition), remarks_of(session),
+                                    studies::composition_text(study, request, composition), warnings,
                                     {.complete = composition.complete,
                                      .interrupted = fmt::format("cells looked at: {}", composition.evaluations),
                                      .is_yes = why_not.empty()});
   if (code == ExitCode::answer_is_no) say("retrace: no such part: " + why_not);
-  return code;
+  return code == ExitCode::done && !has_design ? ExitCode::failed : code;
 }
 
 ExitCode run_compose(const ComposeOptions& options, const CommonOptions& common) {

@@ -17,21 +17,34 @@ namespace retrace {
 namespace {
 
 /// toml++ recurses once per level of a tree when it destroys it: dotted keys could make more of them than the stack
-/// holds. No line needs as many dots.
+/// holds. No line needs as many dots beside the points of its numbers.
 constexpr std::size_t kMostDotsInALine = 64;
 constexpr std::size_t kLongestOverride = 4096;
 constexpr std::string_view kBareKeyCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
 
+/// Whether the dot at `i` is the point of a number: digits alone on both sides, and no further dot.
+bool is_decimal_point(std::string_view text, std::size_t i) {
+  constexpr std::string_view digits = "0123456789_";
+  const std::size_t before = text.find_last_not_of(digits, i == 0 ? 0 : i - 1);
+  const std::size_t after = text.find_first_not_of(digits, i + 1);
+  constexpr std::string_view begins = " \t\n[,=+-";
+  constexpr std::string_view ends = " \t\r\n],}#eE";
+  return i > 0 && before + 1 != i && before != std::string_view::npos &&
+         begins.find(text[before]) != std::string_view::npos && after != i + 1 &&
+         (after == std::string_view::npos || ends.find(text[after]) != std::string_view::npos);
+}
+
 void check_nesting(std::string_view text, const std::string& file) {
   int line = 1;
   std::size_t dots = 0;
-  for (const char c : text) {
-    if (c == '\n') {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\n') {
       ++line;
       dots = 0;
     }
-    if (c == '.' && ++dots > kMostDotsInALine)
-      throw InputError({file, line, ""}, fmt::format("a line may have at most {} dots", kMostDotsInALine));
+    if (text[i] == '.' && !is_decimal_point(text, i) && ++dots > kMostDotsInALine)
+      throw InputError({file, line, ""},
+                       fmt::format("a line may have at most {} dots beside those of numbers", kMostDotsInALine));
   }
 }
 

@@ -168,6 +168,14 @@ class ZoneTiler {
   std::vector<Tile> tiles_;
 };
 
+/// Of the smallest element, the scale for tolerances.
+double size_of(const ZonedSpec& spec) {
+  double size_mm = spec.size_mm.minCoeff();
+  for (const PartZone& zone : spec.zones)
+    size_mm = std::min(size_mm, bounding_box(aperture_outline(zone.elements.element)).size().minCoeff());
+  return size_mm;
+}
+
 }  // namespace
 
 double area(const PartZone& zone) {
@@ -177,7 +185,8 @@ double area(const PartZone& zone) {
 }
 
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
-  const double near_mm = kSamePlace * spec.size_mm.norm();
+  // What is farther apart than corners that are welded is a gap.
+  const double near_mm = 0.5 * kSamePlace * size_of(spec);
   const double near_mm2 = near_mm * spec.size_mm.norm();
   struct Placed {
     std::size_t zone;
@@ -220,9 +229,7 @@ double element_estimate(const ZonedSpec& spec) {
 }
 
 void add_zones(Part& part, const ZonedSpec& spec) {
-  part.size_mm = spec.size_mm.minCoeff();
-  for (const PartZone& zone : spec.zones)
-    part.size_mm = std::min(part.size_mm, bounding_box(aperture_outline(zone.elements.element)).size().minCoeff());
+  part.size_mm = size_of(spec);
   // As wide as the steps that light is followed in.
   part.spec.element = RtpElement{part.size_mm, part.size_mm, 90.0};
   part.spec.thickness_mm = spec.thickness_mm;

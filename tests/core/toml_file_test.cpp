@@ -60,7 +60,15 @@ TEST(TomlFile, RefusesWithFileLineAndKey) {
 TEST(TomlFile, RefusesWhatWouldNestTooDeeply) {
   std::string text = "a";
   for (int k = 0; k < 100000; ++k) text += ".a";
-  EXPECT_EQ(refusal(text + " = 1\n", [](TomlTable&) {}), "f.toml:1: a line may have at most 64 dots");
+  EXPECT_EQ(refusal(text + " = 1\n", [](TomlTable&) {}),
+            "f.toml:1: a line may have at most 64 dots beside those of numbers");
+  std::string numbers = "a = [0.5";
+  for (int k = 0; k < 1000; ++k) numbers += k % 2 == 0 ? ", -1.25" : ",3.5e-2";
+  EXPECT_EQ(refusal(numbers + "]\n", [](TomlTable& t) { t.numbers("a", 1001); }), "");
+  std::string keys = "1.1";
+  for (int k = 0; k < 1000; ++k) keys += ".1.1";
+  EXPECT_EQ(refusal(keys + " = 1\n", [](TomlTable&) {}),
+            "f.toml:1: a line may have at most 64 dots beside those of numbers");
 }
 
 TEST(TomlFile, TextsAreEscaped) {

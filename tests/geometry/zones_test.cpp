@@ -208,6 +208,20 @@ TEST(Zones, PartialElementsAreLeftOutIfTheyAreNotWanted) {
   EXPECT_NEAR(retro_mm2, static_cast<double>(whole.elements_full) * cell_mm2, 1e-9);
 }
 
+// Turned twice round a polygon turns left everywhere; a width is that across the nearest side.
+TEST(Zones, RegionsAreConvexPolygonsThatGoRoundOnce) {
+  const Polygon once = {{0, 0}, {4, 0}, {4, 3}, {0, 3}};
+  Polygon twice = once;
+  twice.insert(twice.end(), once.begin(), once.end());
+  EXPECT_TRUE(is_convex(once, 0.0));
+  EXPECT_FALSE(is_convex(twice, 0.0));
+  EXPECT_FALSE(is_convex({{5, 0}, {8, 10}, {0, 4}, {10, 4}, {2, 10}}, 0.0));
+  EXPECT_FALSE(is_convex({{0, 0}, {4, 0}, {2, 1}, {0, 4}}, 0.0));
+  EXPECT_TRUE(is_convex({{0, 0}, {2, 1e-12}, {4, 0}, {4, 3}}, 1e-9));
+  EXPECT_EQ(width(once), 3.0);
+  EXPECT_NEAR(width({{0, 0}, {4, 0}, {0, 3}}), 2.4, 1e-12);
+}
+
 TEST(Zones, ThatDoNotCoverThePartAreFound) {
   const auto fault = [](std::vector<Polygon> a, std::vector<Polygon> b) {
     const auto found =
@@ -218,6 +232,10 @@ TEST(Zones, ThatDoNotCoverThePartAreFound) {
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2, 0, 4.001, 3)}), "1 reaches beyond the part");
   EXPECT_EQ(fault({box(0, 0, 2.1, 3)}, {box(2, 0, 4, 3)}), "1 overlaps zone 1");
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2, 0, 4, 2), box(2, 1, 4, 3)}), "1 overlaps itself");
+  // What is farther apart than corners that are welded is a gap, or an overlap.
+  EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2 + 1e-8, 0, 4, 3)}).substr(0, 23), "1 and those before it l");
+  EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2 - 1e-8, 0, 4, 3)}), "1 overlaps zone 1");
+  EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2 + 1e-13, 0, 4, 3)}), "");
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2.5, 0, 4, 3)}),
             "1 and those before it leave 1.5 of 12 mm2 of the part free");
 }

@@ -64,22 +64,28 @@ TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
        {half + half + "set = [\"element.cant_deg\"]\n",
         "d.toml:13: zone[2].set: must be texts KEY=VALUE, got \"element.cant_deg\""},
        {half + half + "set = [\"body.thickness_mm=2\"]\n",
-        "d.toml:13: zone[2].set: must set keys of [element], of [array] but for lengths and margins, or angles and "
-        "edges "
-        "of [surface], got \"body.thickness_mm=2\""},
+        "d.toml:13: zone[2].set: must set keys of [element], of [array] but for extent, lengths, margins and mask, or "
+        "angles and edges of [surface], got \"body.thickness_mm=2\""},
        {half + half + "set = [\"element.cant_deg=50\"]\n",
-        "d.toml:13: zone[2].set: element.cant_deg must be >= 0 and <= 30, got 50"},
+        "d.toml:13: zone[2].set: element.cant_deg: must be >= 0 and <= 30, got 50"},
        {half + half + "set = [\"element.cant=5\"]\n",
-        "d.toml:13: zone[2].set: element.cant unknown key (allowed: kind, base_mm, width_mm, apex_angle_deg, "
+        "d.toml:13: zone[2].set: element.cant: unknown key (allowed: kind, base_mm, width_mm, apex_angle_deg, "
         "aperture_mm, cant_deg, cant_azimuth_deg, diameter_mm, mirror_offset_mm, mirror_half_angle_deg)"},
        {half + half + "set = [\"surface.dihedral_error_arcmin=[1, 2]\"]\n",
-        "d.toml:13: zone[2].set: surface.dihedral_error_arcmin must be a number or a list of three, one for each "
+        "d.toml:13: zone[2].set: surface.dihedral_error_arcmin: must be a number or a list of three, one for each "
         "dihedral edge, got a list of 2"},
        {half + half + "set = [\"array.arrangement='single'\"]\n",
-        "d.toml:13: zone[2].set: array.x_length_mm not allowed for arrangement = \"single\", whose extent is the "
+        "d.toml:13: zone[2].set: array.x_length_mm: not allowed for arrangement = \"single\", whose extent is the "
         "element's aperture, got 20"},
        {half + half + "set = [\"element.aperture_mm=11\"]\n",
         "d.toml:11: zone[2]: has a region of 10 x 10 mm, too small for one element of 11 x 9.526279441628827 mm"},
+       {"[[zone]]\npolygon_mm = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]]\n",
+        "d.toml:10: zone[1].polygon_mm: must have each corner once, got [0, 0] twice"},
+       {"[[zone]]\npolygon_mm = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0], [20, 0], [20, 10], [0, 10]]\n",
+        "d.toml:10: zone[1].polygon_mm: must be the corners of a convex polygon, one after another"},
+       {"[[zone]]\nshare = 0.9999\n[[zone]]\nshare = 0.0001\nrotation_deg = 17\n",
+        "d.toml:11: zone[2]: has a region of 0.0019999999999988916 x 10 mm, too small for one element of 2 x "
+        "1.7320508075688772 mm"},
        {kHalves + "[base]\nkind = \"sphere\"\nradius_mm = 100\n", "d.toml:9: zone: not allowed together with [base]"},
        {kHalves + "[form]\nsink_um = 1\n", "d.toml:9: zone: not allowed together with [form]"},
        {kHalves + "[wet_back]\nindex = 1.3\nshare = 0.5\n", "d.toml:9: zone: not allowed together with [wet_back]"}});
@@ -93,6 +99,10 @@ TEST(ZonedDesign, WholePartsAreFiniteWithoutMargins) {
             "d.toml:7: array.y_offset_mm: must be 0 together with [[zone]]");
   EXPECT_EQ(complaint("[element]\nkind = \"ball\"\ndiameter_mm = 1\n" + kHalves),
             "d.toml:4: zone: not allowed for kind = \"ball\"");
+}
+
+TEST(ZonedDesign, AnEmptyListIsNone) {
+  EXPECT_EQ(parse_design("zone = []\n" + joined(kLines), "d.toml").zoned(), nullptr);
 }
 
 TEST(ZonedDesign, DesignsAreWrittenAsTheyWereRead) {

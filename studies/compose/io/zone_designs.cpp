@@ -20,8 +20,10 @@ namespace {
 using geometry::Rectangle, geometry::Vec2;
 
 constexpr std::string_view kTurn = "analysis.rotation_deg";
-/// Rows of a zone are at least so many elements high, so that whole ones have room.
-constexpr double kElementsOfRow = 4.0;
+/// Rows of a zone are at least so many elements high, so that most have room as whole ones ...
+constexpr double kElementsOfRow = 8.0;
+/// ... and in all no more than a design file has room for.
+constexpr double kMostRows = 120.0;
 
 /// Blocks of these shares, which are told from `first` on, in a rectangle: halves of about the same area, each divided
 /// in turn along its longer side.
@@ -53,7 +55,8 @@ std::vector<std::vector<Rectangle>> blocks_of(const std::vector<double>& shares,
 /// \param element_mm height of the highest element
 std::vector<std::vector<Rectangle>> rows_of(const std::vector<double>& shares, const Vec2& size_mm, double element_mm) {
   const double least = *std::ranges::min_element(shares);
-  const double bands = std::max(1.0, std::floor(least * size_mm.y() / (kElementsOfRow * element_mm)));
+  const double most = std::floor(kMostRows / static_cast<double>(shares.size()));
+  const double bands = std::clamp(std::floor(least * size_mm.y() / (kElementsOfRow * element_mm)), 1.0, most);
   std::vector<std::vector<Rectangle>> regions(shares.size());
   double from = 0.0;
   for (double band = 0.0; band < bands; band += 1.0) {
@@ -71,9 +74,9 @@ std::vector<std::vector<Rectangle>> rows_of(const std::vector<double>& shares, c
 std::string regions_text(const std::vector<Rectangle>& regions) {
   std::string text;
   for (const Rectangle& r : regions)
-    text += fmt::format("{}[{}, {}, {}, {}]", text.empty() ? "" : ", ", shortest(r.lower.x()), shortest(r.lower.y()),
-                        shortest(r.upper.x()), shortest(r.upper.y()));
-  return fmt::format("rectangles_mm = [{}]\n", text);
+    text += fmt::format("  [{}, {}, {}, {}],\n", shortest(r.lower.x()), shortest(r.lower.y()), shortest(r.upper.x()),
+                        shortest(r.upper.y()));
+  return fmt::format("rectangles_mm = [\n{}]\n", text);
 }
 
 /// What of the parameters a zone sets.

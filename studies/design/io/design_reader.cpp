@@ -51,7 +51,7 @@ Shape read_shape(const Document& document) {
   if (document.has("part.plate_mm"))
     return Plate{pair_of(document, "part.plate_mm"), document.number("body.thickness_mm")};
   if (document.has("part.mesh")) return read_mesh(document);
-  if (document.has("zone")) return read_zones(document);
+  if (has_zones(document)) return read_zones(document);
   if (has_elements(document)) return read_elements(document);
   return read_balls(document);
 }

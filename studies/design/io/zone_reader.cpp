@@ -24,6 +24,8 @@ constexpr std::size_t kMostRegions = 1000;
 constexpr std::size_t kMostSetBytes = 4096;
 /// By which shares may miss their sum of 1.
 constexpr double kShareRounding = 1e-6;
+/// Of lengths.
+constexpr double kRounding = 1e-9;
 
 // What single zones may change; a table's name with a dot stands for all of its keys.
 constexpr std::array<std::string_view, 16> kOfZones = {"element.",
@@ -53,7 +55,7 @@ std::string key_of(const std::string& change) {
   if (equals == std::string::npos) return {};
   std::string key = change.substr(0, equals);
   key.erase(key.find_last_not_of(" \t") + 1);
-  return key;
+  return key.erase(0, key.find_first_not_of(" \t"));
 }
 
 void check_changes(const Document& document, std::size_t zone) {
@@ -63,10 +65,11 @@ void check_changes(const Document& document, std::size_t zone) {
     const std::string name = key_of(change);
     if (name.empty()) document.fail(key, fmt::format("must be texts KEY=VALUE, got {}", in_quotes(change)));
     if (!may_set_in_zone(name))
-      document.fail(key,
-                    fmt::format("must set keys of [element], of [array] but for lengths and margins, or angles and "
-                                "edges of [surface], got {}",
-                                in_quotes(change)));
+      document.fail(
+          key,
+          fmt::format("must set keys of [element], of [array] but for extent, lengths, margins and mask, or angles and "
+                      "edges of [surface], got {}",
+                      in_quotes(change)));
   }
 }
 
@@ -93,7 +96,7 @@ Document document_of_zone(const Document& document, std::size_t zone) {
     return changed;
   } catch (const InputError& error) {
     document.fail(document.has(key) ? key : entry_of(zone),
-                  error.where().key.empty() ? error.text() : error.where().key + " " + error.text());
+                  error.where().key.empty() ? error.text() : error.where().key + ": " + error.text());
   }
 }
 
@@ -132,8 +135,13 @@ std::vector<Polygon> rectangles_of(const Document& document, const std::string& 
 Polygon polygon_of(const Document& document, const std::string& key) {
   Polygon polygon;
   for (const std::vector<double>& p : document.rows(key)) polygon.emplace_back(p[0], p[1]);
+  const double near_mm = kRounding * geometry::bounding_box(polygon).size().norm();
+  for (std::size_t k = 0; k < polygon.size(); ++k)
+    if ((polygon[k] - polygon[(k + 1) % polygon.size()]).norm() <= near_mm)
+      document.fail(key, fmt::format("must have each corner once, got [{}, {}] twice", shortest(polygon[k].x()),
+                                     shortest(polygon[k].y())));
   if (geometry::area(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
-  if (!(geometry::area(polygon) > 0.0) || !geometry::is_convex(polygon, 0.0))
+  if (!(geometry::area(polygon) > 0.0) || !geometry::is_convex(polygon, near_mm))
     document.fail(key, "must be the corners of a convex polygon, one after another");
   return polygon;
 }
@@ -157,8 +165,10 @@ void check_room(const Document& document, std::size_t number, const geometry::Pa
   const Vec2 element = geometry::bounding_box(geometry::aperture_outline(zone.elements.element)).size();
   for (const Polygon& region : zone.regions) {
     const Vec2 room = geometry::bounding_box(region).size();
+    // A turned element need not fit into the box.
+    const bool is_narrow = geometry::width(region) < element.minCoeff() * (1.0 - kRounding);
     const bool is_turned = zone.rotation_deg != 0.0;
-    if (is_turned ? room.maxCoeff() < element.minCoeff() : (room.array() < element.array() * (1.0 - 1e-9)).any())
+    if (is_narrow || (!is_turned && (room.array() < element.array() * (1.0 - kRounding)).any()))
       document.fail(entry_of(number),
                     fmt::format("has a region of {} x {} mm, too small for one element of {} x {} mm",
                                 shortest(room.x()), shortest(room.y()), shortest(element.x()), shortest(element.y())));
@@ -176,6 +186,10 @@ void check_whole(const Document& document, const geometry::PartSpec& part) {
 }
 
 }  // namespace
+
+bool has_zones(const Document& document) {
+  return document.count(kZone) > 0;
+}
 
 bool may_set_in_zone(std::string_view key) {
   return std::ranges::any_of(kOfZones,
@@ -210,7 +224,7 @@ ZonedPart read_zones(const Document& document) {
 }
 
 void check_zones(const Document& document) {
-  if (document.has(kZone)) read_zones(document);
+  if (has_zones(document)) read_zones(document);
 }
 
 }  // namespace retrace::studies

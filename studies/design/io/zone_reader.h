@@ -9,10 +9,13 @@
 
 namespace retrace::studies {
 
-/// \pre document.has("zone")
+/// \pre has_zones(document)
 /// \throw InputError for zones that do not cover the part once, regions that are no convex polygons, and changes that
 /// are none or make no array
 ZonedPart read_zones(const schema::Document& document);
+
+/// Whether the design is a part of zones.
+bool has_zones(const schema::Document& document);
 
 /// Whether zones may differ in a key of the design.
 bool may_set_in_zone(std::string_view key);

@@ -65,16 +65,16 @@ TEST(ComposeCommand, WritesThePartOfZones) {
   const TemporaryFolder folder;
   folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
   const Outcome outcome = retrace(folder, compose({"--design", "part.toml", "--layout", "rows", "--x-length-mm", "90",
-                                                   "--y-length-mm", "60", "--quiet"}));
+                                                   "--y-length-mm", "180", "--quiet"}));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json zones = folder.json("out/composition.json").at("zones");
   ASSERT_EQ(zones.size(), 2U);
   const Json inspected = retrace_json(folder, {"inspect", "part.toml"});
   ASSERT_EQ(inspected.at("zones").size(), 2U);
   for (std::size_t z = 0; z < 2; ++z)
-    EXPECT_NEAR(inspected.at("zones").at(z).at("area_mm2").get<double>(), 5400.0 * zones[z].at("share").get<double>(),
+    EXPECT_NEAR(inspected.at("zones").at(z).at("area_mm2").get<double>(), 16200.0 * zones[z].at("share").get<double>(),
                 1e-6);
-  // Two or more rows of each, of which the narrower ones are four elements high.
+  // Two or more rows of each, of which the narrower ones are eight elements high.
   EXPECT_GE(inspected.at("design").at("zone").at(0).at("rectangles_mm").size(), 2U);
 }
 
