@@ -126,6 +126,15 @@ double width(const Polygon& polygon) {
   return least;
 }
 
+bool contains(const Polygon& polygon, const Vec2& place) {
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 along = polygon[(k + 1) % polygon.size()] - polygon[k];
+    const Vec2 to = place - polygon[k];
+    if (along.x() * to.y() - along.y() * to.x() < 0.0) return false;
+  }
+  return true;
+}
+
 bool contains(const Rectangle& r, const Polygon& polygon, double tolerance_mm) {
   return std::all_of(polygon.begin(), polygon.end(), [&](const Vec2& p) {
     return (p.array() >= r.lower.array() - tolerance_mm).all() && (p.array() <= r.upper.array() + tolerance_mm).all();

@@ -43,6 +43,9 @@ bool is_convex(const Polygon& polygon, double tolerance_mm);
 /// The least distance between two parallel lines that hold a convex polygon between them.
 double width(const Polygon& polygon);
 
+/// Whether a place lies in a convex polygon or on its border.
+bool contains(const Polygon& polygon, const Vec2& place);
+
 /// True if every vertex lies in the rectangle widened by `tolerance_mm`.
 bool contains(const Rectangle& rectangle, const Polygon& polygon, double tolerance_mm);
 

@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz c179ecdb36560e1d39db67e2a7e94b996211601700935023b652d025947dc8e1 */
+/* made by tools/live_page; engine.wasm.gz 5d699ccedd3ce4464257dbdcd74bcc5932065f1c83624db3531a8a841beae255 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

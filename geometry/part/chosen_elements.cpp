@@ -11,15 +11,6 @@
 namespace retrace::geometry {
 namespace {
 
-bool is_in_outline(const Polygon& outline, const Vec2& place) {
-  for (std::size_t k = 0; k < outline.size(); ++k) {
-    const Vec2 along = outline[(k + 1) % outline.size()] - outline[k];
-    const Vec2 to = place - outline[k];
-    if (along.x() * to.y() - along.y() * to.x() < 0.0) return false;
-  }
-  return true;
-}
-
 /// Of what is seen of a cell along z; where nothing is, of its box.
 Vec2 middle_in_plan(const SurfacePatch& patch, const PatchCell& cell) {
   Vec2 sum = Vec2::Zero();
@@ -96,7 +87,7 @@ ChosenElements::Place ChosenElements::element_at(const Vec2& place_mm) const {
       for (std::uint32_t k = 0; k < sheet_.lattice.cells.size(); ++k) {
         const Cell& cell = sheet_.lattice.cells[k];
         if (!cell.is_element) continue;
-        const Place here{i, j, k, is_in_outline(cell.outline, place_mm - origin), origin + place_of(spec_, cell)};
+        const Place here{i, j, k, contains(cell.outline, place_mm - origin), origin + place_of(spec_, cell)};
         if (here.is_within) return here;
         const double mm2 = (here.middle_mm - place_mm).squaredNorm();
         if (!(mm2 < least_mm2)) continue;

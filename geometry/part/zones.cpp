@@ -14,7 +14,7 @@
 namespace retrace::geometry {
 namespace {
 
-/// Borders that are nearer than this share of the part's size, or of an element's, are one.
+/// Corners that are nearer to each other than this share of the smallest element are one.
 constexpr double kSamePlace = 1e-9;
 
 /// A turn about a place of a sheet and a move from there to a place of the part.
@@ -112,7 +112,8 @@ ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double toleranc
   };
   if (zone.rotation_deg == 0.0 && is_box(region, tolerance_mm)) {
     ArrayTiles array = lay_out(box.size());
-    for (Tile& tile : array.tiles) turn(tile, Turn(0.0, Vec2::Zero(), box.lower));
+    const Turn to_box(0.0, Vec2::Zero(), box.lower);
+    for (Tile& tile : array.tiles) turn(tile, to_box);
     return array;
   }
   const Turn to_middle(zone.rotation_deg, Vec2::Zero(), box.middle());
@@ -120,7 +121,8 @@ ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double toleranc
   for (const Vec2& p : region) reach = reach.cwiseMax(to_middle.back(p).cwiseAbs());
   const Vec2 lengths_mm = 2.0 * (reach + 2.0 * pitch_of(spec));
   ArrayTiles array = lay_out(lengths_mm);
-  for (Tile& tile : array.tiles) turn(tile, Turn(zone.rotation_deg, 0.5 * lengths_mm, box.middle()));
+  const Turn about_middle(zone.rotation_deg, 0.5 * lengths_mm, box.middle());
+  for (Tile& tile : array.tiles) turn(tile, about_middle);
   RegionCutter(region, spec.array.partial_elements, tolerance_mm).cut(array);
   return array;
 }

@@ -33,7 +33,7 @@ double area(const PartZone& zone);
 /// What keeps zones from covering the plate.
 struct ZoneFault {
   std::size_t zone = 0;
-  std::string text;  ///< "lies beyond the part", "overlaps zone 1"
+  std::string text;  ///< "reaches beyond the part", "overlaps zone 1"
 };
 /// The first fault of zones that do not cover the plate, or cover a part of it twice; none if they are well.
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec);

@@ -19,15 +19,6 @@ constexpr int kAzimuths = 4;
 /// What comes back: errors of angle may be larger than the acceptance cone.
 constexpr double kBackDeg = 5.0;
 
-bool is_in(const Vec2& p, const Polygon& region) {
-  for (std::size_t k = 0; k < region.size(); ++k) {
-    const Vec2 along = region[(k + 1) % region.size()] - region[k];
-    const Vec2 to = p - region[k];
-    if (along.x() * to.y() - along.y() * to.x() < 0.0) return false;
-  }
-  return true;
-}
-
 class Wanderer {
  public:
   Wanderer(const Design& design, const OpticalModel& model)
@@ -39,7 +30,7 @@ class Wanderer {
     optics_.facet_scatter = surface_models::Smooth{};
   }
 
-  /// How light of one direction that comes back goes; by its zone the sum of ways, their number and what changes zones.
+  /// Of light of one direction that meets the back in a zone first and comes back.
   struct Way {
     double power = 0.0;
     double power_times_mm = 0.0;
@@ -64,7 +55,8 @@ class Wanderer {
 
   std::optional<std::size_t> zone_at(const Vec2& p) const {
     for (std::size_t z = 0; z < zones_.size(); ++z)
-      if (std::ranges::any_of(zones_[z].regions, [&](const Polygon& region) { return is_in(p, region); })) return z;
+      if (std::ranges::any_of(zones_[z].regions, [&](const Polygon& region) { return geometry::contains(region, p); }))
+        return z;
     return std::nullopt;
   }
 
