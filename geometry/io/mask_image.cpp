@@ -24,10 +24,21 @@ long grey_of(const std::uint8_t* pixel, std::size_t channels, int alpha_channel)
   return std::lround(std::min(grey, 255.0));
 }
 
+void check_size(const std::string& name, const PictureFiles::Size& size, const std::optional<CellCounts>& cells) {
+  constexpr std::size_t most_pixels = 40'000'000;
+  if (!cells && size.columns > most_pixels / std::max<std::size_t>(1, size.rows))
+    throw InputError({name, 0, ""},
+                     fmt::format("must have at most {} pixels, got {} x {}", most_pixels, size.columns, size.rows));
+  if (cells &&
+      (size.columns != static_cast<std::size_t>(cells->columns) || size.rows != static_cast<std::size_t>(cells->rows)))
+    throw InputError({name, 0, ""}, fmt::format("must have {} x {} pixels, one for each cell of the array, got {} x {}",
+                                                cells->columns, cells->rows, size.columns, size.rows));
+}
+
 }  // namespace
 
-std::vector<std::string> mask_pattern(const std::filesystem::path& file, double threshold, const CellCounts& cells,
-                                      const InputLocation& where) {
+std::vector<std::string> mask_pattern(const std::filesystem::path& file, double threshold,
+                                      const std::optional<CellCounts>& cells, const InputLocation& where) {
   const std::string name = printable(file.string(), std::string::npos);
   const auto unreadable = [&](const std::string& why) -> InputError {
     return {where, fmt::format("{}: cannot be read as a picture: {}", name, printable(why, 200))};
@@ -35,11 +46,7 @@ std::vector<std::string> mask_pattern(const std::filesystem::path& file, double 
   BytePicture picture;
   try {
     require_short_file(file, kMostDataBytes);
-    const PictureFiles::Size size = picture_files().size(file);
-    if (size.columns != static_cast<std::size_t>(cells.columns) || size.rows != static_cast<std::size_t>(cells.rows))
-      throw InputError({name, 0, ""},
-                       fmt::format("must have {} x {} pixels, one for each cell of the array, got {} x {}",
-                                   cells.columns, cells.rows, size.columns, size.rows));
+    check_size(name, picture_files().size(file), cells);
     picture = picture_files().read(file);
   } catch (const InputError& error) {
     throw InputError(where, error.what());
@@ -58,7 +65,7 @@ std::vector<std::string> mask_pattern(const std::filesystem::path& file, double 
       pattern[row][column] = '#';
       any = true;
     }
-  if (!any) throw InputError(where, fmt::format("{}: no pixel is dark enough to be cut", name));
+  if (!any) throw InputError(where, fmt::format("{}: no pixel is dark enough", name));
   return pattern;
 }
 

@@ -19,10 +19,12 @@ struct Placement {
   double height_mm = 0.0;  ///< along z; other than 0 on a base alone
 };
 
-/// How many elements a zone of a part has.
+/// What a zone of a part has.
 struct ZoneElements {
   std::int64_t full = 0;
   std::int64_t partial = 0;  ///< cut by a border of the zone
+  double area_mm2 = 0.0;     ///< in plan
+  std::size_t cells = 0;     ///< of the patch, which has those of zone after zone
 };
 
 /// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below it

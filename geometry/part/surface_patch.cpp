@@ -21,10 +21,24 @@ struct SharedEdge {
   std::optional<std::uint32_t> right;
 };
 
+/// A grid with a corner or two in a cell: of parts with edges, whose strips are much narrower than elements, too.
+double grid_of(const std::vector<Tile>& tiles) {
+  double area_mm2 = 0.0;
+  double corners = 1.0;
+  for (const Tile& tile : tiles) {
+    area_mm2 += area(tile.outline);
+    corners += static_cast<double>(tile.outline.size());
+  }
+  return std::sqrt(area_mm2 / corners);
+}
+
 class PatchBuilder {
  public:
   PatchBuilder(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm)
-      : tiles_(tiles), block_(block), tolerance_mm_(1e-9 * size_mm), index_(tolerance_mm_, 0.25 * size_mm) {}
+      : tiles_(tiles),
+        block_(block),
+        tolerance_mm_(1e-9 * size_mm),
+        index_(tolerance_mm_, std::max(grid_of(tiles), 4.0 * tolerance_mm_)) {}
 
   SurfacePatch build() {
     weld_outlines();
@@ -88,10 +102,17 @@ class PatchBuilder {
   void find_edges() {
     rings_.clear();
     edges_.clear();
+    std::size_t corners = 0;
+    for (const Ring& outline : outlines_) {
+      rings_.push_back(subdivided(outline));
+      corners += rings_.back().size();
+    }
+    // All but those on the border are shared by two.
     std::unordered_map<std::uint64_t, std::uint32_t> edge_of;
+    edge_of.reserve(corners / 2);
+    edges_.reserve(corners / 2);
     for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
-      rings_.push_back(subdivided(outlines_[t]));
-      const Ring& ring = rings_.back();
+      const Ring& ring = rings_[t];
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const std::uint32_t a = ring[i];
         const std::uint32_t b = ring[(i + 1) % ring.size()];
@@ -147,6 +168,7 @@ class PatchBuilder {
   }
 
   void sort_walls() {
+    walls_of_.resize(tiles_.size());
     for (const SharedEdge& e : edges_) {
       if (!e.left || !e.right) continue;
       const double da = height(*e.left, e.from) - height(*e.right, e.from);
@@ -312,7 +334,7 @@ class PatchBuilder {
   std::vector<Ring> rings_;
   std::vector<SharedEdge> edges_;
   std::vector<std::vector<std::pair<double, std::uint32_t>>> columns_;  ///< heights over each flat vertex, rising
-  std::unordered_map<std::uint32_t, std::vector<Wall>> walls_of_;
+  std::vector<std::vector<Wall>> walls_of_;
   SurfacePatch patch_;
 };
 

@@ -15,12 +15,17 @@
 #include "core/random.h"
 #include "geometry/elements/edges.h"
 #include "geometry/elements/plane_polygon.h"
+#include "geometry/part/zones.h"
 
 namespace retrace::geometry {
 namespace {
 
 // Where a sheet repeats along one axis alone, patches are kept short along the other.
 constexpr double kElementsPerColumnPatch = 256.0;
+// Patches that are shared have about so many facets, rounded edges among them, but so many periods: neighbours all
+// round are laid out with each.
+constexpr double kFacetsPerPatch = 16384.0;
+constexpr double kFewestPeriods = 4.0;
 // An infinite array is a patch of this many periods round the central one: rays seldom have to be brought back.
 constexpr int kPeriodsBeyond = 2;
 constexpr std::uint32_t kNoPatch = UINT32_MAX;
@@ -94,16 +99,37 @@ class Tiler {
   }
 
   ArrayTiles all_tiles() {
-    const IndexRange all = sheet_.indices();
-    here_.emplace(sheet_, all.lower[0], all.lower[1], true);
     Piece piece;
-    collect(piece, all);
-    for (Tile& tile : tiles_) {
-      tile.outline = moved(std::move(tile.outline), here_->origin_mm());
-      tile.plane.height_mm -= tile.plane.slope.dot(here_->origin_mm());
-      if (tile.middle_mm) *tile.middle_mm += here_->origin_mm();
-    }
-    return {std::move(tiles_), piece.full, piece.partial};
+    collect(piece, begin_whole());
+    return {tiles_of_part(), piece.full, piece.partial};
+  }
+
+  std::vector<Tile> uncut_tiles(const std::vector<std::uint32_t>& cells) {
+    auto next = cells.begin();
+    visit_cells(begin_whole(), [&](const Index& index, std::uint32_t number, const Vec2& shift_mm, bool) {
+      while (next != cells.end() && *next < number) ++next;
+      if (next == cells.end() || *next != number) return;
+      const std::size_t first = tiles_.size();
+      Cell cell = cell_at(index, here_->place(index.number, shift_mm));
+      for (CellFacet& facet : cell.facets)
+        add_tile(std::move(facet.outline), facet.plane, role_of(cell, facet), facet.middle_mm);
+      for (std::size_t t = first; t < tiles_.size(); ++t) tiles_[t].cell = number;
+    });
+    return tiles_of_part();
+  }
+
+  ArrayPlan plan() {
+    ArrayPlan plan;
+    visit_cells(begin_whole(), [&](const Index& index, std::uint32_t number, const Vec2& shift_mm, bool) {
+      const CellPlace place = here_->place(index.number, shift_mm);
+      if (here_->within(place, place.outline, here_->block()).empty()) return;
+      plan.cells.push_back(
+          {number, moved(place.outline, here_->origin_mm()), sheet_.lattice.cells[index.number].is_element});
+    });
+    plan.block_mm = sheet_.block_mm;
+    for (const Rectangle& margin : margins(sheet_.reach_mm, sheet_.block_mm))
+      if (!margin.empty()) plan.land_mm.push_back(margin);
+    return plan;
   }
 
   void add_periods() {
@@ -126,15 +152,25 @@ class Tiler {
     if (sheet_.reach_mm.size().cwiseQuotient(sheet_.lattice.period_mm).prod() <= periods)
       return {all.upper[0] - all.lower[0], all.upper[1] - all.lower[1]};
     const bool repeats_once = sheet_.repeats_along(0) != sheet_.repeats_along(1);
-    const double most = repeats_once ? std::min(periods, kElementsPerColumnPatch / each) : periods;
+    double most = repeats_once ? std::min(periods, kElementsPerColumnPatch / each) : periods;
+    if (are_shared() && sheet_.repeats_along(0) && sheet_.repeats_along(1))
+      most = std::min(most, std::max(kFewestPeriods, kFacetsPerPatch / facets_of_period()));
     const auto side = static_cast<std::int64_t>(std::max(1.0, std::floor(std::sqrt(most))));
     return {side, side};
   }
 
+  /// Whether pieces may be alike.
+  bool are_shared() const { return planes_ == nullptr && !(spec_.random_tilts.sigma_arcmin > 0.0); }
+
+  double facets_of_period() const {
+    std::size_t facets = 0;
+    for (const Cell& cell : sheet_.lattice.cells) facets += cell.facets.size();
+    return static_cast<double>(std::max<std::size_t>(1, facets));
+  }
+
   void add_piece(const IndexRange& range, const Vec2& origin_mm) {
     here_.emplace(sheet_, range.lower[0], range.lower[1], is_one_);
-    // No piece is like another.
-    if (planes_ != nullptr || spec_.random_tilts.sigma_arcmin > 0.0) known_.clear();
+    if (!are_shared()) known_.clear();
     const auto [it, is_new] = known_.try_emplace(key_of(range));
     Piece& piece = it->second;
     if (is_new) fill(piece, range);
@@ -180,32 +216,56 @@ class Tiler {
     part_.patches.push_back(build_patch(tiles_, here_->block_in_plan(), part_.size_mm));
   }
 
-  /// \param piece counts its elements
-  void collect(Piece& piece, const IndexRange& range) {
-    tiles_.clear();
-    std::uint32_t number = 0;
-    for (std::int64_t j = range.lower[1] - 1; j <= range.upper[1]; ++j)
-      for (std::int64_t i = range.lower[0] - 1; i <= range.upper[0]; ++i) {
-        const bool owned = i >= range.lower[0] && i < range.upper[0] && j >= range.lower[1] && j < range.upper[1];
-        const Vec2 index(static_cast<double>(i - range.lower[0]), static_cast<double>(j - range.lower[1]));
-        for (std::uint32_t c = 0; c < sheet_.lattice.cells.size(); ++c) {
-          const std::size_t first = tiles_.size();
-          add_cell(owned ? &piece : nullptr, {i, j, c}, index.cwiseProduct(sheet_.lattice.period_mm));
-          for (std::size_t t = first; t < tiles_.size(); ++t) {
-            tiles_[t].cell = number;
-            tiles_[t].owned = owned;
-          }
-          ++number;
-        }
-      }
-  }
-
   /// A cell of the lattice: its period, and which of the period's it is.
   struct Index {
     std::int64_t i = 0;
     std::int64_t j = 0;
     std::uint32_t number = 0;
   };
+
+  /// The cells of a range and of one more period all round, each with its number, how far the lattice's is moved to it
+  /// and whether it is of the range.
+  template <class Visit>
+  void visit_cells(const IndexRange& range, const Visit& visit) const {
+    std::uint32_t number = 0;
+    for (std::int64_t j = range.lower[1] - 1; j <= range.upper[1]; ++j)
+      for (std::int64_t i = range.lower[0] - 1; i <= range.upper[0]; ++i) {
+        const bool owned = i >= range.lower[0] && i < range.upper[0] && j >= range.lower[1] && j < range.upper[1];
+        const Vec2 index(static_cast<double>(i - range.lower[0]), static_cast<double>(j - range.lower[1]));
+        for (std::uint32_t c = 0; c < sheet_.lattice.cells.size(); ++c)
+          visit(Index{i, j, c}, number++, index.cwiseProduct(sheet_.lattice.period_mm), owned);
+      }
+  }
+
+  /// \param piece counts its elements
+  void collect(Piece& piece, const IndexRange& range) {
+    tiles_.clear();
+    visit_cells(range, [&](const Index& index, std::uint32_t number, const Vec2& shift_mm, bool owned) {
+      const std::size_t first = tiles_.size();
+      add_cell(owned ? &piece : nullptr, index, shift_mm);
+      for (std::size_t t = first; t < tiles_.size(); ++t) {
+        tiles_[t].cell = number;
+        tiles_[t].owned = owned;
+      }
+    });
+  }
+
+  /// Begins the one piece that is the whole array.
+  IndexRange begin_whole() {
+    const IndexRange all = sheet_.indices();
+    here_.emplace(sheet_, all.lower[0], all.lower[1], true);
+    return all;
+  }
+
+  /// Its tiles, in the part frame.
+  std::vector<Tile> tiles_of_part() {
+    for (Tile& tile : tiles_) {
+      tile.outline = moved(std::move(tile.outline), here_->origin_mm());
+      tile.plane.height_mm -= tile.plane.slope.dot(here_->origin_mm());
+      if (tile.middle_mm) *tile.middle_mm += here_->origin_mm();
+    }
+    return std::move(tiles_);
+  }
 
   /// Appends what the borders leave of a cell. \param piece counts it; null: it belongs to a neighbour
   void add_cell(Piece* piece, const Index& index, const Vec2& shift_mm) {
@@ -341,6 +401,20 @@ ArrayTiles array_tiles(const PartSpec& spec) {
   Part part;
   part.spec = spec;
   return Tiler(part, sheet, nullptr).all_tiles();
+}
+
+std::vector<Tile> uncut_tiles(const PartSpec& spec, const std::vector<std::uint32_t>& cells) {
+  const ArraySheet sheet(spec);
+  Part part;
+  part.spec = spec;
+  return Tiler(part, sheet, nullptr).uncut_tiles(cells);
+}
+
+ArrayPlan plan_of_array(const PartSpec& spec) {
+  const ArraySheet sheet(spec);
+  Part part;
+  part.spec = spec;
+  return Tiler(part, sheet, nullptr).plan();
 }
 
 void add_periods(Part& part, const ArraySheet& sheet) {

@@ -28,6 +28,10 @@ struct ArrayTiles {
 /// \pre a finite array on the plane z = 0, not `single` \throw InputError where it is smaller than one element
 ArrayTiles array_tiles(const PartSpec& spec);
 
+/// The tiles of some cells of that array, each as if it stood alone: what reaches over the border is not cut.
+/// \param cells their numbers (ArrayCell), rising \pre likewise
+std::vector<Tile> uncut_tiles(const PartSpec& spec, const std::vector<std::uint32_t>& cells);
+
 /// Adds an infinite array: some periods of it.
 void add_periods(Part& part, const ArraySheet& sheet);
 

@@ -50,7 +50,18 @@ std::vector<std::uint32_t> VertexIndex::on_segment(std::uint32_t a, std::uint32_
   const Vec2 upper = start.cwiseMax(points_[b]).array() + tolerance_mm_;
   std::vector<std::pair<double, std::uint32_t>> found;
   for (std::int64_t i = cell_of(lower.x(), cell_mm_); i <= cell_of(upper.x(), cell_mm_); ++i) {
-    for (std::int64_t j = cell_of(lower.y(), cell_mm_); j <= cell_of(upper.y(), cell_mm_); ++j) {
+    // Of the column, the cells that the segment goes through.
+    double from_mm = lower.y();
+    double to_mm = upper.y();
+    if (std::abs(along.x()) > tolerance_mm_) {
+      const double slope = along.y() / along.x();
+      const auto y_at = [&](double x) { return start.y() + slope * (x - start.x()); };
+      const double left = y_at(static_cast<double>(i) * cell_mm_ - tolerance_mm_);
+      const double right = y_at(static_cast<double>(i + 1) * cell_mm_ + tolerance_mm_);
+      from_mm = std::max(from_mm, std::min(left, right) - tolerance_mm_);
+      to_mm = std::min(to_mm, std::max(left, right) + tolerance_mm_);
+    }
+    for (std::int64_t j = cell_of(from_mm, cell_mm_); j <= cell_of(to_mm, cell_mm_); ++j) {
       const auto [begin, end] = grid_.equal_range(cell_key(i, j));
       for (auto it = begin; it != end; ++it) {
         if (it->second == a || it->second == b) continue;

@@ -13,7 +13,7 @@ namespace retrace::geometry {
 /// Welds points of the plane: points closer than the tolerance get the same number.
 class VertexIndex {
  public:
-  /// \param cell_mm size of the search grid, of the order of the shortest edge
+  /// \param cell_mm size of the search grid, of the order of the distance between neighbours
   VertexIndex(double tolerance_mm, double cell_mm) : tolerance_mm_(tolerance_mm), cell_mm_(cell_mm) {}
 
   std::uint32_t add(const Vec2& point);

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numbers>
 
 #include "core/error.h"
-#include "geometry/elements/whole_elements.h"
+#include "geometry/elements/array_sheet.h"
 #include "geometry/part/tiling.h"
 
 namespace retrace::geometry {
@@ -101,6 +102,22 @@ Vec2 pitch_of(const PartSpec& spec) {
   return bounding_box(aperture_outline(spec.element)).size() + Vec2(spec.array.x_gap_mm, spec.array.y_gap_mm);
 }
 
+/// What stands in cells of the plate's array, each turned about its centroid.
+ArrayTiles tiles_of_cells(const PartZone& zone, const PartSpec& spec, const ArrayPlan& plan, double tolerance_mm) {
+  ArrayTiles array{uncut_tiles(spec, zone.cells), 0, 0};
+  if (zone.rotation_deg != 0.0) {
+    auto cell = plan.cells.begin();
+    for (Tile& tile : array.tiles) {
+      while (cell->number != tile.cell) ++cell;
+      const Vec2 middle = centroid(cell->outline);
+      if (cell->is_element) turn(tile, Turn(zone.rotation_deg, middle, middle));
+    }
+  }
+  const Polygon block = to_polygon(plan.block_mm);
+  RegionCutter(block, spec.array.partial_elements, tolerance_mm).cut(array);
+  return array;
+}
+
 /// What stands in a region, in the part frame.
 ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double tolerance_mm) {
   const Rectangle box = bounding_box(region);
@@ -140,26 +157,44 @@ class ZoneTiler {
  public:
   ZoneTiler(const Vec2& size_mm, double tolerance_mm) : size_mm_(size_mm), tolerance_mm_(tolerance_mm) {}
 
-  ZoneElements add(const PartZone& zone) {
+  ZoneElements add_regions(const PartZone& zone) {
     ZoneElements elements;
     for (const Polygon& region : zone.regions) {
-      ArrayTiles array = tiles_of(zone, region, tolerance_mm_);
-      elements.full += array.full;
-      elements.partial += array.partial;
-      append(std::move(array.tiles));
+      append(tiles_of(zone, region, tolerance_mm_), elements);
+      elements.area_mm2 += area(region);
     }
+    return elements;
+  }
+
+  /// \param land_mm what is flat beside the elements
+  ZoneElements add_cells(const PartZone& zone, const PartSpec& array, const ArrayPlan& plan,
+                         const std::vector<Rectangle>& land_mm) {
+    ZoneElements elements;
+    ArrayTiles tiles = tiles_of_cells(zone, array, plan, tolerance_mm_);
+    std::uint32_t last = tiles.tiles.empty() ? 0 : tiles.tiles.back().cell;
+    for (const Rectangle& land : land_mm)
+      tiles.tiles.push_back({to_polygon(land), {}, FacetRole::flat_back, ++last, true, {}});
+    for (const Tile& tile : tiles.tiles) elements.area_mm2 += area(tile.outline);
+    append(std::move(tiles), elements);
     return elements;
   }
   const std::vector<Tile>& tiles() const { return tiles_; }
 
  private:
-  void append(std::vector<Tile> tiles) {
-    const std::uint32_t first = cells_;
-    for (Tile& tile : tiles) {
+  /// \param elements what they are is added to it
+  void append(ArrayTiles array, ZoneElements& elements) {
+    elements.full += array.full;
+    elements.partial += array.partial;
+    std::optional<std::uint32_t> last;
+    for (Tile& tile : array.tiles) {
       settle_on_border(tile.outline, size_mm_, tolerance_mm_);
-      tile.cell += first;
+      if (last != tile.cell) {
+        ++cells_;
+        ++elements.cells;
+      }
+      last = tile.cell;
+      tile.cell = cells_;
       tile.owned = true;
-      cells_ = std::max(cells_, tile.cell + 1);
       tiles_.push_back(std::move(tile));
     }
   }
@@ -178,15 +213,83 @@ double size_of(const ZonedSpec& spec) {
   return size_mm;
 }
 
+/// Whether two polygons are one, whichever corner is the first.
+bool is_same(const Polygon& a, const Polygon& b, double near_mm) {
+  const auto has = [&](const Vec2& p) {
+    return std::ranges::any_of(b, [&](const Vec2& q) { return (p - q).norm() <= near_mm; });
+  };
+  return a.size() == b.size() && std::ranges::all_of(a, has);
+}
+
+/// What keeps a zone's elements out of cells of the first zone's array.
+std::optional<std::string> misfit(const ArraySheet& own, const ArraySheet& first, double rotation_deg, double near_mm) {
+  const auto is_near = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= near_mm; };
+  const bool is_alike = is_near(own.lattice.period_mm, first.lattice.period_mm) &&
+                        is_near(own.anchor_mm, first.anchor_mm) &&
+                        std::equal(own.lattice.cells.begin(), own.lattice.cells.end(), first.lattice.cells.begin(),
+                                   first.lattice.cells.end(), [&](const Cell& a, const Cell& b) {
+                                     return a.is_element == b.is_element && is_same(a.outline, b.outline, near_mm);
+                                   });
+  if (!is_alike) return "must have elements with the outlines and places of those of zone 1";
+  const bool may_turn = std::ranges::all_of(own.lattice.cells, [&](const Cell& cell) {
+    const Vec2 middle = centroid(cell.outline);
+    const Turn about_middle(rotation_deg, middle, middle);
+    Polygon turned = cell.outline;
+    for (Vec2& p : turned) p = about_middle.place(p);
+    return !cell.is_element || is_same(turned, cell.outline, near_mm);
+  });
+  if (!may_turn) return "turns its elements by an angle that does not lead their outlines to themselves";
+  return std::nullopt;
+}
+
+std::string words_of(const ArrayCell& cell) {
+  const Vec2 at = centroid(cell.outline);
+  return fmt::format("the element at x = {:.6g}, y = {:.6g} mm", at.x(), at.y());
+}
+
+std::optional<ZoneFault> fault_of_cells(const ZonedSpec& spec) {
+  const double near_mm = kSamePlace * size_of(spec);
+  const PartSpec first_array = array_of_cells(spec, spec.zones.front());
+  const ArraySheet first_sheet(first_array);
+  const ArrayPlan first = plan_of_array(first_array);
+  std::map<std::uint32_t, std::size_t> holder;
+  for (std::size_t z = 0; z < spec.zones.size(); ++z) {
+    const PartZone& zone = spec.zones[z];
+    const PartSpec array = array_of_cells(spec, zone);
+    if (const auto text = misfit(ArraySheet(array), first_sheet, zone.rotation_deg, near_mm))
+      return ZoneFault{z, *text};
+    for (const std::uint32_t number : zone.cells)
+      if (const auto [other, is_new] = holder.try_emplace(number, z); !is_new) {
+        const auto cell = std::find_if(first.cells.begin(), first.cells.end(),
+                                       [&](const ArrayCell& c) { return c.number == number; });
+        return ZoneFault{z, fmt::format("holds {}, which zone {} holds as well", words_of(*cell), other->second + 1)};
+      }
+  }
+  const auto is_free = [&](const ArrayCell& cell) { return !holder.contains(cell.number); };
+  const auto free = std::ranges::find_if(first.cells, is_free);
+  if (free == first.cells.end()) return std::nullopt;
+  return ZoneFault{spec.zones.size() - 1, fmt::format("and those before it leave {} of {} cells free, {} among them",
+                                                      std::count_if(first.cells.begin(), first.cells.end(), is_free),
+                                                      first.cells.size(), words_of(*free))};
+}
+
+/// In the plane, what an element has with the land beside it.
+double room_of_element(const PartSpec& elements) {
+  const bool is_prism = std::holds_alternative<RtpElement>(elements.element);
+  return is_prism ? pitch_of(elements).prod() : area(aperture_outline(elements.element));
+}
+
 }  // namespace
 
-double area(const PartZone& zone) {
-  double sum_mm2 = 0.0;
-  for (const Polygon& region : zone.regions) sum_mm2 += area(region);
-  return sum_mm2;
+PartSpec array_of_cells(const ZonedSpec& spec, const PartZone& zone) {
+  PartSpec array = zone.elements;
+  array.array.x_length_mm = spec.size_mm.x();
+  array.array.y_length_mm = spec.size_mm.y();
+  return array;
 }
 
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
+  if (spec.is_by_cell) return fault_of_cells(spec);
   // What is farther apart than corners that are welded is a gap.
   const double near_mm = 0.5 * kSamePlace * size_of(spec);
   const double near_mm2 = near_mm * spec.size_mm.norm();
@@ -221,12 +324,10 @@ std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
 }
 
 double element_estimate(const ZonedSpec& spec) {
+  if (spec.is_by_cell) return spec.area_mm2() / room_of_element(spec.zones.front().elements);
   double sum = 0.0;
-  for (const PartZone& zone : spec.zones) {
-    const auto* const prism = std::get_if<RtpElement>(&zone.elements.element);
-    sum += area(zone) /
-           (prism != nullptr ? pitch_of(zone.elements).prod() : area(aperture_outline(zone.elements.element)));
-  }
+  for (const PartZone& zone : spec.zones)
+    for (const Polygon& region : zone.regions) sum += area(region) / room_of_element(zone.elements);
   return sum;
 }
 
@@ -238,8 +339,13 @@ void add_zones(Part& part, const ZonedSpec& spec) {
   const Rectangle plate{Vec2::Zero(), spec.size_mm};
   part.outline = to_polygon(plate);
   ZoneTiler tiler(spec.size_mm, kSamePlace * part.size_mm);
+  ArrayPlan plan;
+  if (spec.is_by_cell) plan = plan_of_array(array_of_cells(spec, spec.zones.front()));
   for (const PartZone& zone : spec.zones) {
-    part.zones.push_back(tiler.add(zone));
+    const bool is_first = &zone == &spec.zones.front();
+    part.zones.push_back(spec.is_by_cell ? tiler.add_cells(zone, array_of_cells(spec, zone), plan,
+                                                           is_first ? plan.land_mm : std::vector<Rectangle>())
+                                         : tiler.add_regions(zone));
     part.elements_full += part.zones.back().full;
     part.elements_partial += part.zones.back().partial;
   }

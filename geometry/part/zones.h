@@ -2,6 +2,7 @@
 
 // Parts of zones: regions of one plate, each with elements of its own.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,12 +11,30 @@
 
 namespace retrace::geometry {
 
-/// Regions that are filled alike. What fills a region that is not turned is the array that a design with the lengths of
-/// the region's box has, in that box; turned, it is that of a box that holds the region, about the region's middle.
+/// A cell of an array, in the part frame: an element or the land beside one. Those of arrays that differ in what their
+/// cells are like, not in where they are, have the same numbers.
+struct ArrayCell {
+  std::uint32_t number = 0;
+  Polygon outline;  ///< whole, even where it reaches over the border
+  bool is_element = true;
+};
+struct ArrayPlan {
+  std::vector<ArrayCell> cells;    ///< by number; all that reach into the block
+  Rectangle block_mm;              ///< that they fill
+  std::vector<Rectangle> land_mm;  ///< beside the block
+};
+/// \pre a finite array on the plane z = 0, not `single` \throw InputError where it is smaller than one element
+ArrayPlan plan_of_array(const PartSpec& spec);
+
+/// Regions, or elements of one array all over the plate, that are filled alike. What fills a region that is not turned
+/// is the array that a design with the lengths of the region's box has, in that box; turned, it is that of a box that
+/// holds the region, about the region's middle.
 struct PartZone {
   std::vector<Polygon> regions;  ///< in the part frame
-  double rotation_deg = 0.0;     ///< of the elements in the plane, counter-clockwise seen from +z
-  PartSpec elements;             ///< lengths, margins and the plate do not count
+  /// Of the elements in the plane, counter-clockwise seen from +z; of single cells each about its centroid.
+  double rotation_deg = 0.0;
+  PartSpec elements;                      ///< lengths, margins and the plate do not count
+  std::vector<std::uint32_t> cells = {};  ///< in place of regions: numbers of cells of the plate's array, rising
 };
 
 /// A rectangular plate with zones that cover it.
@@ -23,19 +42,21 @@ struct ZonedSpec {
   Vec2 size_mm = Vec2::Zero();
   double thickness_mm = 0.0;
   std::vector<PartZone> zones;
+  bool is_by_cell = false;  ///< zones have cells in place of regions; the land beside them is the first one's
 
   double area_mm2() const { return size_mm.prod(); }
 };
 
-/// The area of a zone's regions.
-double area(const PartZone& zone);
+/// The array that a zone by cell has its cells of.
+PartSpec array_of_cells(const ZonedSpec& spec, const PartZone& zone);
 
 /// What keeps zones from covering the plate.
 struct ZoneFault {
   std::size_t zone = 0;
   std::string text;  ///< "reaches beyond the part", "overlaps zone 1"
 };
-/// The first fault of zones that do not cover the plate, or cover a part of it twice; none if they are well.
+/// The first fault of zones that do not cover the plate, or cover a part of it twice; of zones by cell also of arrays
+/// whose cells lie elsewhere and of turns that do not lead them to themselves; none if all is well.
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec);
 
 /// About how many elements its zones have.

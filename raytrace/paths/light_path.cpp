@@ -94,7 +94,9 @@ class Follower {
     source_ = hit.facet;
     const Vec3 out = inside_ ? facet.normal : Vec3(-facet.normal);
     const auto f = fresnel_at_back(setup_.optics, facet.role, inside_, out.dot(direction_));
-    return split(out, facet.role, f, setup_.optics.ratio_at_back(inside_));
+    const bool goes_on = split(out, facet.role, f, setup_.optics.ratio_at_back(inside_));
+    path_.steps.back().facet = hit.facet;
+    return goes_on;
   }
 
   bool meet(const Vec3& out, geometry::FacetRole role, double ratio) {

@@ -3,6 +3,7 @@
 // Single light paths as polylines with the events on them, for pictures that explain a part.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct PathStep {
   Vec3 at_mm = Vec3::Zero();                                 ///< part frame
   double incidence_deg = 0.0;                                ///< on the face
   double power = 0.0;                                        ///< that goes on, over the incident power
+  std::optional<FacetRef> facet = {};                        ///< of the back
 };
 
 /// One way of light through a part, from before it enters to after it leaves.

@@ -3,6 +3,7 @@
 // What is designed: shape, substance, surface, light and detector, checked, with its defaults filled in. Every study
 // begins with a Design.
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -145,11 +146,25 @@ struct Plate {
   double thickness_mm = 0.0;
 };
 
-/// A plate whose regions have elements of their own.
+/// Which elements of an array are a zone's: one of these.
+struct ElementsOfZone {
+  std::vector<double> rows;       ///< numbers from 1, that of least y
+  std::vector<double> columns;    ///< likewise, of least x
+  std::optional<double> every;    ///< rows or columns begin anew after so many
+  std::optional<ArrayMask> mask;  ///< dark under an element's centroid
+  bool rest = false;              ///< that no other zone has
+};
+
+/// A plate with zones that have elements of their own: regions, or elements of one array.
 struct ZonedPart {
   geometry::PartSpec base;                        ///< what zones have where they change nothing
   std::vector<std::vector<std::string>> changes;  ///< of each zone, each KEY=VALUE
-  geometry::ZonedSpec spec;
+  std::vector<ElementsOfZone> elements;           ///< of each zone; none where zones are regions
+  geometry::ZonedSpec spec;                       ///< cells of masks are found by part_of_design()
+
+  bool has_masks() const {
+    return std::ranges::any_of(elements, [](const ElementsOfZone& of_zone) { return of_zone.mask.has_value(); });
+  }
 };
 
 /// What a design is the design of.

@@ -13,6 +13,7 @@
 #include "geometry/part/plate.h"
 #include "geometry/part/zones.h"
 #include "studies/design/design_part.h"
+#include "studies/design/zone_elements.h"
 
 namespace retrace::studies {
 namespace {
@@ -84,7 +85,7 @@ geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::str
 geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings) {
   if (const Plate* const plate = std::get_if<Plate>(&design.shape))
     return geometry::build_plate({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
-  if (const ZonedPart* const zoned = design.zoned()) return geometry::build_part(zoned->spec);
+  if (design.zoned()) return geometry::build_part(zones_of(design));
   if (!design.mesh()) return part_of(design);
   const geometry::TriangleMesh mesh = mesh_of_design(design, warnings);
   try {

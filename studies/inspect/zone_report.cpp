@@ -10,7 +10,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Polygon, geometry::Vec2;
+using geometry::Vec2;
 
 /// Places of the entrance face from which light is followed, from one direction.
 constexpr int kPlaces = 4096;
@@ -22,7 +22,7 @@ constexpr double kBackDeg = 5.0;
 class Wanderer {
  public:
   Wanderer(const Design& design, const OpticalModel& model)
-      : zones_(design.zoned()->spec.zones),
+      : zones_(model.part.zones),
         model_(model),
         optics_(model.optics),
         size_mm_(design.zoned()->spec.size_mm),
@@ -53,34 +53,34 @@ class Wanderer {
     return Vec2(part(1.0 / plastic), part(1.0 / (plastic * plastic))).cwiseProduct(size_mm_);
   }
 
-  std::optional<std::size_t> zone_at(const Vec2& p) const {
-    for (std::size_t z = 0; z < zones_.size(); ++z)
-      if (std::ranges::any_of(zones_[z].regions, [&](const Polygon& region) { return geometry::contains(region, p); }))
-        return z;
-    return std::nullopt;
+  /// Of the zone whose cells have a facet.
+  std::size_t zone_of(std::uint32_t facet) const {
+    const std::vector<geometry::PatchCell>& cells = model_.part.patches.front().cells;
+    const auto after = std::ranges::upper_bound(cells, facet, {}, &geometry::PatchCell::first_facet);
+    auto cell = static_cast<std::size_t>(after - cells.begin()) - 1;
+    std::size_t zone = 0;
+    for (; cell >= zones_[zone].cells; ++zone) cell -= zones_[zone].cells;
+    return zone;
   }
 
   void add(const raytrace::Illumination& from, const Vec2& entry_mm, std::vector<Way>& ways) const {
     const raytrace::LightPath path =
         raytrace::strongest_path(model_.part, surface_, 0.5 * size_mm_, optics_, from, kBackDeg, entry_mm);
     if (!path.is_returned) return;
-    const auto is_back = [](const raytrace::PathStep& step) {
-      return step.role != geometry::FacetRole::entrance && step.role != geometry::FacetRole::side;
-    };
+    const auto is_back = [](const raytrace::PathStep& step) { return step.facet.has_value(); };
     const auto first = std::ranges::find_if(path.steps, is_back);
     if (first == path.steps.end()) return;
     const auto last = std::find_if(path.steps.rbegin(), path.steps.rend(), is_back);
     const Vec2 begin = first->at_mm.head<2>();
     const Vec2 end = last->at_mm.head<2>();
-    const std::optional<std::size_t> zone = zone_at(begin);
-    if (!zone) return;
-    Way& way = ways[*zone];
+    const std::size_t zone = zone_of(first->facet->facet);
+    Way& way = ways[zone];
     way.power += path.power;
     way.power_times_mm += path.power * (end - begin).norm();
-    if (zone_at(end).value_or(*zone) != *zone) way.power_that_changes += path.power;
+    if (zone_of(last->facet->facet) != zone) way.power_that_changes += path.power;
   }
 
-  const std::vector<geometry::PartZone>& zones_;
+  const std::vector<geometry::ZoneElements>& zones_;
   const OpticalModel& model_;
   raytrace::Optics optics_;
   Vec2 size_mm_;
@@ -91,10 +91,8 @@ class Wanderer {
 
 ZonesReport report_zones(const Design& design, const OpticalModel& model) {
   const Wanderer wanderer(design, model);
-  const std::vector<geometry::PartZone>& zones = design.zoned()->spec.zones;
   ZonesReport report;
-  for (std::size_t z = 0; z < zones.size(); ++z)
-    report.zones.push_back({geometry::area(zones[z]), model.part.zones[z], 0.0});
+  for (const geometry::ZoneElements& zone : model.part.zones) report.zones.push_back({zone, 0.0});
   if (design.entrance) return report;  // paths are those behind a plane
   for (const double incidence_deg : kIncidences) {
     double power = 0.0;

@@ -13,7 +13,6 @@ namespace retrace::studies {
 
 /// A zone of a part.
 struct ZoneReport {
-  double area_mm2 = 0.0;
   geometry::ZoneElements elements;
   /// Mean distance in plan between the first and the last place where light that comes back meets the back of the part,
   /// of light that enters over this zone along the normal; 0 if none comes back, and behind a curved front.

@@ -222,6 +222,120 @@ TEST(Zones, RegionsAreConvexPolygonsThatGoRoundOnce) {
   EXPECT_NEAR(width({{0, 0}, {4, 0}, {0, 3}}), 2.4, 1e-12);
 }
 
+/// A plate whose cells are dealt out in turn to zones of a kind each; the land is the first one's.
+ZonedSpec dealt_out(const Vec2& size_mm, const std::vector<PartZone>& kinds) {
+  ZonedSpec spec = plate(size_mm, kinds);
+  spec.is_by_cell = true;
+  std::size_t next = 0;
+  for (const ArrayCell& cell : plan_of_array(array_of_cells(spec, kinds.front())).cells)
+    spec.zones[cell.is_element ? next++ % kinds.size() : 0].cells.push_back(cell.number);
+  return spec;
+}
+
+// Alike all over, elements of two zones are the array.
+TEST(Zones, AlikeElementsByCellAreTheArray) {
+  const std::vector<PartSpec> all = kinds();
+  const Vec2 size(5.3, 4.1);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    SCOPED_TRACE(k);
+    for (const PartialElements partial : {PartialElements::cut, PartialElements::omit}) {
+      PartSpec kind = all[k];
+      kind.array.partial_elements = partial;
+      const ZonedSpec spec = dealt_out(size, {{{}, 0.0, kind}, {{}, 0.0, kind}});
+      ASSERT_FALSE(fault_of_zones(spec));
+      const Part part = build_part(spec);
+      const Part array = alone(kind, size);
+      expect_closed(part);
+      EXPECT_EQ(part.elements_full, array.elements_full);
+      EXPECT_EQ(part.elements_partial, array.elements_partial);
+      EXPECT_NEAR(part.zones[0].area_mm2 + part.zones[1].area_mm2, size.prod(), 1e-9);
+      EXPECT_NEAR(volume_below(part), volume_below(array), 1e-9);
+      EXPECT_NEAR(part.retro_facet_area_mm2, array.retro_facet_area_mm2, 1e-9);
+    }
+  }
+}
+
+/// By how much an element is turned to its own outline.
+double turn_of(const PartSpec& kind) {
+  if (std::holds_alternative<HexagonalCube>(kind.element)) return 60.0;
+  return std::holds_alternative<TriangularCube>(kind.element) ? 120.0 : 180.0;
+}
+
+// Turned about their centroids elements have the turned facets, as many of each, and walls close what differs.
+TEST(Zones, ElementsByCellAreTurnedInTheirPlaces) {
+  for (PartSpec kind : kinds()) {
+    if (kind.random_tilts.sigma_arcmin > 0.0) continue;
+    kind.array.partial_elements = PartialElements::omit;
+    const Vec2 size(5.3, 4.1);
+    const double deg = turn_of(kind);
+    const ZonedSpec spec = dealt_out(size, {{{}, 0.0, kind}, {{}, deg, kind}});
+    ASSERT_FALSE(fault_of_zones(spec));
+    const Part part = build_part(spec);
+    expect_closed(part);
+    const Part array = alone(kind, size);
+    EXPECT_EQ(part.elements_full, array.elements_full);
+    const Eigen::AngleAxisd turn(deg * std::numbers::pi / 180.0, Vec3::UnitZ());
+    const SurfacePatch& patch = part.patches[0];
+    std::size_t cell = 0;
+    for (std::size_t zone = 0; zone < 2; ++zone)
+      for (const std::size_t end = cell + part.zones[zone].cells; cell < end; ++cell)
+        for (std::uint32_t f = 0; f < patch.cells[cell].facet_count; ++f) {
+          const PatchFacet& facet = patch.facets[patch.cells[cell].first_facet + f];
+          if (facet.role != FacetRole::retro_facet) continue;
+          const Vec3 back = zone == 0 ? facet.normal : Vec3(turn.inverse() * facet.normal);
+          EXPECT_TRUE(std::ranges::any_of(
+              array.patches[0].facets, [&](const PatchFacet& other) { return (other.normal - back).norm() < 1e-12; }));
+        }
+    EXPECT_EQ(cell, patch.cells.size());
+  }
+}
+
+// Unlike elements by cell hold what as many of each do in an array of their own, turned or not.
+TEST(Zones, UnlikeElementsByCellHoldWhatEachHoldsInItsArray) {
+  const Vec2 size(5.3, 4.1);
+  PartSpec upright = hexagons(0.9);
+  PartSpec canted = hexagons(0.9, {5.0, 30.0});
+  for (PartSpec* const kind : {&upright, &canted}) kind->array.partial_elements = PartialElements::omit;
+  const ZonedSpec spec = dealt_out(size, {{{}, 0.0, upright}, {{}, 180.0, canted}, {{}, 60.0, canted}});
+  const Part part = build_part(spec);
+  expect_closed(part);
+  const auto each = [&](const PartSpec& kind) {
+    const Part array = alone(kind, size);
+    return volume_below(array) / static_cast<double>(array.elements_full);
+  };
+  EXPECT_NE(each(upright), each(canted));
+  EXPECT_NEAR(volume_below(part),
+              static_cast<double>(part.zones[0].full) * each(upright) +
+                  static_cast<double>(part.zones[1].full + part.zones[2].full) * each(canted),
+              1e-9);
+}
+
+TEST(Zones, CellsThatAreNotOneEachAreFound) {
+  const auto fault = [](const ZonedSpec& spec) {
+    const auto found = fault_of_zones(spec);
+    return found ? std::to_string(found->zone) + " " + found->text : std::string();
+  };
+  const Vec2 size(4.0, 3.0);
+  const ZonedSpec well = dealt_out(size, {{{}, 0.0, prisms(0.5, 0.5)}, {{}, 90.0, prisms(0.5, 0.5)}});
+  EXPECT_EQ(fault(well), "");
+  ZonedSpec spec = well;
+  spec.zones[1].cells.push_back(spec.zones[0].cells.front());
+  EXPECT_EQ(fault(spec), "1 holds the element at x = 0.25, y = 0.25 mm, which zone 1 holds as well");
+  spec = well;
+  spec.zones[0].cells.erase(spec.zones[0].cells.begin());
+  EXPECT_EQ(fault(spec),
+            "1 and those before it leave 1 of 48 cells free, the element at x = 0.25, y = 0.25 mm among them");
+  spec = well;
+  spec.zones[1].rotation_deg = 45.0;
+  EXPECT_EQ(fault(spec), "1 turns its elements by an angle that does not lead their outlines to themselves");
+  const std::string misfit = "1 must have elements with the outlines and places of those of zone 1";
+  for (const PartSpec& other : {prisms(0.5, 0.4), prisms(0.5, 0.5, Arrangement::offset), hexagons(0.5)}) {
+    spec = well;
+    spec.zones[1].elements = other;
+    EXPECT_EQ(fault(spec), misfit);
+  }
+}
+
 TEST(Zones, ThatDoNotCoverThePartAreFound) {
   const auto fault = [](std::vector<Polygon> a, std::vector<Polygon> b) {
     const auto found =

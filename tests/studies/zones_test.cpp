@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -40,9 +44,12 @@ TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
   expect_messages(
       refused,
       {{kHalves, ""},
-       {"[[zone]]\n", "d.toml:9: zone[1]: must have one of share, rectangles_mm and polygon_mm, which say where it is"},
+       {"[[zone]]\n",
+        "d.toml:9: zone[1]: must have one of share, rectangles_mm, polygon_mm, rows, columns, mask and rest, which say "
+        "where it is"},
        {"[[zone]]\nshare = 0.5\npolygon_mm = [[0, 0], [1, 0], [0, 1]]\n",
-        "d.toml:11: zone[1].polygon_mm: must have one of share, rectangles_mm and polygon_mm, which say where it is"},
+        "d.toml:11: zone[1].polygon_mm: must have one of share, rectangles_mm, polygon_mm, rows, columns, mask and "
+        "rest, which say where it is"},
        {half, "d.toml:10: zone[1].share: shares of all zones must add to 1, got 0.5"},
        {half + "[[zone]]\nshare = 0\n", "d.toml:12: zone[2].share: must be > 0 and <= 1, got 0"},
        {half + "[[zone]]\nrectangles_mm = [[10, 0, 20, 10]]\n",
@@ -91,6 +98,40 @@ TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
        {kHalves + "[wet_back]\nindex = 1.3\nshare = 0.5\n", "d.toml:9: zone: not allowed together with [wet_back]"}});
 }
 
+TEST(ZonedDesign, ZonesOfSingleElementsAreRefusedWithTheirPlaceToo) {
+  const auto refused = [](const std::string& zones) { return complaint(zoned(zones)); };
+  const std::string odd = "[[zone]]\nrows = 1\nevery = 2\n";
+  const std::string rest = "[[zone]]\nrest = true\n";
+  const std::string other_sort =
+      "must be of the sort that the zones before it are: regions, or rows, columns, masks and the rest of the elements";
+  expect_messages(
+      refused,
+      {{odd + rest, ""},
+       {odd + "[[zone]]\nrows = 2\nevery = 2\n", ""},
+       {"[[zone]]\ncolumns = [1, 3]\n" + rest, ""},
+       {odd,
+        "d.toml:9: zone[1]: and those before it leave 48 of 97 cells free, the element at x = -0.5, y = 0.669873 mm "
+        "among them"},
+       {odd + odd, "d.toml:12: zone[2]: holds the element at x = 1, y = -0.196152 mm, which zone 1 holds as well"},
+       {odd + rest + rest, "d.toml:15: zone[3].rest: not allowed twice, zone 2 has the rest"},
+       {odd + "[[zone]]\nrest = false\n", "d.toml:13: zone[2].rest: must be true where it is given"},
+       {odd + kHalves, "d.toml:12: zone[2]: " + other_sort},
+       {"[[zone]]\nshare = 0.5\n" + rest, "d.toml:11: zone[2]: " + other_sort},
+       {"[[zone]]\nrows = 1.5\n" + rest, "d.toml:10: zone[1].rows: must be whole numbers, got 1.5"},
+       {"[[zone]]\nrows = 0\n" + rest, "d.toml:10: zone[1].rows: must be >= 1 and <= 1e+06, got 0"},
+       {"[[zone]]\nrows = [2, 99]\n" + rest,
+        "d.toml:10: zone[1].rows: must be at most 13, as many as the array has, got 99"},
+       {"[[zone]]\nrows = 3\nevery = 2\n" + rest,
+        "d.toml:10: zone[1].rows: must be at most 2, as many as there are until they are counted from 1 again, got 3"},
+       {"[[zone]]\nrest = true\nevery = 2\n", "d.toml:11: zone[1].every: only allowed beside rows or columns, got 2"},
+       {odd + rest + "rotation_deg = 30\n",
+        "d.toml:12: zone[2]: turns its elements by an angle that does not lead their outlines to themselves"},
+       {odd + rest + "set = [\"element.aperture_mm=1\"]\n",
+        "d.toml:12: zone[2]: must have elements with the outlines and places of those of zone 1"},
+       {odd + rest + "set = [\"element.aperture_mm=30\"]\n",
+        "d.toml:14: zone[2].set: array.x_length_mm: must be >= 30 to hold one element of 30 mm, got 20"}});
+}
+
 TEST(ZonedDesign, WholePartsAreFiniteWithoutMargins) {
   const auto refused = [](const std::string& array) { return complaint(zoned(kHalves, kHexagonal, array)); };
   EXPECT_EQ(refused("extent = \"infinite\""),
@@ -121,6 +162,72 @@ TEST(ZonedDesign, DesignsAreWrittenAsTheyWereRead) {
   EXPECT_EQ(design_text(design_of_json(to_json(design))), text);
   const Design thicker = with(design, std::vector<std::string>{"body.thickness_mm=3"});
   EXPECT_EQ(thicker.zoned()->spec.thickness_mm, 3.0);
+}
+
+TEST(ZonedDesign, ZonesOfSingleElementsAreWrittenAsTheyWereRead) {
+  const Design design = read(
+      "[[zone]]\nrows = [1, 2]\nevery = 3\n[[zone]]\nrest = true\nrotation_deg = 180\n"
+      "set = [\"element.cant_deg=5\"]\n");
+  const std::string text = design_text(design);
+  EXPECT_NE(text.find("[[zone]]\nrows = [1, 2]\nevery = 3\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("[[zone]]\nrest = true\nrotation_deg = 180\n"), std::string::npos) << text;
+  EXPECT_EQ(design_text(parse_design(text, "again.toml")), text);
+  EXPECT_EQ(design_text(design_of_json(to_json(design))), text);
+}
+
+/// A folder of its own, with a picture of dark and light halves, of a text for each row.
+class MaskFolder {
+ public:
+  MaskFolder() {
+    std::filesystem::create_directories(path_);
+    std::ofstream(path_ / "left.pgm") << "P2 2 1 255\n0 255\n";
+    std::ofstream(path_ / "right.pgm") << "P2 2 1 255\n255 0\n";
+    std::ofstream(path_ / "above.pgm") << "P2 1 2 255\n0 255\n";
+    std::ofstream(path_ / "light.pgm") << "P2 1 2 255\n200 255\n";
+  }
+  ~MaskFolder() { std::filesystem::remove_all(path_); }
+  MaskFolder(const MaskFolder&) = delete;
+  MaskFolder& operator=(const MaskFolder&) = delete;
+
+  Design design(const std::string& zones) const { return parse_design(zoned(zones), (path_ / "d.toml").string()); }
+  std::string complaint_of(const std::string& zones) const {
+    std::string text = refusal_of([&] { part_of_design(design(zones), nullptr); });
+    for (std::size_t at; (at = text.find(path_.string() + "/")) != std::string::npos;)
+      text.erase(at, path_.string().size() + 1);
+    return text;
+  }
+
+ private:
+  std::filesystem::path path_ =
+      std::filesystem::temp_directory_path() / ("retrace_masks_" + std::to_string(::getpid()));
+};
+
+TEST(ZonedDesign, MasksChooseTheElementsUnderTheirDarkPixels) {
+  const MaskFolder folder;
+  const auto zones = [&](const std::string& text) { return part_of_design(folder.design(text), nullptr).zones; };
+  const std::string rest = "[[zone]]\nrest = true\nrotation_deg = 180\n";
+  const auto left = zones("[[zone]]\nmask = \"left.pgm\"\n" + rest);
+  const auto right = zones("[[zone]]\nmask = \"left.pgm\"\n[[zone]]\nmask = \"right.pgm\"\n");
+  // Columns of elements stand on either side of the middle; those in it are of its right.
+  EXPECT_NEAR(left[0].area_mm2, 100.0, 10.0);
+  EXPECT_NEAR(left[0].area_mm2 + left[1].area_mm2, 200.0, 1e-9);
+  EXPECT_EQ(right[0].full, left[0].full);
+  EXPECT_EQ(right[1].full, left[1].full);
+  const auto above = zones("[[zone]]\nmask = \"above.pgm\"\n" + rest);
+  EXPECT_NEAR(above[0].area_mm2, 100.0, 10.0);
+  const geometry::Part part = part_of_design(folder.design("[[zone]]\nmask = \"above.pgm\"\n" + rest), nullptr);
+  const geometry::PatchCell& last = part.patches[0].cells[part.zones[0].cells - 1];
+  EXPECT_GT(0.5 * (last.lower.y() + last.upper.y()), 5.0);
+}
+
+TEST(ZonedDesign, MasksThatDoNotServeAreRefused) {
+  const MaskFolder folder;
+  const auto refused = [&](const std::string& zones) { return folder.complaint_of(zones); };
+  const std::string left = "[[zone]]\nmask = \"left.pgm\"\n";
+  EXPECT_NE(refused(left).find("d.toml:9: zone[1]: and those before it leave "), std::string::npos) << refused(left);
+  EXPECT_NE(refused(left + left).find("d.toml:11: zone[2]: holds the element at x = "), std::string::npos);
+  EXPECT_EQ(refused("[[zone]]\nmask = \"light.pgm\"\n"), "d.toml:10: zone[1].mask: light.pgm: no pixel is dark enough");
+  EXPECT_NE(refused("[[zone]]\nmask = \"none.pgm\"\n").find("d.toml:10: zone[1].mask: "), std::string::npos);
 }
 
 TEST(ZonedDesign, QuestionsOfOneKindOfElementAreRefused) {
@@ -171,6 +278,27 @@ TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
   const double right = rre(read(one + set, kHexagonal, half), Engine::exact, 15.0).points[0].rre;
   EXPECT_NEAR(exact, 0.5 * (left + right), 0.05 * exact);
   EXPECT_GT(std::abs(left - right), 0.05 * exact);
+}
+
+// Columns of alike elements in turn are the array. Turned about its middle, a part of an odd number of columns, every
+// other of which is turned, is that of which the others are turned.
+TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
+  const std::string lengths = "x_length_mm = 20; y_length_mm = 20";
+  const std::string canted = "; cant_deg = 8; cant_azimuth_deg = 40";
+  const std::string odd = "[[zone]]\ncolumns = 1\nevery = 2\n";
+  const std::string rest = "[[zone]]\nrest = true\n";
+  const std::string turn = "rotation_deg = 180\n";
+  const Design alike = read(odd + rest, kHexagonal, lengths);
+  const Design plain = parse_design(design_of(kHexagonal, lengths), "d.toml");
+  EXPECT_NEAR(rre(alike, Engine::exact, 12.0).points[0].rre, rre(plain, Engine::exact, 12.0).points[0].rre, 1e-4);
+  const auto at = [](const Design& design, double incidence_deg) {
+    return rre(design, Engine::embree, incidence_deg, 200'000).points[0];
+  };
+  const Design one_way = parse_design(design_of(kHexagonal + canted, lengths), "d.toml");
+  EXPECT_GT(std::abs(at(one_way, 25.0).rre - at(one_way, -25.0).rre), 0.1);
+  const RrePoint rest_turned = at(read(odd + rest + turn, kHexagonal + canted, lengths), 25.0);
+  const RrePoint odd_turned = at(read(odd + turn + rest, kHexagonal + canted, lengths), -25.0);
+  EXPECT_NEAR(rest_turned.rre, odd_turned.rre, 4.0 * std::hypot(rest_turned.std_error, odd_turned.std_error));
 }
 
 // Light of triangular arrays goes through neighbours, so that some of it meets two zones: the more the narrower they

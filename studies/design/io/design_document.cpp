@@ -142,11 +142,25 @@ void set_regions(Keys& keys, const std::vector<geometry::Polygon>& regions) {
   keys.set("polygon_mm", std::move(corners));
 }
 
+void set_elements(Keys& keys, const ElementsOfZone& chosen) {
+  if (!chosen.rows.empty()) keys.set("rows", chosen.rows);
+  if (!chosen.columns.empty()) keys.set("columns", chosen.columns);
+  if (chosen.every) keys.set("every", *chosen.every);
+  if (chosen.mask) {
+    keys.set_word("mask", chosen.mask->name);
+    keys.set("mask_threshold", chosen.mask->threshold);
+  }
+  if (chosen.rest) keys.set("rest", true);
+}
+
 void set_zones(Document& document, const ZonedPart& part) {
   document.set("zone", {});
   for (std::size_t k = 0; k < part.spec.zones.size(); ++k) {
     Keys zone(document, schema::path_of_entry("zone", k));
-    set_regions(zone, part.spec.zones[k].regions);
+    if (part.spec.is_by_cell)
+      set_elements(zone, part.elements[k]);
+    else
+      set_regions(zone, part.spec.zones[k].regions);
     zone.set("rotation_deg", part.spec.zones[k].rotation_deg);
     if (!part.changes[k].empty()) zone.set("set", part.changes[k]);
   }

@@ -70,9 +70,11 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     without("form", "not allowed together with [form]"),
                                     without("array.mask", "not allowed together with array.mask"),
                                     without("part.facets", "not allowed together with facets in [part]")};
-constexpr std::string_view kWhereAreZones[] = {"share", "rectangles_mm", "polygon_mm"};
+constexpr std::string_view kWhereAreZones[] = {"share",   "rectangles_mm", "polygon_mm", "rows",
+                                               "columns", "mask",          "rest"};
 constexpr Rule kZoneRules[] = {
-    OneOf{kWhereAreZones, "must have one of share, rectangles_mm and polygon_mm, which say where it is"}};
+    OneOf{kWhereAreZones,
+          "must have one of share, rectangles_mm, polygon_mm, rows, columns, mask and rest, which say where it is"}};
 constexpr std::string_view kWhichAreWet[] = {"share", "rectangle_mm", "disc_mm", "half_plane"};
 constexpr Rule kWetBackRules[] = {
     OneOf{kWhichAreWet, "must have one of share, rectangle_mm, disc_mm and half_plane, which say where it is wet"}};

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/schema/reader.h"
 #include "studies/design/io/design_format.h"
 #include "studies/design/io/part_reader.h"
+#include "studies/design/zone_elements.h"
 
 namespace retrace::studies {
 namespace {
@@ -18,6 +20,7 @@ namespace {
 using geometry::Polygon, geometry::Vec2, schema::Document;
 
 constexpr std::string_view kZone = "zone";
+constexpr std::array<std::string_view, 3> kRegions = {"share", "rectangles_mm", "polygon_mm"};
 /// The whole back is one patch in memory.
 constexpr double kMostElements = 1e5;
 constexpr std::size_t kMostRegions = 1000;
@@ -161,9 +164,76 @@ void read_regions(const Document& document, geometry::ZonedSpec& spec) {
     document.fail(kZone, fmt::format("must have at most {} regions in all, got {}", kMostRegions, regions));
 }
 
-void check_room(const Document& document, std::size_t number, const geometry::PartZone& zone) {
+std::vector<double> lines_of(const Document& document, const std::string& key) {
+  if (!document.has(key)) return {};
+  std::vector<double> lines = document.numbers(key);
+  for (const double line : lines)
+    if (line != std::floor(line)) document.fail(key, fmt::format("must be whole numbers, got {}", shortest(line)));
+  return lines;
+}
+
+ElementsOfZone elements_of(const Document& document, const std::string& zone) {
+  ElementsOfZone chosen;
+  chosen.rows = lines_of(document, zone + ".rows");
+  chosen.columns = lines_of(document, zone + ".columns");
+  if (document.has(zone + ".every")) chosen.every = document.number(zone + ".every");
+  if (const std::string mask = zone + ".mask"; document.has(mask))
+    chosen.mask = {document.text(mask), document.file(mask), document.number(zone + ".mask_threshold")};
+  chosen.rest = document.has(zone + ".rest");
+  if (chosen.rest && !document.flag(zone + ".rest")) document.fail(zone + ".rest", "must be true where it is given");
+  return chosen;
+}
+
+/// \return whether zones are elements of one array, in place of regions
+bool read_elements(const Document& document, ZonedPart& part) {
+  std::optional<std::size_t> rest;
+  std::size_t by_cell = 0;
+  for (std::size_t k = 0; k < part.spec.zones.size(); ++k) {
+    const std::string zone = entry_of(k);
+    const bool is_region = std::ranges::any_of(
+        kRegions, [&](std::string_view key) { return document.has(fmt::format("{}.{}", zone, key)); });
+    if (!is_region) ++by_cell;
+    if (by_cell != 0 && by_cell != k + 1)
+      document.fail(zone,
+                    "must be of the sort that the zones before it are: regions, or rows, columns, masks and the "
+                    "rest of the elements");
+    part.elements.push_back(elements_of(document, zone));
+    if (part.elements.back().rest && rest)
+      document.fail(zone + ".rest", fmt::format("not allowed twice, zone {} has the rest", *rest + 1));
+    if (part.elements.back().rest) rest = k;
+  }
+  if (by_cell == 0) part.elements.clear();
+  return by_cell != 0;
+}
+
+void check_lines(const Document& document, const std::string& key, const std::vector<double>& numbers,
+                 const std::optional<double>& every, std::size_t count) {
+  const double most = every ? *every : static_cast<double>(count);
+  for (const double number : numbers)
+    if (number > most)
+      document.fail(key, fmt::format("must be at most {}, {}, got {}", shortest(most),
+                                     every ? "as many as there are until they are counted from 1 again"
+                                           : "as many as the array has",
+                                     shortest(number)));
+}
+
+/// Gives zones their cells; those of masks are for part_of_design().
+void read_cells(const Document& document, ZonedPart& part) {
+  const geometry::ArrayPlan plan =
+      geometry::plan_of_array(geometry::array_of_cells(part.spec, part.spec.zones.front()));
+  for (std::size_t k = 0; k < part.elements.size(); ++k) {
+    const ElementsOfZone& chosen = part.elements[k];
+    check_lines(document, entry_of(k) + ".rows", chosen.rows, chosen.every, count_of_lines(plan, 1));
+    check_lines(document, entry_of(k) + ".columns", chosen.columns, chosen.every, count_of_lines(plan, 0));
+  }
+  if (!part.has_masks()) choose_cells(part, {});
+}
+
+/// Where it stands: its regions, or all of the part.
+void check_room(const Document& document, std::size_t number, const geometry::PartZone& zone, const Vec2& part_mm) {
   const Vec2 element = geometry::bounding_box(geometry::aperture_outline(zone.elements.element)).size();
-  for (const Polygon& region : zone.regions) {
+  const std::vector<Polygon> all = {geometry::to_polygon({Vec2::Zero(), part_mm})};
+  for (const Polygon& region : zone.regions.empty() ? all : zone.regions) {
     const Vec2 room = geometry::bounding_box(region).size();
     // A turned element need not fit into the box.
     const bool is_narrow = geometry::width(region) < element.minCoeff() * (1.0 - kRounding);
@@ -203,7 +273,8 @@ ZonedPart read_zones(const Document& document) {
   part.spec.size_mm = {part.base.array.x_length_mm, part.base.array.y_length_mm};
   part.spec.thickness_mm = part.base.thickness_mm;
   part.spec.zones.resize(document.count(kZone));
-  read_regions(document, part.spec);
+  part.spec.is_by_cell = read_elements(document, part);
+  if (!part.spec.is_by_cell) read_regions(document, part.spec);
   for (std::size_t k = 0; k < part.spec.zones.size(); ++k) {
     check_changes(document, k);
     const Document changed = document_of_zone(document, k);
@@ -212,14 +283,16 @@ ZonedPart read_zones(const Document& document) {
       document.fail(entry_of(k), "must have an array of prisms or cube corners, neither \"single\" nor \"pins\"");
     part.spec.zones[k].elements = read_part(changed);
     part.spec.zones[k].rotation_deg = document.number(entry_of(k) + ".rotation_deg");
-    check_room(document, k, part.spec.zones[k]);
+    check_room(document, k, part.spec.zones[k], part.spec.size_mm);
     const std::string set = entry_of(k) + ".set";
     part.changes.push_back(document.has(set) ? document.texts(set) : std::vector<std::string>());
   }
-  if (const auto fault = geometry::fault_of_zones(part.spec)) document.fail(entry_of(fault->zone), fault->text);
   if (const double elements = geometry::element_estimate(part.spec); elements > kMostElements)
     document.fail(kZone, fmt::format("a part of zones may have at most {:.0f} elements, it would have some {:.0f}",
                                      kMostElements, elements));
+  if (part.spec.is_by_cell) read_cells(document, part);
+  if (part.has_masks()) return part;
+  if (const auto fault = geometry::fault_of_zones(part.spec)) document.fail(entry_of(fault->zone), fault->text);
   return part;
 }
 

@@ -248,7 +248,7 @@ std::string zones_text(const Inspection& i) {
     for (const std::string& change : i.design.zoned()->changes[k]) changes += "; " + change;
     const double turn_deg = i.design.zoned()->spec.zones[k].rotation_deg;
     text += fmt::format("  {:<20}{} %, {} full elements, {} cut, light wanders {} mm{}{}\n",
-                        fmt::format("zone {}", k + 1), fixed(100.0 * zone.area_mm2 / i.entrance_area_mm2, 3),
+                        fmt::format("zone {}", k + 1), fixed(100.0 * zone.elements.area_mm2 / i.entrance_area_mm2, 3),
                         zone.elements.full, zone.elements.partial, fixed(zone.wander_mm, 4),
                         turn_deg != 0.0 ? fmt::format("; turned by {}", shortest(turn_deg)) : "", printable(changes));
   }
@@ -262,7 +262,7 @@ nlohmann::ordered_json zones_json(const ZonesReport& report) {
   nlohmann::ordered_json json = {{"zones", nlohmann::ordered_json::array()},
                                  {"meets_two_zones", nlohmann::ordered_json::array()}};
   for (const ZoneReport& zone : report.zones)
-    json["zones"].push_back({{"area_mm2", zone.area_mm2},
+    json["zones"].push_back({{"area_mm2", zone.elements.area_mm2},
                              {"elements_full", zone.elements.full},
                              {"elements_partial", zone.elements.partial},
                              {"wander_mm", zone.wander_mm}});

@@ -1,0 +1,114 @@
+#include "studies/design/zone_elements.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/schema/document.h"
+#include "geometry/io/mask_image.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::ArrayCell, geometry::ArrayPlan, geometry::Vec2;
+
+/// Middles of elements that differ by less than this share of an element are in one line.
+constexpr double kSameLine = 1e-6;
+
+/// Where rows or columns of elements lie.
+class Lines {
+ public:
+  Lines(const ArrayPlan& plan, Eigen::Index axis) : axis_(axis) {
+    std::vector<double> middles_mm;
+    double size_mm = 0.0;
+    for (const ArrayCell& cell : plan.cells) {
+      if (!cell.is_element) continue;
+      const geometry::Rectangle box = geometry::bounding_box(cell.outline);
+      middles_mm.push_back(box.middle()[axis]);
+      size_mm = box.size()[axis];
+    }
+    near_mm_ = kSameLine * size_mm;
+    std::sort(middles_mm.begin(), middles_mm.end());
+    for (const double middle_mm : middles_mm)
+      if (at_mm_.empty() || middle_mm > at_mm_.back() + near_mm_) at_mm_.push_back(middle_mm);
+  }
+
+  std::size_t size() const { return at_mm_.size(); }
+  /// From 1.
+  double number_of(const ArrayCell& cell) const {
+    const double middle_mm = geometry::bounding_box(cell.outline).middle()[axis_];
+    const auto after = std::upper_bound(at_mm_.begin(), at_mm_.end(), middle_mm + near_mm_);
+    return static_cast<double>(after - at_mm_.begin());
+  }
+
+ private:
+  Eigen::Index axis_;
+  double near_mm_ = 0.0;
+  std::vector<double> at_mm_;
+};
+
+bool has(const std::vector<double>& numbers, const std::optional<double>& every, double line) {
+  const double number = every ? std::fmod(line - 1.0, *every) + 1.0 : line;
+  return std::ranges::find(numbers, number) != numbers.end();
+}
+
+/// \param dark covers the part
+bool is_dark_at(const std::vector<std::string>& dark, const Vec2& place_mm, const Vec2& size_mm) {
+  const auto pixel = [](double share, std::size_t count) {
+    const double at = std::floor(share * static_cast<double>(count));
+    return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
+  };
+  const Vec2 share = place_mm.cwiseQuotient(size_mm);
+  return dark[pixel(1.0 - share.y(), dark.size())][pixel(share.x(), dark.front().size())] == '#';
+}
+
+}  // namespace
+
+std::size_t count_of_lines(const ArrayPlan& plan, Eigen::Index axis) {
+  return Lines(plan, axis).size();
+}
+
+void choose_cells(ZonedPart& part, const std::function<std::vector<std::string>(std::size_t zone)>& dark) {
+  geometry::ZonedSpec& spec = part.spec;
+  const ArrayPlan plan = geometry::plan_of_array(geometry::array_of_cells(spec, spec.zones.front()));
+  const Lines rows(plan, 1);
+  const Lines columns(plan, 0);
+  std::vector<std::uint32_t> free;
+  std::vector<char> is_held(plan.cells.size(), 0);
+  for (std::size_t z = 0; z < spec.zones.size(); ++z) {
+    const ElementsOfZone& chosen = part.elements[z];
+    const std::vector<std::string> of_mask = chosen.mask ? dark(z) : std::vector<std::string>();
+    spec.zones[z].cells.clear();
+    for (std::size_t k = 0; k < plan.cells.size(); ++k) {
+      const ArrayCell& cell = plan.cells[k];
+      const bool is_own = !cell.is_element ? z == 0
+                          : chosen.mask    ? is_dark_at(of_mask, geometry::centroid(cell.outline), spec.size_mm)
+                                           : has(chosen.rows, chosen.every, rows.number_of(cell)) ||
+                                              has(chosen.columns, chosen.every, columns.number_of(cell));
+      if (!is_own) continue;
+      spec.zones[z].cells.push_back(cell.number);
+      is_held[k] = 1;
+    }
+  }
+  const auto rest = std::ranges::find_if(part.elements, [](const ElementsOfZone& of_zone) { return of_zone.rest; });
+  if (rest == part.elements.end()) return;
+  std::vector<std::uint32_t>& cells = spec.zones[static_cast<std::size_t>(rest - part.elements.begin())].cells;
+  for (std::size_t k = 0; k < plan.cells.size(); ++k)
+    if (is_held[k] == 0) cells.push_back(plan.cells[k].number);
+  std::sort(cells.begin(), cells.end());
+}
+
+geometry::ZonedSpec zones_of(const Design& design) {
+  const ZonedPart& read = *design.zoned();
+  if (!read.has_masks()) return read.spec;
+  ZonedPart part = read;
+  choose_cells(part, [&](std::size_t zone) {
+    const ArrayMask& mask = *part.elements[zone].mask;
+    return geometry::mask_pattern(mask.file, mask.threshold, std::nullopt,
+                                  design.where(schema::path_of_entry("zone", zone) + ".mask"));
+  });
+  if (const auto fault = geometry::fault_of_zones(part.spec))
+    throw InputError(design.where(schema::path_of_entry("zone", fault->zone)), fault->text);
+  return part.spec;
+}
+
+}  // namespace retrace::studies
