@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 5fd267cf9c2c4d3f3f0415d0d71cc7d768cacc079e901775228327d4095378ec */
+/* made by tools/live_page; engine.wasm.gz f83560895d34ddb4c0b41659a8c45d0a86c3d383dce20e2470e07ee8cde99cc8 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

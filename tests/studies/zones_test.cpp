@@ -14,6 +14,7 @@
 #include "materials/io/material_library.h"
 #include "studies/design/io/design_document.h"
 #include "studies/design/io/design_json.h"
+#include "studies/design/io/file_names.h"
 #include "studies/design/part_of_design.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
@@ -228,6 +229,10 @@ TEST(ZonedDesign, MasksThatDoNotServeAreRefused) {
   EXPECT_NE(refused(left + left).find("d.toml:11: zone[2]: holds the element at x = "), std::string::npos);
   EXPECT_EQ(refused("[[zone]]\nmask = \"light.pgm\"\n"), "d.toml:10: zone[1].mask: light.pgm: no pixel is dark enough");
   EXPECT_NE(refused("[[zone]]\nmask = \"none.pgm\"\n").find("d.toml:10: zone[1].mask: "), std::string::npos);
+  EXPECT_NE(refusal_of([&] {
+              check_names_no_file(folder.design(left), "which nobody reads");
+            }).find("d.toml:10: zone[1].mask: names a file, which nobody reads"),
+            std::string::npos);
 }
 
 TEST(ZonedDesign, QuestionsOfOneKindOfElementAreRefused) {

@@ -10,7 +10,10 @@ namespace retrace::studies {
 void check_names_no_file(const Design& design, std::string_view why) {
   const schema::Document& document = *design.document;
   if (document.files().empty()) return;
-  for (const std::string& key : schema::keys_of(design_format())) {
+  std::vector<std::string> keys = schema::keys_of(design_format());
+  for (std::size_t zone = 0; zone < document.count("zone"); ++zone)
+    keys.push_back(schema::path_of_entry("zone", zone) + ".mask");
+  for (const std::string& key : keys) {
     const schema::Row* const row = document.has(key) ? document.row(key) : nullptr;
     if (row == nullptr) continue;
     const auto* const either = std::get_if<schema::WordOrFile>(&row->kind);
