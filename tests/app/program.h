@@ -54,14 +54,15 @@ enum class Input {
 #define RETRACE_IS_SANITIZED
 #endif
 #endif
+#ifdef RETRACE_IS_SANITIZED
+inline constexpr bool kIsSanitized = true;
+#else
+inline constexpr bool kIsSanitized = false;
+#endif
 
 /// A limit on time that programs keep by far, also with sanitizers, which make them some ten times as slow.
 constexpr std::chrono::seconds patient(int seconds) {
-#ifdef RETRACE_IS_SANITIZED
-  return std::chrono::seconds(10 * seconds);
-#else
-  return std::chrono::seconds(seconds);
-#endif
+  return std::chrono::seconds(kIsSanitized ? 10 * seconds : seconds);
 }
 
 /// A program that runs as a child process, without a shell between. The first argument is the program.

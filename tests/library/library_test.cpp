@@ -370,9 +370,7 @@ TEST(Library, OnePageHasSeveralResults) {
 class InstalledLibrary : public ::testing::Test {
  protected:
   void SetUp() override {
-#ifdef RETRACE_IS_SANITIZED
-    GTEST_SKIP() << "programs outside do not link the sanitizers";
-#endif
+    if (kIsSanitized) GTEST_SKIP() << "programs outside do not link the sanitizers";
     output_of({RETRACE_CMAKE, "--install", RETRACE_BUILD_DIR, "--prefix", prefix().string()});
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix()))
       if (entry.path().filename() == "retrace.pc") libraries_ = entry.path().parent_path().parent_path();
