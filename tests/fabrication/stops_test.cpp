@@ -288,7 +288,8 @@ TEST_P(Stops, RestartsFromAnyVisit) {
       PlanOptions options;
       options.phase = whole.stages[k].name + "+";
       std::vector<std::int32_t> order;
-      for (const Item& item : make_plan(c.job, machine, options).programs.front().items)
+      const Plan partial = make_plan(c.job, machine, options);
+      for (const Item& item : partial.programs.front().items)
         if (const auto* const visit = std::get_if<Visit>(&item)) order.push_back(visit->element);
       for (std::int64_t n = 0; n < whole.stages[k].visits; ++n, ++behind) {
         if (behind == 0 || (c.name == "dmc" && n > 1)) continue;

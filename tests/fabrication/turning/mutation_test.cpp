@@ -420,6 +420,19 @@ TEST(TurningCheck, StrokesOfAFastServoBelongToTheirPoints) {
   EXPECT_THROW(found("c_deg,stroke_mm\nx,1\n"), InputError);
 }
 
+// Within a turn from the axis, where cuts turn on the spot, nothing is judged.
+TEST(TurningCheck, PartsOfFewTurnsAreNotJudgedAtTheirAxis) {
+  for (const double radius_mm : {0.04, 0.08, 0.12, 0.135, 0.15, 0.2}) {
+    const Planned plan = planned(fmt::format(
+        "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"xy_polynomial\"\nterms = [[1, 0, -0.05], [2, "
+        "0, -0.126], [0, 2, -0.282]]\n[tool]\nnose_radius_mm = 0.367\nclearance_deg = 25\nrake_deg = -19.3\n"
+        "[path]\nradius_mm = {}\noverrun_mm = 0.02\nfeed_um = 17.25\nspindle_rpm = 94.54\npoints_per_turn = "
+        "720\n[inspect]\nmap_pixels = 11\n",
+        radius_mm));
+    EXPECT_EQ(listed(findings_of(plan.part, {plan.text("rs274ngc")})), "") << radius_mm;
+  }
+}
+
 TEST(TurningCheck, RightProgramsOfRandomPartsPassInEveryDialect) {
   const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   std::mt19937 random(23);
