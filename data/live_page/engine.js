@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz f83560895d34ddb4c0b41659a8c45d0a86c3d383dce20e2470e07ee8cde99cc8 */
+/* made by tools/live_page; engine.wasm.gz c2c95df30261b2c32ceb92fa39a24b01580566ef35bd361e85c67148b1b1cc2b */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

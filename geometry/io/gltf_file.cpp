@@ -67,7 +67,7 @@ class GltfFile {
                        {"rotation", {-kHalfRoot, 0.0, 0.0, kHalfRoot}},
                        {"scale", {1e-3, 1e-3, 1e-3}},
                        {"children", Json::array()}}};
-    json_["materials"] = {material(refractive_index, absorption_per_mm)};
+    json_["materials"] = Json::array({material(refractive_index, absorption_per_mm)});
     if (refractive_index)
       json_["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume"};
     for (const char* const list : {"accessors", "bufferViews", "meshes"}) json_[list] = Json::array();
