@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz c2c95df30261b2c32ceb92fa39a24b01580566ef35bd361e85c67148b1b1cc2b */
+/* made by tools/live_page; engine.wasm.gz e45ce94a96bad149aadcbae169ba6bd1a8664970df9606b0df86a1630d57b758 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

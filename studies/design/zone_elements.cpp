@@ -72,29 +72,33 @@ void choose_cells(ZonedPart& part, const std::function<std::vector<std::string>(
   const ArrayPlan plan = geometry::plan_of_array(geometry::array_of_cells(spec, spec.zones.front()));
   const Lines rows(plan, 1);
   const Lines columns(plan, 0);
-  std::vector<std::uint32_t> free;
-  std::vector<char> is_held(plan.cells.size(), 0);
+  std::vector<std::vector<std::string>> masks(spec.zones.size());
+  std::optional<std::size_t> rest;
   for (std::size_t z = 0; z < spec.zones.size(); ++z) {
-    const ElementsOfZone& chosen = part.elements[z];
-    const std::vector<std::string> of_mask = chosen.mask ? dark(z) : std::vector<std::string>();
     spec.zones[z].cells.clear();
-    for (std::size_t k = 0; k < plan.cells.size(); ++k) {
-      const ArrayCell& cell = plan.cells[k];
-      const bool is_own = !cell.is_element ? z == 0
-                          : chosen.mask    ? is_dark_at(of_mask, geometry::centroid(cell.outline), spec.size_mm)
-                                           : has(chosen.rows, chosen.every, rows.number_of(cell)) ||
-                                              has(chosen.columns, chosen.every, columns.number_of(cell));
+    if (part.elements[z].mask) masks[z] = dark(z);
+    if (part.elements[z].rest) rest = z;
+  }
+  for (const ArrayCell& cell : plan.cells) {
+    if (!cell.is_element) {
+      spec.zones.front().cells.push_back(cell.number);
+      continue;
+    }
+    const double row = rows.number_of(cell);
+    const double column = columns.number_of(cell);
+    const Vec2 middle_mm = geometry::centroid(cell.outline);
+    bool is_held = false;
+    for (std::size_t z = 0; z < spec.zones.size(); ++z) {
+      const ElementsOfZone& chosen = part.elements[z];
+      const bool is_own = chosen.mask
+                              ? is_dark_at(masks[z], middle_mm, spec.size_mm)
+                              : has(chosen.rows, chosen.every, row) || has(chosen.columns, chosen.every, column);
       if (!is_own) continue;
       spec.zones[z].cells.push_back(cell.number);
-      is_held[k] = 1;
+      is_held = true;
     }
+    if (!is_held && rest) spec.zones[*rest].cells.push_back(cell.number);
   }
-  const auto rest = std::ranges::find_if(part.elements, [](const ElementsOfZone& of_zone) { return of_zone.rest; });
-  if (rest == part.elements.end()) return;
-  std::vector<std::uint32_t>& cells = spec.zones[static_cast<std::size_t>(rest - part.elements.begin())].cells;
-  for (std::size_t k = 0; k < plan.cells.size(); ++k)
-    if (is_held[k] == 0) cells.push_back(plan.cells[k].number);
-  std::sort(cells.begin(), cells.end());
 }
 
 geometry::ZonedSpec zones_of(const Design& design) {

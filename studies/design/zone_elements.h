@@ -2,6 +2,10 @@
 
 // Which elements of an array are which zone's, where zones are no regions but rows, columns or masks of elements.
 
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "studies/design/design.h"
 
 namespace retrace::studies {

@@ -221,10 +221,12 @@ void check_lines(const Document& document, const std::string& key, const std::ve
 void read_cells(const Document& document, ZonedPart& part) {
   const geometry::ArrayPlan plan =
       geometry::plan_of_array(geometry::array_of_cells(part.spec, part.spec.zones.front()));
+  const std::size_t rows = count_of_lines(plan, 1);
+  const std::size_t columns = count_of_lines(plan, 0);
   for (std::size_t k = 0; k < part.elements.size(); ++k) {
     const ElementsOfZone& chosen = part.elements[k];
-    check_lines(document, entry_of(k) + ".rows", chosen.rows, chosen.every, count_of_lines(plan, 1));
-    check_lines(document, entry_of(k) + ".columns", chosen.columns, chosen.every, count_of_lines(plan, 0));
+    check_lines(document, entry_of(k) + ".rows", chosen.rows, chosen.every, rows);
+    check_lines(document, entry_of(k) + ".columns", chosen.columns, chosen.every, columns);
   }
   if (!part.has_masks()) choose_cells(part, {});
 }
