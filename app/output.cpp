@@ -35,10 +35,10 @@ void refuse_input(const std::string& option, const fs::path& output, const std::
       throw InputError({"", 0, option}, output.string() + " is a file that is read; it would be overwritten");
 }
 
-/// Refuses a document that is an output of another option.
-void refuse_second(const std::string& json, const std::string& option, const fs::path& output) {
-  if (!json.empty() && is_same_file(json, output))
-    throw InputError({"", 0, "--json"}, json + " is a file that " + option + " writes; give another name");
+/// Refuses a file of an option that is an output of another one.
+void refuse_second(const std::string& own, const fs::path& file, const std::string& option, const fs::path& output) {
+  if (own != option && !file.empty() && is_same_file(file, output))
+    throw InputError({"", 0, own}, file.string() + " is a file that " + option + " writes; give another name");
 }
 
 /// Refuses a document that cannot be written, unless it goes to the folder that is to be made.
@@ -95,7 +95,10 @@ void ResultFiles::check() const {
   if (!json.empty()) refuse_input("--json", json, inputs_);
   for (const File& file : files_) {
     refuse_input(file.option, file.path, inputs_);
-    refuse_second(json, file.option, file.path);
+    refuse_second("--json", json, file.option, file.path);
+    if (file.option == "--out") continue;
+    if (!document_.empty()) refuse_second(file.option, file.path, "--out", document_);
+    for (const File& other : files_) refuse_second(file.option, file.path, other.option, other.path);
   }
   if (!document_.empty()) refuse_input("--out", document_, inputs_);
 }

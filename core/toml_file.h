@@ -109,6 +109,7 @@ class TomlTable {
 /// toml++ recurses once per level when it destroys a tree, and two bytes of `a.a.a...` make a level: 64 KiB of it run
 /// out of an 8 MiB stack. Longer texts may have few dots a line; files that people write have about one KiB.
 inline constexpr std::size_t kShortTomlBytes = 16384;
+inline constexpr std::size_t kMostDesignBytes = std::size_t{1} << 20;  ///< designs and studies
 
 /// The text of a TOML file; `source_name` stands for the file in messages. Overrides are of the form KEY=VALUE and add
 /// or replace values; their text stands for the file in messages about them.

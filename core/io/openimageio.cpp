@@ -5,19 +5,24 @@
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
+#include <string>
 
 #include "core/pictures.h"
 
 namespace retrace {
 namespace {
 
+/// \param why what the library says, which may be nothing
 [[noreturn]] void fail(const std::string& why) {
-  throw std::runtime_error(why);
+  throw std::runtime_error(why.empty() ? "it ends early or is damaged" : why);
 }
 
 std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
   auto input = OIIO::ImageInput::open(file.string());
   if (!input) fail(OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.width < 1 || spec.height < 1)
+    fail("its size is " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
   return input;
 }
 

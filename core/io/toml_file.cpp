@@ -432,7 +432,7 @@ TomlTable parse_toml(std::string_view text, const std::string& source_name, std:
   auto source = std::make_shared<TomlSource>();
   source->file = printable(source_name, std::string::npos);
   require_short_text(text, source->file, most_bytes);
-  if (most_bytes > kShortTomlBytes) check_nesting(text, source->file);
+  if (text.size() > kShortTomlBytes) check_nesting(text, source->file);
   source->root = parse_file(text, source->file);
   source->paths.push_back(source->root.source().path);
   for (const std::string& each : overrides) {

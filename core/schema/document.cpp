@@ -76,14 +76,20 @@ fs::path Document::file(std::string_view path) const {
 
 std::vector<fs::path> Document::files() const {
   std::vector<fs::path> files;
+  for (const std::string& key : keys_of_files()) files.push_back(file(key));
+  return files;
+}
+
+std::vector<std::string> Document::keys_of_files() const {
+  std::vector<std::string> keys;
   for (const auto& [path, given] : given_) {
     const Row* const served = std::holds_alternative<std::string>(given.value) ? row(path) : nullptr;
     if (served == nullptr) continue;
     const auto* const either = std::get_if<WordOrFile>(&served->kind);
     const bool is_word = either != nullptr && std::ranges::count(either->words, std::get<std::string>(given.value)) > 0;
-    if (std::holds_alternative<File>(served->kind) || (either != nullptr && !is_word)) files.push_back(file(path));
+    if (std::holds_alternative<File>(served->kind) || (either != nullptr && !is_word)) keys.push_back(path);
   }
-  return files;
+  return keys;
 }
 
 InputLocation Document::where(std::string_view path) const {

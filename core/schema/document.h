@@ -66,7 +66,8 @@ class Document {
   const Named& named(std::string_view path) const { return std::get<Named>(given_.find(path)->second.value); }
   /// The file that a key names, from the working directory. \pre it was given
   std::filesystem::path file(std::string_view path) const;
-  /// Every file that is named, in the order of the keys' names.
+  /// Every key that names a file, in their order, and the files.
+  std::vector<std::string> keys_of_files() const;
   std::vector<std::filesystem::path> files() const;
 
   /// What messages call the file.

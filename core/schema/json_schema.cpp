@@ -73,8 +73,9 @@ Json kind_json(const Kind& kind) {
                                 {{{"enum", either.words}}, {{"type", "string"}, {"pattern", ends_in(either.ending)}}}}};
                  },
                  [](const NumberOrNumbers& list) {
-                   Json items = {{"type", "array"}, {"items", number_json(list.range)}, {"minItems", 1}};
-                   return Json{{"anyOf", {number_json(list.range), std::move(items)}}};
+                   const Json number = number_json(list.range, list.is_whole ? "integer" : "number");
+                   Json items = {{"type", "array"}, {"items", number}, {"minItems", 1}};
+                   return Json{{"anyOf", {number, std::move(items)}}};
                  },
                  [](const Pairs& pairs) {
                    Json pair = {{"type", "array"},

@@ -112,6 +112,9 @@ Value word_of(const Word& kind, std::string_view key, TomlTable& source) {
 
 Value number_or_numbers(const NumberOrNumbers& kind, std::string_view key, TomlTable& source) {
   std::vector<double> numbers = *source.number_or_numbers(key, kind.range);
+  const auto is_broken = [&](double number) { return kind.is_whole && number != std::floor(number); };
+  if (const auto broken = std::ranges::find_if(numbers, is_broken); broken != numbers.end())
+    source.fail(key, fmt::format("must be {}, got {}", allowed(kind), shortest(*broken)));
   return source.shape_of(key) == Shape::list ? Value(std::move(numbers)) : Value(numbers.front());
 }
 
@@ -225,13 +228,16 @@ Value given(const Kind& kind, std::string_view key, TomlTable& source) {
 
 void check_rule(const OneOf& rule, const Document& document, const std::string& path) {
   std::string last;
+  std::string_view first;
   std::size_t count = 0;
   for (const std::string_view key : rule.keys) {
     if (!document.has(path_in(path, key))) continue;
+    if (count == 0) first = key;
     last = path_in(path, key);
     ++count;
   }
-  if (count != 1) throw InputError(document.where(count == 0 ? path : last), rule.complaint);
+  if (count == 0) throw InputError(document.where(path), rule.complaint);
+  if (count > 1) throw InputError(document.where(last), fmt::format("not allowed together with {}", first));
 }
 
 /// What is said of a key that was given though the condition does not hold.

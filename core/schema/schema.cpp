@@ -45,7 +45,10 @@ std::string allowed(const Kind& kind) {
                  [](const Text& text) { return std::string(text.what); },
                  [](const File& file) { return fmt::format("the name of {}", file.what); },
                  [](const WordOrFile& either) { return std::string(either.allowed); },
-                 [](const NumberOrNumbers&) { return std::string("a number or a list of numbers"); },
+                 [](const NumberOrNumbers& list) {
+                   return std::string(list.is_whole ? "a whole number or a list of them"
+                                                    : "a number or a list of numbers");
+                 },
                  [](const Numbers& numbers) { return fmt::format("a list of {} {}", numbers.count, numbers.what); },
                  [](const Terms& terms) { return fmt::format("a list of numbers, {} for each term", terms.count); },
                  [](const NumberRows& rows) { return fmt::format("a list of lists of {} numbers", rows.columns); },

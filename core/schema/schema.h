@@ -62,6 +62,7 @@ struct WordOrFile {
 /// A number, or a list of one or more numbers.
 struct NumberOrNumbers {
   NumberRange range;
+  bool is_whole = false;  ///< each
 };
 /// A list of exactly so many numbers.
 struct Numbers {
@@ -161,7 +162,7 @@ inline constexpr bool kZeroIsNone = true;
 /// Exactly one of `keys` must be given.
 struct OneOf {
   std::span<const std::string_view> keys;
-  std::string_view complaint;  ///< what the message says if none or several are
+  std::string_view complaint;  ///< what the message says if none is
 };
 /// Throws an InputError that says what is wrong with a key, by its path from the table whose rule it is; without one,
 /// with the rule's first key that was given, or with the table.

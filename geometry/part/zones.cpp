@@ -221,24 +221,46 @@ bool is_same(const Polygon& a, const Polygon& b, double near_mm) {
   return a.size() == b.size() && std::ranges::all_of(a, has);
 }
 
-/// What keeps a zone's elements out of cells of the first zone's array.
-std::optional<std::string> misfit(const ArraySheet& own, const ArraySheet& first, double rotation_deg, double near_mm) {
+/// The outlines of elements and of what lies between them are the same, in the same places.
+bool are_alike(const ArraySheet& own, const ArraySheet& first, double near_mm) {
   const auto is_near = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= near_mm; };
-  const bool is_alike = is_near(own.lattice.period_mm, first.lattice.period_mm) &&
-                        is_near(own.anchor_mm, first.anchor_mm) &&
-                        std::equal(own.lattice.cells.begin(), own.lattice.cells.end(), first.lattice.cells.begin(),
-                                   first.lattice.cells.end(), [&](const Cell& a, const Cell& b) {
-                                     return a.is_element == b.is_element && is_same(a.outline, b.outline, near_mm);
-                                   });
-  if (!is_alike) return "must have elements with the outlines and places of those of zone 1";
-  const bool may_turn = std::ranges::all_of(own.lattice.cells, [&](const Cell& cell) {
+  return is_near(own.lattice.period_mm, first.lattice.period_mm) && is_near(own.anchor_mm, first.anchor_mm) &&
+         std::equal(own.lattice.cells.begin(), own.lattice.cells.end(), first.lattice.cells.begin(),
+                    first.lattice.cells.end(), [&](const Cell& a, const Cell& b) {
+                      return a.is_element == b.is_element && is_same(a.outline, b.outline, near_mm);
+                    });
+}
+
+/// A turn of every element about its centroid leads its outline to itself.
+bool may_turn(const ArraySheet& sheet, double deg, double near_mm) {
+  return std::ranges::all_of(sheet.lattice.cells, [&](const Cell& cell) {
     const Vec2 middle = centroid(cell.outline);
-    const Turn about_middle(rotation_deg, middle, middle);
+    const Turn about_middle(deg, middle, middle);
     Polygon turned = cell.outline;
     for (Vec2& p : turned) p = about_middle.place(p);
     return !cell.is_element || is_same(turned, cell.outline, near_mm);
   });
-  if (!may_turn) return "turns its elements by an angle that does not lead their outlines to themselves";
+}
+
+/// The least turn that does; outlines have at most six corners.
+double least_turn_deg(const ArraySheet& sheet, double near_mm) {
+  for (int times = 6; times > 1; --times)
+    if (may_turn(sheet, 360.0 / times, near_mm)) return 360.0 / times;
+  return 360.0;
+}
+
+/// What keeps a zone's elements out of cells of the first zone's array.
+std::optional<ZoneFault> misfit(std::size_t zone, const ArraySheet& own, const ArraySheet& first, double rotation_deg,
+                                double near_mm) {
+  if (!are_alike(own, first, near_mm))
+    return ZoneFault{zone, "must leave elements with the outlines and places of those of zone 1",
+                     ZoneFault::Of::elements};
+  if (!may_turn(own, rotation_deg, near_mm))
+    return ZoneFault{zone,
+                     fmt::format("must be a multiple of {:.6g}, which leads the elements' outlines to themselves, "
+                                 "got {:.17g}",
+                                 least_turn_deg(own, near_mm), rotation_deg),
+                     ZoneFault::Of::rotation};
   return std::nullopt;
 }
 
@@ -256,14 +278,16 @@ std::optional<ZoneFault> fault_of_cells(const ZonedSpec& spec) {
   for (std::size_t z = 0; z < spec.zones.size(); ++z) {
     const PartZone& zone = spec.zones[z];
     const PartSpec array = array_of_cells(spec, zone);
-    if (const auto text = misfit(ArraySheet(array), first_sheet, zone.rotation_deg, near_mm))
-      return ZoneFault{z, *text};
-    for (const std::uint32_t number : zone.cells)
-      if (const auto [other, is_new] = holder.try_emplace(number, z); !is_new) {
-        const auto cell = std::find_if(first.cells.begin(), first.cells.end(),
-                                       [&](const ArrayCell& c) { return c.number == number; });
-        return ZoneFault{z, fmt::format("holds {}, which zone {} holds as well", words_of(*cell), other->second + 1)};
-      }
+    if (auto fault = misfit(z, ArraySheet(array), first_sheet, zone.rotation_deg, near_mm)) return fault;
+    bool has_elements = false;
+    for (const std::uint32_t number : zone.cells) {
+      const ArrayCell& cell = *std::lower_bound(first.cells.begin(), first.cells.end(), number,
+                                                [](const ArrayCell& c, std::uint32_t n) { return c.number < n; });
+      has_elements |= cell.is_element;
+      if (const auto [other, is_new] = holder.try_emplace(number, z); !is_new)
+        return ZoneFault{z, fmt::format("holds {}, which zone {} holds as well", words_of(cell), other->second + 1)};
+    }
+    if (!has_elements) return ZoneFault{z, "holds no element"};
   }
   const auto is_free = [&](const ArrayCell& cell) { return !holder.contains(cell.number); };
   const auto free = std::ranges::find_if(first.cells, is_free);

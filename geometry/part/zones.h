@@ -52,11 +52,14 @@ PartSpec array_of_cells(const ZonedSpec& spec, const PartZone& zone);
 
 /// What keeps zones from covering the plate.
 struct ZoneFault {
+  enum class Of { zone, elements, rotation };
   std::size_t zone = 0;
   std::string text;  ///< "reaches beyond the part", "overlaps zone 1"
+  Of what = Of::zone;
 };
 /// The first fault of zones that do not cover the plate, or cover a part of it twice; of zones by cell also of arrays
-/// whose cells lie elsewhere and of turns that do not lead them to themselves; none if all is well.
+/// whose cells lie elsewhere than the first one's, of turns that do not lead them to themselves and of zones without
+/// elements; none if all is well.
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec);
 
 /// About how many elements its zones have.

@@ -15,8 +15,12 @@ constexpr double kFaintest = 1e-3;
 
 class Follower {
  public:
-  Follower(const geometry::Part& part, const ExactSurface& surface, const Vec2& centre_mm, const LightSetup& setup)
-      : surface_(surface), setup_(setup), centre_mm_(centre_mm), air_mm_(0.4 * (part.thickness_mm + part.size_mm)) {}
+  Follower(const geometry::Part& part, const HitFinder& first_hit, const Vec2& centre_mm, const LightSetup& setup)
+      : part_(part),
+        first_hit_(first_hit),
+        setup_(setup),
+        centre_mm_(centre_mm),
+        air_mm_(0.4 * (part.thickness_mm + part.size_mm)) {}
 
   LightPath follow(const Vec2& entry_mm) {
     position_ = {entry_mm.x() - centre_mm_.x(), entry_mm.y() - centre_mm_.y(), setup_.thickness_mm};
@@ -62,7 +66,7 @@ class Follower {
       limit = t;
       side = &candidate;
     }
-    const auto hit = surface_.first_hit({position_, direction_, source_, true, limit});
+    const auto hit = first_hit_({position_, direction_, source_, true, limit});
     if (hit) return meet_facet(*hit);
     if (!std::isfinite(limit)) return false;
     absorb(limit);
@@ -73,8 +77,7 @@ class Follower {
   }
 
   bool advance_outside() {
-    const auto hit =
-        surface_.first_hit({position_, direction_, source_, false, std::numeric_limits<double>::infinity()});
+    const auto hit = first_hit_({position_, direction_, source_, false, std::numeric_limits<double>::infinity()});
     if (!hit) {
       path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * direction_));
       path_.steps.push_back(
@@ -88,7 +91,8 @@ class Follower {
   void absorb(double length_mm) { light_.scale(std::exp(-setup_.optics.absorption_per_mm * length_mm)); }
 
   bool meet_facet(const SurfaceHit& hit) {
-    const ExactSurface::Facet& facet = surface_.facet(hit.facet);
+    const geometry::SurfacePatch& patch = part_.patches[part_.placements[hit.facet.placement].patch];
+    const geometry::PatchFacet& facet = patch.facets[hit.facet.facet];
     if (inside_) absorb(hit.t);
     position_ += hit.t * direction_;
     source_ = hit.facet;
@@ -134,7 +138,8 @@ class Follower {
     return true;
   }
 
-  const ExactSurface& surface_;
+  const geometry::Part& part_;
+  const HitFinder& first_hit_;
   const LightSetup& setup_;
   Vec2 centre_mm_;
   double air_mm_;
@@ -149,11 +154,11 @@ class Follower {
 
 }  // namespace
 
-LightPath strongest_path(const geometry::Part& part, const ExactSurface& surface, const Vec2& centre_mm,
+LightPath strongest_path(const geometry::Part& part, const HitFinder& first_hit, const Vec2& centre_mm,
                          const Optics& optics, const Illumination& illumination, double cone_deg,
                          const Vec2& entry_mm) {
   const LightSetup setup(part, centre_mm, optics, illumination, {cone_deg});
-  return Follower(part, surface, centre_mm, setup).follow(entry_mm);
+  return Follower(part, first_hit, centre_mm, setup).follow(entry_mm);
 }
 
 }  // namespace retrace::raytrace

@@ -1,5 +1,7 @@
 #include "studies/design/zone_elements.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -110,9 +112,22 @@ geometry::ZonedSpec zones_of(const Design& design) {
     return geometry::mask_pattern(mask.file, mask.threshold, std::nullopt,
                                   design.where(schema::path_of_entry("zone", zone) + ".mask"));
   });
-  if (const auto fault = geometry::fault_of_zones(part.spec))
-    throw InputError(design.where(schema::path_of_entry("zone", fault->zone)), fault->text);
+  check_zones(part, [&](const std::string& key) { return design.where(key); });
   return part.spec;
+}
+
+void check_zones(const ZonedPart& part, const std::function<InputLocation(const std::string& key)>& where) {
+  using Of = geometry::ZoneFault::Of;
+  const auto fault = geometry::fault_of_zones(part.spec);
+  if (!fault) return;
+  const std::string zone = schema::path_of_entry("zone", fault->zone);
+  if (fault->what != Of::elements)
+    throw InputError(where(fault->what == Of::rotation ? zone + ".rotation_deg" : zone), fault->text);
+  if (!part.changes[fault->zone].empty()) throw InputError(where(zone + ".set"), fault->text);
+  // It is as the design says, so zone 1 is not.
+  throw InputError(
+      where(schema::path_of_entry("zone", 0) + ".set"),
+      fmt::format("must leave elements with the outlines and places of those of zone {}", fault->zone + 1));
 }
 
 }  // namespace retrace::studies

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "raytrace/faces/exact_surface.h"
+#include "raytrace/faces/back_surface.h"
 #include "raytrace/paths/light_path.h"
 
 namespace retrace::studies {
@@ -64,8 +64,9 @@ class Wanderer {
   }
 
   void add(const raytrace::Illumination& from, const Vec2& entry_mm, std::vector<Way>& ways) const {
+    const auto first_hit = [this](const raytrace::SurfaceRay& ray) { return surface_.first_hit(ray); };
     const raytrace::LightPath path =
-        raytrace::strongest_path(model_.part, surface_, 0.5 * size_mm_, optics_, from, kBackDeg, entry_mm);
+        raytrace::strongest_path(model_.part, first_hit, 0.5 * size_mm_, optics_, from, kBackDeg, entry_mm);
     if (!path.is_returned) return;
     const auto is_back = [](const raytrace::PathStep& step) { return step.facet.has_value(); };
     const auto first = std::ranges::find_if(path.steps, is_back);
@@ -84,7 +85,7 @@ class Wanderer {
   const OpticalModel& model_;
   raytrace::Optics optics_;
   Vec2 size_mm_;
-  raytrace::ExactSurface surface_;
+  raytrace::BackSurface surface_;
 };
 
 }  // namespace
@@ -92,7 +93,7 @@ class Wanderer {
 ZonesReport report_zones(const Design& design, const OpticalModel& model) {
   const Wanderer wanderer(design, model);
   ZonesReport report;
-  for (const geometry::ZoneElements& zone : model.part.zones) report.zones.push_back({zone, 0.0});
+  for (const geometry::ZoneElements& zone : model.part.zones) report.zones.push_back({zone, std::nullopt});
   if (design.entrance) return report;  // paths are those behind a plane
   for (const double incidence_deg : kIncidences) {
     double power = 0.0;

@@ -3,6 +3,7 @@
 // Zones of a part: what stands in each, and how much of the light meets more than one, so that their sum is not the
 // part.
 
+#include <optional>
 #include <vector>
 
 #include "geometry/part/part.h"
@@ -15,8 +16,9 @@ namespace retrace::studies {
 struct ZoneReport {
   geometry::ZoneElements elements;
   /// Mean distance in plan between the first and the last place where light that comes back meets the back of the part,
-  /// of light that enters over this zone along the normal; 0 if none comes back, and behind a curved front.
-  double wander_mm = 0.0;
+  /// of light that enters along the normal and meets this zone first; none if none comes back, and behind a curved
+  /// front.
+  std::optional<double> wander_mm;
 };
 
 /// Light from one incidence, of all azimuths.

@@ -143,6 +143,7 @@ std::optional<double> Evaluator::slope(const PointValues& design, std::size_t pa
   if (request_.objective.is_least) return std::nullopt;
   try {
     const Candidate candidate = make_candidate(study_, design);
+    if (!candidate.design().elements()) return std::nullopt;
     const auto by = rre_parameter(study_.parameters[parameter], candidate.design());
     if (!by) return std::nullopt;
     double sum = 0.0;

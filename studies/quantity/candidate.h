@@ -11,7 +11,7 @@
 
 #include "geometry/part/part.h"
 #include "studies/design/design.h"
-#include "studies/design/design_part.h"
+#include "studies/design/part_of_design.h"
 #include "studies/quantity/machining.h"
 #include "studies/rre/rre.h"
 
@@ -38,9 +38,9 @@ class Candidate {
   const Design& design() const { return design_; }
   const AnalysisSettings& analysis() const { return analysis_; }
   const MachiningProcess& machining() const { return machining_; }
-  /// Built when it is first requested. \throw InputError as part_of()
+  /// Built when it is first requested. \throw InputError as part_of_design()
   const geometry::Part& part() const {
-    if (!part_) part_ = part_of(design_);
+    if (!part_) part_ = part_of_design(design_, nullptr);
     return *part_;
   }
   /// What several quantities need, made when it is first requested. \param key says what it is, with its type \param

@@ -93,7 +93,8 @@ class ShareQuantity final : public Quantity {
   std::optional<double> slope(const Candidate& candidate, RreParameter parameter,
                               const Cancellation* cancel) const override {
     const bool is_rre = spec_.account == static_cast<std::size_t>(raytrace::Account::retroreflected);
-    if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::least) return std::nullopt;
+    if (!is_rre || !candidate.design().elements() || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::least)
+      return std::nullopt;
     RreRequest request = request_of(spec_.window, candidate.analysis());
     if (request.engine != Engine::automatic && request.engine != Engine::exact) return std::nullopt;
     request.engine = Engine::exact;
@@ -133,9 +134,9 @@ class ShareQuantity final : public Quantity {
 };
 
 const geometry::RtpElement& prism_of(const Candidate& candidate) {
+  check_taken(candidate.design(), {.what = "machining time", .substrates = false, .wet_backs = true});
   const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part().element);
   if (prism == nullptr) throw InputError("machining time is known for prisms (element.kind = \"rtp\") alone");
-  check_taken(candidate.design(), {.what = "machining time", .substrates = false, .wet_backs = true});
   return *prism;
 }
 
@@ -143,13 +144,13 @@ double full_element_area_mm2(const geometry::PartSpec& spec) {
   return geometry::area(geometry::aperture_outline(spec.element));
 }
 
-std::optional<double> total_reflection_limit_deg(const Candidate& candidate) {
-  if (candidate.design().part().substrate) return std::nullopt;  // elements stand at angles of their own
+std::optional<double> total_reflection_limit_deg(const Design& design) {
+  if (design.part().substrate) return std::nullopt;  // elements stand at angles of their own
   const auto library = materials::MaterialLibrary::shipped();
-  const OpticalModel model = make_model(candidate.design(), library);
+  const OpticalModel model = make_model(design, library);
   double least = model.spectral.front().optics.index;
   for (const SpectralOptics& light : model.spectral) least = std::min(least, light.optics.index);
-  return tir_limit_deg(candidate.design().part(), least, model.optics.back_index);
+  return tir_limit_deg(design.part(), least, model.optics.back_index);
 }
 
 /// The machine cuts whole elements alone.
@@ -165,35 +166,42 @@ double tool_fit_mm(const Candidate& candidate) {
   return width_mm - candidate.machining().tool_width_mm.value_or(width_mm);
 }
 
-std::optional<double> plain_value(PlainQuantity which, const Candidate& candidate) {
+/// A design of one kind of element. \throw InputError for others
+const Design& elements_of(const Candidate& candidate, const std::string& name) {
+  check_taken(candidate.design(), {.what = name, .wet_backs = true});
+  return candidate.design();
+}
+
+/// \param name of the quantity, for messages
+std::optional<double> plain_value(PlainQuantity which, const Candidate& candidate, const std::string& name) {
   constexpr double um_per_mm = 1e3;
-  const geometry::PartSpec& spec = candidate.design().part();
   switch (which) {
     case PlainQuantity::elements_full: return static_cast<double>(candidate.part().elements_full);
     case PlainQuantity::elements_partial: return static_cast<double>(candidate.part().elements_partial);
     case PlainQuantity::element_depth_mm:
       // A part on a base is deeper than its elements.
-      return candidate.design().part().substrate
+      return candidate.design().elements() && candidate.design().part().substrate
                  ? geometry::element_depth_mm(candidate.part().spec.element, candidate.part().spec.angle_errors)
                  : candidate.part().element_depth_mm;
     case PlainQuantity::lens_thickness_mm: return candidate.part().element_depth_mm + candidate.part().thickness_mm;
     case PlainQuantity::facet_area_mm2: return candidate.part().retro_facet_area_mm2;
     case PlainQuantity::effective_area_mm2:
       return static_cast<double>(candidate.part().elements_full) *
-             geometry::build_part(single_element_of(candidate.design()).part()).retro_facet_area_mm2;
+             geometry::build_part(single_element_of(elements_of(candidate, name)).part()).retro_facet_area_mm2;
     case PlainQuantity::entrance_area_mm2: return candidate.part().entrance_area_mm2;
     case PlainQuantity::full_element_share:
-      return static_cast<double>(candidate.part().elements_full) * full_element_area_mm2(spec) /
-             candidate.part().entrance_area_mm2;
-    case PlainQuantity::tir_limit_deg: return total_reflection_limit_deg(candidate);
+      return static_cast<double>(candidate.part().elements_full) *
+             full_element_area_mm2(elements_of(candidate, name).part()) / candidate.part().entrance_area_mm2;
+    case PlainQuantity::tir_limit_deg: return total_reflection_limit_deg(elements_of(candidate, name));
     case PlainQuantity::tool_fit_mm: return tool_fit_mm(candidate);
     case PlainQuantity::machining_time_h: return machining_time_h(candidate);
     case PlainQuantity::machining_time_per_element_s:
       return seconds_per_element(prism_of(candidate), candidate.machining());
     case PlainQuantity::area_rate_mm2_per_h:
-      return 3600.0 * full_element_area_mm2(spec) / seconds_per_element(prism_of(candidate), candidate.machining());
+      return 3600.0 * full_element_area_mm2(elements_of(candidate, name).part()) /
+             seconds_per_element(prism_of(candidate), candidate.machining());
     case PlainQuantity::process_sa_nm: return process_sa_nm(candidate.machining());
-    case PlainQuantity::root_radius_um: return um_per_mm * spec.edges.root_radius_mm;
+    case PlainQuantity::root_radius_um: return um_per_mm * elements_of(candidate, name).part().edges.root_radius_mm;
   }
   return std::nullopt;
 }
@@ -203,7 +211,7 @@ class PlainQuantityOf final : public Quantity {
   PlainQuantityOf(std::string name, PlainQuantity which) : Quantity(std::move(name)), which_(which) {}
 
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
-    return Measured{plain_value(which_, candidate), 0.0};
+    return Measured{plain_value(which_, candidate, name()), 0.0};
   }
 
  private:

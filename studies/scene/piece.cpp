@@ -163,7 +163,8 @@ geometry::Vec2 Piece::entry_of(const SceneLight& light, const geometry::Vec2& at
 }
 
 raytrace::LightPath Piece::path(const SceneLight& light, const geometry::Vec2& entry_mm) const {
-  return raytrace::strongest_path(model_.part, *surface_, centre_mm_, model_.optics, illumination_of(light), cone_deg_,
+  const auto first_hit = [this](const raytrace::SurfaceRay& ray) { return surface_->first_hit(ray); };
+  return raytrace::strongest_path(model_.part, first_hit, centre_mm_, model_.optics, illumination_of(light), cone_deg_,
                                   entry_mm);
 }
 

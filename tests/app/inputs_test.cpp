@@ -251,7 +251,7 @@ std::string most(std::size_t bytes) {
   return ": must have at most " + std::to_string(bytes) + " bytes, got more";
 }
 
-constexpr std::size_t kDesign = 16384;
+constexpr std::size_t kDesign = std::size_t{1} << 20;
 constexpr std::size_t kTable = std::size_t{1} << 20;
 constexpr std::size_t kText = std::size_t{64} << 20;
 constexpr std::size_t kPlanes = std::size_t{512} << 20;

@@ -217,7 +217,7 @@ TEST(Schema, RulesBlameTheFirstOfTheirKeysThatWasGiven) {
       {{"[[hole]]\ndepth_um = 2001\n", "f.toml:3: size_mm: must be at least as deep as its holes"},
        {"title = 't'\n[[hole]]\ndepth_um = 2001\n", "f.toml:5: title: must be at least as deep as its holes"},
        {"titel = 't'\n[[hole]]\ndepth_um = 2001\n", kTitel},
-       {"notes = ['a']\n", "f.toml:5: notes: must say either is_open or notes"}});
+       {"notes = ['a']\n", "f.toml:5: notes: not allowed together with is_open"}});
   EXPECT_EQ(refusal("", "schema = 'retrace.thing/1'\nname = 'a'\nsize_mm = 2\n"),
             "f.toml: must say either is_open or notes");
 }

@@ -327,8 +327,8 @@ TEST(Zones, CellsThatAreNotOneEachAreFound) {
             "1 and those before it leave 1 of 48 cells free, the element at x = 0.25, y = 0.25 mm among them");
   spec = well;
   spec.zones[1].rotation_deg = 45.0;
-  EXPECT_EQ(fault(spec), "1 turns its elements by an angle that does not lead their outlines to themselves");
-  const std::string misfit = "1 must have elements with the outlines and places of those of zone 1";
+  EXPECT_EQ(fault(spec), "1 must be a multiple of 90, which leads the elements' outlines to themselves, got 45");
+  const std::string misfit = "1 must leave elements with the outlines and places of those of zone 1";
   for (const PartSpec& other : {prisms(0.5, 0.4), prisms(0.5, 0.5, Arrangement::offset), hexagons(0.5)}) {
     spec = well;
     spec.zones[1].elements = other;

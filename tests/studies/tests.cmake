@@ -17,7 +17,7 @@ retrace_test(studies_tests
   LIBRARIES retrace::photometry retrace::inspect retrace::rre nlohmann_json::nlohmann_json)
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/zones_test.cpp
-  LIBRARIES retrace::rre retrace::inspect retrace::solids retrace::scene nlohmann_json::nlohmann_json)
+  LIBRARIES retrace::sweep retrace::rre retrace::inspect retrace::solids retrace::scene nlohmann_json::nlohmann_json)
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/balls_test.cpp
   LIBRARIES retrace::inspect retrace::photometry retrace::rre nlohmann_json::nlohmann_json)

@@ -46,8 +46,7 @@ TEST(WetBackDesign, WhatIsWrongIsRefusedWithItsPlace) {
        {"index = 1.333",
         "d.toml:11: wet_back: must have one of share, rectangle_mm, disc_mm and half_plane, which say where it is wet"},
        {"index = 1.333\nshare = 0.5\ndisc_mm = [1, 2, 3]",
-        "d.toml:14: wet_back.disc_mm: must have one of share, rectangle_mm, disc_mm and half_plane, which say where it "
-        "is wet"},
+        "d.toml:14: wet_back.disc_mm: not allowed together with share"},
        {"index = 0.9\nshare = 0.5", "d.toml:12: wet_back.index: must be >= 1 and <= 3, got 0.9"},
        {"index = 1.333\nshare = 1.5", "d.toml:13: wet_back.share: must be >= 0 and <= 1, got 1.5"},
        {"index = 1.333\nshare = 0.5\nseed = 0.5", "d.toml:14: wet_back.seed: must be a whole number, got 0.5"},

@@ -19,9 +19,12 @@
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/photometry/photometry.h"
+#include "studies/quantity/io/study_reader.h"
 #include "studies/rre/rre.h"
 #include "studies/scene/scene.h"
 #include "studies/solids/solids.h"
+#include "studies/sweep/io/sweep_reader.h"
+#include "studies/sweep/sweep.h"
 #include "tests/studies/design_texts.h"
 
 namespace retrace::studies::zones_test {
@@ -49,8 +52,7 @@ TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
         "d.toml:9: zone[1]: must have one of share, rectangles_mm, polygon_mm, rows, columns, mask and rest, which say "
         "where it is"},
        {"[[zone]]\nshare = 0.5\npolygon_mm = [[0, 0], [1, 0], [0, 1]]\n",
-        "d.toml:11: zone[1].polygon_mm: must have one of share, rectangles_mm, polygon_mm, rows, columns, mask and "
-        "rest, which say where it is"},
+        "d.toml:11: zone[1].polygon_mm: not allowed together with share"},
        {half, "d.toml:10: zone[1].share: shares of all zones must add to 1, got 0.5"},
        {half + "[[zone]]\nshare = 0\n", "d.toml:12: zone[2].share: must be > 0 and <= 1, got 0"},
        {half + "[[zone]]\nrectangles_mm = [[10, 0, 20, 10]]\n",
@@ -115,10 +117,10 @@ TEST(ZonedDesign, ZonesOfSingleElementsAreRefusedWithTheirPlaceToo) {
         "among them"},
        {odd + odd, "d.toml:12: zone[2]: holds the element at x = 1, y = -0.196152 mm, which zone 1 holds as well"},
        {odd + rest + rest, "d.toml:15: zone[3].rest: not allowed twice, zone 2 has the rest"},
-       {odd + "[[zone]]\nrest = false\n", "d.toml:13: zone[2].rest: must be true where it is given"},
+       {odd + "[[zone]]\nrest = false\n", "d.toml:13: zone[2].rest: must be true where it is given, got false"},
        {odd + kHalves, "d.toml:12: zone[2]: " + other_sort},
        {"[[zone]]\nshare = 0.5\n" + rest, "d.toml:11: zone[2]: " + other_sort},
-       {"[[zone]]\nrows = 1.5\n" + rest, "d.toml:10: zone[1].rows: must be whole numbers, got 1.5"},
+       {"[[zone]]\nrows = 1.5\n" + rest, "d.toml:10: zone[1].rows: must be a whole number or a list of them, got 1.5"},
        {"[[zone]]\nrows = 0\n" + rest, "d.toml:10: zone[1].rows: must be >= 1 and <= 1e+06, got 0"},
        {"[[zone]]\nrows = [2, 99]\n" + rest,
         "d.toml:10: zone[1].rows: must be at most 13, as many as the array has, got 99"},
@@ -126,9 +128,15 @@ TEST(ZonedDesign, ZonesOfSingleElementsAreRefusedWithTheirPlaceToo) {
         "d.toml:10: zone[1].rows: must be at most 2, as many as there are until they are counted from 1 again, got 3"},
        {"[[zone]]\nrest = true\nevery = 2\n", "d.toml:11: zone[1].every: only allowed beside rows or columns, got 2"},
        {odd + rest + "rotation_deg = 30\n",
-        "d.toml:12: zone[2]: turns its elements by an angle that does not lead their outlines to themselves"},
+        "d.toml:14: zone[2].rotation_deg: must be a multiple of 60, which leads the elements' outlines to themselves, "
+        "got 30"},
+       {odd + rest + "rotation_deg = -120\n", ""},
        {odd + rest + "set = [\"element.aperture_mm=1\"]\n",
-        "d.toml:12: zone[2]: must have elements with the outlines and places of those of zone 1"},
+        "d.toml:14: zone[2].set: must leave elements with the outlines and places of those of zone 1"},
+       {odd + "set = [\"element.aperture_mm=1\"]\n" + rest,
+        "d.toml:12: zone[1].set: must leave elements with the outlines and places of those of zone 2"},
+       {"[[zone]]\nrows = 2000\nevery = 9000\n" + rest, "d.toml:9: zone[1]: holds no element"},
+       {odd + "[[zone]]\nrows = 2\nevery = 2\n" + rest, "d.toml:15: zone[3]: holds no element"},
        {odd + rest + "set = [\"element.aperture_mm=30\"]\n",
         "d.toml:14: zone[2].set: array.x_length_mm: must be >= 30 to hold one element of 30 mm, got 20"}});
 }
@@ -185,6 +193,11 @@ class MaskFolder {
     std::ofstream(path_ / "right.pgm") << "P2 2 1 255\n255 0\n";
     std::ofstream(path_ / "above.pgm") << "P2 1 2 255\n0 255\n";
     std::ofstream(path_ / "light.pgm") << "P2 1 2 255\n200 255\n";
+    std::ofstream(path_ / "short.pgm") << "P2 2 2 255\n0 255\n";
+    std::ofstream(path_ / "negative.pgm") << "P2 -3 4 255\n0 255\n";
+    std::ofstream corner(path_ / "corner.pgm");
+    corner << "P2 80 40 255\n0\n";
+    for (int pixel = 1; pixel < 80 * 40; ++pixel) corner << "255\n";
   }
   ~MaskFolder() { std::filesystem::remove_all(path_); }
   MaskFolder(const MaskFolder&) = delete;
@@ -228,6 +241,12 @@ TEST(ZonedDesign, MasksThatDoNotServeAreRefused) {
   EXPECT_NE(refused(left).find("d.toml:9: zone[1]: and those before it leave "), std::string::npos) << refused(left);
   EXPECT_NE(refused(left + left).find("d.toml:11: zone[2]: holds the element at x = "), std::string::npos);
   EXPECT_EQ(refused("[[zone]]\nmask = \"light.pgm\"\n"), "d.toml:10: zone[1].mask: light.pgm: no pixel is dark enough");
+  const std::string unreadable = "cannot be read as a picture: ";
+  EXPECT_EQ(refused("[[zone]]\nmask = \"short.pgm\"\n"),
+            "d.toml:10: zone[1].mask: short.pgm: " + unreadable + "it ends early or is damaged");
+  EXPECT_EQ(refused("[[zone]]\nmask = \"negative.pgm\"\n"),
+            "d.toml:10: zone[1].mask: negative.pgm: " + unreadable + "its size is -3 x 4 pixels");
+  EXPECT_EQ(refused("[[zone]]\nmask = \"corner.pgm\"\n[[zone]]\nrest = true\n"), "d.toml:9: zone[1]: holds no element");
   EXPECT_NE(refused("[[zone]]\nmask = \"none.pgm\"\n").find("d.toml:10: zone[1].mask: "), std::string::npos);
   EXPECT_NE(refusal_of([&] {
               check_names_no_file(folder.design(left), "which nobody reads");
@@ -241,6 +260,31 @@ TEST(ZonedDesign, QuestionsOfOneKindOfElementAreRefused) {
   footprint.derivatives = true;
   EXPECT_EQ(refusal_of([&] { RreStudy({design}, footprint); }),
             "d.toml:9: zone: --derivatives takes no part of zones, only [element] and [array]");
+}
+
+TEST(ZonedDesign, StudiesVaryWhatIsAllOverThePart) {
+  const auto swept = [](const std::string& quantity) {
+    const Sweep sweep =
+        read_sweep(parse_study("design = \"d.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nvalues = [2, 3]\n"
+                               "[[quantity]]\nkind = \"" +
+                                   quantity + "\"\n[analysis]\nengine = \"exact\"\n",
+                               "study.toml", {}, 1, {{"d.toml", zoned(kHalves)}}));
+    ResultStore store("", sweep.layout(), IfExists::refuse);
+    EXPECT_TRUE(run_sweep(sweep, store, nullptr, nullptr));
+    return collect(sweep, store, true).points;
+  };
+  const auto shares = swept("rre");
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Design design =
+        with(read(kHalves), std::vector<std::string>{k == 0 ? "body.thickness_mm=2" : "body.thickness_mm=3"});
+    RreRequest request;
+    request.engine = Engine::exact;
+    ASSERT_FALSE(shares.at(k).failed) << shares[k].reason;
+    EXPECT_EQ(shares[k].outputs.at(0).value, RreStudy({design}, request).run().points.at(0).rre);
+  }
+  EXPECT_EQ(swept("entrance_area_mm2").at(0).outputs.at(0).value, 200.0);
+  EXPECT_EQ(swept("tir_limit_deg").at(0).reason,
+            "d.toml:9: zone: tir_limit_deg takes no part of zones, only [element] and [array]");
 }
 
 RreResult rre(const Design& design, Engine engine, double incidence_deg, std::optional<std::uint64_t> rays = {}) {
@@ -263,7 +307,7 @@ TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   EXPECT_EQ(inspection.elements_full, 32);
   EXPECT_EQ(inspection.zones->crossings[0].share, 0.0);
   // From facet to facet over the roof edge, by twice the distance from it: half the base on the mean.
-  for (const ZoneReport& zone : inspection.zones->zones) EXPECT_NEAR(zone.wander_mm, 0.5, 0.01);
+  for (const ZoneReport& zone : inspection.zones->zones) EXPECT_NEAR(zone.wander_mm.value(), 0.5, 0.01);
 }
 
 // Unlike cube corners under light askew: the engines agree on the part, which is what its zones are alone but for what

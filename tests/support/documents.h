@@ -62,8 +62,10 @@ inline Value some_value(const Kind& kind) {
                                                             : some_text() + std::string(either.ending));
                  },
                  [](const NumberOrNumbers& list) {
-                   return *rc::gen::arbitrary<bool>() ? Value(number_in(list.range))
-                                                      : Value(numbers_in(list.range, 1, 4));
+                   std::vector<double> numbers = numbers_in(list.range, 1, 4);
+                   if (list.is_whole)
+                     for (double& number : numbers) number = std::ceil(number);
+                   return *rc::gen::arbitrary<bool>() ? Value(numbers.front()) : Value(std::move(numbers));
                  },
                  [](const Numbers& list) { return Value(numbers_in(list.range, list.count, list.count)); },
                  [](const Terms& terms) { return Value(numbers_in({}, terms.count, terms.count)); },

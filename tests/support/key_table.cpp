@@ -61,7 +61,7 @@ std::string allowed_words(const Kind& kind) {
           [](const WordOrFile& either) {
             return fmt::format("{}, or a file that ends in {}", codes(either.words, ", "), either.ending);
           },
-          [](const NumberOrNumbers& list) { return with_range("a number or a list of numbers", list.range); },
+          [](const NumberOrNumbers& list) { return with_range(allowed(Kind(list)), list.range); },
           [](const Pairs& pairs) { return fmt::format("a list of pairs `{}`", pairs.shape); },
           [](const Numbers& list) { return with_range(fmt::format("{} numbers", list.count), list.range); },
           [](const Terms& terms) { return fmt::format("a list of numbers, {} for each term", terms.count); },

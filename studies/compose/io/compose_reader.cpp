@@ -9,6 +9,7 @@
 #include "core/number_format.h"
 #include "studies/compose/cell_errors.h"
 #include "studies/quantity/io/constraint_reader.h"
+#include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -69,6 +70,17 @@ void check_parameters(const Study& study) {
       throw InputError(parameter.location, "a distribution is no family of cells: give values, or from and to");
 }
 
+/// Cells are of one kind of element each. What cannot be made at all is told of its point.
+void check_cells(const Study& study) {
+  std::optional<Candidate> cell;
+  try {
+    cell = make_candidate(study, some_values(study));
+  } catch (const InputError&) {
+    return;
+  }
+  check_taken(cell->design(), {.what = "retrace compose", .wet_backs = true});
+}
+
 /// \throw InputError where cells have no angles between facets
 std::optional<ErrorSpread> read_errors(const Document& document, const Study& study) {
   const auto cells = document.number_if("compose.cell_sigma_arcmin");
@@ -94,6 +106,7 @@ ComposeRequest read_compose(const Study& study) {
   const Document& document = *study.document;
   if (!document.has("compose")) document.fail("compose", "missing, must be a table that says what to maximize");
   check_parameters(study);
+  check_cells(study);
   ComposeRequest request;
   request.goals = read_goals(document, study);
   request.of_cells = read_constraints(study, ConstraintOver::cell);

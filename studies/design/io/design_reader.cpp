@@ -376,7 +376,7 @@ void check_taken(const Design& design, const Takes& takes) {
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
   return resolved(std::make_shared<const Document>(
-      schema::read_document(design_format(), text, source_name, kShortTomlBytes, overrides)));
+      schema::read_document(design_format(), text, source_name, kMostDesignBytes, overrides)));
 }
 
 Design with(const Design& design, std::span<const std::string> overrides) {
@@ -396,7 +396,7 @@ constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",   "arra
 
 std::vector<fs::path> files_named(std::string_view text, const std::string& source_name,
                                   std::span<const std::string> overrides) {
-  const Document document = schema::unchecked_names(design_format(), text, source_name, kShortTomlBytes, overrides);
+  const Document document = schema::unchecked_names(design_format(), text, source_name, kMostDesignBytes, overrides);
   const std::vector<fs::path> all = document.files();
   std::vector<fs::path> files;
   const auto add = [&](const fs::path& file) {
@@ -409,7 +409,7 @@ std::vector<fs::path> files_named(std::string_view text, const std::string& sour
 }
 
 std::string read_toml_text(const fs::path& file) {
-  return file == "-" ? read_standard_input(kShortTomlBytes) : read_file(file, kShortTomlBytes);
+  return file == "-" ? read_standard_input(kMostDesignBytes) : read_file(file, kMostDesignBytes);
 }
 
 Design read_design(const fs::path& file, std::span<const std::string> overrides) {

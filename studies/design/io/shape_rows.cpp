@@ -156,14 +156,14 @@ constexpr Condition kBesideMask[] = {beside("mask")};
 constexpr Row kZoneRows[] = {
     {"share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
      "Of the part's area, as a stripe over its whole height; stripes stand side by side along x, in their order, and "
-     "their shares add to 1."},
+     "their shares add to 1, to 1e-6."},
     {"rectangles_mm", NumberRows{4, kPlace, 1, 1000, "rectangles"}, kNone,
      "`[[x_from, y_from, x_to, y_to], ...]`: rectangles of the part's plan, each with an array of its own."},
     {"polygon_mm", NumberRows{2, kPlace, 3, 100, "points"}, kNone,
      "`[[x, y], ...]`: the corners of a convex polygon of the part's plan."},
-    {"rows", NumberOrNumbers{kLines}, kNone,
+    {"rows", NumberOrNumbers{kLines, true}, kNone,
      "Elements of the array all over the part: those of these rows along x, counted from 1, that of least y."},
-    {"columns", NumberOrNumbers{kLines}, kNone, "Likewise those of these columns along y, counted from least x."},
+    {"columns", NumberOrNumbers{kLines, true}, kNone, "Likewise those of these columns along y, counted from least x."},
     {"every", Whole{kLines}, kNone, "Rows, or columns, are counted from 1 again after so many.", kBesideLines},
     {"mask", File{"a picture"}, kNone,
      "A picture that covers the part, row 0 at largest y: the elements whose centroids its dark pixels hold."},
@@ -172,8 +172,7 @@ constexpr Row kZoneRows[] = {
     {"rest", Flag{}, kNone, "true: all elements that are of no other zone."},
     {"rotation_deg", Number{kAzimuth}, 0.0,
      "By which its elements are turned in the plane, from +x towards +y, about the middle of the region's box; of "
-     "rows, "
-     "columns, masks and the rest each about its own centroid, to the same outline."},
+     "rows, columns, masks and the rest each about its own centroid, to the same outline."},
     {"set", Texts{}, kNone,
      "`[\"KEY=VALUE\", ...]`: what is other than the design says, as with `--set`: keys of `[element]`, of `[array]` "
      "but for extent, lengths, margins and mask, and angles and edges of `[surface]`."}};

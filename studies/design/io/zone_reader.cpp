@@ -83,12 +83,13 @@ std::string text_without_elements(const Document& document) {
                      shortest(document.number("body.thickness_mm")));
 }
 
-/// The design as it is all over a zone.
+/// The design as it is all over a zone. No kind's word holds another's.
 Document document_of_zone(const Document& document, std::size_t zone) {
   const std::string key = entry_of(zone) + ".set";
   const auto changes = document.has(key) ? document.texts(key) : std::vector<std::string>();
-  const bool is_of_another_kind =
-      std::ranges::any_of(changes, [](const std::string& change) { return key_of(change) == "element.kind"; });
+  const bool is_of_another_kind = std::ranges::any_of(changes, [&](const std::string& change) {
+    return key_of(change) == "element.kind" && change.find(document.text("element.kind")) == std::string::npos;
+  });
   try {
     Document changed = is_of_another_kind ? schema::read_document(design_format(), text_without_elements(document),
                                                                   document.source(), kMostSetBytes, changes)
@@ -165,11 +166,7 @@ void read_regions(const Document& document, geometry::ZonedSpec& spec) {
 }
 
 std::vector<double> lines_of(const Document& document, const std::string& key) {
-  if (!document.has(key)) return {};
-  std::vector<double> lines = document.numbers(key);
-  for (const double line : lines)
-    if (line != std::floor(line)) document.fail(key, fmt::format("must be whole numbers, got {}", shortest(line)));
-  return lines;
+  return document.has(key) ? document.numbers(key) : std::vector<double>();
 }
 
 ElementsOfZone elements_of(const Document& document, const std::string& zone) {
@@ -180,7 +177,8 @@ ElementsOfZone elements_of(const Document& document, const std::string& zone) {
   if (const std::string mask = zone + ".mask"; document.has(mask))
     chosen.mask = {document.text(mask), document.file(mask), document.number(zone + ".mask_threshold")};
   chosen.rest = document.has(zone + ".rest");
-  if (chosen.rest && !document.flag(zone + ".rest")) document.fail(zone + ".rest", "must be true where it is given");
+  if (chosen.rest && !document.flag(zone + ".rest"))
+    document.fail(zone + ".rest", "must be true where it is given, got false");
   return chosen;
 }
 
@@ -294,7 +292,7 @@ ZonedPart read_zones(const Document& document) {
                                      kMostElements, elements));
   if (part.spec.is_by_cell) read_cells(document, part);
   if (part.has_masks()) return part;
-  if (const auto fault = geometry::fault_of_zones(part.spec)) document.fail(entry_of(fault->zone), fault->text);
+  check_zones(part, [&](const std::string& key) { return document.where(key); });
   return part;
 }
 

@@ -247,9 +247,11 @@ std::string zones_text(const Inspection& i) {
     std::string changes;
     for (const std::string& change : i.design.zoned()->changes[k]) changes += "; " + change;
     const double turn_deg = i.design.zoned()->spec.zones[k].rotation_deg;
-    text += fmt::format("  {:<20}{} %, {} full elements, {} cut, light wanders {} mm{}{}\n",
-                        fmt::format("zone {}", k + 1), fixed(100.0 * zone.elements.area_mm2 / i.entrance_area_mm2, 3),
-                        zone.elements.full, zone.elements.partial, fixed(zone.wander_mm, 4),
+    std::string wander;
+    if (zone.wander_mm) wander = fmt::format(", light wanders {} mm", fixed(*zone.wander_mm, 4));
+    text += fmt::format("  {:<20}{} %, {} full elements, {} cut{}{}{}\n", fmt::format("zone {}", k + 1),
+                        fixed(100.0 * zone.elements.area_mm2 / i.entrance_area_mm2, 3), zone.elements.full,
+                        zone.elements.partial, wander,
                         turn_deg != 0.0 ? fmt::format("; turned by {}", shortest(turn_deg)) : "", printable(changes));
   }
   for (const ZoneCrossing& crossing : i.zones->crossings)
@@ -261,11 +263,12 @@ std::string zones_text(const Inspection& i) {
 nlohmann::ordered_json zones_json(const ZonesReport& report) {
   nlohmann::ordered_json json = {{"zones", nlohmann::ordered_json::array()},
                                  {"meets_two_zones", nlohmann::ordered_json::array()}};
-  for (const ZoneReport& zone : report.zones)
+  for (const ZoneReport& zone : report.zones) {
     json["zones"].push_back({{"area_mm2", zone.elements.area_mm2},
                              {"elements_full", zone.elements.full},
-                             {"elements_partial", zone.elements.partial},
-                             {"wander_mm", zone.wander_mm}});
+                             {"elements_partial", zone.elements.partial}});
+    if (zone.wander_mm) json["zones"].back()["wander_mm"] = *zone.wander_mm;
+  }
   for (const ZoneCrossing& crossing : report.crossings)
     json["meets_two_zones"].push_back({{"incidence_deg", crossing.incidence_deg}, {"share", crossing.share}});
   return json;

@@ -215,11 +215,11 @@ std::string fingerprints(const std::vector<fs::path>& files) {
 std::vector<std::pair<std::string, std::string>> parts_of(const Study& study, const std::vector<fs::path>& named) {
   std::vector<std::pair<std::string, std::string>> parts;
   const Document::Origin& origin = study.document->origin();
-  const TomlTable as_given = parse_toml(origin.text, study.source, kShortTomlBytes, origin.overrides);
+  const TomlTable as_given = parse_toml(origin.text, study.source, kMostDesignBytes, origin.overrides);
   for (const std::string_view key : kParts) parts.emplace_back(key, as_given.as_json(key));
   std::string designs;
   for (const auto& [file, text] : study.design_texts)
-    designs += fs::path(file).filename().string() + " " + parse_toml(text, file, kShortTomlBytes).as_json() + "\n";
+    designs += fs::path(file).filename().string() + " " + parse_toml(text, file, kMostDesignBytes).as_json() + "\n";
   parts.emplace_back("the design", designs);
   parts.emplace_back("a file of the design", fingerprints(named));
   parts.emplace_back("--set", fmt::format("{}", fmt::join(study.overrides, "\n")));
@@ -250,7 +250,7 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
                   std::uint32_t seed, const FileTexts& designs) {
   Study study;
   study.document = std::make_shared<const Document>(
-      schema::read_document(study_format(), text, source_name, kShortTomlBytes, overrides_for(overrides, true)));
+      schema::read_document(study_format(), text, source_name, kMostDesignBytes, overrides_for(overrides, true)));
   const Document& document = *study.document;
   study.source = source_name;
   study.overrides.assign(overrides.begin(), overrides.end());
@@ -292,7 +292,7 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
   const std::vector<std::string> as_cut = surface_overrides(machining);
   texts.for_design.insert(texts.for_design.begin(), as_cut.begin(), as_cut.end());
   const Design varied = parse_design(study.design_texts.at(texts.design), texts.design, texts.for_design);
-  check_taken(varied, {.what = "a study", .wet_backs = true});
+  check_taken(varied, {.what = "a study", .solids = true, .wet_backs = true});
   return {varied, analysis_of(document, study.seed), machining};
 }
 

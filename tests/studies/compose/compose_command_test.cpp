@@ -96,6 +96,9 @@ TEST(ComposeCommand, RefusesPartsOfZonesThatMeanNothing) {
       refused({"--design", "part.toml", "--x-length-mm", "1", "--y-length-mm", "1"}),
       "retrace: --design: array.x_length_mm: must be >= 1.632993161855452 to hold one element of 1.632993161855452 "
       "mm, got 1\n");
+  for (const std::string name : {"out/zone_1.toml", "out/composition.json"})
+    EXPECT_EQ(refused({"--design", name, "--x-length-mm", "90", "--y-length-mm", "60"}),
+              "retrace: --design: " + name + " is a file that --out writes; give another name\n");
   folder.write("study.toml", "design = \"" + example("honeycomb_infinite.toml") +
                                  "\"\n[[parameter]]\nkey = \"body.back_index\"\nfrom = 1\nto = 1.1\n"
                                  "[[quantity]]\nkind = \"rre\"\nname = \"g\"\nincidence_deg = 35\n"
@@ -144,6 +147,18 @@ TEST(ComposeCommand, RefusesWhatMeansNothing) {
   refused(study("most_share = 2\n"), "study.toml:24: compose.most_share: must be");
   refused(study("worst_share = 0.1\n"), "study.toml:24: compose.worst_share: needs cell_sigma_arcmin or");
   refused(study("price = {hours = 1}\n"), "study.toml:24: compose.price.hours: must be");
+}
+
+TEST(ComposeCommand, CellsAreOfOneKindOfElement) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", "design = \"" + example("zoned_reflector.toml") +
+                                 "\"\n[[parameter]]\nkey = \"element.cant_deg\"\nfrom = 0\nto = 1\n"
+                                 "[[quantity]]\nkind = \"rre\"\nname = \"g\"\n[compose]\nmaximize = \"g\"\n");
+  const Outcome outcome = retrace(folder, compose());
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("zone: retrace compose takes no part of zones, only [element] and [array]"),
+            std::string::npos)
+      << outcome.err;
 }
 
 TEST(ComposeCommand, EndsSoonWhenItIsInterrupted) {
