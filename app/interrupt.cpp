@@ -8,7 +8,7 @@
 
 #include "app/progress_bar.h"
 #include "core/error.h"
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 
 namespace retrace::app {
 namespace {
@@ -56,7 +56,7 @@ OrderlyInterrupt::~OrderlyInterrupt() {
 
 void OrderlyInterrupt::run(std::optional<unsigned> threads,
                            const std::function<void(const Cancellation*)>& work) const {
-  raytrace::run_with_threads(threads.value_or(0), [&] { work(&cancellation_asked); });
+  run_with_threads(threads.value_or(0), [&] { work(&cancellation_asked); });
   set_deadline(kNever);
 }
 

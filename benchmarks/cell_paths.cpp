@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "benchmarks/scenes.h"
+#include "core/threads.h"
 #include "raytrace/paths/monte_carlo.h"
-#include "raytrace/sampling/threads.h"
 
 namespace retrace::benchmarks::cell_paths_benchmark {
 namespace {
@@ -26,7 +26,7 @@ void endless_paths(benchmark::State& state) {
   sampling.rays = is_cell ? 1U << 20 : 1U << 17;
   double segments = 0.0;
   double paths = 0.0;
-  raytrace::run_with_threads(static_cast<unsigned>(state.range(3)), [&] {
+  run_with_threads(static_cast<unsigned>(state.range(3)), [&] {
     for (auto _ : state) {
       const auto result = tracer.trace(
           optics, {Angle::from_deg(static_cast<double>(state.range(1))), Angle::from_deg(10.0)}, {0.5}, sampling, {});

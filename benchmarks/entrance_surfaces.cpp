@@ -4,10 +4,10 @@
 #include <cmath>
 #include <memory>
 
+#include "core/threads.h"
 #include "geometry/entrance/entrance_mesh.h"
 #include "geometry/part/plate.h"
 #include "raytrace/paths/monte_carlo.h"
-#include "raytrace/sampling/threads.h"
 #include "tests/support/entrance_surfaces.h"
 
 namespace retrace::benchmarks::fronts_benchmark {
@@ -48,7 +48,7 @@ void entrance_paths(benchmark::State& state) {
   sampling.rays = 1U << 16;
   double paths = 0.0;
   double segments = 0.0;
-  raytrace::run_with_threads(1, [&] {
+  run_with_threads(1, [&] {
     for (auto _ : state) {
       const auto result = tracer.trace(optics, {Angle::from_deg(10.0), {}}, {0.5}, sampling, {});
       paths += static_cast<double>(result.rays);

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/progress.h"
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::benchmarks {
@@ -47,7 +47,7 @@ struct Timed {
 inline Timed timed(const studies::Design& design, const studies::RreRequest& request, double most_s) {
   const studies::RreStudy study({design}, request);
   Timed result;
-  raytrace::run_with_threads(1, [&] {
+  run_with_threads(1, [&] {
     const Deadline deadline(most_s);
     const std::clock_t start = std::clock();
     const studies::RreResult found = study.run(nullptr, &deadline.cancellation);

@@ -8,9 +8,9 @@
 
 #include "benchmarks/raw_embree.h"
 #include "benchmarks/scenes.h"
+#include "core/threads.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/paths/monte_carlo.h"
-#include "raytrace/sampling/threads.h"
 
 namespace retrace::benchmarks {
 
@@ -169,7 +169,7 @@ void whole_paths(benchmark::State& state) {
   sampling.rays = 1U << 17;
   double segments = 0.0;
   double paths = 0.0;
-  raytrace::run_with_threads(static_cast<unsigned>(state.range(2)), [&] {
+  run_with_threads(static_cast<unsigned>(state.range(2)), [&] {
     for (auto _ : state) {
       const auto result =
           tracer.trace(optics, {Angle::from_deg(static_cast<double>(state.range(1))), {}}, {0.5}, sampling, {});

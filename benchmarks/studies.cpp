@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
+#include "core/threads.h"
 #include "core/version.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_reader.h"
 #include "studies/sweep/mpi_session.h"
@@ -83,8 +83,8 @@ void exact_points(benchmark::State& state) {
   const studies::Sweep sweep = studies::read_sweep(study_of(4000));
   for (auto _ : state) {
     TemporaryStore temporary(sweep);
-    raytrace::run_with_threads(static_cast<unsigned>(state.range(0)),
-                               [&] { studies::run_sweep(sweep, temporary.store(), nullptr, nullptr); });
+    run_with_threads(static_cast<unsigned>(state.range(0)),
+                     [&] { studies::run_sweep(sweep, temporary.store(), nullptr, nullptr); });
   }
   state.counters["points/s"] =
       benchmark::Counter(4000.0 * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
@@ -103,7 +103,7 @@ void store_overhead(benchmark::State& state) {
     without_s += seconds_since(start);
     TemporaryStore temporary(sweep);
     start = Clock::now();
-    raytrace::run_with_threads(1, [&] { studies::run_sweep(sweep, temporary.store(), nullptr, nullptr); });
+    run_with_threads(1, [&] { studies::run_sweep(sweep, temporary.store(), nullptr, nullptr); });
     with_s += seconds_since(start);
   }
   state.counters["overhead_percent"] = 100.0 * (with_s / without_s - 1.0);

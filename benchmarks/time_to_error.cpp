@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "benchmarks/scenes.h"
+#include "core/threads.h"
 #include "raytrace/exact/scattered_rays.h"
 #include "raytrace/exact/stochastic_beams.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/paths/monte_carlo.h"
-#include "raytrace/sampling/threads.h"
 
 namespace retrace::benchmarks::time_to_error_benchmark {
 namespace {
@@ -74,7 +74,7 @@ void time_to_error(benchmark::State& state) {
   const raytrace::Illumination light{Angle::from_deg(static_cast<double>(state.range(1))), Angle::from_deg(10.0)};
   double std_error = 0.0;
   const auto start = std::chrono::steady_clock::now();
-  raytrace::run_with_threads(static_cast<unsigned>(state.range(4)), [&] {
+  run_with_threads(static_cast<unsigned>(state.range(4)), [&] {
     const MonteCarlo tracer(scene.part, way == kCell ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree);
     for (auto _ : state)
       std_error = way == kStochastic ? stochastic_error(scene.part, optics, light, sampling)

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/threads.h"
 #include "library/content.h"
 #include "library/drawing_content.h"
 #include "materials/io/spectrum_reader.h"
-#include "raytrace/sampling/threads.h"
 #include "report/io/picture_file.h"
 #include "report/results/result_plots.h"
 #include "studies/image/io/image_documents.h"
@@ -79,7 +79,7 @@ studies::RoadRequest to_study(const RoadRequest& request) {
 /// What all kinds of picture have in common, but for the pictures.
 template <class Study, class Result>
 void run(const Study& study, const Running& running, Result& found, ImageResult& result) {
-  raytrace::run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
+  run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
   result.warnings = found.warnings;
   result.complete = found.complete;
 }

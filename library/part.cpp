@@ -3,8 +3,8 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/message_text.h"
+#include "core/threads.h"
 #include "library/content.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/appearance/io/appearance_files.h"
 #include "studies/solids/io/solid_files.h"
 #include "studies/solids/solids.h"
@@ -62,7 +62,7 @@ MaterialResult export_material(const Design& design, const std::filesystem::path
   of_study.error = request.error;
   of_study.most_directions = request.most_directions;
   studies::AppearanceResult found;
-  raytrace::run_with_threads(running.threads, [&] {
+  run_with_threads(running.threads, [&] {
     found = studies::compute_appearance(design.content().design, of_study, running.progress, running.cancellation);
   });
   MaterialResult result;

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <utility>
 
+#include "core/threads.h"
 #include "library/content.h"
 #include "library/drawing_content.h"
-#include "raytrace/sampling/threads.h"
 #include "report/results/result_plots.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/io/standard_reader.h"
@@ -59,7 +59,7 @@ PhotometryResult photometry(const Design& design, const PhotometryRequest& reque
   const studies::PhotometryStudy study(design.content().design, to_study(design, request));
   const auto held = std::make_shared<studies::PhotometryResult>();
   studies::PhotometryResult& found = *held;
-  raytrace::run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
+  run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
   PhotometryResult result;
   for (const studies::PhotometricPoint& point : found.points) result.points.push_back(from_study(point));
   result.verdict = studies::verdict_name(found.verdict);

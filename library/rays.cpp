@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "core/threads.h"
 #include "library/content.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/rays/io/ray_documents.h"
 #include "studies/rays/io/ray_files.h"
 #include "studies/rays/ray_accounts.h"
@@ -61,8 +61,8 @@ RaysResult rays(const Design& design, const RaysRequest& request, const Running&
   std::unique_ptr<studies::RaySink> sink;
   if (!request.out.empty()) sink = studies::make_ray_file(request.out, "out");
   studies::RayResult found;
-  raytrace::run_with_threads(running.threads,
-                             [&] { found = study.run(*source, sink.get(), running.progress, running.cancellation); });
+  run_with_threads(running.threads,
+                   [&] { found = study.run(*source, sink.get(), running.progress, running.cancellation); });
   found.source_name = request.source.string();
   found.emitter = emitter;
   found.out_name = request.out.string();
@@ -86,8 +86,7 @@ TracedRays trace(const Design& design, const RayArrays& rays, const TraceRequest
   studies::ArraySource source({rays.origins_mm, rays.directions, rays.stokes, rays.axes, rays.wavelengths_nm});
   studies::ArraySink sink;
   studies::RayResult found;
-  raytrace::run_with_threads(running.threads,
-                             [&] { found = study.run(source, &sink, running.progress, running.cancellation); });
+  run_with_threads(running.threads, [&] { found = study.run(source, &sink, running.progress, running.cancellation); });
   TracedRays result;
   result.origins_mm = std::move(sink.origins_mm);
   result.directions = std::move(sink.directions);

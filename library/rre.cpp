@@ -3,9 +3,9 @@
 #include <memory>
 #include <utility>
 
+#include "core/threads.h"
 #include "library/content.h"
 #include "library/drawing_content.h"
-#include "raytrace/sampling/threads.h"
 #include "report/results/result_plots.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
@@ -55,7 +55,7 @@ RreResult rre(const std::vector<Design>& designs, const RreRequest& request, con
   const studies::RreStudy study(std::move(of_study), to_study(request));
   const auto held = std::make_shared<studies::RreResult>();
   studies::RreResult& found = *held;
-  raytrace::run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
+  run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
   RreResult result;
   for (const studies::RrePoint& point : found.points) result.points.push_back(from_study(point));
   result.warnings = found.warnings;

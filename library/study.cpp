@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/message_text.h"
+#include "core/threads.h"
 #include "library/drawing_content.h"
-#include "raytrace/sampling/threads.h"
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/optimise/io/optimise_reader.h"
@@ -62,8 +62,8 @@ studies::SweepResult carried_out(Swept& held, const StudyRequest& request, const
   studies::ResultStore store(request.store, held.sweep.layout(), if_exists_of(request));
   Share share(running.progress);
   bool complete = false;
-  raytrace::run_with_threads(running.threads,
-                             [&] { complete = studies::run_sweep(held.sweep, store, &share, running.cancellation); });
+  run_with_threads(running.threads,
+                   [&] { complete = studies::run_sweep(held.sweep, store, &share, running.cancellation); });
   studies::SweepResult result = studies::collect(held.sweep, store, complete);
   result.elapsed_s = seconds_since(start);
   return result;
@@ -113,8 +113,8 @@ StudyResult optimize(const Study& study, const StudyRequest& request, const Runn
   const studies::OptimiseRequest asked = studies::read_optimise(of_study);
   studies::ResultStore store(request.store, studies::optimise_layout(of_study), if_exists_of(request));
   studies::Optimum optimum;
-  raytrace::run_with_threads(
-      running.threads, [&] { optimum = studies::optimise(of_study, asked, store, nullptr, running.cancellation); });
+  run_with_threads(running.threads,
+                   [&] { optimum = studies::optimise(of_study, asked, store, nullptr, running.cancellation); });
   StudyResult result;
   result.complete = optimum.complete;
   result.is_yes = optimum.best.has_value();

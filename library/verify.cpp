@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "core/atomic_file.h"
+#include "core/threads.h"
 #include "library/drawing_content.h"
-#include "raytrace/sampling/threads.h"
 #include "report/results/result_plots.h"
 #include "studies/closed_loop/as_machined.h"
 #include "studies/closed_loop/io/verification_files.h"
@@ -38,7 +38,7 @@ Verification verify(const VerificationRequest& request, const Running& running) 
                                                  request.tolerance_nm, request.standing, request.texts};
   const auto held = std::make_shared<Verification::Content>();
   studies::VerificationRun& run = held->run;
-  raytrace::run_with_threads(running.threads, [&] { run = studies::run_verification(of_study, running.cancellation); });
+  run_with_threads(running.threads, [&] { run = studies::run_verification(of_study, running.cancellation); });
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!request.as_machined.empty()) write_as_machined(run, request.as_machined);
   Verification result;

@@ -9,11 +9,11 @@
 #include "app/output.h"
 #include "app/shared_arguments.h"
 #include "core/message_text.h"
+#include "core/threads.h"
 #include "core/toml_file.h"
 #include "fabrication/check/io/program_files.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/read/nc_program.h"
-#include "raytrace/sampling/threads.h"
 #include "report/results/result_plots.h"
 #include "studies/closed_loop/as_machined.h"
 #include "studies/closed_loop/io/verification_files.h"
@@ -66,7 +66,7 @@ template <class Study>
 auto timed(const CommonOptions& common, double& elapsed_s, const Study& study) {
   std::optional<decltype(study())> run;
   const auto start = std::chrono::steady_clock::now();
-  raytrace::run_with_threads(common.threads.value_or(0), [&] { run = study(); });
+  run_with_threads(common.threads.value_or(0), [&] { run = study(); });
   elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return *std::move(run);
 }

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "core/random.h"
+#include "core/threads.h"
 #include "raytrace/exact/beam_generation.h"
 #include "raytrace/exact/beam_walk.h"
 #include "raytrace/sampling/replicate_means.h"
-#include "raytrace/sampling/threads.h"
 
 namespace retrace::raytrace {
 namespace {

@@ -1,7 +1,6 @@
 #include "raytrace/faces/height_field.h"
 #include "core/infinity.h"
-
-#include <tbb/parallel_for.h>
+#include "core/threads.h"
 
 #include <algorithm>
 #include <array>
@@ -52,21 +51,20 @@ void HeightField::make_cells(const geometry::Polygon& outline, int cells) {
   cell_mm_ = box.size().cwiseQuotient(Vec2(columns_, rows_));
   const auto across = static_cast<std::size_t>(columns_) + 1;
   std::vector<EntranceSurface::Place> nodes(across * (static_cast<std::size_t>(rows_) + 1));
-  tbb::parallel_for(0, rows_ + 1, [&](int j) {
+  for_each_in_parallel(static_cast<std::size_t>(rows_) + 1, [&](std::size_t j) {
     for (int i = 0; i <= columns_; ++i)
-      nodes[static_cast<std::size_t>(j) * across + static_cast<std::size_t>(i)] =
-          at(lower_.x() + i * cell_mm_.x(), lower_.y() + j * cell_mm_.y());
+      nodes[j * across + static_cast<std::size_t>(i)] =
+          at(lower_.x() + i * cell_mm_.x(), lower_.y() + static_cast<double>(j) * cell_mm_.y());
   });
   cells_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), {});
-  tbb::parallel_for(0, rows_, [&](int j) {
+  for_each_in_parallel(static_cast<std::size_t>(rows_), [&](std::size_t j) {
     for (int i = 0; i < columns_; ++i) {
-      const std::size_t n = static_cast<std::size_t>(j) * across + static_cast<std::size_t>(i);
-      const EntranceSurface::Place within =
-          at(lower_.x() + (i + kWithinX) * cell_mm_.x(), lower_.y() + (j + kWithinY) * cell_mm_.y());
+      const std::size_t n = j * across + static_cast<std::size_t>(i);
+      const EntranceSurface::Place within = at(lower_.x() + (i + kWithinX) * cell_mm_.x(),
+                                               lower_.y() + (static_cast<double>(j) + kWithinY) * cell_mm_.y());
       const std::array<const EntranceSurface::Place*, 5> places = {&nodes[n], &nodes[n + 1], &nodes[n + across],
                                                                    &nodes[n + across + 1], &within};
-      cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)] =
-          cell_between(places);
+      cells_[j * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)] = cell_between(places);
     }
   });
 }

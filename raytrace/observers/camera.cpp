@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/infinity.h"
 #include "core/random.h"
+#include "core/threads.h"
 #include "raytrace/cells/cell_walker.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/light/exit_observer.h"
@@ -19,7 +20,6 @@
 #include "raytrace/sampling/entrance_sampler.h"
 #include "raytrace/sampling/flush_denormals.h"
 #include "raytrace/sampling/sobol.h"
-#include "raytrace/sampling/threads.h"
 
 namespace retrace::raytrace {
 namespace {

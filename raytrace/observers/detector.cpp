@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "core/threads.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/ledger.h"
@@ -13,7 +14,6 @@
 #include "raytrace/sampling/flush_denormals.h"
 #include "raytrace/sampling/replicates.h"
 #include "raytrace/sampling/sobol.h"
-#include "raytrace/sampling/threads.h"
 
 namespace retrace::raytrace {
 namespace {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/threads.h"
 #include "raytrace/cells/cell_walker.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/paths/path_tracer.h"
@@ -14,7 +15,6 @@
 #include "raytrace/sampling/flush_denormals.h"
 #include "raytrace/sampling/replicates.h"
 #include "raytrace/sampling/sobol.h"
-#include "raytrace/sampling/threads.h"
 
 namespace retrace::raytrace {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/threads.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/paths/path_tracer.h"
 #include "raytrace/sampling/entrance_sampler.h"
 #include "raytrace/sampling/flush_denormals.h"
-#include "raytrace/sampling/threads.h"
 
 namespace retrace::raytrace {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "core/threads.h"
 #include "raytrace/light/ledger.h"
-#include "raytrace/sampling/threads.h"
 
 namespace retrace::raytrace {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 #include "studies/optimise/evaluator.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/sweep.h"
@@ -64,7 +64,7 @@ std::vector<std::vector<double>> goals_with_errors(const Study& study, const Com
                                                    const Cancellation* cancel) {
   const std::vector<double> own = own_errors(study, cell.values);
   std::vector<std::optional<StoredPoint>> points(errors_arcmin.size());
-  raytrace::for_each_in_parallel(points.size(), [&](std::size_t k) {
+  for_each_in_parallel(points.size(), [&](std::size_t k) {
     std::vector<double> errors = own;
     for (std::size_t angle = 0; angle < errors.size(); ++angle) errors[angle] += errors_arcmin[k][angle];
     points[k] = compute_point(with_errors(study, errors), 0, cell.values, cancel);

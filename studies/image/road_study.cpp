@@ -12,8 +12,8 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "core/threads.h"
 #include "raytrace/observers/photometric_geometry.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
@@ -186,7 +186,7 @@ void draw_road(const RoadScene& s, const RoadRequest& r, RoadView& view) {
   const Vec2 level(half_columns, middle_row);
   view.luminance.assign(r.columns * r.rows, 0.0);
   view.coloured.assign(r.columns * r.rows, 0.0);
-  raytrace::for_each_in_parallel(r.rows, [&](std::size_t row) {
+  for_each_in_parallel(r.rows, [&](std::size_t row) {
     for (std::size_t column = 0; column < r.columns; ++column) {
       Seen sum;
       for (int k = 0; k < kFiner * kFiner; ++k) {

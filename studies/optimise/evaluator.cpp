@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/number_format.h"
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/sweep.h"
 
@@ -53,7 +53,7 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
     number[k] = found != stored_.end() ? found->second.point : next_++;
   }
   std::vector<std::optional<StoredPoint>> points(open.size());
-  raytrace::for_each_in_parallel(open.size(), [&](std::size_t k) {
+  for_each_in_parallel(open.size(), [&](std::size_t k) {
     const auto found = stored_.find(keys[k]);
     if (found != stored_.end()) {
       points[k] = found->second;

@@ -5,10 +5,10 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "core/threads.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/faces/mirror_symmetry.h"
 #include "raytrace/observers/coefficients.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/design/part_of_design.h"
 
 namespace retrace::studies {
@@ -116,7 +116,7 @@ Design dyed(Design design, const PhotometryRequest& request) {
 void for_each_told(std::size_t count, Progress* progress, const std::function<void(std::size_t)>& work) {
   std::mutex mutex;
   double done = 0.0;
-  raytrace::for_each_in_parallel(count, [&](std::size_t k) {
+  for_each_in_parallel(count, [&](std::size_t k) {
     work(k);
     const std::lock_guard lock(mutex);
     done += 1.0;

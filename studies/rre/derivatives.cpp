@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/schema/writer.h"
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 #include "studies/design/io/design_reader.h"
 
 namespace retrace::studies {
@@ -272,7 +272,7 @@ std::optional<std::vector<std::vector<RreDerivative>>> rre_derivatives(const Tra
   const std::vector<RreParameter> parameters = parameters_of(at.design);
   std::vector<std::vector<RreDerivative>> by_parameter(parameters.size());
   std::atomic<bool> cancelled{false};
-  raytrace::for_each_in_parallel(parameters.size(), [&](std::size_t k) {
+  for_each_in_parallel(parameters.size(), [&](std::size_t k) {
     try {
       by_parameter[k] = derivatives_by(parameters[k], at, cancel);
     } catch (const Cancelled&) {

@@ -5,11 +5,11 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "core/threads.h"
 #include "raytrace/balls/ball_tracer.h"
 #include "raytrace/exact/scattered_rays.h"
 #include "raytrace/exact/stochastic_beams.h"
 #include "raytrace/faces/back_surface.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/rre/beam_race.h"
 #include "studies/rre/beam_tracing.h"
 
@@ -293,7 +293,7 @@ void DirectionTracing::trace(std::vector<Direction>& directions, Progress* progr
       return is_traced;
     };
     const std::size_t units = static_cast<std::size_t>(last - first) * wavelengths;
-    if (tracing.takes_several()) raytrace::for_each_in_parallel(units, trace_unit);
+    if (tracing.takes_several()) for_each_in_parallel(units, trace_unit);
     for (std::size_t k = 0; !tracing.takes_several() && k < units; ++k)
       if (!trace_unit(k)) return;
     if (request_.incidence_spans.empty()) tracings_[d].reset();

@@ -17,7 +17,7 @@
 
 #include "core/error.h"
 #include "core/leading_number.h"
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 #include "studies/sweep/mpi_mailbox.h"
 
 namespace retrace::studies {
@@ -256,7 +256,7 @@ class OwnShare {
     while (!stop_ && !is_cancelled(cancel)) {
       const std::vector<std::uint64_t> tasks = dealer.take(0, slots);
       if (tasks.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      raytrace::for_each_in_parallel(tasks.size(), [&](std::size_t k) {
+      for_each_in_parallel(tasks.size(), [&](std::size_t k) {
         if (const auto bytes = compute(tasks[k], cancel)) dealer.finish(tasks[k], *bytes);
       });
     }
@@ -347,7 +347,7 @@ void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Canc
     // tasks are left with rank 0 until some rank is idle.
     if (is_quick) ask();
     const auto start = Clock::now();
-    raytrace::for_each_in_parallel(tasks.size(), [&](std::size_t k) {
+    for_each_in_parallel(tasks.size(), [&](std::size_t k) {
       if (const auto bytes = compute(tasks[k], cancel))
         state.mailbox->post(0, Tag::result, bytes_of_result(tasks[k], *bytes));
     });

@@ -11,8 +11,8 @@
 #include <thread>
 #include <utility>
 
+#include "core/threads.h"
 #include "core/version.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies {
@@ -197,7 +197,7 @@ std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& point
                      SweepCount& count, const Cancellation* cancel) {
   std::atomic<std::size_t> next{0};
   std::atomic<std::size_t> computed{0};
-  raytrace::for_each_in_parallel(points.size(), [&](std::size_t) {
+  for_each_in_parallel(points.size(), [&](std::size_t) {
     // In the order of their numbers, whatever pieces the threads were given.
     const std::uint64_t number = points[next.fetch_add(1)];
     if (is_cancelled(cancel) || !store.claim(number)) return;

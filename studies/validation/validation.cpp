@@ -1,14 +1,11 @@
 #include "studies/validation/validation.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <mutex>
 
+#include "core/threads.h"
 #include "studies/validation/rows.h"
 
 namespace retrace::studies {
@@ -35,20 +32,15 @@ ValidationResult validate(const std::vector<ValidationRow>& rows, Progress* prog
   std::vector<std::optional<double>> computed(rows.size());
   std::mutex told;
   std::size_t done = 0;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, rows.size(), 1),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t k = range.begin(); k < range.end(); ++k) {
-          if (is_cancelled(cancel)) return;
-          const double value = rows[k].compute(cancel);
-          if (is_cancelled(cancel)) return;
-          computed[k] = value;
-          const std::lock_guard lock(told);
-          ++done;
-          if (progress != nullptr) progress->at(static_cast<double>(done) / static_cast<double>(rows.size()));
-        }
-      },
-      tbb::simple_partitioner());
+  for_each_in_parallel(rows.size(), [&](std::size_t k) {
+    if (is_cancelled(cancel)) return;
+    const double value = rows[k].compute(cancel);
+    if (is_cancelled(cancel)) return;
+    computed[k] = value;
+    const std::lock_guard lock(told);
+    ++done;
+    if (progress != nullptr) progress->at(static_cast<double>(done) / static_cast<double>(rows.size()));
+  });
   ValidationResult result;
   result.requested = rows.size();
   for (std::size_t k = 0; k < rows.size(); ++k)

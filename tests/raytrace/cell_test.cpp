@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "core/threads.h"
 #include "raytrace/cells/cell_lanes.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "raytrace/sampling/sobol.h"
-#include "raytrace/sampling/threads.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 

@@ -9,8 +9,8 @@
 #include <random>
 #include <string>
 
+#include "core/threads.h"
 #include "raytrace/light/light_setup.h"
-#include "raytrace/sampling/threads.h"
 #include "tests/support/designs.h"
 #include "tests/support/reference_tracer.h"
 

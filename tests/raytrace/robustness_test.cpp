@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 

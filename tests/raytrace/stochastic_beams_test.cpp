@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/threads.h"
 #include "raytrace/exact/scattered_rays.h"
 #include "raytrace/faces/back_surface.h"
-#include "raytrace/sampling/threads.h"
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
 #include "tests/support/statistics.h"

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/threads.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/observers/far_field.h"
 #include "raytrace/sampling/replicates.h"
-#include "raytrace/sampling/threads.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/design/total_reflection.h"
 #include "studies/rre/adaptive_curve.h"
@@ -151,7 +151,7 @@ TEST(AdaptiveCurve, ValuesAreThoseOfAList) {
   EXPECT_EQ(places.back(), 15.0);
   RreResult list = RreStudy(designs, fixed(request, places)).run();
   RreResult alone;
-  raytrace::run_with_threads(1, [&] { alone = RreStudy(designs, request).run(); });
+  run_with_threads(1, [&] { alone = RreStudy(designs, request).run(); });
   curve.elapsed_s = list.elapsed_s = alone.elapsed_s = 0.0;
   EXPECT_EQ(rre_json(curve), rre_json(list));
   EXPECT_EQ(rre_json(curve), rre_json(alone));

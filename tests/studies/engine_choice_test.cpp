@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
@@ -37,7 +37,7 @@ RreResult run(const std::string& text, const std::vector<std::string>& overrides
               unsigned threads = 0) {
   RreResult result;
   const RreStudy study({parse_design(text, "design", overrides)}, std::move(request));
-  raytrace::run_with_threads(threads, [&] { result = study.run(); });
+  run_with_threads(threads, [&] { result = study.run(); });
   return result;
 }
 

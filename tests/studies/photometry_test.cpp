@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "core/error.h"
+#include "core/threads.h"
 #include "materials/io/spectrum_reader.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/standards.h"
 #include "tests/studies/photometric_requests.h"
@@ -178,8 +178,7 @@ TEST(Photometry, ResampledBeamsDependOnTheSeedAndNotOnThreads) {
   const Design design = design_of(honeycomb(2.0));
   PhotometryRequest request = diffracted(Engine::automatic);
   std::vector<PhotometryResult> results;
-  for (const unsigned threads : {1U, 3U})
-    raytrace::run_with_threads(threads, [&] { results.push_back(run(design, request)); });
+  for (const unsigned threads : {1U, 3U}) run_with_threads(threads, [&] { results.push_back(run(design, request)); });
   request.seed = 2;
   const PhotometryResult other = run(design, request);
   for (std::size_t k = 0; k < other.points.size(); ++k) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 #include "studies/rre/beam_tracing.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
@@ -321,7 +321,7 @@ TEST(FarFieldFiles, CsvAndJsonHoldTheSame) {
 TEST(ReturnedLight, IsTheSameAtAnyNumberOfThreads) {
   const auto written = [&](unsigned threads) {
     RreResult result;
-    raytrace::run_with_threads(threads, [&] { result = run(design_of(honeycomb()), {0.0, 8.0, 15.0}, {20.0}, 1e-5); });
+    run_with_threads(threads, [&] { result = run(design_of(honeycomb()), {0.0, 8.0, 15.0}, {20.0}, 1e-5); });
     return footprint_json(result) + far_field_json(result) + far_field_csv(result);
   };
   EXPECT_EQ(written(1), written(2));

@@ -1,8 +1,6 @@
 #include "fabrication/chisel/check/verify.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -14,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "core/threads.h"
 #include "fabrication/chisel/check/chip_check.h"
 #include "fabrication/chisel/check/program_check.h"
 #include "fabrication/chisel/check/rim_overcut.h"
@@ -206,10 +205,9 @@ void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, cons
   if (tool.edge_radius_um <= 0.0) return;
   const ToolWedge nosed = nosed_wedge(tool, *workpiece.machine);
   std::vector<NoseResidue> residues(workpiece.grooves.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, residues.size()), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      if (result.elements[i].figures.is_cut)
-        residues[i] = nose_residue(workpiece.grooves[i], 1e-3 * tool.edge_radius_um, check.sweeps()[i], poses, nosed);
+  for_each_in_parallel(residues.size(), [&](std::size_t i) {
+    if (result.elements[i].figures.is_cut)
+      residues[i] = nose_residue(workpiece.grooves[i], 1e-3 * tool.edge_radius_um, check.sweeps()[i], poses, nosed);
   });
   for (const NoseResidue& residue : residues) {
     result.root_chamfer_um = std::max(result.root_chamfer_um, 1e3 * std::numbers::sqrt2 * residue.strip_mm);
@@ -283,19 +281,16 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
   const BlankFace face(job);
   result.elements.resize(workpiece.grooves.size());
   std::vector<ChipFigures> chips(workpiece.grooves.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.elements.size()), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      if (cancellation != nullptr && cancellation->requested()) return;
-      const Prediction& prediction = workpiece.prediction(i);
-      const Groove& groove = workpiece.grooves[i];
-      const ElementFigures figures = groove.is_cube()
-                                         ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses, check.wedge(),
-                                                          job.tool.nose_angle_deg, prediction)
-                                         : element_figures(groove, check.sweeps()[i], poses, check.wedge(), prediction,
-                                                           ploughs, workpiece.tolerance_mm);
-      result.elements[i] = result_of(groove, figures);
-      chips[i] = chips_of(workpiece, face, i, check.sweeps()[i], poses, check.wedge());
-    }
+  for_each_in_parallel(result.elements.size(), [&](std::size_t i) {
+    if (cancellation != nullptr && cancellation->requested()) return;
+    const Prediction& prediction = workpiece.prediction(i);
+    const Groove& groove = workpiece.grooves[i];
+    const ElementFigures figures = groove.is_cube() ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses,
+                                                                     check.wedge(), job.tool.nose_angle_deg, prediction)
+                                                    : element_figures(groove, check.sweeps()[i], poses, check.wedge(),
+                                                                      prediction, ploughs, workpiece.tolerance_mm);
+    result.elements[i] = result_of(groove, figures);
+    chips[i] = chips_of(workpiece, face, i, check.sweeps()[i], poses, check.wedge());
   });
 
   for (const ChipFigures& figures : chips) {

@@ -1,12 +1,11 @@
 #include "fabrication/turning/check/deviation_map.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/random.h"
+#include "core/threads.h"
 
 namespace retrace::fabrication::turning {
 namespace {
@@ -139,7 +138,7 @@ void fill_map(Inspection& result, const Envelope& envelope, const FreeformSurfac
       2.0 * (region.is_round ? region.radius_mm : std::max(region.half_height_mm, region.half_width_mm));
   const double side = result.map_width_mm / static_cast<double>(pixels);
   std::vector<Pixel> found(pixels * pixels);
-  tbb::parallel_for(std::size_t{0}, pixels, [&](std::size_t row) {
+  for_each_in_parallel(pixels, [&](std::size_t row) {
     for (std::size_t column = 0; column < pixels; ++column) {
       const std::size_t number = row * pixels + column;
       const Vec2 low(side * static_cast<double>(column) - 0.5 * result.map_width_mm,

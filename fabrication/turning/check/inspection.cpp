@@ -1,7 +1,6 @@
 #include "fabrication/turning/check/inspection.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <numbers>
 
 #include "core/number_format.h"
+#include "core/threads.h"
 #include "fabrication/turning/check/deviation_map.h"
 #include "fabrication/turning/finish.h"
 
@@ -140,7 +140,7 @@ Inspection inspect(const Envelope& envelope, const FreeformSurface& design, cons
   fill_map(result, envelope, design, region, pixels);
   const auto places = profile_places(region);
   std::vector<std::optional<CuspSample>> samples(places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+  for_each_in_parallel(places.size(), [&](std::size_t i) {
     samples[i] = cusps_at(envelope, design, tool, places[i].first, places[i].second, region.feed_mm, region.is_round);
   });
   for (const auto& sample : samples) {

@@ -1,13 +1,12 @@
 #include "fabrication/turning/check/machined_mesh.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "core/error.h"
+#include "core/threads.h"
 
 namespace retrace::fabrication::turning {
 namespace {
@@ -28,15 +27,14 @@ std::vector<Vec3> back_of(const Envelope& envelope, const FreeformSurface& desig
   const double rim = kRimFeeds * region.feed_mm;
   std::vector<Vec3> vertices(1 + static_cast<std::size_t>(rings) * rays);
   vertices[0] = {0.0, 0.0, design.height_mm(0.0, 0.0)};
-  tbb::parallel_for(1, rings + 1, [&](int ring) {
-    const double r = (region.radius_mm - rim) * ring / rings;
+  for_each_in_parallel(static_cast<std::size_t>(rings), [&](std::size_t before) {
+    const double r = (region.radius_mm - rim) * static_cast<double>(before + 1) / rings;
     for (std::uint32_t ray = 0; ray < rays; ++ray) {
       const double angle = 2.0 * std::numbers::pi * ray / rays;
       const double x = r * std::cos(angle);
       const double y = r * std::sin(angle);
       const auto z = r < rim ? std::optional(design.height_mm(x, y)) : envelope.height_mm(x, y);
-      vertices[1 + static_cast<std::size_t>(ring - 1) * rays + ray] = {
-          x, y, z ? *z : std::numeric_limits<double>::quiet_NaN()};
+      vertices[1 + before * rays + ray] = {x, y, z ? *z : std::numeric_limits<double>::quiet_NaN()};
     }
   });
   for (const Vec3& v : vertices)

@@ -1,8 +1,6 @@
 #include "fabrication/turning/check/touch_check.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +9,7 @@
 
 #include "core/angle.h"
 #include "core/number_format.h"
+#include "core/threads.h"
 
 namespace retrace::fabrication::turning {
 namespace {
@@ -184,10 +183,11 @@ class TouchCheck {
 
   void follow(const CutPass& pass) {
     std::vector<Standing> all(pass.size());
-    constexpr std::size_t kGrain = 2048;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pass.size(), kGrain), [&](const auto& range) {
+    constexpr std::size_t kPiece = 2048;
+    for_each_in_parallel((pass.size() + kPiece - 1) / kPiece, [&](std::size_t piece) {
       double angle = 0.0;
-      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const std::size_t end_of_piece = std::min(pass.size(), (piece + 1) * kPiece);
+      for (std::size_t i = piece * kPiece; i < end_of_piece; ++i) {
         const Pose end{pass.x_mm[i], pass.y_mm[i], pass.z_mm[i], pass.c_rad[i]};
         stand(end, true, angle, all[i]);
         if (i == 0) continue;

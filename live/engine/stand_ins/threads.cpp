@@ -1,7 +1,7 @@
 // In place of TBB: the live page computes on the one thread of its worker.
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 
-namespace retrace::raytrace {
+namespace retrace {
 
 void run_with_threads(unsigned, const std::function<void()>& work) {
   work();
@@ -11,4 +11,4 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
   for (std::size_t k = 0; k < count; ++k) work(k);
 }
 
-}  // namespace retrace::raytrace
+}  // namespace retrace

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/threads.h"
 #include "raytrace/observers/camera.h"
 #include "raytrace/observers/photometric_geometry.h"
-#include "raytrace/sampling/threads.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 

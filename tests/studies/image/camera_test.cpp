@@ -9,10 +9,10 @@
 #include <numbers>
 #include <sstream>
 
+#include "core/threads.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/observers/detector.h"
 #include "raytrace/observers/photometric_geometry.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/image/camera_study.h"
 #include "studies/photometry/photometry.h"
 #include "tests/support/designs.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/threads.h"
 #include "raytrace/paths/monte_carlo.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/image/detector_study.h"
 #include "studies/rre/rre.h"
 #include "tests/support/designs.h"

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/threads.h"
 #include "materials/dispersion.h"
 #include "materials/io/material_library.h"
-#include "raytrace/sampling/threads.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/rays/ray_accounts.h"
 #include "studies/rre/rre.h"

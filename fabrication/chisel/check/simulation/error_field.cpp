@@ -1,8 +1,5 @@
 #include "fabrication/chisel/check/simulation/error_field.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +7,7 @@
 #include <span>
 
 #include "core/error.h"
+#include "core/threads.h"
 #include "fabrication/check/findings.h"
 #include "fabrication/chisel/check/groove.h"
 #include "fabrication/chisel/check/program_check.h"
@@ -102,15 +100,12 @@ ErrorField error_field(const Job& job, const Machine& machine, const std::vector
   field.rows = count(field.size_mm.y());
 
   std::vector<ElementField> elements(workpiece.grooves.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements.size()), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const Groove& groove = workpiece.grooves[i];
-      const double longest_mm =
-          2.0 * (groove.is_cube() ? kCavityReach : 1.0) * std::max(groove.half_width_mm, groove.half_base_mm);
-      const auto lines =
-          std::clamp(static_cast<std::size_t>(std::ceil(longest_mm / pitch_mm)), kLeastLines, kMostLines);
-      elements[i] = field_of(groove, check.sweeps()[i], poses, check.wedge(), lines);
-    }
+  for_each_in_parallel(elements.size(), [&](std::size_t i) {
+    const Groove& groove = workpiece.grooves[i];
+    const double longest_mm =
+        2.0 * (groove.is_cube() ? kCavityReach : 1.0) * std::max(groove.half_width_mm, groove.half_base_mm);
+    const auto lines = std::clamp(static_cast<std::size_t>(std::ceil(longest_mm / pitch_mm)), kLeastLines, kMostLines);
+    elements[i] = field_of(groove, check.sweeps()[i], poses, check.wedge(), lines);
   });
 
   const GrooveMap map(workpiece.grooves);

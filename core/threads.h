@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace retrace::raytrace {
+namespace retrace {
 
 /// Runs `work` with at most `threads` threads (0: all that the process may use; many more than there are cores are not
 /// made, they would only cost). What the tracers compute does not depend on it.
@@ -14,4 +14,4 @@ void run_with_threads(unsigned threads, const std::function<void()>& work);
 /// Calls work(0) .. work(count - 1) in any order, on the threads at hand.
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work);
 
-}  // namespace retrace::raytrace
+}  // namespace retrace

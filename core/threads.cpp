@@ -1,4 +1,4 @@
-#include "raytrace/sampling/threads.h"
+#include "core/threads.h"
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -8,7 +8,7 @@
 #include <atomic>
 #include <thread>
 
-namespace retrace::raytrace {
+namespace retrace {
 
 void run_with_threads(unsigned threads, const std::function<void()>& work) {
   if (threads == 0) {
@@ -39,4 +39,4 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
   static_cast<void>(handed_back.load(std::memory_order_acquire));
 }
 
-}  // namespace retrace::raytrace
+}  // namespace retrace
