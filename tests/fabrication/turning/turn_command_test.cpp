@@ -172,7 +172,7 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
       {kHead + kBase + kTool + "[path]\nradius_mm = 1\nspindle_rpm = 60\n",
        "path: must have either feed_um or scallop_nm"},
       {kHead + kBase + kTool + "[path]\nradius_mm = 1\nfeed_um = 1\nscallop_nm = 3\nspindle_rpm = 60\n",
-       "path.scallop_nm: must have either feed_um or scallop_nm"},
+       "path.scallop_nm: not allowed together with feed_um"},
       {kHead + kBase + kTool + kPath + "sampling = \"arc\"\narc_um = 5\nservo = \"fast\"\n", "path.servo: must be"},
       {kHead + kBase + "[tool]\nnose_radius_mm = 0\nclearance_deg = 15\n" + kPath, "tool.nose_radius_mm: must be"},
       {kHead + "[base]\nkind = \"formula\"\nformula = \"sqrt(1-x^2)-1\"\n[tool]\nnose_radius_mm = 0.1\nclearance_deg = "
