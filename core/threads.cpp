@@ -23,26 +23,49 @@ void run_with_threads(unsigned threads, const std::function<void()>& work) {
   arena.execute(work);
 }
 
+namespace {
+
+/// ThreadSanitizer cannot see how TBB, which is built without it, hands work out and back. Two atomics say it in our
+/// own code, so that it finds what is really shared.
+struct Loop {
+  explicit Loop(const std::function<void(std::size_t)>& its_work) : work(its_work) {
+    handed_out.fetch_add(1, std::memory_order_release);
+  }
+  ~Loop() { static_cast<void>(handed_back.load(std::memory_order_acquire)); }
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
+
+  const std::function<void(std::size_t)>& work;
+  std::atomic<unsigned> handed_out{0};
+  std::atomic<unsigned> handed_back{0};
+};
+
+/// A part of a loop on the thread that has it, until it is done or throws.
+class Piece {
+ public:
+  explicit Piece(Loop& loop) : loop_(loop) { static_cast<void>(loop_.handed_out.load(std::memory_order_acquire)); }
+  ~Piece() { loop_.handed_back.fetch_add(1, std::memory_order_release); }
+  Piece(const Piece&) = delete;
+  Piece& operator=(const Piece&) = delete;
+
+ private:
+  Loop& loop_;
+};
+
+}  // namespace
+
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
-  // ThreadSanitizer cannot see how TBB, which is built without it, hands work out and back. Two atomics say it in our
-  // own code, so that it finds what is really shared. What TBB copies is one pointer: copies of more are calls of
-  // memcpy, which tests/tsan.supp cannot tell from those of others.
-  struct Loop {
-    const std::function<void(std::size_t)>& work;
-    std::atomic<unsigned> handed_out{0};
-    std::atomic<unsigned> handed_back{0};
-  } loop{work};
-  loop.handed_out.fetch_add(1, std::memory_order_release);
+  Loop loop(work);
   // A thread that waits for the others takes pieces of this loop alone, not of an outer parallel loop around it.
   tbb::this_task_arena::isolate([&loop, count] {
     using Range = tbb::blocked_range<std::size_t>;
+    // What TBB copies is one pointer: copies of more are calls of memcpy, which tests/tsan.supp cannot tell from
+    // others.
     tbb::parallel_for(Range(0, count), [&loop](const Range& range) {
-      static_cast<void>(loop.handed_out.load(std::memory_order_acquire));
+      const Piece piece(loop);
       for (std::size_t k = range.begin(); k < range.end(); ++k) loop.work(k);
-      loop.handed_back.fetch_add(1, std::memory_order_release);
     });
   });
-  static_cast<void>(loop.handed_back.load(std::memory_order_acquire));
 }
 
 }  // namespace retrace

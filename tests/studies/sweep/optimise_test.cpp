@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -177,7 +178,7 @@ TEST(Optimise, SaysWhichConstraintExcludesAll) {
 }
 
 TEST(Optimise, AResumedSearchComputesNothingAgain) {
-  int computed = 0;
+  std::atomic<int> computed = 0;
   const Study study = analytic_study("[optimize]\nmaximize = \"f\"\nscan = 20\n", {{"f", [&](double x, double y) {
                                                                                       ++computed;
                                                                                       return -x * x - y;
@@ -185,7 +186,7 @@ TEST(Optimise, AResumedSearchComputesNothingAgain) {
   ResultStore store("", optimise_layout(study), IfExists::refuse);
   const OptimiseRequest request = read_optimise(study);
   const Optimum first = optimise(study, request, store, nullptr, nullptr);
-  const int once = std::exchange(computed, 0);
+  const int once = computed.exchange(0);
   EXPECT_GT(once, 20);
   const Optimum second = optimise(study, request, store, nullptr, nullptr);
   EXPECT_EQ(computed, 0);
