@@ -16,6 +16,7 @@
 #include <regex>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 
 namespace retrace::test {
@@ -74,6 +75,19 @@ std::vector<std::string> TemporaryFolder::names() const {
   return names;
 }
 
+namespace {
+
+/// What the program itself said: a sanitizer that looks up the place of a report that is left out says what it cannot
+/// read.
+std::string said_by_program(std::string text) {
+  constexpr std::string_view kSymbolizer = "LLVMSymbolizer: ";
+  for (std::size_t at = 0; kIsSanitized && (at = text.find(kSymbolizer)) != std::string::npos;)
+    text.erase(at, text.find('\n', at) + 1 - at);
+  return text;
+}
+
+}  // namespace
+
 Child::Child(const fs::path& folder, const Arguments& arguments, const std::string& input, Input kind,
              const std::string& out)
     : in_(std::tmpfile(), std::fclose),
@@ -128,8 +142,8 @@ Outcome Child::wait() {
   const auto seconds = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(out_.get()), content(err_.get()),
-          seconds(spent.ru_utime) + seconds(spent.ru_stime)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(out_.get()),
+          said_by_program(content(err_.get())), seconds(spent.ru_utime) + seconds(spent.ru_stime)};
 }
 
 bool Child::has_ended() const {
