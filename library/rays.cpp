@@ -84,7 +84,7 @@ TracedRays trace(const Design& design, const RayArrays& rays, const TraceRequest
   of_study.seed = request.seed;
   const studies::RayStudy study(design.content().design, of_study);
   studies::ArraySource source({rays.origins_mm, rays.directions, rays.stokes, rays.axes, rays.wavelengths_nm});
-  studies::ArraySink sink;
+  studies::ArraySink sink(rays.origins_mm.size() / 3);
   studies::RayResult found;
   run_with_threads(running.threads, [&] { found = study.run(source, &sink, running.progress, running.cancellation); });
   TracedRays result;

@@ -82,6 +82,14 @@ SetRay ArraySource::ray(std::size_t number) const {
   return ray;
 }
 
+ArraySink::ArraySink(std::size_t rays) {
+  for (std::vector<double>* const each : {&origins_mm, &directions, &axes}) each->reserve(3 * rays);
+  stokes.reserve(4 * rays);
+  wavelengths_nm.reserve(rays);
+  accounts.reserve(rays);
+  incident.reserve(rays);
+}
+
 void ArraySink::write(std::span<const AccountedRay> rays) {
   for (const AccountedRay& ray : rays) {
     origins_mm.insert(origins_mm.end(), ray.position_mm.begin(), ray.position_mm.end());

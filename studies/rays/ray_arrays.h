@@ -39,6 +39,8 @@ class ArraySource : public RaySource {
 /// Keeps what leaves.
 class ArraySink : public RaySink {
  public:
+  /// \param rays about so many: memory is taken at once
+  explicit ArraySink(std::size_t rays);
   void begin(const RaySinkLayout&) override {}
   void write(std::span<const AccountedRay> rays) override;
   void finish() override {}
