@@ -8,7 +8,7 @@
 namespace retrace {
 
 /// Runs `work` with at most `threads` threads (0: all that the process may use; many more than there are cores are not
-/// made, they would only cost). What the tracers compute does not depend on it.
+/// made, they would only cost). What is computed does not depend on it.
 void run_with_threads(unsigned threads, const std::function<void()>& work);
 
 /// Calls work(0) .. work(count - 1) in any order, on the threads at hand.

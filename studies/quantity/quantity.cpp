@@ -93,8 +93,7 @@ class ShareQuantity final : public Quantity {
   std::optional<double> slope(const Candidate& candidate, RreParameter parameter,
                               const Cancellation* cancel) const override {
     const bool is_rre = spec_.account == static_cast<std::size_t>(raytrace::Account::retroreflected);
-    if (!is_rre || !candidate.design().elements() || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::least)
-      return std::nullopt;
+    if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::least) return std::nullopt;
     RreRequest request = request_of(spec_.window, candidate.analysis());
     if (request.engine != Engine::automatic && request.engine != Engine::exact) return std::nullopt;
     request.engine = Engine::exact;

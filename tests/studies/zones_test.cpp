@@ -173,6 +173,24 @@ TEST(ZonedDesign, DesignsAreWrittenAsTheyWereRead) {
   EXPECT_EQ(thicker.zoned()->spec.thickness_mm, 3.0);
 }
 
+TEST(ZonedDesign, TheSameKindKeepsWhatTheDesignSays) {
+  const auto aperture_mm = [](const std::string& kind) {
+    const Design design = read("[[zone]]\nshare = 0.5\nset = [" + kind + ", \"array.partial_elements=omit\"]\n" +
+                               "[[zone]]\nshare = 0.5\n");
+    const geometry::Element& element = design.zoned()->spec.zones[0].elements.element;
+    return geometry::bounding_box(geometry::aperture_outline(element)).size().maxCoeff();
+  };
+  const double of_design =
+      geometry::bounding_box(geometry::aperture_outline(read(kHalves).zoned()->spec.zones[1].elements.element))
+          .size()
+          .maxCoeff();
+  for (const std::string kind :
+       {"'element.kind = \"hexagonal_icc\" '", "\"element.kind='hexagonal_icc'\"", "\"element.kind=hexagonal_icc\""})
+    EXPECT_EQ(aperture_mm(kind), of_design) << kind;
+  EXPECT_NE(refusal_of([&] { aperture_mm("'element.kind=\"triangular_icc\"'"); }).find("element.aperture_mm: missing"),
+            std::string::npos);
+}
+
 TEST(ZonedDesign, ZonesOfSingleElementsAreWrittenAsTheyWereRead) {
   const Design design = read(
       "[[zone]]\nrows = [1, 2]\nevery = 3\n[[zone]]\nrest = true\nrotation_deg = 180\n"

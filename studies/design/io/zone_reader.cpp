@@ -52,13 +52,22 @@ std::string entry_of(std::size_t zone) {
   return schema::path_of_entry(kZone, zone);
 }
 
+/// A text without what it begins and ends with of some characters.
+std::string stripped(std::string text, const char* of) {
+  text.erase(text.find_last_not_of(of) + 1);
+  return text.erase(0, text.find_first_not_of(of));
+}
+
 /// The key of a change; empty if it is none.
 std::string key_of(const std::string& change) {
   const std::size_t equals = change.find('=');
-  if (equals == std::string::npos) return {};
-  std::string key = change.substr(0, equals);
-  key.erase(key.find_last_not_of(" \t") + 1);
-  return key.erase(0, key.find_first_not_of(" \t"));
+  return equals == std::string::npos ? std::string() : stripped(change.substr(0, equals), " \t");
+}
+
+/// Whether a change gives elements another kind than the design has.
+bool changes_kind(const std::string& change, const Document& document) {
+  return key_of(change) == "element.kind" &&
+         stripped(change.substr(change.find('=') + 1), " \t\"'") != document.text("element.kind");
 }
 
 void check_changes(const Document& document, std::size_t zone) {
@@ -83,13 +92,12 @@ std::string text_without_elements(const Document& document) {
                      shortest(document.number("body.thickness_mm")));
 }
 
-/// The design as it is all over a zone. No kind's word holds another's.
+/// The design as it is all over a zone.
 Document document_of_zone(const Document& document, std::size_t zone) {
   const std::string key = entry_of(zone) + ".set";
   const auto changes = document.has(key) ? document.texts(key) : std::vector<std::string>();
-  const bool is_of_another_kind = std::ranges::any_of(changes, [&](const std::string& change) {
-    return key_of(change) == "element.kind" && change.find(document.text("element.kind")) == std::string::npos;
-  });
+  const bool is_of_another_kind =
+      std::ranges::any_of(changes, [&](const std::string& change) { return changes_kind(change, document); });
   try {
     Document changed = is_of_another_kind ? schema::read_document(design_format(), text_without_elements(document),
                                                                   document.source(), kMostSetBytes, changes)
