@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "core/error.h"
 #include "core/infinity.h"
@@ -16,6 +17,7 @@
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/ledger.h"
 #include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/observers/pixel_guide.h"
 #include "raytrace/paths/path_tracer.h"
 #include "raytrace/sampling/entrance_sampler.h"
 #include "raytrace/sampling/flush_denormals.h"
@@ -32,8 +34,14 @@ constexpr std::uint32_t kCameraScrambleStream = 11;
 constexpr std::uint32_t kCameraChoiceStream = 12;
 constexpr std::uint32_t kLensStream = 13;
 constexpr std::uint32_t kCameraCellStream = 14;
+constexpr std::uint32_t kGuideStream = 15;
 // Paths of a wavelength that the cell engine follows together, about.
 constexpr std::size_t kPathsTogether = 4096;
+// Number of the pass that a guide is made of; no picture has as many.
+constexpr std::uint32_t kFirstPass = 0xffffffff;
+// Least side of a tile of the picture that a guide knows by itself, and the most along a side.
+constexpr std::size_t kTilePixels = 100;
+constexpr std::size_t kMostTiles = 8;
 
 struct WorldRay {
   Vec3 origin;
@@ -136,7 +144,8 @@ class Luminaire {
 /// A path of the camera, from where it meets the part.
 struct Look {
   Contact contact;
-  double luminance = 0.0;  ///< that it sees, cd/m^2
+  double luminance = 0.0;                              ///< that it sees, cd/m^2
+  double weight = 1.0 / CameraTracer::kPointsPerPass;  ///< in the mean of its pixel
   bool shows_part() const { return contact.what == Contact::What::face || contact.what == Contact::What::side; }
 };
 
@@ -284,7 +293,8 @@ struct CameraTracer::Hidden {
         surface(p, centre_mm),
         lens(s.view),
         luminaire(s.lamp, s.view, s.discs),
-        entrance_mm(EntranceSampler(p).bounding_box()) {
+        entrance_mm(EntranceSampler(p).bounding_box()),
+        tiles_along(std::clamp<std::size_t>(std::min(s.view.columns, s.view.rows) / kTilePixels, 1, kMostTiles)) {
     const bool has_one_back =
         std::ranges::all_of(light, [](const WeighedOptics& at) { return at.optics.has_one_back(); });
     if (engine == CameraEngine::fastest && has_one_back) cells = CellArray::make(p);
@@ -310,6 +320,17 @@ struct CameraTracer::Hidden {
   }
   void look(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point, Block& block) const;
   void look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const;
+  std::array<PixelGuide::Point, kPointsPerPass> points_of(std::uint32_t pixel, std::uint32_t pass) const;
+  std::optional<PixelPlace> place_of(std::uint32_t pixel) const;
+  std::uint32_t tile_of(std::size_t pixel) const {
+    const std::size_t row = pixel / scene.view.columns * tiles_along / scene.view.rows;
+    const std::size_t column = pixel % scene.view.columns * tiles_along / scene.view.columns;
+    return static_cast<std::uint32_t>(row * tiles_along + column);
+  }
+  bool is_guided(std::size_t pixel) const { return guide && has_guide[pixel]; }
+  struct Lesson;
+  std::optional<CameraPass> trace(std::uint32_t pass, const Cancellation* cancel, Lesson* lesson = nullptr) const;
+  std::optional<CameraPass> trace_and_learn(std::uint32_t pass, const Cancellation* cancel);
   void follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block, const Cancellation* cancel) const;
 
   const geometry::Part& part;
@@ -325,6 +346,56 @@ struct CameraTracer::Hidden {
   std::vector<double> cumulative;
   Vec3 middle;  ///< of a sphere round the finite part
   double radius_mm = 0.0;
+  std::size_t tiles_along;          ///< a side of the picture, for the guide
+  std::optional<PixelGuide> guide;  ///< of what is followed together, after a pass that is no part of the picture
+  bool has_learnt_all = false;      ///< of pass 0 as well
+  std::vector<bool> has_guide;      ///< by pixel
+  std::vector<float> levels;        ///< what most of a pixel shows, by pixel
+};
+
+/// What a pass tells a PixelGuide.
+struct CameraTracer::Hidden::Lesson {
+  /// Paths for the maps.
+  static constexpr std::size_t kMostLooks = std::size_t{1} << 22U;
+
+  explicit Lesson(const Hidden& h)
+      : hidden(h),
+        pixels(h.scene.view.columns * h.scene.view.rows),
+        guide(h.guide ? *h.guide
+                      : PixelGuide(h.cells->period_mm(), h.tiles_along * h.tiles_along,
+                                   std::min(kMostLooks, pixels * kPointsPerPass))),
+        levels(h.levels) {
+    if (levels.empty()) levels.resize(pixels);
+  }
+
+  /// \param looks of pixels from `pixel` on
+  void take(const std::vector<Look>& looks, std::size_t pixel, PixelGuide::Samples& into) {
+    for (std::size_t k = 0; k < looks.size(); k += kPointsPerPass, ++pixel) {
+      const std::span<const Look, kPointsPerPass> of(looks.data() + k, kPointsPerPass);
+      if (!hidden.guide) levels[pixel] = level_of(of);
+      if (pixel % stride != 0) continue;
+      for (const Look& look : of)
+        if (look.contact.what == Contact::What::face)
+          into.push_back(guide.sample(look.contact.local.head<2>(), hidden.tile_of(pixel),
+                                      static_cast<float>(look.luminance) - levels[pixel]));
+    }
+  }
+
+  const Hidden& hidden;
+  std::size_t pixels;
+  std::size_t stride = (pixels * kPointsPerPass + kMostLooks - 1) / kMostLooks;  ///< of pixels that it tells of
+  PixelGuide guide;
+  std::vector<float> levels;                 ///< as Hidden::levels
+  std::vector<PixelGuide::Samples> samples;  ///< by block
+
+ private:
+  /// The second least, as strips that differ are few and seldom dark.
+  static float level_of(std::span<const Look, kPointsPerPass> looks) {
+    std::array<double, kPointsPerPass> seen;
+    std::ranges::transform(looks, seen.begin(), &Look::luminance);
+    std::ranges::sort(seen);
+    return static_cast<float>(seen[1]);
+  }
 };
 
 /// Entrance face and sides of the plate of a finite part: the nearest of them that faces the ray.
@@ -439,14 +510,44 @@ void CameraTracer::Hidden::look(const WorldRay& ray, std::size_t wavelength, std
   block.resume(on, wavelength, {seed, kCameraChoiceStream}, point, pixel, choices);
 }
 
+/// Where the points of a pixel lie, if all of it shows the entrance face.
+std::optional<PixelPlace> CameraTracer::Hidden::place_of(std::uint32_t pixel) const {
+  const auto columns = static_cast<std::uint32_t>(scene.view.columns);
+  const Vec2 corner(pixel % columns, pixel / columns);
+  std::array<Vec2, 4> at;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const Contact contact = contact_of(lens.ray(corner + Vec2(k % 2, k / 2), Vec2::Zero()));
+    if (contact.what != Contact::What::face) return std::nullopt;
+    at[k] = contact.local.head<2>();
+  }
+  return PixelPlace{at[0], at[1] - at[0], at[2] - at[0], tile_of(pixel)};
+}
+
+/// The points of a pixel in a pass.
+std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden::points_of(std::uint32_t pixel,
+                                                                                            std::uint32_t pass) const {
+  if (is_guided(pixel)) {
+    const auto words = philox({seed, kGuideStream}, pass, pixel);
+    auto points = guide->points(*place_of(pixel), {words[0], words[1], words[2], words[3]});
+    // Points of each kind are to see all wavelengths.
+    const auto turn = static_cast<std::ptrdiff_t>(philox({seed, kGuideStream}, pass, pixel, 1)[0] % kPointsPerPass);
+    std::rotate(points.begin(), points.begin() + turn, points.end());
+    return points;
+  }
+  const auto words = philox({seed, kCameraScrambleStream}, pass, pixel);
+  const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
+  std::array<PixelGuide::Point, kPointsPerPass> points;
+  for (std::uint32_t k = 0; k < kPointsPerPass; ++k) points[k].within = {square(k)[0], square(k)[1]};
+  return points;
+}
+
 /// The paths of a pixel in a pass.
 void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
-  const auto words = philox({seed, kCameraScrambleStream}, pass, pixel);
-  const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
+  const Vec2 corner(pixel % columns, pixel / columns);
+  const auto points = points_of(pixel, pass);
   for (std::uint32_t k = 0; k < kPointsPerPass; ++k) {
     const std::uint32_t point = pass * kPointsPerPass + k;
-    const std::array<double, 2> within = square(k);
     const auto random = philox({seed, kLensStream}, point, pixel);
     // Points of a pass take turns through the wavelengths.
     const double chosen = (static_cast<double>(k) + unit_interval(random[0])) / kPointsPerPass;
@@ -455,9 +556,9 @@ void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Bl
     const Vec2 pupil = scene.discs == DiscAverage::sampled
                            ? in_unit_disc(unit_interval(random[1]), unit_interval(random[2]))
                            : Vec2(Vec2::Zero());
-    look(lens.ray({static_cast<double>(pixel % columns) + within[0], static_cast<double>(pixel / columns) + within[1]},
-                  pupil),
-         wavelength, pixel, point, block);
+    const std::size_t number = block.looks.size();
+    look(lens.ray(corner + points[k].within, pupil), wavelength, pixel, point, block);
+    block.looks[number].weight = points[k].weight;
   }
 }
 
@@ -474,6 +575,78 @@ void CameraTracer::Hidden::follow_together(std::uint32_t pass, std::uint32_t blo
     std::uint32_t choices = walker.choices();
     for (const CellWalker::HandedOver& ray : walker.handed_over()) block.resume(ray, w, key, pass, sample, choices);
   }
+}
+
+/// \param lesson to be filled; null: nothing is learnt
+std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, const Cancellation* cancel,
+                                                      Lesson* lesson) const {
+  const std::size_t columns = scene.view.columns;
+  const std::size_t pixels = columns * scene.view.rows;
+  CameraPass result(2 * pixels + 1, 0.0);
+  std::vector<double> on_part(pixels, 0.0);
+  const std::size_t rows = rows_of_block();
+  std::vector<double> lost((scene.view.rows + rows - 1) / rows, 0.0);
+  if (lesson != nullptr) lesson->samples.resize(lost.size());
+  tbb::enumerable_thread_specific<std::unique_ptr<Block>> blocks;
+  for_each_in_parallel(lost.size(), [&](std::size_t block_number) {
+    const FlushDenormals flush;
+    std::unique_ptr<Block>& own = blocks.local();
+    if (!own) own = std::make_unique<Block>(*this);
+    Block& block = *own;
+    block.begin();
+    const std::size_t first = block_number * rows * columns;
+    const std::size_t last = std::min(pixels, first + rows * columns);
+    for (std::size_t pixel = first; pixel < last; ++pixel) {
+      if (is_cancelled(cancel)) return;
+      look_from(static_cast<std::uint32_t>(pixel), number, block);
+    }
+    if (cells) follow_together(number, static_cast<std::uint32_t>(block_number), block, cancel);
+    for (std::size_t k = 0; k < block.looks.size(); ++k) {
+      const Look& look = block.looks[k];
+      const std::size_t pixel = first + k / kPointsPerPass;
+      // The weights of a pixel's points add up to 1 in the mean: by how much they miss it must not brighten its level.
+      const double level = is_guided(pixel) ? static_cast<double>(levels[pixel]) : 0.0;
+      const double luminance = level / kPointsPerPass + look.weight * (look.luminance - level);
+      result[pixel] += luminance;
+      if (!look.shows_part()) continue;
+      on_part[pixel] += luminance;
+      result[pixels + pixel] += 1.0 / kPointsPerPass;
+    }
+    if (lesson != nullptr) lesson->take(block.looks, first, lesson->samples[block_number]);
+    lost[block_number] = block.tally.other[Account::lost];
+  });
+  if (is_cancelled(cancel)) return std::nullopt;
+  double lost_power = 0.0;
+  for (const double power : lost) lost_power += power;
+  if (lost_power > kLostLimit * static_cast<double>(pixels * kPointsPerPass))
+    throw BudgetError(
+        "rays missed every face from inside the part: this is a defect of retrace, please report the "
+        "design");
+  for (const double value : on_part) result.back() += value;
+  return result;
+}
+
+/// A pass that the guide learns from. It stays as it was if that was cancelled.
+std::optional<CameraPass> CameraTracer::Hidden::trace_and_learn(std::uint32_t number, const Cancellation* cancel) {
+  Lesson lesson(*this);
+  std::optional<CameraPass> result = trace(number, cancel, &lesson);
+  if (!result) return std::nullopt;
+  lesson.guide.learn(lesson.samples);
+  std::vector<std::uint8_t> serves(lesson.pixels, 0);
+  for_each_in_parallel(scene.view.rows, [&](std::size_t row) {
+    if (is_cancelled(cancel)) return;
+    for (std::size_t column = 0; column < scene.view.columns; ++column) {
+      const std::size_t pixel = row * scene.view.columns + column;
+      const std::optional<PixelPlace> place = place_of(static_cast<std::uint32_t>(pixel));
+      serves[pixel] = place && lesson.guide.serves(*place) ? 1 : 0;
+    }
+  });
+  if (is_cancelled(cancel)) return std::nullopt;
+  has_learnt_all = guide.has_value();
+  guide = std::move(lesson.guide);
+  has_guide.assign(serves.begin(), serves.end());
+  levels = std::move(lesson.levels);
+  return result;
 }
 
 CameraTracer::CameraTracer(const geometry::Part& part, const std::vector<WeighedOptics>& light,
@@ -496,46 +669,17 @@ CameraImage CameraTracer::empty_image() const {
 }
 
 std::optional<CameraPass> CameraTracer::pass(std::uint32_t number, const Cancellation* cancel) const {
-  const Hidden& h = *hidden_;
-  const std::size_t columns = h.scene.view.columns;
-  const std::size_t pixels = columns * h.scene.view.rows;
-  CameraPass result(2 * pixels + 1, 0.0);
-  std::vector<double> on_part(pixels, 0.0);
-  const std::size_t rows = h.rows_of_block();
-  std::vector<double> lost((h.scene.view.rows + rows - 1) / rows, 0.0);
-  tbb::enumerable_thread_specific<std::unique_ptr<Hidden::Block>> blocks;
-  for_each_in_parallel(lost.size(), [&](std::size_t block_number) {
-    const FlushDenormals flush;
-    std::unique_ptr<Hidden::Block>& own = blocks.local();
-    if (!own) own = std::make_unique<Hidden::Block>(h);
-    Hidden::Block& block = *own;
-    block.begin();
-    const std::size_t first = block_number * rows * columns;
-    const std::size_t last = std::min(pixels, first + rows * columns);
-    for (std::size_t pixel = first; pixel < last; ++pixel) {
-      if (is_cancelled(cancel)) return;
-      h.look_from(static_cast<std::uint32_t>(pixel), number, block);
-    }
-    if (h.cells) h.follow_together(number, static_cast<std::uint32_t>(block_number), block, cancel);
-    for (std::size_t k = 0; k < block.looks.size(); ++k) {
-      const Look& look = block.looks[k];
-      const std::size_t pixel = first + k / kPointsPerPass;
-      result[pixel] += look.luminance / kPointsPerPass;
-      if (!look.shows_part()) continue;
-      on_part[pixel] += look.luminance / kPointsPerPass;
-      result[pixels + pixel] += 1.0 / kPointsPerPass;
-    }
-    lost[block_number] = block.tally.other[Account::lost];
-  });
-  if (is_cancelled(cancel)) return std::nullopt;
-  double lost_power = 0.0;
-  for (const double power : lost) lost_power += power;
-  if (lost_power > kLostLimit * static_cast<double>(pixels * kPointsPerPass))
-    throw BudgetError(
-        "rays missed every face from inside the part: this is a defect of retrace, please report the "
-        "design");
-  for (const double value : on_part) result.back() += value;
-  return result;
+  Hidden& h = *hidden_;
+  if (!h.cells) return h.trace(number, cancel);
+  if (number == 0 && h.has_learnt_all) {
+    h.guide.reset();
+    h.levels.clear();
+    h.has_learnt_all = false;
+  }
+  if (!h.guide && !h.trace_and_learn(kFirstPass, cancel)) return std::nullopt;
+  if (number == 0) return h.trace_and_learn(0, cancel);
+  if (!h.has_learnt_all && !h.trace_and_learn(0, cancel)) return std::nullopt;
+  return h.trace(number, cancel);
 }
 
 bool CameraTracer::add_pass(CameraImage& image, const Cancellation* cancel) const {

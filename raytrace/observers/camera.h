@@ -123,6 +123,8 @@ class CameraTracer {
   bool is_by_cells() const;
   CameraImage empty_image() const;
   /// A pass, on the threads at hand; nothing if it was cancelled. It depends on seed, scene and its number alone.
+  /// Where paths are followed together, pixels take half of their points by PixelGuide if that serves. It learns from a
+  /// pass that is no part of the picture, and from pass 0; the first call traces what is missing. One call at a time.
   /// \throw BudgetError if power is lost
   std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;
   /// Adds the next pass; false and nothing added if it was cancelled.

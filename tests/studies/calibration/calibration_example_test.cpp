@@ -116,6 +116,13 @@ JobRequest request() {
   return request;
 }
 
+/// Three normal numbers, the last of them drawn first: compilers disagree on the order in which arguments are drawn.
+Vec3 normal_vector(std::normal_distribution<double>& normal, std::mt19937& bits) {
+  Vec3 drawn;
+  for (Eigen::Index k = 3; k-- > 0;) drawn[k] = normal(bits);
+  return drawn;
+}
+
 /// Fills the table of test cuts in with what is measured of them.
 void measure(Example& example, const Design& design, std::mt19937& bits) {
   std::normal_distribution<double> normal;
@@ -127,7 +134,7 @@ void measure(Example& example, const Design& design, std::mt19937& bits) {
   for (const FabricationResult& plan : cuts.parts.plans) {
     surfaces.emplace_back(real, plan);
     parts.emplace_back(plan, std::vector<std::size_t>());
-    const Vec3 turn = 1e-4 * Vec3(normal(bits), normal(bits), normal(bits));
+    const Vec3 turn = 1e-4 * normal_vector(normal, bits);
     poses.push_back({rotation_about(turn.normalized(), Angle::from_rad(turn.norm())),
                      {5e-3 * normal(bits), 5e-3 * normal(bits), 0.0}});
   }
@@ -237,8 +244,8 @@ TEST(CalibrationExample, TestCutsFindWhatIsHidden) {
     const Machine real = with_errors(cuts.parts.plans.front().machine, errors);
     std::vector<PartPose> poses(parts.size());
     for (PartPose& pose : poses) {
-      pose.turn_arcsec = 50.0 * Vec3(normal(bits), normal(bits), normal(bits));
-      pose.shift_um = 10.0 * Vec3(normal(bits), normal(bits), 0.0);
+      pose.turn_arcsec = 50.0 * normal_vector(normal, bits);
+      pose.shift_um = {10.0 * normal(bits), 10.0 * normal(bits), 0.0};
     }
     MeasuredParts measured = cuts.parts;
     for (Measurement& m : measured.measurements)

@@ -116,6 +116,29 @@ TEST(CameraEngines, GiveTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(images[0].part_means, images[1].part_means);
 }
 
+/// Several processes share the passes of a picture, each in an order of its own.
+TEST(CameraEngines, PassesAreTheSameInAnyOrder) {
+  const Case c = cases()[0];
+  const auto tracer = [&] { return CameraTracer(c.part, c.light, c.scene, kCameraPolicy, 1); };
+  const CameraTracer in_order = tracer();
+  std::vector<CameraPass> passes;
+  for (std::uint32_t number = 0; number < 4; ++number) passes.push_back(*in_order.pass(number));
+  const CameraTracer other = tracer();
+  for (const std::uint32_t number : {3U, 0U, 0U, 2U, 1U}) EXPECT_EQ(*other.pass(number), passes[number]) << number;
+}
+
+TEST(CameraEngines, AnInterruptedPassIsBegunAgain) {
+  const Case c = cases()[0];
+  const CameraTracer tracer(c.part, c.light, c.scene, kCameraPolicy, 1);
+  const CameraTracer other(c.part, c.light, c.scene, kCameraPolicy, 1);
+  Cancellation cancel;
+  cancel.request();
+  EXPECT_FALSE(tracer.pass(0, &cancel));
+  EXPECT_EQ(*tracer.pass(0), *other.pass(0));
+  EXPECT_FALSE(tracer.pass(1, &cancel));
+  EXPECT_EQ(*tracer.pass(1), *other.pass(1));
+}
+
 TEST(CameraEngines, OfMirrorsWithLayersOnTheEntranceAgree) {
   Case c = cases()[1];
   for (WeighedOptics& at : c.light) {
