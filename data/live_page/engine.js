@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 56c49151340f4bd9f923f865384769237362654c2c847989c4f04efd0900a88b */
+/* made by tools/live_page; engine.wasm.gz 9c916abeb340a86bbb197c979555ad23d2d1a61d1cfd38143ac9237bd2815c8d */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

@@ -87,7 +87,9 @@ PixelGuide::Sample PixelGuide::sample(const Vec2& place_mm, std::uint32_t tile, 
   const Vec2 periods = place_mm.cwiseQuotient(period_mm_);
   const std::size_t bin =
       bin_at(static_cast<std::uint32_t>(digits(periods.x())), static_cast<std::uint32_t>(digits(periods.y())));
-  return {static_cast<std::uint32_t>(tile * columns_ * rows_ + bin), excess * excess};
+  // Sums over all paths are to stay finite.
+  constexpr float kMostSquare = 1e30F;
+  return {static_cast<std::uint32_t>(tile * columns_ * rows_ + bin), std::min(excess * excess, kMostSquare)};
 }
 
 void PixelGuide::learn(const std::vector<Samples>& lists) {

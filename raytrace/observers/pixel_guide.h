@@ -45,8 +45,9 @@ class PixelGuide {
   /// What paths found in bins over a period.
   struct Bins {
     Bins(std::size_t across, std::size_t down);
-    /// Of the bin that holds it on a map that is twice as coarse, and that map.
+    /// Of the bin that holds it on a map that is twice as coarse.
     std::size_t coarser(std::size_t bin) const;
+    /// That map.
     Bins coarser() const;
 
     std::size_t columns;
@@ -58,11 +59,11 @@ class PixelGuide {
   /// \param tiles of the picture, each of which has a map of its own \param paths that a pass tells of, about
   PixelGuide(const geometry::Vec2& period_mm, std::size_t tiles, std::size_t paths);
 
+  /// \param excess luminance that the path saw more, or less, than most of its pixel
   Sample sample(const geometry::Vec2& place_mm, std::uint32_t tile, float excess) const;
   /// Of paths of a pass, even or by what was learnt before: within a bin they lie evenly in any case.
   void learn(const std::vector<Samples>& lists);
-  /// Whether a pixel gains by taking points by the map: not where that is even, or faint beside the
-  /// picture.
+  /// Whether a pixel gains by taking points by the map: not where that is even, or faint beside the picture.
   bool serves(const PixelPlace& pixel) const;
   /// Points for one pass. \param random words
   std::array<Point, kPoints> points(const PixelPlace& pixel, const std::array<std::uint32_t, 4>& random) const;
