@@ -9,14 +9,13 @@
 #include <span>
 
 #include "core/error.h"
-#include "core/infinity.h"
 #include "core/random.h"
 #include "core/threads.h"
 #include "raytrace/cells/cell_walker.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/ledger.h"
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/observers/camera_rays.h"
 #include "raytrace/observers/pixel_guide.h"
 #include "raytrace/paths/path_tracer.h"
 #include "raytrace/sampling/entrance_sampler.h"
@@ -28,8 +27,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Philox streams: of the scrambles of points, of the choices on the way, of wavelengths and points of the pupil, and of
-// choices on the way of many paths together.
+// Philox streams: of the scrambles of points, of the choices on the way, of wavelengths and points of the pupil, of
+// choices on the way of many paths together, and of points that a guide chooses.
 constexpr std::uint32_t kCameraScrambleStream = 11;
 constexpr std::uint32_t kCameraChoiceStream = 12;
 constexpr std::uint32_t kLensStream = 13;
@@ -42,104 +41,6 @@ constexpr std::uint32_t kFirstPass = 0xffffffff;
 // Least side of a tile of the picture that a guide knows by itself, and the most along a side.
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMostTiles = 8;
-
-struct WorldRay {
-  Vec3 origin;
-  Vec3 direction;
-};
-
-/// Where a ray of the camera meets the part. Local: the frame in which light is followed.
-struct Contact {
-  enum class What { nothing, face, side, outside, dark };
-  What what = What::nothing;
-  Vec3 world = Vec3::Zero();
-  Vec3 local = Vec3::Zero();
-  Eigen::Matrix3d world_from_local = Eigen::Matrix3d::Identity();
-  std::size_t side = 0;
-};
-
-/// The camera's axes and its pixels.
-class Lens {
- public:
-  explicit Lens(const CameraView& view)
-      : eye_(view.eye_mm),
-        target_(view.target_mm),
-        pixel_mm_(view.width_mm / static_cast<double>(view.columns)),
-        half_(0.5 * static_cast<double>(view.columns), 0.5 * static_cast<double>(view.rows)) {
-    const Vec3 forward = (view.target_mm - view.eye_mm).normalized();
-    right_ = forward.cross(view.up).normalized();
-    up_ = right_.cross(forward);
-    pupil_radius_mm_ = 0.5 * view.pupil.rad() * (view.target_mm - view.eye_mm).norm();
-  }
-
-  double pupil_radius_mm() const { return pupil_radius_mm_; }
-
-  /// The ray through a point of the picture, in pixels from its upper left corner. \param pupil point of the unit disc
-  WorldRay ray(const Vec2& at, const Vec2& pupil) const {
-    const Vec3 origin = eye_ + pupil_radius_mm_ * (pupil.x() * right_ + pupil.y() * up_);
-    const Vec3 focus = target_ + pixel_mm_ * ((at.x() - half_.x()) * right_ + (half_.y() - at.y()) * up_);
-    return {origin, (focus - origin).normalized()};
-  }
-
- private:
-  Vec3 eye_;
-  Vec3 target_;
-  double pixel_mm_;
-  Vec2 half_;
-  Vec3 right_;
-  Vec3 up_;
-  double pupil_radius_mm_ = 0.0;
-};
-
-/// Luminance of the lamp as light that leaves the part finds it.
-class Luminaire {
- public:
-  Luminaire(const LampDisc& lamp, const CameraView& view, DiscAverage discs)
-      : position_(lamp.position_mm), eye_(view.eye_mm), discs_(discs) {
-    const Vec3 to_lamp = lamp.position_mm - view.target_mm;
-    const double distance = to_lamp.norm();
-    axis_ = to_lamp / distance;
-    radius_mm_ = 0.5 * lamp.diameter.rad() * distance;
-    pupil_radius_mm_ = 0.5 * view.pupil.rad() * (view.eye_mm - view.target_mm).norm();
-    intensity_ = lamp.illuminance_lx * distance * distance;
-  }
-
-  /// What a ray brings from it, averaged over the discs. cd/m^2
-  double luminance(const Vec3& from, const Vec3& direction) const {
-    if (!(intensity_ > 0.0)) return 0.0;
-    return discs_ == DiscAverage::kernel ? averaged(from, direction) : met(from, direction);
-  }
-
- private:
-  double averaged(const Vec3& from, const Vec3& direction) const {
-    const Vec3 way = position_ - from;
-    const double distance = way.norm();
-    const double lamp_rad = radius_mm_ / distance;
-    const double pupil_rad = pupil_radius_mm_ / (eye_ - from).norm();
-    const double chord = (direction - way / distance).norm();
-    if (chord > 1.01 * (lamp_rad + pupil_rad)) return 0.0;
-    const ApertureKernel kernel({Angle::from_rad(2.0 * lamp_rad), Angle::from_rad(2.0 * pupil_rad)});
-    // Illuminance at this place times the share of pairs of points, one in each disc, that the ray joins, per
-    // steradian.
-    return intensity_ / (distance * distance) * kernel.per_sr(2.0 * std::asin(0.5 * chord));
-  }
-
-  double met(const Vec3& from, const Vec3& direction) const {
-    const double towards = direction.dot(axis_);
-    if (!(towards > 0.0)) return 0.0;
-    const Vec3 at = from + (position_ - from).dot(axis_) / towards * direction;
-    if ((at - position_).norm() > radius_mm_) return 0.0;
-    return intensity_ / (pi * radius_mm_ * radius_mm_);
-  }
-
-  Vec3 position_;
-  Vec3 eye_;
-  Vec3 axis_;
-  DiscAverage discs_;
-  double radius_mm_ = 0.0;
-  double pupil_radius_mm_ = 0.0;
-  double intensity_ = 0.0;  ///< towards the target, lx mm^2
-};
 
 /// A path of the camera, from where it meets the part.
 struct Look {
@@ -183,44 +84,6 @@ class Sight : public ExitObserver, public CellWalker::Observer {
 Vec2 in_unit_disc(double u, double v) {
   const double r = std::sqrt(u);
   return {r * std::cos(2.0 * pi * v), r * std::sin(2.0 * pi * v)};
-}
-
-/// Where a ray meets a bent or plane sheet first; its face is the plane z = thickness_mm where it touches the target.
-Contact contact_with(const Film& film, double thickness_mm, const WorldRay& ray) {
-  Contact contact;
-  const auto is_on_it = [&](double u, double v) {
-    return std::abs(u) <= 0.5 * film.width_mm && std::abs(v) <= 0.5 * film.height_mm;
-  };
-  const auto take = [&](double t, double u, const Vec3& normal) {
-    const Vec3 world = ray.origin + t * ray.direction;
-    if (!(t > 0.0) || !is_on_it(u, world.y())) return false;
-    contact.what = normal.dot(ray.direction) < 0.0 ? Contact::What::face : Contact::What::dark;
-    contact.world = world;
-    contact.local = {u, world.y(), thickness_mm};
-    contact.world_from_local.col(0) = Vec3::UnitY().cross(normal);
-    contact.world_from_local.col(1) = Vec3::UnitY();
-    contact.world_from_local.col(2) = normal;
-    return true;
-  };
-  if (!film.radius_mm) {
-    const double t = (thickness_mm - ray.origin.z()) / ray.direction.z();
-    if (std::isfinite(t)) take(t, ray.origin.x() + t * ray.direction.x(), Vec3::UnitZ());
-    return contact;
-  }
-  const double radius = *film.radius_mm;
-  // The axis runs through (0, thickness - radius).
-  const Vec2 o(ray.origin.x(), ray.origin.z() - thickness_mm + radius);
-  const Vec2 d(ray.direction.x(), ray.direction.z());
-  const double a = d.squaredNorm();
-  const double b = o.dot(d);
-  const double root2 = b * b - a * (o.squaredNorm() - radius * radius);
-  if (!(a > 0.0) || root2 < 0.0) return contact;
-  for (const double sign : {-1.0, 1.0}) {
-    const double t = (-b + sign * std::sqrt(root2)) / a;
-    const Vec2 at = (o + t * d) / radius;
-    if (take(t, radius * std::atan2(at.x(), at.y()), Vec3(at.x(), 0.0, at.y()).normalized())) break;
-  }
-  return contact;
 }
 
 }  // namespace
@@ -537,7 +400,10 @@ std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden
   const auto words = philox({seed, kCameraScrambleStream}, pass, pixel);
   const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
   std::array<PixelGuide::Point, kPointsPerPass> points;
-  for (std::uint32_t k = 0; k < kPointsPerPass; ++k) points[k].within = {square(k)[0], square(k)[1]};
+  for (std::uint32_t k = 0; k < kPointsPerPass; ++k) {
+    const auto [x, y] = square(k);
+    points[k].within = {x, y};
+  }
   return points;
 }
 
