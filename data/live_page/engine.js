@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 9c916abeb340a86bbb197c979555ad23d2d1a61d1cfd38143ac9237bd2815c8d */
+/* made by tools/live_page; engine.wasm.gz fa6fc913c805bcd2d98c4f735fbad5c5c365449643df976be5376c8864bda6f7 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

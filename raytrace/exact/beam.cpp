@@ -47,6 +47,32 @@ double mean_exp(double a, double b, double c) {
   return std::exp(-middle) * sum;
 }
 
+/// Up to this the mean of exp(-x) is a series of kTerms terms about 0, exact to rounding.
+constexpr double kNarrow = 0.5;
+constexpr std::size_t kTerms = 14;
+
+/// (-1)^k 2 / (k + 2)!
+constexpr std::array<double, kTerms> series_of_triangle() {
+  std::array<double, kTerms> factors{1.0};
+  for (std::size_t k = 1; k < kTerms; ++k) factors[k] = -factors[k - 1] / (static_cast<double>(k) + 2.0);
+  return factors;
+}
+
+/// Mean of exp(-x) over a triangle on which x is linear, 0 at one corner and a and b at the others, both within
+/// +-kNarrow: a series in the complete homogeneous symmetric polynomials h_k(a, b) = a h_(k-1) + b^k.
+double mean_exp_narrow(double a, double b) {
+  constexpr std::array<double, kTerms> kFactors = series_of_triangle();
+  double h = 1.0;
+  double power = 1.0;
+  double sum = 1.0;
+  for (std::size_t k = 1; k < kTerms; ++k) {
+    power *= b;
+    h = a * h + power;
+    sum += kFactors[k] * h;
+  }
+  return sum;
+}
+
 }  // namespace
 
 Beam moved(Beam beam, const Vec2& by_mm, const Vec3& to_source, double index) {
@@ -101,14 +127,21 @@ Corners cut(const Corners& corners, const Plane& plane) {
 double mean_transmission(const Corners& corners, const PathLength& path_length, double absorption_per_mm) {
   if (absorption_per_mm <= 0.0) return 1.0;
   const auto depth = [&](std::size_t k) { return absorption_per_mm * path_length.at(corners[k]); };
+  const double first = depth(0);
+  const double at_first = std::exp(-first);
   double sum = 0.0;
   double whole = 0.0;
+  double before = depth(1);
   for (std::size_t k = 2; k < corners.size(); ++k) {
+    const double here = depth(k);
     const double weight = (corners[k - 1] - corners[0]).cross(corners[k] - corners[0]).norm();
-    sum += weight * mean_exp(depth(0), depth(k - 1), depth(k));
+    const bool is_narrow = std::abs(before - first) <= kNarrow && std::abs(here - first) <= kNarrow;
+    sum +=
+        weight * (is_narrow ? at_first * mean_exp_narrow(before - first, here - first) : mean_exp(first, before, here));
     whole += weight;
+    before = here;
   }
-  return whole > 0.0 ? sum / whole : std::exp(-depth(0));
+  return whole > 0.0 ? sum / whole : at_first;
 }
 
 }  // namespace retrace::raytrace

@@ -122,6 +122,7 @@ struct Beam {
   double phase_mm = 0.0;  ///< of the field at the origin, with the wave continued there: an optical path
   CellTrail trail;
   double share = 1.0;             ///< of the entrance's cross-section
+  double transmission = 1.0;      ///< of the material so far: the mean over its cross-section where it starts
   double power = 0.0;             ///< that it starts with, as a share of the incident
   PathLength path_length;         ///< in the material
   EntryPoint entry;               ///< where it came in

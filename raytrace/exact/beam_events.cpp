@@ -12,7 +12,8 @@ using geometry::FacetRole, surface_models::Lobe;
 /// Of a piece of a beam, where the beam starts.
 double BeamWalk::power_at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) const {
   const Plane start{from.start.normal, from.start.normal.dot(from.corners[0])};
-  return transmission_of(from, lifted(piece, frame, Distance(frame, start)), share) * from.light.power();
+  const Corners corners = lifted(piece, frame, Distance(frame, start));
+  return share * mean_transmission(corners, from.path_length, setup_.optics.absorption_per_mm) * from.light.power();
 }
 
 /// A piece of a beam where it meets a plane, with what the material took on the way booked.
@@ -23,6 +24,7 @@ Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& 
   beam.depth = from.depth + 1;
   beam.level_steps = 0;
   beam.corners = lifted(piece, frame, Distance(frame, plane));
+  beam.transmission = mean_transmission(beam.corners, beam.path_length, setup_.optics.absorption_per_mm);
   if (from.inside && setup_.optics.absorption_per_mm > 0.0)
     book(Account::absorbed, power_at_start(from, frame, piece, share) - power_of(beam));
   return beam;

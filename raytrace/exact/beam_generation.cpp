@@ -30,16 +30,28 @@ std::uint64_t interleaved(std::uint32_t a, std::uint32_t b) {
   return spread(a) | (spread(b) << 1);
 }
 
-/// What beams are sorted by: where they go, then where in the period or outline they start.
-struct SortKey {
-  std::tuple<bool, std::int64_t, std::int64_t, std::int64_t, std::uint64_t> state;
-  std::size_t beam = 0;
-  std::size_t place = 0;  ///< of Beam::places
+/// What beams are sorted by first: where they go.
+using Heading = std::tuple<bool, std::int64_t, std::int64_t, std::int64_t>;
 
-  bool operator<(const SortKey& other) const {
-    return std::tie(state, beam, place) < std::tie(other.state, other.beam, other.place);
+Heading heading_of(const Beam& beam) {
+  const auto rounded = [](double x) { return static_cast<std::int64_t>(std::llround(x / kOneDirection)); };
+  return {beam.inside, rounded(beam.direction.x()), rounded(beam.direction.y()), rounded(beam.direction.z())};
+}
+
+/// Of each beam, how many different headings come before its own.
+std::vector<std::uint32_t> ranks_of_headings(const WaitingBeams& beams) {
+  std::vector<std::pair<Heading, std::size_t>> sorted;
+  sorted.reserve(beams.size());
+  for (std::size_t k = 0; k < beams.size(); ++k) sorted.emplace_back(heading_of(beams[k]), k);
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::uint32_t> ranks(beams.size());
+  std::uint32_t rank = 0;
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    if (k > 0 && sorted[k].first != sorted[k - 1].first) ++rank;
+    ranks[sorted[k].second] = rank;
   }
-};
+  return ranks;
+}
 
 /// Over the size of a period or outline.
 Vec2 scale_of(const geometry::Part& part) {
@@ -55,36 +67,34 @@ Vec2 middle_of(const Beam& beam) {
   return at / static_cast<double>(beam.corners.size());
 }
 
-/// \param at where it starts
-SortKey key_of(const Beam& beam, std::size_t number, std::size_t place, const Vec2& at, const Vec2& scale) {
-  const auto rounded = [](double x) { return static_cast<std::int64_t>(std::llround(x / kOneDirection)); };
+/// Where it starts in the period or outline: neighbours there mostly have numbers that are near.
+std::uint64_t number_of_place(const Vec2& at, const Vec2& scale) {
   const auto share = [](double x) { return static_cast<std::uint32_t>((x - std::floor(x)) * 65535.0); };
-  return {{beam.inside, rounded(beam.direction.x()), rounded(beam.direction.y()), rounded(beam.direction.z()),
-           interleaved(share(at.x() * scale.x()), share(at.y() * scale.y()))},
-          number,
-          place};
+  return interleaved(share(at.x() * scale.x()), share(at.y() * scale.y()));
+}
+
+/// The first from `at` on for which `holds`, which does for all behind it; mostly near.
+template <typename Iterator, typename Predicate>
+Iterator first_that(Iterator at, Iterator end, const Predicate& holds) {
+  std::ptrdiff_t step = 1;
+  for (; end - at > step && !holds(at[step]); step *= 2) at += step;
+  const Iterator last = end - at > step ? at + step : end;
+  return std::partition_point(at, last, [&](const auto& one) { return !holds(one); });
 }
 
 }  // namespace
 
-BeamGeneration::BeamGeneration(const geometry::Part& part, const WaitingBeams& beams) : beams_(beams) {
+BeamGeneration::BeamGeneration(const geometry::Part& part, const WaitingBeams& beams)
+    : beams_(beams), is_endless_(part.period_mm.has_value()) {
   const Vec2 scale = scale_of(part);
-  std::vector<SortKey> keys;
-  keys.reserve(beams.size());
-  const bool is_endless = part.period_mm.has_value();
-  for (std::size_t k = 0; k < beams.size(); ++k) {
-    const Vec2 at = middle_of(beams[k]);
-    const std::size_t count = beams[k].places && !is_endless ? beams[k].places->size() : 1;
-    for (std::size_t place = 0; place < count; ++place)
-      keys.push_back(key_of(beams[k], k, place, place == 0 ? at : Vec2(at + (*beams[k].places)[place]), scale));
-  }
-  std::sort(keys.begin(), keys.end());
-  places_.reserve(keys.size());
-  for (const SortKey& key : keys) {
-    const Beam& beam = beams[key.beam];
-    places_.push_back({key.beam, key.place, is_endless ? beam.total_power() : beam.power});
-    power_ += places_.back().power;
-  }
+  const std::vector<std::uint32_t> ranks = ranks_of_headings(beams);
+  entries_.reserve(beams.size());
+  for (std::size_t k = 0; k < beams.size(); ++k)
+    if (beams[k].power > 0.0)
+      entries_.push_back({std::uint64_t{ranks[k]} << 32 | number_of_place(middle_of(beams[k]), scale), k, 0.0});
+  std::sort(entries_.begin(), entries_.end(),
+            [](const Entry& a, const Entry& b) { return std::tie(a.order, a.beam) < std::tie(b.order, b.beam); });
+  for (Entry& entry : entries_) entry.power_up_to = power_ += beams[entry.beam].total_power();
 }
 
 bool BeamGeneration::counts() const {
@@ -101,14 +111,23 @@ std::size_t BeamGeneration::for_each_survivor(double most_power, double offset, 
   std::size_t survivors = 0;
   const double count = survivor_count(most_power);
   const double each = power_ / count;
-  double passed = 0.0;
+  const Entry& last = entries_.back();
+  const auto marks_up_to = [&](double power) { return std::min(count, std::floor(power / each + offset)); };
+  const auto marks_up_to_end_of = [&](const Entry& entry) {
+    return &entry == &last ? count : marks_up_to(entry.power_up_to);
+  };
   double taken = 0.0;
-  for (const Place& place : places_) {
-    passed += place.power / each;
-    const double until = &place == &places_.back() ? count : std::floor(passed + offset);
-    if (until <= taken) continue;
-    const Beam& beam = beams_[place.beam];
-    Beam survivor = walk.at_place(beam, place.place);
+  auto at = entries_.begin();
+  while (taken < count) {
+    at = first_that(at, entries_.end(), [&](const Entry& entry) { return marks_up_to_end_of(entry) > taken; });
+    const Beam& beam = beams_[at->beam];
+    const double places = is_endless_ ? 1.0 : beam.place_count();
+    const double power = beam.total_power() / places;
+    const double before = at->power_up_to - beam.total_power();
+    const double place = std::clamp(std::floor(((taken + 1.0 - offset) * each - before) / power), 0.0, places - 1.0);
+    const double until = place < places - 1.0 ? std::max(taken + 1.0, marks_up_to(before + (place + 1.0) * power))
+                                              : marks_up_to_end_of(*at);
+    Beam survivor = walk.at_place(beam, static_cast<std::size_t>(place));
     survivor.share *= (until - taken) * each / beam.power;
     survivor.power = (until - taken) * each;
     taken = until;

@@ -16,15 +16,14 @@ class BeamWalk;
 
 /// Beams that are as many interfaces away from where they were first too weak, in the order in which survivors are
 /// chosen: sorted by direction and place, as alike beams have alike ends (Array-RQMC: L'Ecuyer, Lecot and Tuffin,
-/// Operations Research 56, 958, 2008). Beams that stand for several places (Beam::places) count at each, and survivors
-/// are alone; of an endless part's, at the first for all.
+/// Operations Research 56, 958, 2008). Beams that stand for several places (Beam::places) count at each, one place
+/// after the other, and survivors are alone; of an endless part's, at the first for all.
 class BeamGeneration {
  public:
   /// \param part whose periods or outline places are compared by \param beams outlive this
   BeamGeneration(const geometry::Part& part, const WaitingBeams& beams);
 
   double power() const { return power_; }
-  std::size_t size() const { return places_.size(); }
   /// Whether there is enough of it to be followed.
   bool counts() const;
   /// How many survive if each may stand for so much.
@@ -38,13 +37,14 @@ class BeamGeneration {
                                 const std::function<void(const Beam&)>& follow) const;
 
  private:
-  struct Place {
+  struct Entry {
+    std::uint64_t order;  ///< of direction and place
     std::size_t beam;
-    std::size_t place;  ///< of Beam::places
-    double power;
+    double power_up_to;  ///< of all before it and its own
   };
   const WaitingBeams& beams_;
-  std::vector<Place> places_;
+  bool is_endless_;
+  std::vector<Entry> entries_;
   double power_ = 0.0;
 };
 

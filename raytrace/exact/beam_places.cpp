@@ -118,7 +118,7 @@ void BeamWalk::keep_equal_places(Beam& beam) {
   if (setup_.infinite()) return;
   const PlanBox sweep = sweep_of(beam);
   std::vector<BeamPlaces> groups = equal_->divided(*beam.places, {sweep.lower, sweep.upper});
-  if (groups.size() == 1) return;
+  if (groups.size() <= 1) return;
   for (BeamPlaces& group : groups) {
     const Vec2 first = group.front();
     if (first.isZero(0.0)) continue;

@@ -142,7 +142,7 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
       pending_power_ -= beam.total_power();
       if (strength_of(beam) < cutoff_) {
         defer(std::move(beam));
-        if (deferred_places_ >= most_kept_) return End::paused;
+        if (deferred_.size() >= most_kept_) return End::paused;
         continue;
       }
       if (++beams_ > policy_.max_beams) fail_on_budget();
@@ -180,7 +180,6 @@ void BeamWalk::lower_cutoff_to(double cutoff) {
   pending_.swap(deferred_);
   pending_power_ = deferred_power_;
   deferred_power_ = 0.0;
-  deferred_places_ = 0;
 }
 
 /// What is open stays behind.
@@ -220,13 +219,11 @@ BeamResult BeamWalk::result() const {
 /// Beams below the cut-off are kept for a lower one, unless they are so many that they are better found again.
 void BeamWalk::defer(Beam&& beam) {
   deferred_power_ += beam.total_power();
-  deferred_places_ += static_cast<std::size_t>(beam.place_count());
   if (approach_ == Approach::kept || deferred_.size() <= kMostDeferred) deferred_.push_back(std::move(beam));
 }
 
 WaitingBeams BeamWalk::take_kept() {
   deferred_power_ = 0.0;
-  deferred_places_ = 0;
   WaitingBeams kept;
   kept.swap(deferred_);
   return kept;

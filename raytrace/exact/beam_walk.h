@@ -110,12 +110,8 @@ class BeamWalk {
 
  private:
   /// Share of the power of its light that a beam brings here: by its area, less what was absorbed.
-  double transmission_of(const Beam& beam) const { return transmission_of(beam, beam.corners, beam.share); }
-  /// Of a piece of it that lies elsewhere along it.
-  double transmission_of(const Beam& beam, const Corners& corners, double share) const {
-    return share * mean_transmission(corners, beam.path_length, setup_.optics.absorption_per_mm);
-  }
-  double power_of(const Beam& beam) const { return transmission_of(beam) * beam.light.power(); }
+  static double transmission_of(const Beam& beam) { return beam.share * beam.transmission; }
+  static double power_of(const Beam& beam) { return transmission_of(beam) * beam.light.power(); }
   double parts_of_element() const;
   Vec2 step_of_entrance(double parts) const;
   void enter_in_pieces(const Beam& whole, const Vec2& step);
@@ -184,7 +180,6 @@ class BeamWalk {
   double pending_power_ = 0.0;
   WaitingBeams deferred_;  ///< below the cut-off
   double deferred_power_ = 0.0;
-  std::size_t deferred_places_ = 0;  ///< Beam::places of all of them
   std::size_t most_kept_ = std::numeric_limits<std::size_t>::max();
   double cutoff_ = 0.0;
   Approach approach_ = Approach::fixed;

@@ -176,7 +176,8 @@ bool EqualPlaces::is_within(const Rectangle& sweep, const Vec2& by, Eigen::Index
 }
 
 std::vector<BeamPlaces> EqualPlaces::divided(const BeamPlaces& places, const Rectangle& sweep) const {
-  if (part_->period_mm) return {places};
+  const auto meets_inner_cells = [&](const Vec2& by) { return is_within(sweep, by, 0) && is_within(sweep, by, 1); };
+  if (part_->period_mm || std::all_of(places.begin(), places.end(), meets_inner_cells)) return {};
   std::vector<BeamPlaces> groups = {places};
   for (const Eigen::Index axis : {0, 1}) {
     std::vector<BeamPlaces> finer;

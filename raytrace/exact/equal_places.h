@@ -31,7 +31,8 @@ class EqualPlaces {
   const std::optional<geometry::Vec2>& within_period_mm() const { return within_period_mm_; }
 
   /// Divides places into those where a beam meets the same. \param places offsets of the beam and its copies, moved
-  /// from each other by whole periods \param sweep in plan, of the first: all that it may meet lies there
+  /// from each other by whole periods \param sweep in plan, of the first: all that it may meet lies there \return
+  /// nothing if they all meet the same
   std::vector<BeamPlaces> divided(const BeamPlaces& places, const geometry::Rectangle& sweep) const;
 
  private:

@@ -117,7 +117,7 @@ bool StochasticBeams::advance() {
   result_.reached_target = largest_error(result_) <= sampling_.target_error;
   ++round_;
   return result_.reached_target || threshold_ <= kLastThreshold || ray_power_ <= kLastRayPower ||
-         first.size() > kMostKept;
+         strong_->kept().size() > kMostKept;
 }
 
 std::uint64_t StochasticBeams::beams() const {

@@ -23,6 +23,7 @@ constexpr int kBisections = 4;
 // Of a value over its limit: what the few wavelengths of the search may be wrong by is added.
 constexpr double kEnough = 1.01;
 constexpr double kMostErrorArcmin = 300.0;
+constexpr double kNothingMade = -1.0;  // in place of a ratio
 constexpr double kWholeTable = -std::numeric_limits<double>::infinity();
 
 /// A parameter of the design and how it is changed.
@@ -57,51 +58,27 @@ class Search {
   Search(const Knob& knob, const TestProgramme& programme, const TableOfDesign& table)
       : knob_(knob), programme_(programme), table_(table) {}
 
-  /// The least change that passes, or the best; nothing if it was cancelled or nothing could be made.
-  std::optional<PhotometricChange> run() {
-    double best = knob_.from;
-    double best_ratio = -1.0;
+  /// Looks for the least change that passes, or the best.
+  /// \param than only better ones are of interest \return its least ratio; `than` if nothing better was found
+  double run(double than) {
+    double best_ratio = than;
     for (const double value : knob_.tries) {
       const double ratio = ratio_at(value, best_ratio);
-      if (is_cancelled_) return std::nullopt;
+      if (is_cancelled_) break;
       if (ratio > best_ratio) {
-        best = value;
+        best_ = value;
         best_ratio = ratio;
       }
       if (ratio < kEnough) continue;
-      best = nearest_that_passes(value);
+      best_ = nearest_that_passes(value);
       break;
     }
-    if (best_ratio < 0.0) return std::nullopt;
-    return told(best);
+    return best_ratio;
   }
 
- private:
-  /// The least of value over limit, or less than `enough`; -1 if such a part cannot be made, or the search was
-  /// cancelled.
-  double ratio_at(double value, double enough) {
-    if (is_cancelled_) return -1.0;
-    try {
-      const auto points = table_(knob_.with(value), kSearchParts, enough);
-      is_cancelled_ = !points;
-      return points ? least_ratio(*points) : -1.0;
-    } catch (const InputError&) {
-      return -1.0;
-    }
-  }
-
-  double nearest_that_passes(double passing) {
-    double failing = knob_.from;
-    for (int k = 0; k < kBisections; ++k) {
-      const double middle = 0.5 * (failing + passing);
-      (ratio_at(middle, kEnough) >= kEnough ? passing : failing) = middle;
-    }
-    return passing;
-  }
-
-  /// To three digits of the change, with all wavelengths.
-  std::optional<PhotometricChange> told(double value) const {
-    const double change = value - knob_.from;
+  /// What run() found, to three digits of the change, with all wavelengths. Nothing if it was cancelled.
+  std::optional<PhotometricChange> told() const {
+    const double change = best_ - knob_.from;
     const double scale = std::pow(10.0, 2.0 - std::floor(std::log10(std::abs(change))));
     PhotometricChange found;
     found.key = knob_.key;
@@ -114,9 +91,35 @@ class Search {
     return found;
   }
 
+  bool is_cancelled() const { return is_cancelled_; }
+
+ private:
+  /// The least of value over limit, or less than `enough`; kNothingMade if such a part cannot be made, or the search
+  /// was cancelled.
+  double ratio_at(double value, double enough) {
+    if (is_cancelled_) return kNothingMade;
+    try {
+      const auto points = table_(knob_.with(value), kSearchParts, enough);
+      is_cancelled_ = !points;
+      return points ? least_ratio(*points) : kNothingMade;
+    } catch (const InputError&) {
+      return kNothingMade;
+    }
+  }
+
+  double nearest_that_passes(double passing) {
+    double failing = knob_.from;
+    for (int k = 0; k < kBisections; ++k) {
+      const double middle = 0.5 * (failing + passing);
+      (ratio_at(middle, kEnough) >= kEnough ? passing : failing) = middle;
+    }
+    return passing;
+  }
+
   const Knob& knob_;
   const TestProgramme& programme_;
   const TableOfDesign& table_;
+  double best_ = knob_.from;
   bool is_cancelled_ = false;
 };
 
@@ -133,14 +136,27 @@ double least_ratio(const std::vector<PhotometricPoint>& points) {
 
 std::vector<PhotometricChange> changes_that_pass(const Design& design, const TestProgramme& programme,
                                                  const TableOfDesign& table) {
-  std::vector<PhotometricChange> tried;
-  for (const Knob& knob : {angle_knob(design), size_knob(design)}) {
-    const auto found = Search(knob, programme, table).run();
-    if (!found) continue;
-    if (found->passes()) return {*found};
-    tried.push_back(*found);
+  const std::array<Knob, 2> knobs = {angle_knob(design), size_knob(design)};
+  std::optional<Search> best;
+  std::optional<PhotometricChange> told;
+  double best_ratio = kNothingMade;
+  for (const Knob& knob : knobs) {
+    Search search(knob, programme, table);
+    const double ratio = search.run(best_ratio);
+    if (search.is_cancelled()) return {};
+    if (ratio <= best_ratio) continue;
+    best.emplace(search);
+    best_ratio = ratio;
+    told.reset();
+    if (ratio < kEnough) continue;
+    told = search.told();
+    if (!told) return {};
+    if (told->passes()) break;
+    best_ratio = least_ratio(told->points);
   }
-  return tried;
+  if (best && !told) told = best->told();
+  if (!told) return {};
+  return {*told};
 }
 
 }  // namespace retrace::studies

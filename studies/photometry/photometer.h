@@ -78,6 +78,8 @@ class Photometer {
   /// From now on by Monte Carlo.
   void leave_exact() { is_exact_ = false; }
   bool is_exact() const { return is_exact_; }
+  /// From now on, where weak beams are resampled, fewer of them: values guide a search and are told to nobody.
+  void only_guide() { is_guide_ = true; }
   /// From now on without the mirror image of the light: what the entrance face reflects, from outside and, between
   /// elements that send it back, from inside. \pre is_exact()
   void leave_out_mirror_image() { has_mirror_image_ = false; }
@@ -118,6 +120,7 @@ class Photometer {
   std::uint32_t seed_of(std::size_t wavelength) const;
   bool resamples_weak() const;  ///< beams below the cut-off, in place of giving them up
   double cutoff() const;
+  std::uint32_t replicates() const;
 
   Design design_;
   PhotometryRequest request_;
@@ -125,6 +128,7 @@ class Photometer {
   std::vector<double> weights_;  ///< of the wavelengths: of flux without the dye, which the tracer applies
   raytrace::ApertureKernel kernel_;
   bool is_exact_ = true;
+  bool is_guide_ = false;
   bool has_mirror_image_ = true;
   bool has_form_ = false;
   bool keeps_phases_ = false;  ///< exact: textures scatter by their phases, diffracted

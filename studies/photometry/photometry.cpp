@@ -212,6 +212,7 @@ class TablesOfChanges {
   std::optional<std::vector<PhotometricPoint>> table(const Design& design, std::size_t parts, double enough) {
     Photometer photometer(design, request_, parts);
     if (!exact_) photometer.leave_exact();
+    if (std::isfinite(enough)) photometer.only_guide();
     Readings readings(plan_.settings.size());
     std::vector<PhotometricPoint> points;
     for (const LitAlike& alike : in_order(photometer.settings_lit_alike(plan_.settings))) {

@@ -331,8 +331,8 @@ TEST(Photometry, WhatCannotPassIsToldWithTheBestThatWasTried) {
   PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 1e8));
   request.advice = true;
   const PhotometryResult result = run(design, request);
-  ASSERT_EQ(result.changes.size(), 2U);
-  for (const PhotometricChange& change : result.changes) EXPECT_EQ(change.verdict, Verdict::fail);
+  ASSERT_EQ(result.changes.size(), 1U);
+  EXPECT_EQ(result.changes[0].verdict, Verdict::fail);
   EXPECT_NE(photometry_table(result).find("not enough"), std::string::npos);
 }
 
