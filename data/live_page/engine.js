@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz fa6fc913c805bcd2d98c4f735fbad5c5c365449643df976be5376c8864bda6f7 */
+/* made by tools/live_page; engine.wasm.gz 0d91caac0ee6ae4ecde3159232f2a7d917a1b053aa6ba8c7a93ac428a5d55bac */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

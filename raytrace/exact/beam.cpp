@@ -13,41 +13,7 @@ double mean_exp(double a, double b) {
   return width > 0.0 ? std::exp(-a) * -std::expm1(-width) / width : std::exp(-a);
 }
 
-/// Mean of exp(-x) over a triangle on which x is linear with the values given at its corners: twice the divided
-/// difference of exp(-x) (Hermite-Genocchi). Wide ones by the recursion of divided differences, which cancels little
-/// there; narrow ones as a series in complete homogeneous symmetric polynomials of the deviations from the mean.
-double mean_exp(double a, double b, double c) {
-  constexpr double kWide = 2.0;
-  constexpr double kNegligible = 1e-18;
-  std::array<double, 3> at = {a, b, c};
-  std::sort(at.begin(), at.end());
-  if (at[2] - at[0] > kWide) return 2.0 * (mean_exp(at[0], at[1]) - mean_exp(at[1], at[2])) / (at[2] - at[0]);
-  const double middle = (a + b + c) / 3.0;
-  const double x = a - middle;
-  const double y = b - middle;
-  const double z = c - middle;
-  const double e2 = x * y + y * z + z * x;
-  const double e3 = x * y * z;
-  double h[3] = {1.0, 0.0, -e2};  // h_k = e1 h_(k-1) - e2 h_(k-2) + e3 h_(k-3), e1 = 0
-  double factor = 1.0 / 12.0;     // 2 / (k+2)! at k = 2
-  double sum = 1.0 + factor * h[2];
-  // h_k has (k + 1)(k + 2) / 2 terms, none above the largest deviation to the power of k.
-  const double largest = at[2] - at[0];
-  double power = largest * largest;
-  for (int k = 3; k < 40; ++k) {
-    const double next = -e2 * h[1] + e3 * h[0];
-    h[0] = h[1];
-    h[1] = h[2];
-    h[2] = next;
-    factor /= -(k + 2.0);
-    power *= largest;
-    if (std::abs(factor) * power * (k + 1.0) * (k + 2.0) < kNegligible) break;
-    sum += factor * next;
-  }
-  return std::exp(-middle) * sum;
-}
-
-/// Up to this the mean of exp(-x) is a series of kTerms terms about 0, exact to rounding.
+// Triangles over which x changes by this or less have a series of kTerms terms, exact to rounding.
 constexpr double kNarrow = 0.5;
 constexpr std::size_t kTerms = 14;
 
@@ -58,19 +24,28 @@ constexpr std::array<double, kTerms> series_of_triangle() {
   return factors;
 }
 
-/// Mean of exp(-x) over a triangle on which x is linear, 0 at one corner and a and b at the others, both within
-/// +-kNarrow: a series in the complete homogeneous symmetric polynomials h_k(a, b) = a h_(k-1) + b^k.
-double mean_exp_narrow(double a, double b) {
+/// Mean of exp(-x) over a triangle on which x is linear with the values given at its corners: twice the divided
+/// difference of exp(-x) (Hermite-Genocchi). Wide ones by the recursion of divided differences, which cancels little
+/// there; narrow ones as a series in h_k(u, v) = u h_(k-1) + v^k, the complete homogeneous symmetric polynomials of the
+/// differences from the first corner.
+double mean_exp(double a, double b, double c) {
+  const double u = b - a;
+  const double v = c - a;
+  if (std::max(std::abs(u), std::abs(v)) > kNarrow) {
+    std::array<double, 3> at = {a, b, c};
+    std::sort(at.begin(), at.end());
+    return 2.0 * (mean_exp(at[0], at[1]) - mean_exp(at[1], at[2])) / (at[2] - at[0]);
+  }
   constexpr std::array<double, kTerms> kFactors = series_of_triangle();
   double h = 1.0;
   double power = 1.0;
   double sum = 1.0;
   for (std::size_t k = 1; k < kTerms; ++k) {
-    power *= b;
-    h = a * h + power;
+    power *= v;
+    h = u * h + power;
     sum += kFactors[k] * h;
   }
-  return sum;
+  return std::exp(-a) * sum;
 }
 
 }  // namespace
@@ -127,21 +102,14 @@ Corners cut(const Corners& corners, const Plane& plane) {
 double mean_transmission(const Corners& corners, const PathLength& path_length, double absorption_per_mm) {
   if (absorption_per_mm <= 0.0) return 1.0;
   const auto depth = [&](std::size_t k) { return absorption_per_mm * path_length.at(corners[k]); };
-  const double first = depth(0);
-  const double at_first = std::exp(-first);
   double sum = 0.0;
   double whole = 0.0;
-  double before = depth(1);
   for (std::size_t k = 2; k < corners.size(); ++k) {
-    const double here = depth(k);
     const double weight = (corners[k - 1] - corners[0]).cross(corners[k] - corners[0]).norm();
-    const bool is_narrow = std::abs(before - first) <= kNarrow && std::abs(here - first) <= kNarrow;
-    sum +=
-        weight * (is_narrow ? at_first * mean_exp_narrow(before - first, here - first) : mean_exp(first, before, here));
+    sum += weight * mean_exp(depth(0), depth(k - 1), depth(k));
     whole += weight;
-    before = here;
   }
-  return whole > 0.0 ? sum / whole : at_first;
+  return whole > 0.0 ? sum / whole : std::exp(-depth(0));
 }
 
 }  // namespace retrace::raytrace

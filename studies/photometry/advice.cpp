@@ -134,8 +134,8 @@ double least_ratio(const std::vector<PhotometricPoint>& points) {
   return least;
 }
 
-std::vector<PhotometricChange> changes_that_pass(const Design& design, const TestProgramme& programme,
-                                                 const TableOfDesign& table) {
+std::optional<PhotometricChange> change_that_passes(const Design& design, const TestProgramme& programme,
+                                                    const TableOfDesign& table) {
   const std::array<Knob, 2> knobs = {angle_knob(design), size_knob(design)};
   std::optional<Search> best;
   std::optional<PhotometricChange> told;
@@ -143,20 +143,18 @@ std::vector<PhotometricChange> changes_that_pass(const Design& design, const Tes
   for (const Knob& knob : knobs) {
     Search search(knob, programme, table);
     const double ratio = search.run(best_ratio);
-    if (search.is_cancelled()) return {};
+    if (search.is_cancelled()) return std::nullopt;
     if (ratio <= best_ratio) continue;
     best.emplace(search);
     best_ratio = ratio;
     told.reset();
     if (ratio < kEnough) continue;
     told = search.told();
-    if (!told) return {};
-    if (told->passes()) break;
+    if (!told || told->passes()) return told;
     best_ratio = least_ratio(told->points);
   }
   if (best && !told) told = best->told();
-  if (!told) return {};
-  return {*told};
+  return told;
 }
 
 }  // namespace retrace::studies

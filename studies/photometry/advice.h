@@ -21,9 +21,9 @@ double least_ratio(const std::vector<PhotometricPoint>& points);
 
 /// Looks for what makes a failing design pass, one parameter at a time: first the error of the angles between facets,
 /// then the size of the elements. The first that passes ends the search, at the least change that does; if none does,
-/// the best of all that was tried is told. Found with few wavelengths, told with all. One at most; none if it was
-/// cancelled.
-std::vector<PhotometricChange> changes_that_pass(const Design& design, const TestProgramme& programme,
-                                                 const TableOfDesign& table);
+/// the best of all that was tried is told. Found with few wavelengths, told with all. Nothing if no other part can be
+/// made, or it was cancelled.
+std::optional<PhotometricChange> change_that_passes(const Design& design, const TestProgramme& programme,
+                                                    const TableOfDesign& table);
 
 }  // namespace retrace::studies

@@ -17,9 +17,10 @@ constexpr double kCutoff = 1e-5;
 constexpr double kCutoffOfFinite = 5e-5;
 constexpr double kCutoffOfAll = 5e-7;
 constexpr std::uint32_t kReplicates = 16;
-// Of one that only guides a search: errors of some 1e-3, a third less time.
+// Of a photometer that only guides a search: its replicates, and its cut-off over that of others. Errors of some 1e-3
+// but where next to nothing returns, and a third less time.
 constexpr std::uint32_t kReplicatesOfGuide = 4;
-constexpr double kGuidesCutoff = 3.0;  // over that of others
+constexpr double kCutoffOfGuide = 3.0;
 // Beams of a direction and wavelength beyond which the choice is Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
 // ReturnedBeam::entry_trace from which on light is a mirror's.
@@ -46,7 +47,7 @@ double Photometer::cutoff() const {
   const double elements = std::max(1.0, static_cast<double>(model_.part.period_mm ? 1 : model_.part.elements_full));
   if (request_.cutoff) return *request_.cutoff / elements;
   if (model_.part.period_mm || !resamples_weak()) return kCutoff / elements;
-  return (is_guide_ ? kGuidesCutoff : 1.0) * std::max(kCutoffOfFinite / elements, kCutoffOfAll);
+  return (is_guide_ ? kCutoffOfGuide : 1.0) * std::max(kCutoffOfFinite / elements, kCutoffOfAll);
 }
 
 std::uint32_t Photometer::replicates() const {

@@ -378,18 +378,18 @@ std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer
 }
 
 /// What to change of a design that fails. False if it was cancelled.
-bool add_changes(const Photometer& photometer, const Plan& plan, const Cancellation* cancel, PhotometryResult& result) {
+bool add_change(const Photometer& photometer, const Plan& plan, const Cancellation* cancel, PhotometryResult& result) {
   const Design& design = result.design;
   const PhotometryRequest& request = result.request;
   const bool is_asked = request.advice && verdict_of(result.points, request.programme) == Verdict::fail &&
                         area_verdict(request.programme, request.area_cm2) != Verdict::fail;
   if (!is_asked || !design.elements() || design.entrance) return true;
   TablesOfChanges tables(request, plan, photometer.is_exact(), cancel);
-  result.changes = changes_that_pass(
+  result.change = change_that_passes(
       design, request.programme,
       [&](const Design& changed, std::size_t parts, double enough) { return tables.table(changed, parts, enough); });
-  for (PhotometricChange& change : result.changes)
-    change.verdict = std::max(change.verdict, area_verdict(request.programme, request.area_cm2));
+  if (result.change)
+    result.change->verdict = std::max(result.change->verdict, area_verdict(request.programme, request.area_cm2));
   return !is_cancelled(cancel);
 }
 
@@ -439,7 +439,7 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   if (result.complete) result.complete = add_colour(photometer, cancel, result);
   if (result.complete && request.pictures)
     result.complete = add_pictures(design, request, plan, photometer.is_exact(), cancel, result);
-  if (result.complete) result.complete = add_changes(photometer, plan, cancel, result);
+  if (result.complete) result.complete = add_change(photometer, plan, cancel, result);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

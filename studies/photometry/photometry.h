@@ -159,7 +159,7 @@ struct PhotometryResult {
   Verdict verdict = Verdict::fail;
   std::string reason;                       ///< why points are undetermined; empty if none is
   std::optional<PhotometricColour> colour;  ///< has a verdict of its own
-  std::vector<PhotometricChange> changes;   ///< if it fails: the one that passes, or what was tried
+  std::optional<PhotometricChange> change;  ///< if it fails: what passes, or the best that was tried
   std::vector<FarFieldMap> maps;
   std::vector<ObservationCurve> curves;
   double elapsed_s = 0.0;

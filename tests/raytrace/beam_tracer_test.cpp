@@ -226,6 +226,17 @@ TEST(BeamTracer, RunsOutOfItsBudgetAloud) {
   }
 }
 
+// Over a rectangle along which x rises by `width` the mean of exp(-x) is exp(-least) (1 - exp(-width)) / width.
+TEST(MeanTransmission, IsThatOfTheClosedForm) {
+  const Corners corners = {Vec3(1.0, 0.0, 0.0), Vec3(1.0, 1.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 0.0)};
+  for (const double least : {0.0, 0.3, 2000.0})
+    for (const double width : {1e-9, 1e-3, 0.1, 0.4999, 0.5001, 1.0, 2.0, 5.0, 40.0, 2000.0}) {
+      const double expected = std::exp(-least) * -std::expm1(-width) / width;
+      const double found = mean_transmission(corners, {least, Vec3(width, 0.0, 0.0)}, 1.0);
+      EXPECT_NEAR(found, expected, 1e-14 * expected) << least << ", " << width;
+    }
+}
+
 // The mean of exp(-x) over a triangle against a fine subdivision, from none to strong absorption.
 TEST(MeanTransmission, IsTheIntegral) {
   const Corners corners = {Vec3(0.1, 0.0, 0.0), Vec3(1.0, 0.2, 0.3), Vec3(0.4, 0.9, -0.2), Vec3(0.0, 0.5, -0.2)};

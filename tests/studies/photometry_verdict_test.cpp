@@ -152,7 +152,7 @@ TEST(PhotometryVerdict, TexturesWithoutPhasesThatTheBoundDoesNotLiftAreUndetermi
             "diffraction is left out, as textures that say nothing of phases (abg, microfacet, height_map, roughness "
             "with a lay) are traced by "
             "rays, and counts for cells narrower than 12.9 mm");
-  EXPECT_TRUE(result.changes.empty());
+  EXPECT_FALSE(result.change);
   EXPECT_NE(photometry_table(result).find("verdict: undetermined - diffraction is left out"), std::string::npos);
   const std::string json = photometry_json(result);
   EXPECT_NE(json.find("\"verdict\": \"undetermined\""), std::string::npos);

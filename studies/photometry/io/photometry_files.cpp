@@ -216,7 +216,7 @@ std::string photometry_json(const PhotometryResult& result) {
   json["directions"] = Json::array();
   for (const PhotometricDirection& d : result.directions) json["directions"].push_back(direction_json(d));
   json["changes"] = Json::array();
-  for (const PhotometricChange& change : result.changes) json["changes"].push_back(change_json(change));
+  if (result.change) json["changes"].push_back(change_json(*result.change));
   json["elapsed_s"] = result.elapsed_s;
   return result_text("retrace.photometry/1", json, result.warnings, result.complete);
 }
@@ -256,7 +256,7 @@ std::string photometry_table(const PhotometryResult& result) {
   table += areas_text(result.request);
   if (result.colour) table += colour_text(*result.colour);
   if (!result.points.empty()) table += verdict_text(result.verdict, programme, result.reason);
-  for (const PhotometricChange& change : result.changes) table += change_text(change, programme);
+  if (result.change) table += change_text(*result.change, programme);
   return table;
 }
 
