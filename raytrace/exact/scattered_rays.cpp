@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
 
 #include "raytrace/paths/textured_facet.h"
 
@@ -12,6 +15,87 @@ namespace {
 constexpr double kClearance = 1e-9;
 // Numbers of the rays of one round; those of the next follow.
 constexpr std::uint32_t kRaysOfRound = 1U << 26;
+// Cones that would hold less of what a place scatters are scored by expected value.
+constexpr double kNarrow = 0.1;
+// Rays to the source of less than this share of an ordinary one's power are followed by chance.
+constexpr double kLeastShare = 0.05;
+
+}  // namespace
+
+/// The way by mirrors alone that light has from a place of a facet, inside the part, out to the source, and those of
+/// the cones about it that are scored by expected value.
+class WayToSource {
+ public:
+  /// \param turn of PathWalker::mirrors_to_entrance() there
+  WayToSource(const PathSetup& setup, Eigen::Matrix3d turn) : setup_(setup), turn_(std::move(turn)) {}
+
+  void limit_to(std::size_t cones) { cones_ = cones; }
+
+  /// At the place, of light that leaves along `out`.
+  Vec3 direction_to(const Vec3& out) const {
+    const Vec2 across = out.head<2>() / setup_.optics.index;
+    return turn_.transpose() * Vec3(across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm()));
+  }
+
+  /// Whether light of this direction at the place would leave into one of the cones.
+  bool leads_back(const Vec3& direction) const {
+    const Vec3 inside = turn_ * direction;
+    const Vec2 across = setup_.optics.index * inside.head<2>();
+    const double rest = 1.0 - across.squaredNorm();
+    return inside.z() > 0.0 && rest > 0.0 && setup_.cone_of({across.x(), across.y(), std::sqrt(rest)}) < cones_;
+  }
+
+  /// Solid angle in air.
+  double solid_angle(std::size_t cone) const { return std::numbers::pi * setup_.cone_chord2[cone]; }
+
+  /// By how much solid angles about a direction that leaves are smaller inside.
+  double narrowing(const Vec3& out) const {
+    const double n = setup_.optics.index;
+    return out.z() / (n * n * std::sqrt(1.0 - out.head<2>().squaredNorm() / (n * n)));
+  }
+
+  /// A direction out, uniform in one of the cones, each by the same chance.
+  Vec3 draw(surface_models::RandomStream& random) const {
+    const auto cone = std::min(cones_ - 1, static_cast<std::size_t>(random.next() * static_cast<double>(cones_)));
+    const double less = 0.5 * setup_.cone_chord2[cone] * random.next();  // 1 - cos
+    const double sine = std::sqrt(less * (2.0 - less)), turn = 2.0 * std::numbers::pi * random.next();
+    const Vec3 along = setup_.to_source.unitOrthogonal();
+    return (1.0 - less) * setup_.to_source +
+           sine * (std::cos(turn) * along + std::sin(turn) * setup_.to_source.cross(along));
+  }
+
+  /// Of the directions that draw() gives, per steradian.
+  double density(const Vec3& out) const {
+    double sum = 0.0;
+    for (std::size_t cone = setup_.cone_of(out); cone < cones_; ++cone) sum += 1.0 / solid_angle(cone);
+    return sum / static_cast<double>(cones_);
+  }
+
+ private:
+  const PathSetup& setup_;
+  Eigen::Matrix3d turn_;
+  std::size_t cones_ = 0;
+};
+
+namespace {
+
+/// Nothing where no cone is to be scored by expected value. \param met light that meets the facet \param power of an
+/// ordinary ray from there
+std::optional<WayToSource> way_to_source(const PathSetup& setup, const PathWalker& walker, const Vec3& position,
+                                         const Vec3& normal, const Ray& met, double power) {
+  if (!met.inside || surface_models::first_order_model(setup.optics.facet_scatter) == nullptr) return std::nullopt;
+  const auto turn = walker.mirrors_to_entrance(position, mirrored(met.direction, normal));
+  if (!turn) return std::nullopt;
+  WayToSource way(setup, *turn);
+  const Ray there = diffracted_once_into(setup.optics, normal, met, way.direction_to(setup.to_source));
+  if (!there.inside || there.light.power() <= 0.0) return std::nullopt;
+  const double narrow = kNarrow * power / (there.light.power() * way.narrowing(setup.to_source));
+  std::size_t cones = 0;
+  while (cones < setup.cone_chord2.size() && way.solid_angle(cones) < narrow) ++cones;
+  if (cones == 0) return std::nullopt;
+  way.limit_to(cones);
+  return way;
+}
 
 }  // namespace
 
@@ -47,7 +131,9 @@ ScatteredRays::ScatteredRays(const PathSetup& setup, RandomKey key, std::uint32_
       number_(round * kRaysOfRound),
       cancel_(cancel),
       tally_(setup.cone_chord2.size()),
-      walker_(setup, tally_) {}
+      walker_(setup, tally_),
+      apart_(setup.cone_chord2.size()),
+      walker_apart_(setup, apart_) {}
 
 void ScatteredRays::launch(const std::vector<ScatterSite>& sites, double most_power) {
   double power = 0.0;
@@ -75,10 +161,10 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
   surface_models::RandomStream random(key_, replicate_, number, choices++);
   const double x = random.next();
   Vec3 position = point_of(site.corners, {x, random.next()});
-  Ray ray{site.direction, site.light, site.inside, false};
-  ray.light.scale(power / site.scattered * site.share *
+  Ray met{site.direction, site.light, site.inside, false};
+  met.light.scale(power / site.scattered * site.share *
                   std::exp(-optics.absorption_per_mm * site.path_length.at(position)));
-  const TexturedReturn back = meet_textured_facet(optics, site.normal, ray, 0.0, random);
+  const TexturedReturn back = meet_textured_facet(optics, site.normal, met, 0.0, random);
   double scattered = 0.0;
   for (std::size_t k = 0; k < back.count; ++k)
     if (back.rays[k].scattered) scattered += back.rays[k].light.power();
@@ -87,19 +173,53 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
   tally_.other[Account::absorbed] += power - scattered - back.truncated;
   if (scattered <= 0.0) return;
   double left = random.next() * scattered;
-  const Ray* chosen = nullptr;
+  std::size_t chosen = 0;
   for (std::size_t k = 0; k < back.count && left >= 0.0; ++k) {
     if (!back.rays[k].scattered) continue;
-    chosen = &back.rays[k];
-    left -= chosen->light.power();
+    chosen = k;
+    left -= back.rays[k].light.power();
   }
-  ray = *chosen;
+  Ray ray = back.rays[chosen];
   ray.light.scale(scattered / ray.light.power());
-  position += (ray.inside ? -kClearance : kClearance) * setup_.depth_mm * site.normal;
-  if (setup_.infinite())
-    for (const Eigen::Index axis : {0, 1})
-      position[axis] -= setup_.period_mm[axis] * std::floor(position[axis] / setup_.period_mm[axis] + 0.5);
-  walker_.resume(position, ray, key_, replicate_, number, choices);
+  const auto off_facet = [&](bool inside) {
+    Vec3 at = position + (inside ? -kClearance : kClearance) * setup_.depth_mm * site.normal;
+    if (setup_.infinite())
+      for (const Eigen::Index axis : {0, 1})
+        at[axis] -= setup_.period_mm[axis] * std::floor(at[axis] / setup_.period_mm[axis] + 0.5);
+    return at;
+  };
+  const auto way = way_to_source(setup_, walker_, off_facet(true), site.normal, met, power);
+  if (way) score(*way, off_facet(true), site.normal, met, power, number, choices);
+  if (!way || back.once != chosen || !ray.inside || !way->leads_back(ray.direction))
+    return walker_.resume(off_facet(ray.inside), ray, key_, replicate_, number, choices);
+  // What it brings into the cones has been scored: it stands beside it, so that no power is booked twice.
+  apart_.clear();
+  walker_apart_.resume(off_facet(true), ray, key_, replicate_, number, choices);
+  for (std::size_t cone = 0; cone < setup_.cone_chord2.size(); ++cone)
+    apart_.scattered.back() += std::exchange(apart_.scattered[cone], Stokes{});
+  tally_.add(apart_);
+}
+
+/// What the light that is diffracted once into the cones brings there, by one ray; it is taken from what leaves outside
+/// them, where ordinary rays of these directions are booked.
+void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met,
+                          double power, std::uint32_t number, std::uint32_t& choices) {
+  surface_models::RandomStream random(key_, replicate_, number, choices++);
+  const Vec3 out = way.draw(random);
+  if (out.z() <= 0.0) return;
+  Ray ray = diffracted_once_into(setup_.optics, normal, met, way.direction_to(out));
+  if (!ray.inside) return;
+  ray.light.scale(way.narrowing(out) / way.density(out));
+  const double chance = ray.light.power() / (kLeastShare * power);
+  if (chance <= 0.0 || random.next() >= chance) return;
+  if (chance < 1.0) ray.light.scale(1.0 / chance);
+  apart_.clear();
+  walker_apart_.resume(position, ray, key_, replicate_, number, choices);
+  for (std::size_t cone = 0; cone < setup_.cone_chord2.size(); ++cone) {
+    tally_.scattered[cone] += apart_.scattered[cone];
+    tally_.scattered.back() += -1.0 * apart_.scattered[cone];
+  }
+  tally_.segments += apart_.segments;
 }
 
 }  // namespace retrace::raytrace

@@ -12,9 +12,14 @@
 
 namespace retrace::raytrace {
 
+class WayToSource;
+
 /// Launches rays where beams meet rough facets. A ray stands for scattered power alone, begins at a random place of the
 /// piece of the facet in a random direction of the lobe, and is followed by all physics from there on; it never becomes
-/// a beam again, so that nothing is counted twice. For one replicate and one thread.
+/// a beam again, so that nothing is counted twice. Where roughness diffracts light once and mirrors lead from the place
+/// to the source, what comes into cones that are narrow against the lobe is scored by expected value: a second ray has
+/// a direction that leads there, and the power of the lobe in it (docs/theory/beams.md). For one replicate and one
+/// thread.
 class ScatteredRays : public ScatteredReplicate {
  public:
   /// \param setup outlives this \param key of the random numbers of this replicate and round
@@ -29,6 +34,8 @@ class ScatteredRays : public ScatteredReplicate {
 
  private:
   void launch_one(const ScatterSite& site, double power);
+  void score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met, double power,
+             std::uint32_t number, std::uint32_t& choices);
 
   const PathSetup& setup_;
   RandomKey key_;
@@ -37,6 +44,8 @@ class ScatteredRays : public ScatteredReplicate {
   const Cancellation* cancel_;
   Tally tally_;
   PathWalker walker_;
+  Tally apart_;  ///< of one ray whose light in the cones is not booked as that of others
+  PathWalker walker_apart_;
 };
 
 /// Follows scattered light as rays: ScatteredRays of each replicate.

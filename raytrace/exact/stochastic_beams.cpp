@@ -67,7 +67,7 @@ StochasticBeams::StochasticBeams(const BeamTracer& tracer, const ScatteredLight*
                                          std::move(observer),
                                          scattered == nullptr || setup_.infinite() ? tracer.equal_places() : nullptr)),
       threshold_(kFirstThreshold),
-      ray_power_(kFirstRayPower) {
+      ray_power_(std::min(kFirstRayPower, kReplicates * sampling.target_error)) {
   if (scattered_ != nullptr) strong_->collect(strong_sites_);
   strong_->enter(entrance_outline(tracer.part_), threshold_, BeamWalk::Approach::kept);
 }
@@ -110,8 +110,9 @@ bool StochasticBeams::advance() {
   work_ += beam_work_ + ray_work_;
   result_ = result_of(both, 1, cones_deg_);
   result_.rays = 0;
-  const double unseen = first.counts() ? std::min(kThinning * threshold_, first.power()) / kReplicates : 0.0;
-  beam_error_ = std::max(unseen, kStudent * largest_error(result_of(beams, 1, cones_deg_)));
+  const double unseen_beam = first.counts() ? std::min(kThinning * threshold_, first.power()) / kReplicates : 0.0;
+  const double unseen = std::max(unseen_beam, std::min(ray_power_, rays[0].ledger(0).total()) / kReplicates);
+  beam_error_ = std::max(unseen_beam, kStudent * largest_error(result_of(beams, 1, cones_deg_)));
   ray_error_ = kStudent * largest_error(result_of(rays, 1, cones_deg_));
   for (ConeResult& cone : result_.cones) cone.std_error = std::max(kStudent * cone.std_error, unseen);
   result_.reached_target = largest_error(result_) <= sampling_.target_error;

@@ -24,7 +24,8 @@ class BeamGeneration;
 /// power P together, is resampled: of it n = ceil(P / (kThinning w)) survive with P / n each, chosen by systematic
 /// resampling, which is unbiased and keeps the power (BeamGeneration). Replicates, each with
 /// random numbers of its own, give the standard error. It is never told to be less than what a survivor brings over
-/// their number: so much may be in beams that none of them has seen (docs/theory/beams.md).
+/// their number, or one ray of scattered light: so much may be in beams or rays that none of them has seen
+/// (docs/theory/beams.md).
 ///
 /// At rough facets beams keep their specular light, and what is scattered goes on by itself, in each replicate of its
 /// own (ScatteredLight).

@@ -13,6 +13,8 @@ using geometry::FacetRole;
 
 // Pieces of an infinite surface that one straight line may cross before it counts as trapped.
 constexpr int kMaxWraps = 1000;
+// Mirrors of a way to the entrance that is looked for beforehand; of cube corners and prisms it has no more than three.
+constexpr int kMostMirrors = 8;
 
 }  // namespace
 
@@ -47,6 +49,24 @@ void PathWalker::resume(const Vec3& position, const Ray& ray, RandomKey key, std
   state.position = position;
   follow_pending();
   choices = choices_;
+}
+
+std::optional<Eigen::Matrix3d> PathWalker::mirrors_to_entrance(const Vec3& position, const Vec3& direction) const {
+  State state;
+  state.position = position;
+  state.direction = direction;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  for (int mirrors = 0; mirrors <= kMostMirrors; ++mirrors) {
+    const Step step = setup_.infinite() ? step_inside_periodic(state) : step_inside(state);
+    if (step.end == End::entrance) return turn;
+    if (step.end != End::facet && step.end != End::side) return std::nullopt;
+    const bool is_side = step.end == End::side;
+    const Vec3 normal = is_side ? setup_.sides[step.side].normal : setup_.surface.facet(step.hit.facet).normal;
+    state.source = is_side ? FacetRef{} : step.hit.facet;
+    state.direction = mirrored(state.direction, normal);
+    turn -= 2.0 * normal * (normal.transpose() * turn);
+  }
+  return std::nullopt;
 }
 
 void PathWalker::begin(RandomKey key, std::uint32_t replicate, std::uint32_t sample, std::uint32_t choices) {

@@ -51,6 +51,11 @@ class PathWalker {
   void resume(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample,
               std::uint32_t& choices);
 
+  /// The product of the mirrors that light inside the part meets from here to the entrance face, if it is reflected at
+  /// every face: it turns directions here into those there. Nothing where it does not come there by few.
+  /// \pre all faces are plane
+  std::optional<Eigen::Matrix3d> mirrors_to_entrance(const Vec3& position, const Vec3& direction) const;
+
   /// Traces light of power 1 that comes from anywhere: from above, from a side, from behind, or from inside the part
   /// where it begins there. Its own way back takes the place of that to the source. What the face that it meets first
   /// sends back is a branch like others, and counts as `front_specular` at the entrance face, as `side_exit` at sides,

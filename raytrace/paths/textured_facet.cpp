@@ -22,7 +22,8 @@ surface_models::ScatterEvent event_of(const Optics& optics, bool inside, const V
   return {direction, from, to, optics.wavelength_nm, inside};
 }
 
-LocalEvent local_event(const Optics& optics, const Vec3& normal, const Ray& ray, surface_models::RandomStream& random) {
+/// At the mean surface. \param normal of the facet, unit, out of the part
+LocalEvent event_at(const Optics& optics, const Vec3& normal, const Ray& ray) {
   LocalEvent local;
   const Vec3 z = ray.inside ? Vec3(-normal) : normal;
   // Chamfered roots are level all round: there the roof edge of a prism is the axis.
@@ -30,7 +31,6 @@ LocalEvent local_event(const Optics& optics, const Vec3& normal, const Ray& ray,
   const Vec3 x = level.norm() > 1e-9 ? level.normalized() : normal.cross(Vec3::UnitX()).normalized();
   local.world_from_local << x, z.cross(x), z;
   local.event = event_of(optics, ray.inside, local.world_from_local.transpose() * ray.direction);
-  local.piece = surface_models::sample_facet(optics.facet_scatter, local.event, random);
   return local;
 }
 
@@ -129,21 +129,35 @@ Stokes stokes_of(const surface_models::Polarisation2& coherency, double power) {
   return {power, s - p, cross.real(), cross.imag()};
 }
 
+/// What roughness between dielectrics makes of light, before what scatters has a direction.
+struct RoughLight {
+  enum Kind : std::size_t { reflected, transmitted, reflected_again, transmitted_again, once, kKinds };
+  std::array<Light, kKinds> lights;
+  std::array<double, kKinds> power{};
+};
+
+/// \param light of the ray along s and p of the piece that it meets
+RoughLight rough_light(const surface_models::HarveyShack& rough, const Light& light,
+                       const materials::FresnelCoefficients& f, const LocalEvent& local) {
+  const surface_models::DiffractionMeans means = surface_models::diffraction_means(rough, local.event, local.piece, f);
+  const materials::FresnelCoefficients specular = kept(f, means), again = diffracted_again(f, means);
+  RoughLight made;
+  made.lights = {light.reflected(specular), light.transmitted(specular), light.reflected(again),
+                 light.transmitted(again), light};
+  double rest = light.power();
+  for (std::size_t k = 0; k < RoughLight::once; ++k) rest -= made.power[k] = made.lights[k].power();
+  // Light that roughness does not touch leaves nothing but rounding.
+  made.power[RoughLight::once] = rest > 1e-15 * light.power() ? rest : 0.0;
+  return made;
+}
+
 /// Roughness between dielectrics. \param light of the ray along s and p of the piece that it meets
 TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, const Light& light,
                                      const materials::FresnelCoefficients& f, const LocalEvent& local,
                                      const Ray& to_reflect, const Ray& to_transmit, double split_power,
                                      surface_models::RandomStream& random) {
-  enum Kind : std::size_t { reflected, transmitted, reflected_again, transmitted_again, once, kKinds };
-  const surface_models::DiffractionMeans means = surface_models::diffraction_means(rough, local.event, local.piece, f);
-  const materials::FresnelCoefficients specular = kept(f, means), again = diffracted_again(f, means);
-  std::array<Light, kKinds> lights = {light.reflected(specular), light.transmitted(specular), light.reflected(again),
-                                      light.transmitted(again), light};
-  std::array<double, kKinds> power{};
-  double rest = light.power();
-  for (std::size_t k = 0; k < once; ++k) rest -= power[k] = lights[k].power();
-  // Light that roughness does not touch leaves nothing but rounding.
-  power[once] = rest > 1e-15 * light.power() ? rest : 0.0;
+  using enum RoughLight::Kind;
+  auto [lights, power] = rough_light(rough, light, f, local);
   TexturedReturn result;
   result.truncated = light.power();
   power = merged(power, split_power, random);
@@ -176,6 +190,7 @@ TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, c
   ray.light = {stokes_of(out->coherency, power[once] * unmasked), local.world_from_local * out->s_axis};
   ray.scattered = true;
   result.truncated -= ray.light.power();
+  result.once = result.count;
   result.rays[result.count++] = ray;
   return result;
 }
@@ -184,7 +199,8 @@ TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, c
 
 TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
                                    surface_models::RandomStream& random) {
-  const LocalEvent local = local_event(optics, normal, ray, random);
+  LocalEvent local = event_at(optics, normal, ray);
+  local.piece = surface_models::sample_facet(optics.facet_scatter, local.event, random);
   const Vec3 against = local.world_from_local * local.piece.normal;
   const double cos_incidence = -against.dot(ray.direction);
   const materials::FresnelCoefficients f =
@@ -202,6 +218,26 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
   if (branch != Branch::reflected) scatter(transmitted, optics, local, Lobe::transmission, split_power, result, random);
   if (branch != Branch::transmitted) scatter(reflected, optics, local, Lobe::reflection, split_power, result, random);
   return result;
+}
+
+Ray diffracted_once_into(const Optics& optics, const Vec3& normal, const Ray& ray, const Vec3& direction) {
+  const auto& rough = *surface_models::first_order_model(optics.facet_scatter);
+  const LocalEvent local = event_at(optics, normal, ray);
+  const Vec3 against = local.world_from_local.col(2);
+  Light light = ray.light;
+  light.turn_to(ray.direction, against);
+  const Vec3 s_axis = local.world_from_local.transpose() * light.s_axis;
+  const Vec3 leaving = local.world_from_local.transpose() * direction;
+  const surface_models::DiffractedOnce into =
+      rough.diffracted_once_into(local.event, local.piece, s_axis, coherency_of(light.stokes), leaving);
+  const double density = into.coherency.trace().real();
+  Ray made{direction, {{}, local.world_from_local * into.s_axis}, (into.lobe == Lobe::reflection) == ray.inside, true};
+  if (!(density > 0.0)) return made;
+  const materials::FresnelCoefficients f =
+      fresnel_at_back(optics, geometry::FacetRole::retro_facet, ray.inside, -against.dot(ray.direction));
+  const double power = rough_light(rough, light, f, local).power[RoughLight::once];
+  made.light.stokes = stokes_of(into.coherency / density, power * density * std::abs(leaving.z()));
+  return made;
 }
 
 void TexturedReturn::keep_sides(const Vec3& plane_normal) {

@@ -89,6 +89,14 @@ double wave_number_per_nm(double wavelength_nm) {
   return 2.0 * pi / wavelength_nm;
 }
 
+/// \param k_out wave vector along the facet, less than `index` \param along that of what came in, a unit vector
+DiffractedOnce leaving_light(const Vec2& k_out, const Vec2& along, double index, Lobe lobe,
+                             const Polarisation2& coherency) {
+  const double k = k_out.norm();
+  const Vec2 ahead = k > 0.0 ? Vec2(k_out / k) : along;
+  return {direction_of(k_out / index, lobe), Vec3(ahead.y(), -ahead.x(), 0.0), coherency, lobe};
+}
+
 }  // namespace
 
 struct HarveyShack::Side {
@@ -124,8 +132,7 @@ std::array<HarveyShack::Part, 2> HarveyShack::parts(const Facet& facet) const {
                equivalent_correlation_um(roughness_.waviness_length_um)}};
 }
 
-DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const Facet& facet,
-                                                const materials::FresnelCoefficients& fresnel) const {
+std::array<double, 2> HarveyShack::first_order_shares(const ScatterEvent& event, const Facet& facet) const {
   const Side& side = side_of(event);
   const double k = event.index_from * event.direction_in.head<2>().norm();
   const double wave_number = wave_number_per_nm(event.wavelength_nm);
@@ -137,6 +144,12 @@ DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const
     const double height = wave_number * heights[n].sq_nm;
     for (std::size_t pol : {0U, 1U}) scattered[pol] += height * height * share[pol];
   }
+  return scattered;
+}
+
+DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const Facet& facet,
+                                                const materials::FresnelCoefficients& fresnel) const {
+  const std::array<double, 2> scattered = first_order_shares(event, facet);
   // Both specular fields pay in proportion to their power and phase variance, as they do for long heights.
   const double reflected_path = 2.0 * event.index_from * event.cos_in();
   const double transmitted_path = event.index_from * event.cos_in() - event.index_to * fresnel.cos_refracted;
@@ -179,22 +192,16 @@ std::optional<DiffractedOnce> HarveyShack::draw_diffracted_once(const ScatterEve
       const double power = out.trace().real();
       left -= power;
       if (left >= 0.0) continue;
-      const double k = k_out.norm();
-      const Vec2 ahead = k > 0.0 ? Vec2(k_out / k) : along;
-      return DiffractedOnce{direction_of(k_out / index, lobe), Vec3(ahead.y(), -ahead.x(), 0.0), out / power, lobe};
+      return leaving_light(k_out, along, index, lobe, out / power);
     }
   }
   return std::nullopt;
 }
 
-double HarveyShack::diffracted_once_density(const ScatterEvent& event, const Facet& facet, Lobe lobe,
-                                            const Vec3& s_axis, const Polarisation2& coherency,
-                                            const Vec2& beta) const {
-  if (beta.squaredNorm() >= 1.0) return 0.0;
-  const double index = event.index_of(lobe);
+DiffractedOnce HarveyShack::scattered_once(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& s_axis,
+                                           const Polarisation2& coherency, const Vec2& k_out) const {
   const Vec2 along(-s_axis.y(), s_axis.x());
   const double k_in = event.index_from * event.direction_in.head<2>().norm();
-  const Vec2 k_out = index * beta;
   const double wave_number = wave_number_per_nm(event.wavelength_nm);
   double spectrum = 0.0;
   for (const Part& part : parts(facet)) {
@@ -204,7 +211,26 @@ double HarveyShack::diffracted_once_density(const ScatterEvent& event, const Fac
                 std::exp(-0.25 * length * length * (k_out - k_in * along).squaredNorm());
   }
   const Polarisation2 f = side_of(event).interface.amplitudes(k_in, along, k_out, lobe);
-  return index * index * spectrum * (f * coherency * f.adjoint()).trace().real();
+  return leaving_light(k_out, along, event.index_of(lobe), lobe, spectrum * (f * coherency * f.adjoint()));
+}
+
+DiffractedOnce HarveyShack::diffracted_once_into(const ScatterEvent& event, const Facet& facet, const Vec3& s_axis,
+                                                 const Polarisation2& coherency, const Vec3& direction) const {
+  const Lobe lobe = direction.z() > 0.0 ? Lobe::reflection : Lobe::transmission;
+  const double index = event.index_of(lobe);
+  const std::array<double, 2> shares = first_order_shares(event, facet);
+  const double all = shares[0] * coherency(0, 0).real() + shares[1] * coherency(1, 1).real();
+  DiffractedOnce into = scattered_once(event, facet, lobe, s_axis, coherency, index * direction.head<2>());
+  into.coherency *= all > 0.0 ? index * index / all : 0.0;
+  return into;
+}
+
+double HarveyShack::diffracted_once_density(const ScatterEvent& event, const Facet& facet, Lobe lobe,
+                                            const Vec3& s_axis, const Polarisation2& coherency,
+                                            const Vec2& beta) const {
+  if (beta.squaredNorm() >= 1.0) return 0.0;
+  const double index = event.index_of(lobe);
+  return index * index * scattered_once(event, facet, lobe, s_axis, coherency, index * beta).coherency.trace().real();
 }
 
 HarveyShack::HarveyShack(const Roughness& roughness)

@@ -85,6 +85,10 @@ class HarveyShack {
   /// and p, of trace 1 \pre as above
   std::optional<DiffractedOnce> draw_diffracted_once(const ScatterEvent& event, const Facet& facet, const Vec3& s_axis,
                                                      const Polarisation2& coherency, RandomStream& random) const;
+  /// Light that is diffracted once into a direction: the trace of its coherency is the density over direction cosines
+  /// of what draw_diffracted_once() draws. \param direction unit, frame of the event; its side is that of the lobe
+  DiffractedOnce diffracted_once_into(const ScatterEvent& event, const Facet& facet, const Vec3& s_axis,
+                                      const Polarisation2& coherency, const Vec3& direction) const;
   /// Share of the power of light of this coherency that first order scatters into d2beta, direction cosines on the side
   /// of the lobe. \pre as above
   double diffracted_once_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& s_axis,
@@ -140,6 +144,11 @@ class HarveyShack {
   };
   /// Roughness, and waviness that diffracts.
   std::array<Part, 2> parts(const Facet& facet) const;
+  /// Of the power of s and of p, what first order scatters, summed over both sides.
+  std::array<double, 2> first_order_shares(const ScatterEvent& event, const Facet& facet) const;
+  /// With the trace of its coherency the density over wave vectors along the facet, as a share of the incident power.
+  DiffractedOnce scattered_once(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& s_axis,
+                                const Polarisation2& coherency, const Vec2& k_out) const;
 
   Roughness roughness_;
   SlopeDistribution slopes_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -87,7 +88,8 @@ TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
 
 Optics rough(double sq_nm, double correlation_length_um) {
   Optics optics = pmma();
-  optics.facet_scatter = surface_models::HarveyShack({sq_nm, correlation_length_um, 0.0, 0.0});
+  optics.facet_scatter =
+      surface_models::HarveyShack({sq_nm, correlation_length_um, 0.0, 0.0}, {kPmma, 1.0, optics.wavelength_nm});
   return optics;
 }
 
@@ -169,9 +171,10 @@ TEST(StochasticBeams, SameAtAnyNumberOfThreads) {
 /// What rough facets take from beams goes on as rays: in every cone and account as when all light is rays.
 TEST(StochasticBeams, RoughFacetsAgreeWithRays) {
   const std::vector<double> cones = {0.5, 3.0, 60.0};
+  const std::vector<Optics> textures = {rough(60.0, 1.0), rough(10.0, 5.0), rough(20.0, 1.0), rough(10.0, 0.5)};
   std::size_t number = 0;
   for (const Question& question : questions()) {
-    Optics optics = number++ % 2 == 0 ? rough(60.0, 1.0) : rough(10.0, 5.0);
+    Optics optics = textures[number++];
     optics.absorption_per_mm = 0.01;
     const auto engine = question.part.period_mm ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
     const MonteCarloResult sampled =
@@ -192,6 +195,38 @@ TEST(StochasticBeams, RoughFacetsAgreeWithRays) {
             << question.name << ", " << static_cast<int>(account);
     }
   }
+}
+
+/// Prisms at normal incidence, both of whose facets reflect totally at 45 degrees: of what either scatters once, the
+/// light that goes where the mean field goes comes back, less what the facets scatter again, and the entrance face
+/// sends its share round once more. A narrow cone holds first order's density there times its solid angle inside.
+TEST(StochasticBeams, PrismsScatterIntoNarrowConesAsFirstOrderSays) {
+  using std::numbers::pi, surface_models::Lobe, surface_models::Polarisation2;
+  const Optics optics = rough(4.0, 0.3);
+  const auto& model = std::get<surface_models::HarveyShack>(optics.facet_scatter);
+  const double n = kPmma, half = std::sqrt(0.5);
+  const surface_models::ScatterEvent event{{half, 0.0, -half}, n, 1.0, optics.wavelength_nm, true};
+  const materials::FresnelCoefficients f = materials::fresnel(n, half);
+  const double reflected = std::pow((n - 1.0) / (n + 1.0), 2.0);
+  double per_steradian = 0.0;
+  for (const std::size_t pol : {0U, 1U}) {
+    Polarisation2 light = Polarisation2::Zero();
+    light(static_cast<Eigen::Index>(pol), static_cast<Eigen::Index>(pol)) = 1.0;
+    const double mean = model.diffraction_means(event, {}, f).reflected[pol];
+    const double density =
+        model.diffracted_once_density(event, {}, Lobe::reflection, -Vec3::UnitY(), light, {half, 0.0});
+    const double passes = (1.0 - reflected) / (1.0 - reflected * std::exp(-2.0 * mean));
+    per_steradian += 0.5 * passes * passes * 2.0 * std::exp(-2.0 * mean) * density * half / (n * n);
+  }
+  const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0));
+  const BeamTracer tracer(part);
+  const BackSurface scattering(part, tracer.centre_mm());
+  const std::vector<double> cones = {0.5, 1.5};
+  const MonteCarloResult result = traced(tracer, optics, from(0.0), cones, until(3e-7), &scattering);
+  const auto solid_angle = [](double deg) { return 2.0 * pi * (1.0 - std::cos(deg * pi / 180.0)); };
+  const double expected = per_steradian * (solid_angle(cones[1]) - solid_angle(cones[0]));
+  EXPECT_TRUE(result.reached_target);
+  EXPECT_NEAR((result.cones[1].rre - result.cones[0].rre) / expected, 1.0, 0.03);
 }
 
 /// What beams follow to their end needs no sampling and has no error: prisms at normal incidence send all back but what

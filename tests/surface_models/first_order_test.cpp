@@ -378,6 +378,11 @@ TEST(FirstOrder, DrawsFollowTheDensity) {
         if (!once || once->lobe != lobe) return std::nullopt;
         EXPECT_NEAR(once->coherency.trace().real(), 1.0, 1e-12);
         EXPECT_LT(std::abs(once->s_axis.dot(once->direction)), 1e-12);
+        const auto into = model.diffracted_once_into(event, {}, s_axis, askew(), once->direction);
+        const double share = into.coherency.trace().real();
+        EXPECT_NEAR(share / density(once->direction.head<2>()), 1.0, 1e-4);
+        EXPECT_LT((into.coherency / share - once->coherency).norm(), 1e-9);
+        EXPECT_LT((into.s_axis - once->s_axis).norm(), 1e-9);
         return Vec2(once->direction.head<2>());
       };
       EXPECT_GT(chi_square_p(rings, density, draw, ++seed, kDraws), level)
