@@ -15,21 +15,19 @@ namespace {
 constexpr double kClearance = 1e-9;
 // Numbers of the rays of one round; those of the next follow.
 constexpr std::uint32_t kRaysOfRound = 1U << 26;
-// Cones that would hold less of what a place scatters are scored by expected value.
+// Where the widest cone would hold less of what a place scatters, it is scored by expected value.
 constexpr double kNarrow = 0.1;
 // Rays to the source of less than this share of an ordinary one's power are followed by chance.
 constexpr double kLeastShare = 0.05;
 
 }  // namespace
 
-/// The way by mirrors alone that light has from a place of a facet, inside the part, out to the source, and those of
-/// the cones about it that are scored by expected value.
+/// The way by mirrors alone that light has from a place of a facet, inside the part, out into the widest cone about the
+/// source.
 class WayToSource {
  public:
   /// \param turn of PathWalker::mirrors_to_entrance() there
   WayToSource(const PathSetup& setup, Eigen::Matrix3d turn) : setup_(setup), turn_(std::move(turn)) {}
-
-  void limit_to(std::size_t cones) { cones_ = cones; }
 
   /// At the place, of light that leaves along `out`.
   Vec3 direction_to(const Vec3& out) const {
@@ -37,16 +35,17 @@ class WayToSource {
     return turn_.transpose() * Vec3(across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm()));
   }
 
-  /// Whether light of this direction at the place would leave into one of the cones.
+  /// Whether light of this direction at the place would leave into the cone.
   bool leads_back(const Vec3& direction) const {
     const Vec3 inside = turn_ * direction;
     const Vec2 across = setup_.optics.index * inside.head<2>();
     const double rest = 1.0 - across.squaredNorm();
-    return inside.z() > 0.0 && rest > 0.0 && setup_.cone_of({across.x(), across.y(), std::sqrt(rest)}) < cones_;
+    return inside.z() > 0.0 && rest > 0.0 &&
+           setup_.cone_of({across.x(), across.y(), std::sqrt(rest)}) < setup_.cone_chord2.size();
   }
 
-  /// Solid angle in air.
-  double solid_angle(std::size_t cone) const { return std::numbers::pi * setup_.cone_chord2[cone]; }
+  /// Of the cone, in air.
+  double solid_angle() const { return std::numbers::pi * setup_.cone_chord2.back(); }
 
   /// By how much solid angles about a direction that leaves are smaller inside.
   double narrowing(const Vec3& out) const {
@@ -54,32 +53,23 @@ class WayToSource {
     return out.z() / (n * n * std::sqrt(1.0 - out.head<2>().squaredNorm() / (n * n)));
   }
 
-  /// A direction out, uniform in one of the cones, each by the same chance.
+  /// A direction out, uniform in the cone.
   Vec3 draw(surface_models::RandomStream& random) const {
-    const auto cone = std::min(cones_ - 1, static_cast<std::size_t>(random.next() * static_cast<double>(cones_)));
-    const double less = 0.5 * setup_.cone_chord2[cone] * random.next();  // 1 - cos
+    const double less = 0.5 * setup_.cone_chord2.back() * random.next();  // 1 - cos
     const double sine = std::sqrt(less * (2.0 - less)), turn = 2.0 * std::numbers::pi * random.next();
     const Vec3 along = setup_.to_source.unitOrthogonal();
     return (1.0 - less) * setup_.to_source +
            sine * (std::cos(turn) * along + std::sin(turn) * setup_.to_source.cross(along));
   }
 
-  /// Of the directions that draw() gives, per steradian.
-  double density(const Vec3& out) const {
-    double sum = 0.0;
-    for (std::size_t cone = setup_.cone_of(out); cone < cones_; ++cone) sum += 1.0 / solid_angle(cone);
-    return sum / static_cast<double>(cones_);
-  }
-
  private:
   const PathSetup& setup_;
   Eigen::Matrix3d turn_;
-  std::size_t cones_ = 0;
 };
 
 namespace {
 
-/// Nothing where no cone is to be scored by expected value. \param met light that meets the facet \param power of an
+/// Nothing where ordinary rays find the cone as well. \param met light that meets the facet \param power of an
 /// ordinary ray from there
 std::optional<WayToSource> way_to_source(const PathSetup& setup, const PathWalker& walker, const Vec3& position,
                                          const Vec3& normal, const Ray& met, double power) {
@@ -89,11 +79,8 @@ std::optional<WayToSource> way_to_source(const PathSetup& setup, const PathWalke
   WayToSource way(setup, *turn);
   const Ray there = diffracted_once_into(setup.optics, normal, met, way.direction_to(setup.to_source));
   if (!there.inside || there.light.power() <= 0.0) return std::nullopt;
-  const double narrow = kNarrow * power / (there.light.power() * way.narrowing(setup.to_source));
-  std::size_t cones = 0;
-  while (cones < setup.cone_chord2.size() && way.solid_angle(cones) < narrow) ++cones;
-  if (cones == 0) return std::nullopt;
-  way.limit_to(cones);
+  const double in_cone = there.light.power() * way.narrowing(setup.to_source) * way.solid_angle();
+  if (in_cone >= kNarrow * power) return std::nullopt;
   return way;
 }
 
@@ -209,7 +196,7 @@ void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Ve
   if (out.z() <= 0.0) return;
   Ray ray = diffracted_once_into(setup_.optics, normal, met, way.direction_to(out));
   if (!ray.inside) return;
-  ray.light.scale(way.narrowing(out) / way.density(out));
+  ray.light.scale(way.narrowing(out) * way.solid_angle());
   const double chance = ray.light.power() / (kLeastShare * power);
   if (chance <= 0.0 || random.next() >= chance) return;
   if (chance < 1.0) ray.light.scale(1.0 / chance);
