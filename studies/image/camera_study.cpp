@@ -171,6 +171,15 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
 
 namespace {
 
+// A noise is out of reach if it would take this many times the most passes; so early its own error may be a factor of
+// two.
+constexpr double kOutOfReach = 4.0;
+
+/// Passes until the noise is that of the request, as it falls with the root of their number.
+double passes_needed(const raytrace::CameraImage& image, const CameraRequest& request) {
+  return image.passes * std::pow(image.relative_noise() / request.noise, 2.0);
+}
+
 /// The picture as its passes come in, each added when those before it are.
 class PassLedger : public TaskLedger {
  public:
@@ -207,7 +216,9 @@ class PassLedger : public TaskLedger {
     is_finished_ = image_.passes == goal_;
     if (!request_.passes) {
       const double noise = image_.passes > 1 ? image_.relative_noise() : 1.0;
-      is_finished_ = is_finished_ || (image_.passes >= CameraStudy::kFewestPasses && noise <= request_.noise);
+      is_finished_ = is_finished_ || (image_.passes >= CameraStudy::kFewestPasses && noise <= request_.noise) ||
+                     (image_.passes >= CameraStudy::kPassesToJudge &&
+                      passes_needed(image_, request_) > kOutOfReach * CameraStudy::kMostPasses);
       share = image_.passes > 1 ? std::min(0.99, std::pow(request_.noise / std::max(noise, 1e-300), 2.0)) : 0.0;
     }
     furthest_ = std::max(furthest_, share);
@@ -277,9 +288,11 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   }
   result.complete = ledger.is_finished();
   if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
-    result.warnings.push_back(fmt::format("{}: the noise of {} is above the target of {} after {} passes",
-                                          design_.source_name(), shortest(result.image.relative_noise()),
-                                          shortest(request_.noise), result.image.passes));
+    result.warnings.push_back(fmt::format(
+        "{}: the noise of {} is above the target of {} after {} passes, which would take about {:.2g}, of {} at most "
+        "(--passes N takes N)",
+        design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise), result.image.passes,
+        passes_needed(result.image, request_), kMostPasses));
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -66,6 +66,7 @@ class CameraStudy {
   static constexpr std::size_t kMostPixels = 1U << 26U;  ///< in all
   static constexpr std::uint32_t kFewestPasses = 8;      ///< before the noise is looked at
   static constexpr std::uint32_t kMostPasses = 65536;
+  static constexpr std::uint32_t kPassesToJudge = 64;  ///< before a noise counts as out of reach
 
   /// \throw InputError for numbers out of range, an eye or a lamp inside the part, polarised light
   CameraStudy(Design design, CameraRequest request);

@@ -75,6 +75,16 @@ TEST_F(Image, CameraTakesALampOfAFile) {
   EXPECT_EQ(lit("1")["lamp"]["aim_deg"], 1);
 }
 
+/// A noise that no number of passes would reach is not waited for.
+TEST_F(Image, CameraSaysThatANoiseIsOutOfReach) {
+  const Json json = retrace_json(folder_, {"image", "brick.toml", "--camera", "--pixels=8x6", "--noise=1e-7"});
+  EXPECT_EQ(json["passes"], 64);
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_NE(json["warnings"].dump().find("is above the target of 1e-07 after 64 passes, which would take about"),
+            std::string::npos)
+      << json["warnings"];
+}
+
 TEST_F(Image, WrongOptionsAreRefused) {
   const std::vector<std::pair<Arguments, std::string>> cases = {
       {{}, "image: one of --detector, --camera and --road is required"},
