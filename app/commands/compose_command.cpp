@@ -35,14 +35,14 @@ class CellsBar : public studies::OptimiseObserver, public studies::SweepObserver
 };
 
 /// The design of a zone's cells; empty where the part has fewer.
-std::string zone_design(const studies::Study& study, const studies::Composition& composition, std::size_t zone) {
-  if (!composition.best || zone >= composition.best->zones.size()) return {};
-  return studies::zone_design_text(study, *composition.best, zone);
+std::string zone_design(const studies::Study& study, const std::vector<studies::Zone>& zones, std::size_t zone) {
+  return zone < zones.size() ? studies::zone_design_text(study, zones, zone) : "";
 }
 
 struct ComposeOptions : StudyOptions {
   std::string design;
   std::string layout = "stripes";
+  bool for_worst = false;
   std::optional<double> x_length_mm;
   std::optional<double> y_length_mm;
 };
@@ -54,6 +54,8 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
   all.push_back({"--layout WORD", "how its zones lie: stripes, blocks or rows", &options.layout,
                  one_of(words_of(studies::kZoneLayouts))});
   all.back().traits.needs = "--design";
+  all.push_back({"--for-worst", "write the zones that are best for the worst parts, as worst_share of the study asks",
+                 &options.for_worst});
   for (const auto& [name, help, length] :
        {std::tuple{"--x-length-mm L", "of that part, with the other one [those of the study's design]",
                    &options.x_length_mm},
@@ -80,12 +82,18 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
   const studies::ComposeRequest request = studies::read_compose(study);
   const OrderlyInterrupt interrupt;
+  if (options.for_worst && !(request.errors && request.errors->worst_share))
+    throw InputError({"", 0, "--for-worst"}, "needs worst_share in [compose] of the study");
   studies::Composition composition;
+  const auto written_zones = [&] {
+    if (options.for_worst) return studies::zones_for_worst(composition);
+    return composition.best ? composition.best->zones : std::vector<studies::Zone>{};
+  };
   ResultFiles files(common, study.files, "composition.json");
   files.add("composition.csv", [&] { return studies::composition_csv(study, request, composition); });
   files.add_drawing("composition", [&] { return report::composition_plot(study, request, composition); });
   for (std::size_t zone = 0; zone < studies::most_zone_designs(request); ++zone)
-    files.add(fmt::format("zone_{}.toml", zone + 1), [&, zone] { return zone_design(study, composition, zone); });
+    files.add(fmt::format("zone_{}.toml", zone + 1), [&, zone] { return zone_design(study, written_zones(), zone); });
   const studies::ZonedDesignRequest zoned = zoned_design_of(options);
   if (!options.design.empty()) studies::check_zoned_design(study, zoned);
   std::string part_text;
@@ -107,7 +115,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   bool has_design = true;
   if (!options.design.empty() && composition.best) {
     try {
-      part_text = studies::zoned_design_text(study, *composition.best, zoned);
+      part_text = studies::zoned_design_text(study, written_zones(), zoned);
     } catch (const InputError& error) {  // what was found is not lost for that
       warnings.push_back(fmt::format("{} is not written: {}", options.design, error.what()));
       has_design = false;

@@ -97,8 +97,7 @@ class Composer {
     if (!composition.best) return;
     count_zones(composition);
     draw_front(composition);
-    if (request_.errors)
-      composition.errors = effects_of_errors(study_, request_, *composition.best, observer_, cancel_);
+    if (request_.errors) composition.errors = effects_of_errors(study_, request_, composition, observer_, cancel_);
   }
 
   /// Everything of the family that the store holds.
@@ -322,6 +321,11 @@ class Composer {
 };
 
 }  // namespace
+
+std::vector<Zone> zones_for_worst(const Composition& composition) {
+  const bool has_them = composition.errors && composition.errors->for_worst;
+  return has_them ? composition.errors->for_worst->zones : std::vector<Zone>{};
+}
 
 StoreLayout compose_layout(const Study& study) {
   StoreLayout layout = optimise_layout(study);

@@ -20,7 +20,7 @@ struct ErrorSpread {
   double cell_sigma_arcmin = 0.0;     ///< from cell to cell, which averages out over a zone
   double zone_sigma_arcmin = 0.0;     ///< from zone to zone, the same in all cells of one, which does not
   std::size_t parts = 1024;           ///< that are drawn
-  std::optional<double> worst_share;  ///< shares are told that are best for so many of them, the worst
+  std::optional<double> worst_share;  ///< a part is told that is best for so many of them, the worst
 };
 
 struct ComposeRequest {
@@ -74,9 +74,10 @@ struct PartYield {
   std::optional<double> mean_of_worst;  ///< of the share of the worst that is asked for
 };
 
-/// The same cells in shares that are best for the worst parts.
-struct SharesForWorst {
-  std::vector<double> shares;  ///< of the zones, in their order
+/// The part that is best for the worst of those that are drawn, of cells that are in the best parts of any number of
+/// zones.
+struct PartForWorst {
+  std::vector<Zone> zones;  ///< the largest first
   PartYield yield;
 };
 
@@ -85,7 +86,7 @@ struct ErrorEffects {
   std::vector<double> goals;                ///< with what spreads from cell to cell alone
   std::vector<std::vector<double>> slopes;  ///< of the least goal, per minute of arc, by zone and angle; shares follow
   PartYield yield;
-  std::optional<SharesForWorst> for_worst;
+  std::optional<PartForWorst> for_worst;
   double missed_by = 0.0;  ///< no goal of the part is missed by more where polynomials were held against computed ones
 };
 
@@ -112,6 +113,9 @@ struct Composition {
   std::size_t evaluations = 0;
   bool complete = true;
 };
+
+/// None without Composition::errors that were asked for them.
+std::vector<Zone> zones_for_worst(const Composition& composition);
 
 StoreLayout compose_layout(const Study& study);
 

@@ -19,6 +19,8 @@ const double kStepOfSpread = std::sqrt(3.0);
 constexpr double kLeastStep = 0.1;
 /// Sets of errors, of each zone, at which the polynomials are held against goals that are computed.
 constexpr std::size_t kChecked = 2;
+/// Cells among which a part is sought that is best for the worst, at most: all sets of them are tried.
+constexpr std::size_t kMostCells = 8;
 
 /// The largest error that is looked at.
 double step_of(const ErrorSpread& spread) {
@@ -61,6 +63,20 @@ CheckedResponse response_of(const Study& study, const ComposeRequest& request, c
   return made;
 }
 
+/// Cells that the worst parts may be best of: those of the best part, then those of parts of more zones and of fewer.
+std::vector<FamilyCell> cells_for_worst(const Composition& composition) {
+  std::vector<FamilyCell> cells;
+  const auto take = [&](const PartOfZones& part) {
+    for (const Zone& zone : part.zones)
+      if (cells.size() < kMostCells &&
+          std::ranges::none_of(cells, [&](const FamilyCell& cell) { return cell.point == zone.cell.point; }))
+        cells.push_back(zone.cell);
+  };
+  take(*composition.best);
+  std::for_each(composition.by_zones.rbegin(), composition.by_zones.rend(), take);
+  return cells;
+}
+
 /// Goals of the part with what spreads from cell to cell.
 std::vector<double> mean_goals(const std::vector<ErrorResponse>& responses, const std::vector<double>& shares) {
   std::vector<double> goals;
@@ -97,27 +113,42 @@ PartYield yield_of(const DrawnParts& parts, const ComposeRequest& request, const
 
 }  // namespace
 
-ErrorEffects effects_of_errors(const Study& study, const ComposeRequest& request, const PartOfZones& part,
+ErrorEffects effects_of_errors(const Study& study, const ComposeRequest& request, const Composition& composition,
                                OptimiseObserver* observer, const Cancellation* cancel) {
   const ErrorSpread& spread = *request.errors;
+  const PartOfZones& part = *composition.best;
   ErrorEffects effects;
   std::vector<ErrorResponse> responses;
+  const auto respond = [&](const FamilyCell& cell) {
+    const CheckedResponse made = response_of(study, request, cell, cancel);
+    responses.push_back(made.response.spread(spread.cell_sigma_arcmin));
+    if (observer != nullptr) observer->at(responses.size());
+    return made.missed_by;
+  };
   std::vector<double> shares;
   for (const Zone& zone : part.zones) {
-    const CheckedResponse made = response_of(study, request, zone.cell, cancel);
-    responses.push_back(made.response.spread(spread.cell_sigma_arcmin));
-    effects.missed_by += zone.share * made.missed_by;
+    effects.missed_by += zone.share * respond(zone.cell);
     shares.push_back(zone.share);
-    if (observer != nullptr) observer->at(responses.size());
   }
   effects.goals = mean_goals(responses, shares);
   effects.slopes = slopes_of(responses, part);
-  const DrawnParts parts = drawn_parts(responses, spread.zone_sigma_arcmin, spread.parts, study.seed);
-  effects.yield = yield_of(parts, request, shares);
+  effects.yield = yield_of(drawn_parts(responses, spread.zone_sigma_arcmin, spread.parts, study.seed), request, shares);
   if (!spread.worst_share) return effects;
-  const auto for_worst = best_shares(parts, *spread.worst_share, {request.least_share, request.most_share}, cancel);
-  if (!for_worst) throw Interrupted{};
-  effects.for_worst = SharesForWorst{*for_worst, yield_of(parts, request, *for_worst)};
+  const std::vector<FamilyCell> cells = cells_for_worst(composition);
+  for (std::size_t k = part.zones.size(); k < cells.size(); ++k) respond(cells[k]);
+  const DrawnParts parts = drawn_parts(responses, spread.zone_sigma_arcmin, spread.parts, study.seed);
+  const auto set = best_set(parts, *spread.worst_share, request.most_zones.value_or(cells.size()),
+                            {request.least_share, request.most_share}, cancel);
+  if (!set) throw Interrupted{};
+  PartForWorst& for_worst = effects.for_worst.emplace();
+  std::vector<std::size_t> members;
+  std::vector<double> of_members;
+  for (const auto& [cell, share] : *set) {
+    for_worst.zones.push_back({cells[cell], share});
+    members.push_back(cell);
+    of_members.push_back(share);
+  }
+  for_worst.yield = yield_of(parts_of(parts, members), request, of_members);
   return effects;
 }
 

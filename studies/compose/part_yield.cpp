@@ -112,4 +112,38 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
   }
 }
 
+DrawnParts parts_of(const DrawnParts& parts, const std::vector<std::size_t>& zones) {
+  DrawnParts of_zones;
+  for (const auto& part : parts) {
+    auto& made = of_zones.emplace_back();
+    for (const std::size_t zone : zones) made.push_back(part[zone]);
+  }
+  return of_zones;
+}
+
+std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,
+                                   const Bounds& bounds, const Cancellation* cancel) {
+  const std::size_t cells = parts.front().size();
+  std::optional<CellShares> best;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t set = 1; set < std::size_t{1} << cells; ++set) {
+    std::vector<std::size_t> members;
+    for (std::size_t cell = 0; cell < cells; ++cell)
+      if ((set >> cell & 1U) != 0) members.push_back(cell);
+    if (members.size() > most_zones) continue;
+    if (is_cancelled(cancel)) return std::nullopt;
+    const DrawnParts of_set = parts_of(parts, members);
+    const auto shares = best_shares(of_set, worst_share, bounds, cancel);
+    if (!shares) continue;
+    const double mean = mean_of_worst(leasts_of(of_set, *shares), worst_share);
+    if (mean <= most) continue;
+    most = mean;
+    best.emplace();
+    for (std::size_t k = 0; k < members.size(); ++k)
+      if ((*shares)[k] > 0.0) best->emplace_back(members[k], (*shares)[k]);
+  }
+  if (best) std::ranges::stable_sort(*best, [](const auto& a, const auto& b) { return a.second > b.second; });
+  return best;
+}
+
 }  // namespace retrace::studies

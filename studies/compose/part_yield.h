@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/progress.h"
@@ -33,5 +34,16 @@ double mean_of_worst(std::vector<double> values, double share);
 /// was cancelled or no shares are allowed
 std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double worst_share, const Bounds& bounds,
                                                const Cancellation* cancel);
+
+/// Cells and their shares, the largest first.
+using CellShares = std::vector<std::pair<std::size_t, double>>;
+
+/// The same for parts of some of the cells, the best of all sets of so many of them at most. \param parts whose zones
+/// are all cells, few of them \return nothing if it was cancelled or no set is allowed
+std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,
+                                   const Bounds& bounds, const Cancellation* cancel);
+
+/// Parts of these of their zones alone, in this order.
+DrawnParts parts_of(const DrawnParts& parts, const std::vector<std::size_t>& zones);
 
 }  // namespace retrace::studies

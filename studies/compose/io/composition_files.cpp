@@ -83,7 +83,9 @@ void add_part(const Study& study, const ComposeRequest& request, const Compositi
                         {"merit", of.mixture.merit},
                         {"zones", zones_json(study, of.zones)}});
   json["by_number_of_zones"] = by_zones;
-  if (composition.errors) json["errors_of_angle"] = error_effects_json(request, *composition.errors);
+  if (composition.errors)
+    json["errors_of_angle"] =
+        error_effects_json(request, *composition.errors, zones_json(study, zones_for_worst(composition)));
   if (!request.front) return;
   Json front = Json::array();
   for (const FrontPart& at : composition.front)
@@ -222,7 +224,9 @@ std::string composition_text(const Study& study, const ComposeRequest& request, 
   text += fmt::format("least: {}{}\n", goal_value_text(part.mixture.least, margins), margins ? " %" : "");
   if (!request.price.empty()) text += fmt::format("less its cost: {:.6g}\n", part.mixture.merit);
   text += prices_text(study, request, part) + worth_text(study, request, composition) + proof_text(composition);
-  if (composition.errors) text += "\n" + error_effects_text(request, *composition.errors, margins);
+  if (composition.errors)
+    text += "\n" +
+            error_effects_text(request, *composition.errors, zones_text(study, zones_for_worst(composition)), margins);
   return text;
 }
 

@@ -43,7 +43,8 @@ std::string yield_text(const ComposeRequest& request, const PartYield& yield, bo
 
 }  // namespace
 
-nlohmann::ordered_json error_effects_json(const ComposeRequest& request, const ErrorEffects& effects) {
+nlohmann::ordered_json error_effects_json(const ComposeRequest& request, const ErrorEffects& effects,
+                                          const nlohmann::ordered_json& for_worst) {
   nlohmann::ordered_json json = {{"cell_sigma_arcmin", request.errors->cell_sigma_arcmin},
                                  {"zone_sigma_arcmin", request.errors->zone_sigma_arcmin},
                                  {"least", *std::ranges::min_element(effects.goals)},
@@ -52,13 +53,14 @@ nlohmann::ordered_json error_effects_json(const ComposeRequest& request, const E
                                  {"yield", yield_json(effects.yield)}};
   if (effects.for_worst) {
     json["worst_share"] = *request.errors->worst_share;
-    json["best_for_worst"] = {{"shares", effects.for_worst->shares}, {"yield", yield_json(effects.for_worst->yield)}};
+    json["best_for_worst"] = {{"zones", for_worst}, {"yield", yield_json(effects.for_worst->yield)}};
   }
   json["missed_by"] = effects.missed_by;
   return json;
 }
 
-std::string error_effects_text(const ComposeRequest& request, const ErrorEffects& effects, bool are_margins) {
+std::string error_effects_text(const ComposeRequest& request, const ErrorEffects& effects, const std::string& for_worst,
+                               bool are_margins) {
   const char* const unit = are_margins ? " %" : "";
   const auto shown = [&](double value) { return goal_value_text(value, are_margins) + unit; };
   std::string text = fmt::format("every angle spread by {:g}' from cell to cell: least {}\n",
@@ -71,12 +73,8 @@ std::string error_effects_text(const ComposeRequest& request, const ErrorEffects
       text += (k == 0 ? " " : ", ") + shown(effects.slopes[z][k]);
     text += "\n";
   }
-  if (effects.for_worst) {
-    text += "best for the worst parts: shares of";
-    for (std::size_t z = 0; z < effects.for_worst->shares.size(); ++z)
-      text += fmt::format("{} {:.2f} %", z == 0 ? "" : ",", 100.0 * effects.for_worst->shares[z]);
-    text += ": " + yield_text(request, effects.for_worst->yield, are_margins);
-  }
+  if (effects.for_worst)
+    text += "best for the worst parts: " + yield_text(request, effects.for_worst->yield, are_margins) + for_worst;
   return text +
          fmt::format("the polynomials behind this miss goals of the part by {} at most, where that was computed\n",
                      shown(effects.missed_by));

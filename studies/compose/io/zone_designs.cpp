@@ -112,11 +112,11 @@ std::size_t most_zone_designs(const ComposeRequest& request) {
   return std::min<std::size_t>(100, request.most_zones.value_or(100));
 }
 
-std::string zone_design_text(const Study& study, const PartOfZones& part, std::size_t zone) {
-  const Candidate candidate = make_candidate(study, part.zones[zone].cell.values);
+std::string zone_design_text(const Study& study, const std::vector<Zone>& zones, std::size_t zone) {
+  const Candidate candidate = make_candidate(study, zones[zone].cell.values);
   std::string comment =
-      fmt::format("# Zone {} of {} of {}: {} of the area", zone + 1, part.zones.size(),
-                  std::filesystem::path(study.source).filename().string(), shortest(part.zones[zone].share));
+      fmt::format("# Zone {} of {} of {}: {} of the area", zone + 1, zones.size(),
+                  std::filesystem::path(study.source).filename().string(), shortest(zones[zone].share));
   if (const double turn_deg = candidate.analysis().rotation_deg; turn_deg != 0.0)
     comment += fmt::format(", turned by {} degrees (--rotation of retrace photometry)", shortest(turn_deg));
   return design_text(candidate.design(), comment + "\n");
@@ -144,23 +144,23 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
     throw InputError({"", 0, "--design"}, "the design of the study is a single element, which has no room for zones");
 }
 
-std::string zoned_design_text(const Study& study, const PartOfZones& part, const ZonedDesignRequest& request) {
-  const Design whole = whole_design(study, part.zones.front().cell.values, request);
+std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones, const ZonedDesignRequest& request) {
+  const Design whole = whole_design(study, zones.front().cell.values, request);
   const Vec2 size_mm(whole.part().array.x_length_mm, whole.part().array.y_length_mm);
   std::vector<double> shares;
   double element_mm = 0.0;
-  for (const Zone& zone : part.zones) {
+  for (const Zone& zone : zones) {
     shares.push_back(zone.share);
     element_mm = std::max(element_mm, height_of(study, zone));
   }
   std::vector<std::vector<Rectangle>> regions;
   if (request.layout == ZoneLayout::blocks) regions = blocks_of(shares, size_mm);
   if (request.layout == ZoneLayout::rows) regions = rows_of(shares, size_mm, element_mm);
-  std::string text = design_text(whole, fmt::format("# The {} zones of {} in {}.\n", part.zones.size(),
+  std::string text = design_text(whole, fmt::format("# The {} zones of {} in {}.\n", zones.size(),
                                                     std::filesystem::path(study.source).filename().string(),
                                                     kZoneLayouts[static_cast<std::size_t>(request.layout)]));
-  for (std::size_t k = 0; k < part.zones.size(); ++k) {
-    const PointValues& values = part.zones[k].cell.values;
+  for (std::size_t k = 0; k < zones.size(); ++k) {
+    const PointValues& values = zones[k].cell.values;
     text += "\n[[zone]]\n";
     text += regions.empty() ? fmt::format("share = {}\n", shortest(shares[k])) : regions_text(regions[k]);
     const double turn_deg = make_candidate(study, values).analysis().rotation_deg;

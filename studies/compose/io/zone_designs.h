@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "geometry/vec.h"
 #include "studies/compose/compose.h"
@@ -15,9 +16,9 @@ namespace retrace::studies {
 /// Of how many zones, the largest, designs are written at most.
 std::size_t most_zone_designs(const ComposeRequest& request);
 
-/// The design whose part is all of a zone's cells; its comment says the zone's share and turn. \pre a zone of the part
+/// The design whose part is all of a zone's cells; its comment says the zone's share and turn. \pre one of the zones
 /// \throw InputError as make_candidate()
-std::string zone_design_text(const Study& study, const PartOfZones& part, std::size_t zone);
+std::string zone_design_text(const Study& study, const std::vector<Zone>& zones, std::size_t zone);
 
 /// How zones lie in a part.
 enum class ZoneLayout {
@@ -41,6 +42,6 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request);
 
 /// The design of the whole part. \throw InputError as check_zoned_design(), and where a zone is smaller than one
 /// element
-std::string zoned_design_text(const Study& study, const PartOfZones& part, const ZonedDesignRequest& request);
+std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones, const ZonedDesignRequest& request);
 
 }  // namespace retrace::studies

@@ -272,7 +272,7 @@ constexpr Row kComposeRows[] = {
      "0 is allowed."},
     {"parts", Whole{{.low = 16.0, .high = 16'384.0}}, 1024.0, "Parts with errors that are drawn, for the yield."},
     {"worst_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
-     "Shares are told, too, that are best for so many of the drawn parts, the worst: 0.05 for one in twenty."}};
+     "A part is told, too, that is best for so many of the drawn parts, the worst: 0.05 for one in twenty."}};
 
 constexpr Row kRootRows[] = {
     {"title", Text{}, kNone, "Names the study in results."},

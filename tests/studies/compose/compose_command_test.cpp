@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -122,6 +124,21 @@ TEST(ComposeCommand, GoesOnWithItsStore) {
   EXPECT_EQ(second.at("evaluations"), first.at("evaluations"));
   EXPECT_GE(second.at("least").get<double>(), first.at("least").get<double>());
   EXPECT_EQ(second.at("by_number_of_zones").at(0).at("least"), first.at("least"));
+}
+
+TEST(ComposeCommand, WritesTheZonesForTheWorst) {
+  const TemporaryFolder folder;
+  folder.write("study.toml",
+               study("most_zones = 2\nrounds = 0\nzone_sigma_arcmin = 1\nparts = 64\nworst_share = 0.1\n"));
+  ASSERT_EQ(retrace(folder, compose({"--for-worst"})).code, 0);
+  const Json zones = folder.json("out/composition.json").at("errors_of_angle").at("best_for_worst").at("zones");
+  ASSERT_GE(zones.size(), 1U);
+  const double share = zones.at(0).at("share");
+  EXPECT_NE(folder.read("out/zone_1.toml").find(fmt::format(": {} of the area", share)), std::string::npos);
+  EXPECT_EQ(std::ranges::count(folder.names(), "out/zone_2.toml"), zones.size() > 1 ? 1 : 0);
+  folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
+  expect_refused(retrace(folder, compose({"--for-worst", "--overwrite"})),
+                 "--for-worst: needs worst_share in [compose] of the study");
 }
 
 TEST(ComposeCommand, SaysNoAndWhy) {

@@ -105,6 +105,39 @@ TEST(PartYield, SharesForTheWorstAreNeverWorseThanAGrid) {
   }
 }
 
+TEST(PartYield, SetsForTheWorstAreNeverWorseThanAGridOfEach) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> number(0.0, 1.0);
+  for (int trial = 0; trial < 3; ++trial) {
+    std::vector<ErrorResponse> cells;
+    for (int z = 0; z < 4; ++z)
+      cells.push_back(linear({number(random), number(random)}, {number(random) - 0.5, number(random) - 0.5}));
+    const DrawnParts parts = drawn_parts(cells, 0.5, 64, 1);
+    const auto best = best_set(parts, 0.1, 2, {0.1, 1.0}, nullptr);
+    ASSERT_TRUE(best.has_value());
+    EXPECT_LE(best->size(), 2U);
+    Numbers shares(4, 0.0);
+    double all = 0.0;
+    for (const auto& [cell, share] : *best) {
+      EXPECT_GE(share, 0.1 - 1e-9);
+      all += shares[cell] = share;
+    }
+    EXPECT_NEAR(all, 1.0, 1e-9);
+    const auto worst = [&](const Numbers& of) { return mean_of_worst(leasts_of(parts, of), 0.1); };
+    double of_grid = -1e9;
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = 0; b < 4; ++b)
+        for (int k = 2; k <= 18; ++k) {
+          Numbers of(4, 0.0);
+          of[a] += k / 20.0;
+          of[b] += 1.0 - k / 20.0;
+          of_grid = std::max(of_grid, worst(of));
+        }
+    EXPECT_GE(worst(shares), of_grid - 1e-9);
+    EXPECT_LE(worst(shares), of_grid + 0.05);
+  }
+}
+
 /// What a prism's own error of angle makes of a goal that is best at one minute of arc.
 class Peak : public Quantity {
  public:
@@ -147,7 +180,7 @@ TEST(ComposeErrors, AreThoseOfTheClosedForm) {
   // Prices of 1/2 each: what one goal gains the other loses.
   const double price = composition.best->mixture.prices.goals[0];
   EXPECT_NEAR(effects.slopes.at(0).at(0), price * 0.5 - (1.0 - price) * 0.5, 1e-9);
-  EXPECT_NEAR(effects.for_worst->shares.at(0), 1.0, 1e-12);
+  EXPECT_NEAR(effects.for_worst->zones.at(0).share, 1.0, 1e-12);
   const auto json = nlohmann::json::parse(composition_json(study, request, composition, 1.0)).at("errors_of_angle");
   EXPECT_EQ(json.at("yield").at("good"), *effects.yield.good);
   EXPECT_NE(composition_text(study, request, composition).find("of 4096 parts reach 1.5, 95 % of them have"),

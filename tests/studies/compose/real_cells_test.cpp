@@ -106,7 +106,7 @@ TEST(RealCells, AreWrittenAsTheDesignsOfTheirZones) {
   Goals part{};
   for (std::size_t z = 0; z < composition.best->zones.size(); ++z) {
     const Zone& zone = composition.best->zones[z];
-    const std::string text = zone_design_text(study, *composition.best, z);
+    const std::string text = zone_design_text(study, composition.best->zones, z);
     EXPECT_TRUE(text.starts_with("# Zone " + std::to_string(z + 1) + " of ")) << text;
     const Candidate in_study = make_candidate(study, zone.cell.values);
     const Goals goals = goals_of(study, {parse_design(text, "zone.toml"), in_study.analysis(), in_study.machining()});
@@ -121,7 +121,7 @@ TEST(RealCells, AreWrittenAsOnePartOfZones) {
   ASSERT_TRUE(composition.best && composition.best->zones.size() > 1);
   for (const ZoneLayout layout : {ZoneLayout::stripes, ZoneLayout::blocks, ZoneLayout::rows}) {
     const ZonedDesignRequest request{layout, geometry::Vec2(80.0, 60.0)};
-    const Design design = parse_design(zoned_design_text(study, *composition.best, request), "part.toml");
+    const Design design = parse_design(zoned_design_text(study, composition.best->zones, request), "part.toml");
     ASSERT_NE(design.zoned(), nullptr);
     const geometry::ZonedSpec& spec = design.zoned()->spec;
     ASSERT_EQ(spec.zones.size(), composition.best->zones.size());
@@ -158,8 +158,8 @@ TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
     for (std::size_t k = 0; k < kGoals; ++k) sum[k] += zone.share * goals[k];
   }
   const ZonedDesignRequest request{ZoneLayout::stripes, geometry::Vec2(240.0, 180.0)};
-  const Goals whole =
-      by_rays(parse_design(zoned_design_text(study, *composition.best, request), "part.toml"), 0.0, Engine::embree);
+  const Goals whole = by_rays(parse_design(zoned_design_text(study, composition.best->zones, request), "part.toml"),
+                              0.0, Engine::embree);
   for (std::size_t k = 0; k < kGoals; ++k) EXPECT_NEAR(whole[k], sum[k], 0.02 * sum[k]) << k;
 }
 
