@@ -67,7 +67,8 @@ void time_to_error(benchmark::State& state) {
   using raytrace::MonteCarlo;
   raytrace::Optics optics;
   optics.index = 1.4917;
-  if (is_rough) optics.facet_scatter = surface_models::HarveyShack(kRoughFacets);
+  if (is_rough)
+    optics.facet_scatter = surface_models::HarveyShack(kRoughFacets, {optics.index, 1.0, optics.wavelength_nm});
   raytrace::Sampling sampling;
   sampling.target_error = way == kPlain ? kPlainTargetError : target_error;
   if (way == kPlain) sampling.kind = raytrace::Sampling::Kind::plain;

@@ -156,19 +156,18 @@ TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, c
                                      const materials::FresnelCoefficients& f, const LocalEvent& local,
                                      const Ray& to_reflect, const Ray& to_transmit, double split_power,
                                      surface_models::RandomStream& random) {
-  using enum RoughLight::Kind;
   auto [lights, power] = rough_light(rough, light, f, local);
   TexturedReturn result;
   result.truncated = light.power();
   power = merged(power, split_power, random);
-  for (std::size_t k = 0; k < once; ++k) {
+  for (std::size_t k = 0; k < RoughLight::once; ++k) {
     if (power[k] <= 0.0) continue;
     lights[k].scale(power[k] / lights[k].power());
-    const bool is_reflected = k == reflected || k == reflected_again;
+    const bool is_reflected = k == RoughLight::reflected || k == RoughLight::reflected_again;
     Ray ray = is_reflected ? to_reflect : to_transmit;
     ray.light = lights[k];
     const Lobe lobe = is_reflected ? Lobe::reflection : Lobe::transmission;
-    if (k == reflected || k == transmitted) {
+    if (k == RoughLight::reflected || k == RoughLight::transmitted) {
       const Vec3 direction = local.world_from_local.transpose() * ray.direction;
       if (!surface_models::is_on_side(direction, lobe)) continue;
       surface_models::ScatterSample out{direction, direction, 1.0, true};
@@ -179,7 +178,7 @@ TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, c
       add(ray, local, *out, result);
     }
   }
-  if (power[once] <= 0.0) return result;
+  if (power[RoughLight::once] <= 0.0) return result;
   const Vec3 s_axis = local.world_from_local.transpose() * light.s_axis;
   double unmasked = 1.0;
   const auto out = surface_models::sample_diffracted_once(rough, local.event, local.piece, s_axis,
@@ -187,7 +186,7 @@ TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, c
   if (!out) return result;
   Ray ray = out->lobe == Lobe::reflection ? to_reflect : to_transmit;
   ray.direction = (local.world_from_local * out->direction).normalized();
-  ray.light = {stokes_of(out->coherency, power[once] * unmasked), local.world_from_local * out->s_axis};
+  ray.light = {stokes_of(out->coherency, power[RoughLight::once] * unmasked), local.world_from_local * out->s_axis};
   ray.scattered = true;
   result.truncated -= ray.light.power();
   result.once = result.count;
