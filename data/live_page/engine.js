@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 0d91caac0ee6ae4ecde3159232f2a7d917a1b053aa6ba8c7a93ac428a5d55bac */
+/* made by tools/live_page; engine.wasm.gz ee284dd7ef71c137e13a3cf3dbcec7d17b795b74546d853889c2d1c9ee25be20 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;
