@@ -77,7 +77,8 @@ TEST_F(Image, CameraTakesALampOfAFile) {
 
 /// A noise that no number of passes would reach is not waited for.
 TEST_F(Image, CameraSaysThatANoiseIsOutOfReach) {
-  const Json json = retrace_json(folder_, {"image", "brick.toml", "--camera", "--pixels=8x6", "--noise=1e-7"});
+  const Json json =
+      retrace_json(folder_, {"image", "brick.toml", "--camera", "--pixels=24x18", "--ambient-lx=1", "--noise=1e-7"});
   EXPECT_EQ(json["passes"], 64);
   EXPECT_EQ(json["complete"], true);
   EXPECT_NE(json["warnings"].dump().find("is above the target of 1e-07 after 64 passes, which would take about"),
