@@ -86,6 +86,14 @@ TEST_F(Image, CameraSaysThatANoiseIsOutOfReach) {
       << json["warnings"];
 }
 
+TEST_F(Image, CameraSaysThatThePartIsBlack) {
+  const Json json =
+      retrace_json(folder_, {"image", "cubes.toml", "--camera", "--pixels=24x18", "--observation-deg=40"});
+  EXPECT_EQ(json["luminance_max_cd_per_m2"], 0);
+  EXPECT_NE(json["warnings"].dump().find("no light comes to the camera from the part in 8 passes"), std::string::npos)
+      << json["warnings"];
+}
+
 TEST_F(Image, WrongOptionsAreRefused) {
   const std::vector<std::pair<Arguments, std::string>> cases = {
       {{}, "image: one of --detector, --camera and --road is required"},
