@@ -20,6 +20,17 @@ constexpr double kNarrow = 0.1;
 // Rays to the source of less than this share of an ordinary one's power are followed by chance.
 constexpr double kLeastShare = 0.05;
 
+/// Of the widest cone, in air.
+double solid_angle(const PathSetup& setup) {
+  return std::numbers::pi * setup.cone_chord2.back();
+}
+
+/// By how much solid angles about a direction that leaves are smaller inside.
+double narrowing(const PathSetup& setup, const Vec3& out) {
+  const double n = setup.optics.index;
+  return out.z() / (n * n * std::sqrt(1.0 - out.head<2>().squaredNorm() / (n * n)));
+}
+
 }  // namespace
 
 /// The way by mirrors alone that light has from a place of a facet, inside the part, out into the widest cone about the
@@ -44,15 +55,6 @@ class WayToSource {
            setup_.cone_of({across.x(), across.y(), std::sqrt(rest)}) < setup_.cone_chord2.size();
   }
 
-  /// Of the cone, in air.
-  double solid_angle() const { return std::numbers::pi * setup_.cone_chord2.back(); }
-
-  /// By how much solid angles about a direction that leaves are smaller inside.
-  double narrowing(const Vec3& out) const {
-    const double n = setup_.optics.index;
-    return out.z() / (n * n * std::sqrt(1.0 - out.head<2>().squaredNorm() / (n * n)));
-  }
-
   /// A direction out, uniform in the cone.
   Vec3 draw(surface_models::RandomStream& random) const {
     const double less = 0.5 * setup_.cone_chord2.back() * random.next();  // 1 - cos
@@ -74,14 +76,13 @@ namespace {
 std::optional<WayToSource> way_to_source(const PathSetup& setup, const PathWalker& walker, const Vec3& position,
                                          const Vec3& normal, const Ray& met, double power) {
   if (!met.inside || surface_models::first_order_model(setup.optics.facet_scatter) == nullptr) return std::nullopt;
-  const auto turn = walker.mirrors_to_entrance(position, mirrored(met.direction, normal));
-  if (!turn) return std::nullopt;
-  WayToSource way(setup, *turn);
-  const Ray there = diffracted_once_into(setup.optics, normal, met, way.direction_to(setup.to_source));
-  if (!there.inside || there.light.power() <= 0.0) return std::nullopt;
-  const double in_cone = there.light.power() * way.narrowing(setup.to_source) * way.solid_angle();
-  if (in_cone >= kNarrow * power) return std::nullopt;
-  return way;
+  // Whether the cone is narrow is asked before the mirrors are looked for, and so where the lobe is densest.
+  const Vec3 specular = mirrored(met.direction, normal);
+  const double density = diffracted_once_into(setup.optics, normal, met, specular).light.power();
+  const double in_cone = density * narrowing(setup, setup.to_source) * solid_angle(setup);
+  if (in_cone <= 0.0 || in_cone >= kNarrow * power) return std::nullopt;
+  const auto turn = walker.mirrors_to_entrance(position, specular);
+  return turn ? std::optional<WayToSource>(std::in_place, setup, *turn) : std::nullopt;
 }
 
 }  // namespace
@@ -175,20 +176,27 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
         at[axis] -= setup_.period_mm[axis] * std::floor(at[axis] / setup_.period_mm[axis] + 0.5);
     return at;
   };
-  const auto way = way_to_source(setup_, walker_, off_facet(true), site.normal, met, power);
-  if (way) score(*way, off_facet(true), site.normal, met, power, number, choices);
-  if (!way || back.once != chosen || !ray.inside || !way->leads_back(ray.direction))
-    return walker_.resume(off_facet(ray.inside), ray, key_, replicate_, number, choices);
-  // What it brings into the cones has been scored: it stands beside it, so that no power is booked twice.
+  const Vec3 start = off_facet(ray.inside);
+  const Vec3 inside = ray.inside ? start : off_facet(true);
+  const auto way = way_to_source(setup_, walker_, inside, site.normal, met, power);
+  if (way) score(*way, inside, site.normal, met, power, number, choices);
+  if (way && back.once == chosen && ray.inside && way->leads_back(ray.direction))
+    follow_scored(start, ray, number, choices);
+  else
+    walker_.resume(start, ray, key_, replicate_, number, choices);
+}
+
+/// An ordinary ray whose light in the cones score() has booked: what it brings there counts as scattered elsewhere.
+void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uint32_t number, std::uint32_t& choices) {
   apart_.clear();
-  walker_apart_.resume(off_facet(true), ray, key_, replicate_, number, choices);
+  walker_apart_.resume(position, ray, key_, replicate_, number, choices);
   for (std::size_t cone = 0; cone < setup_.cone_chord2.size(); ++cone)
     apart_.scattered.back() += std::exchange(apart_.scattered[cone], Stokes{});
   tally_.add(apart_);
 }
 
-/// What the light that is diffracted once into the cones brings there, by one ray; it is taken from what leaves outside
-/// them, where ordinary rays of these directions are booked.
+/// One ray that stands for all light of the place that is diffracted once towards the widest cone. What it brings into
+/// the cones is taken from what is scattered elsewhere, where follow_scored() books it.
 void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met,
                           double power, std::uint32_t number, std::uint32_t& choices) {
   surface_models::RandomStream random(key_, replicate_, number, choices++);
@@ -196,7 +204,7 @@ void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Ve
   if (out.z() <= 0.0) return;
   Ray ray = diffracted_once_into(setup_.optics, normal, met, way.direction_to(out));
   if (!ray.inside) return;
-  ray.light.scale(way.narrowing(out) * way.solid_angle());
+  ray.light.scale(narrowing(setup_, out) * solid_angle(setup_));
   const double chance = ray.light.power() / (kLeastShare * power);
   if (chance <= 0.0 || random.next() >= chance) return;
   if (chance < 1.0) ray.light.scale(1.0 / chance);

@@ -34,6 +34,7 @@ class ScatteredRays : public ScatteredReplicate {
 
  private:
   void launch_one(const ScatterSite& site, double power);
+  void follow_scored(const Vec3& position, const Ray& ray, std::uint32_t number, std::uint32_t& choices);
   void score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met, double power,
              std::uint32_t number, std::uint32_t& choices);
 

@@ -290,13 +290,13 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
     result.warnings.push_back(fmt::format(
         "{}: the noise of {} is above the target of {} after {} passes, which would take about {:.2g}, of {} at most "
-        "(--passes N takes N)",
+        "(--passes N sets their number)",
         design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise), result.image.passes,
         passes_needed(result.image, request_), kMostPasses));
   if (result.complete && result.image.part_mean() == 0.0)
     result.warnings.push_back(fmt::format(
         "{}: no light comes to the camera from the part in {} passes: it is black, or what shines is rarer than they "
-        "find (--passes N takes more)",
+        "find (--passes N sets their number)",
         design_.source_name(), result.image.passes));
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
