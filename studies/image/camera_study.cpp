@@ -171,10 +171,6 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
 
 namespace {
 
-// A noise is out of reach if it would take this many times the most passes; so early its own error may be a factor of
-// two.
-constexpr double kOutOfReach = 4.0;
-
 /// Passes until the noise is that of the request, as it falls with the root of their number.
 double passes_needed(const raytrace::CameraImage& image, const CameraRequest& request) {
   return image.passes * std::pow(image.relative_noise() / request.noise, 2.0);
@@ -216,9 +212,9 @@ class PassLedger : public TaskLedger {
     is_finished_ = image_.passes == goal_;
     if (!request_.passes) {
       const double noise = image_.passes > 1 ? image_.relative_noise() : 1.0;
-      is_finished_ = is_finished_ || (image_.passes >= CameraStudy::kFewestPasses && noise <= request_.noise) ||
-                     (image_.passes >= CameraStudy::kPassesToJudge &&
-                      passes_needed(image_, request_) > kOutOfReach * CameraStudy::kMostPasses);
+      is_finished_ =
+          is_finished_ || (image_.passes >= CameraStudy::kFewestPasses && noise <= request_.noise) ||
+          (image_.passes >= CameraStudy::kPassesToJudge && passes_needed(image_, request_) > CameraStudy::kMostPasses);
       share = image_.passes > 1 ? std::min(0.99, std::pow(request_.noise / std::max(noise, 1e-300), 2.0)) : 0.0;
     }
     furthest_ = std::max(furthest_, share);
