@@ -2,6 +2,7 @@
 
 // The part that is traced: a plate with its back surface of elements, stored as few distinct patches in many places.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -27,6 +28,12 @@ struct ZoneElements {
   std::size_t cells = 0;     ///< of the patch, which has those of zone after zone
 };
 
+/// A region of the plate whose elements stand in a lattice.
+struct LatticeRegion {
+  Polygon outline;                 ///< convex, counter-clockwise
+  std::array<Vec2, 2> periods_mm;  ///< across each other
+};
+
 /// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below it
 /// the elements, whose rims lie on z = 0 but for errors of angle and cant. A finite part is the prism over a convex
 /// outline, open at the bottom only where the back surface ends it; an infinite one repeats with a rectangular period.
@@ -49,9 +56,10 @@ struct Part {
   Vec2 lattice_anchor_mm = Vec2::Zero();
   std::int64_t elements_full = 0;  ///< finite: whole elements; infinite: elements per period
   std::int64_t elements_partial = 0;
-  std::vector<ZoneElements> zones;    ///< parts of zones
-  double entrance_area_mm2 = 0.0;     ///< infinite: of one period
-  double retro_facet_area_mm2 = 0.0;  ///< infinite: of one period
+  std::vector<ZoneElements> zones;             ///< parts of zones
+  std::vector<LatticeRegion> lattice_regions;  ///< parts of zones: they cover the plate
+  double entrance_area_mm2 = 0.0;              ///< infinite: of one period
+  double retro_facet_area_mm2 = 0.0;           ///< infinite: of one period
 
   /// Tells the cells of its patches apart. \pre `cell` is one of `patch`, which is one of `patches`
   std::uint64_t number_of(const SurfacePatch& patch, const PatchCell& cell) const {

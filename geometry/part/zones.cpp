@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "geometry/elements/array_sheet.h"
+#include "geometry/elements/lattice.h"
 #include "geometry/part/tiling.h"
 
 namespace retrace::geometry {
@@ -150,6 +151,12 @@ void settle_on_border(Polygon& outline, const Vec2& size_mm, double tolerance_mm
     for (const Eigen::Index axis : {0, 1})
       for (const double bound : {0.0, size_mm[axis]})
         if (std::abs(p[axis] - bound) <= tolerance_mm) p[axis] = bound;
+}
+
+std::array<Vec2, 2> periods_of(const PartSpec& elements, double rotation_deg) {
+  const Vec2 period_mm = make_lattice(elements, true).period_mm;
+  const Turn to_zone(rotation_deg, Vec2::Zero(), Vec2::Zero());
+  return {to_zone.turned({period_mm.x(), 0.0}), to_zone.turned({0.0, period_mm.y()})};
 }
 
 /// The tiles of zone after zone.
@@ -364,12 +371,18 @@ void add_zones(Part& part, const ZonedSpec& spec) {
   part.outline = to_polygon(plate);
   ZoneTiler tiler(spec.size_mm, kSamePlace * part.size_mm);
   ArrayPlan plan;
-  if (spec.is_by_cell) plan = plan_of_array(array_of_cells(spec, spec.zones.front()));
+  if (spec.is_by_cell) {
+    const PartSpec array = array_of_cells(spec, spec.zones.front());
+    plan = plan_of_array(array);
+    part.lattice_regions.push_back({part.outline, periods_of(array, 0.0)});
+  }
   for (const PartZone& zone : spec.zones) {
     const bool is_first = &zone == &spec.zones.front();
     part.zones.push_back(spec.is_by_cell ? tiler.add_cells(zone, array_of_cells(spec, zone), plan,
                                                            is_first ? plan.land_mm : std::vector<Rectangle>())
                                          : tiler.add_regions(zone));
+    for (const Polygon& region : zone.regions)
+      part.lattice_regions.push_back({region, periods_of(zone.elements, zone.rotation_deg)});
     part.elements_full += part.zones.back().full;
     part.elements_partial += part.zones.back().partial;
   }

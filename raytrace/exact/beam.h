@@ -134,6 +134,7 @@ struct Beam {
   std::uint32_t level_steps = 0;                                        ///< without an interface
   /// At equal elements of an array: where the same beam goes, this one, at the offset 0, included. Null: here alone.
   std::shared_ptr<const BeamPlaces> places;
+  std::uint32_t region = 0;  ///< of EqualPlaces, in which those places are
 
   double place_count() const { return places ? static_cast<double>(places->size()) : 1.0; }
   /// Of this beam and those like it.

@@ -37,6 +37,16 @@ std::vector<Span> spans(double lower, double upper, double period, int steps) {
   return all;
 }
 
+/// What of a polygon lies in a convex outline, in plan.
+Corners within(Corners corners, const geometry::Polygon& outline) {
+  for (std::size_t k = 0; k < outline.size() && !corners.empty(); ++k) {
+    const Vec2 along = (outline[(k + 1) % outline.size()] - outline[k]).normalized();
+    const Vec3 inward(-along.y(), along.x(), 0.0);
+    corners = cut(corners, {inward, inward.head<2>().dot(outline[k])});
+  }
+  return corners;
+}
+
 std::shared_ptr<const BeamPlaces> shared(BeamPlaces places) {
   return places.size() > 1 ? std::make_shared<const BeamPlaces>(std::move(places)) : nullptr;
 }
@@ -75,6 +85,37 @@ void BeamWalk::enter_at_places(const Beam& whole, double parts) {
       pend(std::move(piece));
     }
   }
+  book_rest(whole, 1.0 - entered);
+}
+
+/// \return the share of the light that enters there
+double BeamWalk::enter_region(const Beam& whole, std::uint32_t number, const Vec2& most_step_mm) {
+  const RepeatRegion& region = equal_->regions()[number];
+  const Frame from_above(-Vec3::UnitZ());
+  const double whole_area = area(flattened(whole.corners, from_above, merge_mm_));
+  double entered = 0.0;
+  const auto enter = [&](const geometry::Polygon& tile, BeamPlaces places) {
+    Beam piece = whole;
+    for (const geometry::Polygon* outline : {&tile, &region.outline_mm()})
+      piece.corners = within(std::move(piece.corners), *outline);
+    piece.share = piece.corners.empty() ? 0.0 : area(flattened(piece.corners, from_above, merge_mm_)) / whole_area;
+    if (piece.share <= 0.0) return;
+    piece.places = shared(std::move(places));
+    piece.region = number;
+    entered += piece.share * piece.place_count();
+    pend(std::move(piece));
+  };
+  for (const RepeatRegion::Tiles& tiles : region.tiles(most_step_mm)) {
+    if (!tiles.inner.empty()) enter(tiles.first, tiles.inner);
+    for (const geometry::Polygon& tile : tiles.at_border) enter(tile, {});
+  }
+  return entered;
+}
+
+void BeamWalk::enter_regions(const Beam& whole, double parts) {
+  double entered = 0.0;
+  for (std::uint32_t region = 0; region < equal_->regions().size(); ++region)
+    entered += enter_region(whole, region, step_of_entrance(parts));
   book_rest(whole, 1.0 - entered);
 }
 
@@ -117,7 +158,7 @@ PlanBox BeamWalk::sweep_of(const Beam& beam) const {
 void BeamWalk::keep_equal_places(Beam& beam) {
   if (setup_.infinite()) return;
   const PlanBox sweep = sweep_of(beam);
-  std::vector<BeamPlaces> groups = equal_->divided(*beam.places, {sweep.lower, sweep.upper});
+  std::vector<BeamPlaces> groups = equal_->divided(*beam.places, {sweep.lower, sweep.upper}, beam.region);
   if (groups.size() <= 1) return;
   for (BeamPlaces& group : groups) {
     const Vec2 first = group.front();

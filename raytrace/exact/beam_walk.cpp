@@ -74,6 +74,8 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
   const double parts = parts_of_element();
   if (equal_ != nullptr && setup_.infinite())
     enter_within_period(whole, parts);
+  else if (equal_ != nullptr && !equal_->regions().empty())
+    enter_regions(whole, parts);
   else if (equal_ != nullptr)
     enter_at_places(whole, parts);
   else if (setup_.infinite() && parts == 1.0)

@@ -117,6 +117,8 @@ class BeamWalk {
   void enter_in_pieces(const Beam& whole, const Vec2& step);
   void enter_at_places(const Beam& whole, double parts);
   void enter_within_period(const Beam& whole, double parts);
+  double enter_region(const Beam& whole, std::uint32_t region, const Vec2& most_step_mm);
+  void enter_regions(const Beam& whole, double parts);
   void pend(Beam&& beam);
   void keep_equal_places(Beam& beam);
   void defer(Beam&& beam);

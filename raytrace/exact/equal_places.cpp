@@ -17,6 +17,8 @@ using geometry::Part, geometry::PatchCell, geometry::PatchFacet, geometry::Place
 constexpr double kSameCorner = 1e-9;
 // An array of fewer periods along both axes is followed element by element.
 constexpr double kFewestPeriods = 2.0;
+// Rows or columns that differ in turn repeat after so many periods of their array, or never.
+constexpr int kMostInTurn = 12;
 
 Vec2 origin_of(const PatchCell& cell) {
   return cell.lower.head<2>();
@@ -57,6 +59,31 @@ bool is_rectangle(const geometry::Polygon& outline, double near_mm) {
   return outline.size() == 4 && std::all_of(outline.begin(), outline.end(), is_corner);
 }
 
+/// Of what the cell covers in plan.
+double plan_area(const SurfacePatch& patch, const PatchCell& cell) {
+  double area_mm2 = 0.0;
+  for (std::uint32_t f = 0; f < cell.facet_count; ++f) {
+    const PatchFacet& facet = patch.facets[cell.first_facet + f];
+    geometry::Polygon outline;
+    for (std::uint32_t c = 0; c < facet.corner_count; ++c)
+      outline.push_back(patch.vertices[patch.corners[facet.first_corner + c]].head<2>());
+    area_mm2 += std::abs(geometry::area(outline));
+  }
+  return area_mm2;
+}
+
+/// With the fewest periods of its lattice after which rows that differ, in turn, repeat.
+RepeatRegion repeating(const geometry::Polygon& outline, const std::array<Vec2, 2>& periods_mm,
+                       const std::vector<PlacedCell>& cells, double near_mm) {
+  for (int all = 1; all <= kMostInTurn; ++all)
+    for (const int along : {1, all}) {
+      const std::array<Vec2, 2> longer = {along * periods_mm[0], (all / along) * periods_mm[1]};
+      RepeatRegion region(outline, longer, cells, near_mm);
+      if (region.repeats()) return region;
+    }
+  return RepeatRegion(outline, periods_mm, cells, near_mm);
+}
+
 Vec3 in_plan(const Vec2& p) {
   return {p.x(), p.y(), 0.0};
 }
@@ -71,6 +98,14 @@ std::optional<EqualPlaces> EqualPlaces::of(const Part& part, const Vec2& centre_
     equal.period_mm_ = *part.period_mm;
     equal.find_shapes(part);
     equal.find_shift_within_period(part);
+    return equal;
+  }
+  if (!part.lattice_regions.empty()) {
+    equal.find_shapes(part);
+    equal.find_regions(part, centre_mm);
+    if (std::none_of(equal.regions_.begin(), equal.regions_.end(),
+                     [](const RepeatRegion& region) { return region.repeats(); }))
+      return std::nullopt;
     return equal;
   }
   if (!part.lattice_region_mm || !is_rectangle(part.outline, equal.near_mm_)) return std::nullopt;
@@ -144,6 +179,20 @@ void EqualPlaces::find_region(const Part& part, const Vec2& centre_mm) {
   });
 }
 
+void EqualPlaces::find_regions(const Part& part, const Vec2& centre_mm) {
+  std::vector<PlacedCell> cells;
+  for (const Placement& placement : part.placements) {
+    const SurfacePatch& patch = part.patches[placement.patch];
+    const Vec2 offset = placement.offset_mm - centre_mm;
+    for (const PatchCell& cell : patch.cells)
+      cells.push_back({{cell.lower.head<2>() + offset, cell.upper.head<2>() + offset},
+                       place_of(patch, cell, offset),
+                       plan_area(patch, cell)});
+  }
+  for (const geometry::LatticeRegion& region : part.lattice_regions)
+    regions_.push_back(repeating(geometry::moved(region.outline, -centre_mm), region.periods_mm, cells, near_mm_));
+}
+
 /// A shift by half a period along one axis or both, as honeycombs, brick rows and checkers have it.
 void EqualPlaces::find_shift_within_period(const Part& part) {
   const SurfacePatch& patch = part.patches.front();
@@ -175,7 +224,9 @@ bool EqualPlaces::is_within(const Rectangle& sweep, const Vec2& by, Eigen::Index
          sweep.upper[axis] + by[axis] <= region_mm_.upper[axis] + near_mm_;
 }
 
-std::vector<BeamPlaces> EqualPlaces::divided(const BeamPlaces& places, const Rectangle& sweep) const {
+std::vector<BeamPlaces> EqualPlaces::divided(const BeamPlaces& places, const Rectangle& sweep,
+                                             std::uint32_t region) const {
+  if (!regions_.empty()) return regions_[region].divided(places, sweep);
   const auto meets_inner_cells = [&](const Vec2& by) { return is_within(sweep, by, 0) && is_within(sweep, by, 1); };
   if (part_->period_mm || std::all_of(places.begin(), places.end(), meets_inner_cells)) return {};
   std::vector<BeamPlaces> groups = {places};

@@ -11,14 +11,16 @@
 
 #include "geometry/part/part.h"
 #include "raytrace/exact/beam.h"
+#include "raytrace/exact/repeat_region.h"
 
 namespace retrace::raytrace {
 
-/// What of an array repeats: cells that are alike, and how far the part is the same when it is moved by a period.
+/// What of an array repeats: cells that are alike, and how far the part is the same when it is moved by a period. Parts
+/// of zones repeat in each of their regions by itself.
 class EqualPlaces {
  public:
-  /// Nothing for a part whose elements are not all alike or too few, or whose outline is no rectangle along the axes.
-  /// \param centre_mm point of the plane that becomes the origin
+  /// Nothing for a part whose elements are not all alike or too few, or whose outline is no rectangle along the axes;
+  /// of zones: for one none of whose regions repeats. \param centre_mm point of the plane that becomes the origin
   static std::optional<EqualPlaces> of(const geometry::Part& part, const geometry::Vec2& centre_mm);
 
   /// A cell as one of those that are like it: the id is that of the first of them. \param offset_mm as CellIndex tells
@@ -26,14 +28,18 @@ class EqualPlaces {
   CellPlace place_of(const geometry::SurfacePatch& patch, const geometry::PatchCell& cell,
                      const geometry::Vec2& offset_mm) const;
 
+  /// Of a part that is one array.
   const geometry::Vec2& period_mm() const { return period_mm_; }
+  /// Of a part of zones, which they cover; those of a part that is one array are not told.
+  const std::vector<RepeatRegion>& regions() const { return regions_; }
   /// Of a part that repeats without end: by what it may be moved besides, within its period, and stay the same.
   const std::optional<geometry::Vec2>& within_period_mm() const { return within_period_mm_; }
 
   /// Divides places into those where a beam meets the same. \param places offsets of the beam and its copies, moved
-  /// from each other by whole periods \param sweep in plan, of the first: all that it may meet lies there \return
-  /// nothing if they all meet the same
-  std::vector<BeamPlaces> divided(const BeamPlaces& places, const geometry::Rectangle& sweep) const;
+  /// from each other by whole periods \param sweep in plan, of the first: all that it may meet lies there \param region
+  /// of zones: in which those places are \return nothing if they all meet the same
+  std::vector<BeamPlaces> divided(const BeamPlaces& places, const geometry::Rectangle& sweep,
+                                  std::uint32_t region) const;
 
  private:
   struct Shape {
@@ -44,6 +50,7 @@ class EqualPlaces {
   void find_shapes(const geometry::Part& part);
   void find_region(const geometry::Part& part, const geometry::Vec2& centre_mm);
   void find_shift_within_period(const geometry::Part& part);
+  void find_regions(const geometry::Part& part, const geometry::Vec2& centre_mm);
   bool is_within(const geometry::Rectangle& sweep, const geometry::Vec2& by, Eigen::Index axis) const;
 
   const geometry::Part* part_ = nullptr;
@@ -52,6 +59,7 @@ class EqualPlaces {
   /// Along each axis the part is the same moved by a period as long as one stays between these.
   geometry::Rectangle region_mm_;
   std::optional<geometry::Vec2> within_period_mm_;
+  std::vector<RepeatRegion> regions_;
   double near_mm_ = 0.0;
 };
 

@@ -1,9 +1,12 @@
 // Light of equal elements, followed once: ledgers, far fields and resampled light are those of each by itself.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "geometry/elements/lattice.h"
+#include "geometry/part/zones.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/exact/equal_places.h"
 #include "raytrace/observers/far_field.h"
@@ -19,9 +22,39 @@ using Elements = BeamTracer::Elements;
 
 struct Question {
   std::string name;
-  PartSpec spec;
+  Part part;
   Illumination light;
 };
+
+PartZone zone(const Element& element, Arrangement arrangement, double rotation_deg, const Rectangle& region) {
+  return {{to_polygon(region)}, rotation_deg, finite(element, arrangement, 1.0, 1.0, 1.0)};
+}
+
+/// Unlike lattices side by side, one of them askew to the border.
+Part patchwork() {
+  const PartZone left = zone(HexagonalCube{1.0}, Arrangement::honeycomb, 25.0, {{0.0, 0.0}, {9.0, 10.0}});
+  PartZone middle = zone(HexagonalCube{0.8}, Arrangement::honeycomb, 0.0, {{9.0, 0.0}, {14.0, 10.0}});
+  middle.elements.angle_errors.dihedral_error_arcmin = {4.0, 4.0, 4.0};
+  const PartZone right = zone(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 0.0, {{14.0, 0.0}, {18.0, 10.0}});
+  return build_part(ZonedSpec{{18.0, 10.0}, 1.0, {left, middle, right}});
+}
+
+/// Every third column of triangles canted, or every one by chance.
+Part columns(bool in_turn) {
+  PartZone first = {{}, 0.0, finite(TriangularCube{1.0}, Arrangement::triangular, 1.0, 1.0, 1.0)};
+  PartZone other = first;
+  other.elements.angle_errors.dihedral_error_arcmin = {9.0, 3.0, 0.0};
+  ZonedSpec spec{{9.0, 8.0}, 1.0, {first, other}, true};
+  const double period_mm = make_lattice(first.elements, true).period_mm.x();
+  std::uint32_t state = 1;
+  for (const ArrayCell& cell : plan_of_array(array_of_cells(spec, first)).cells) {
+    state = 1664525 * state + 1013904223;
+    const double column = std::floor(centroid(cell.outline).x() / period_mm + 0.1);
+    const bool is_other = in_turn ? std::fmod(column, 3.0) == 0.0 : state % 3 == 0;
+    spec.zones[is_other && cell.is_element ? 1 : 0].cells.push_back(cell.number);
+  }
+  return build_part(spec);
+}
 
 /// Arrays whose borders differ from each other and from their middle.
 std::vector<Question> questions() {
@@ -35,12 +68,15 @@ std::vector<Question> questions() {
   checker.edges.rim_chamfer_mm = 0.02;
   PartSpec errors = finite(TriangularCube{1.0}, Arrangement::triangular, 5.0, 6.0, 1.0);
   errors.angle_errors.dihedral_error_arcmin = {3.0, 1.0, 2.0};
-  return {{"honeycomb", finite(HexagonalCube{1.0}, Arrangement::honeycomb, 7.0, 8.0, 1.0), from(15.0, 40.0)},
-          {"omitted", omitted, from(5.0, 200.0)},
-          {"triangles with errors", errors, from(10.0, 100.0)},
-          {"bricks", finite(prism, Arrangement::offset, 4.2, 4.4, 1.0), from(20.0, 25.0)},
-          {"land between", land, from(30.0, 300.0)},
-          {"checker with flats", checker, from(10.0, 10.0)}};
+  return {
+      {"honeycomb", build_part(finite(HexagonalCube{1.0}, Arrangement::honeycomb, 7.0, 8.0, 1.0)), from(15.0, 40.0)},
+      {"omitted", build_part(omitted), from(5.0, 200.0)},
+      {"triangles with errors", build_part(errors), from(10.0, 100.0)},
+      {"bricks", build_part(finite(prism, Arrangement::offset, 4.2, 4.4, 1.0)), from(20.0, 25.0)},
+      {"land between", build_part(land), from(30.0, 300.0)},
+      {"checker with flats", build_part(checker), from(10.0, 10.0)},
+      {"patchwork", patchwork(), from(10.0, 70.0)},
+      {"columns in turn", columns(true), from(5.0, 10.0)}};
 }
 
 BeamPolicy policy_at(double cutoff) {
@@ -54,7 +90,7 @@ TEST(EqualPlaces, LedgersAreThoseOfEachByItself) {
   Optics optics = pmma();
   optics.absorption_per_mm = 0.02;
   for (const Question& question : questions()) {
-    const Part part = build_part(question.spec);
+    const Part& part = question.part;
     const std::vector<double> cones = {0.5, 60.0};
     const BeamPolicy policy = policy_at(1e-8);
     const BeamResult alone = BeamTracer(part).trace(optics, question.light, cones, policy);
@@ -108,7 +144,7 @@ const ApertureKernel& discs() {
 /// Fields of cells too, wherever the light that they send back came in.
 TEST(EqualPlaces, FarFieldsAreThoseOfEachByItself) {
   for (const Question& question : questions()) {
-    const Part part = build_part(question.spec);
+    const Part& part = question.part;
     const Seen alone = seen(part, question.light, policy_at(1e-8), Elements::each_by_itself);
     const Seen shared = seen(part, question.light, policy_at(1e-8), Elements::equal_at_once);
     EXPECT_NEAR(shared.field.total_power(), alone.field.total_power(), 1e-3) << question.name;
@@ -151,8 +187,9 @@ TEST(EqualPlaces, HalvesOfAPeriodAreAlike) {
 TEST(EqualPlaces, ResampledLightIsThatOfAllPlaces) {
   const std::vector<Question> all = questions();
   for (const Question& question :
-       {all[0], all[2], Question{"endless", infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0), from(20, 10)}}) {
-    const Part part = build_part(question.spec);
+       {all[0], all[2], all[6],
+        Question{"endless", build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0)), from(20, 10)}}) {
+    const Part& part = question.part;
     const double element = 1.0 / static_cast<double>(part.period_mm ? 1 : part.elements_full);
     const Seen truth = seen(part, question.light, policy_at(1e-4 * element), Elements::each_by_itself);
     BeamPolicy policy = policy_at(1e-3 * element);
@@ -173,12 +210,37 @@ TEST(EqualPlaces, ResampledLightIsThatOfAllPlaces) {
   }
 }
 
+/// A part's borders and the walls between its zones take a share that falls as one over its size; what is left is the
+/// sum of endless arrays of the zones' cells.
+TEST(EqualPlaces, PartsOfZonesComeToTheSumOfTheirZones) {
+  PartSpec upright = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
+  PartSpec opened = infinite(HexagonalCube{0.8}, Arrangement::honeycomb, 1.0);
+  opened.angle_errors.dihedral_error_arcmin = {15.0, 15.0, 15.0};
+  const Illumination light = from(0.0);
+  const auto rre = [&](const Part& part, double cutoff) {
+    return BeamTracer(part, Elements::equal_at_once)
+        .trace(pmma(), light, {0.5}, policy_at(cutoff))
+        .ledgers[0][Account::retroreflected];
+  };
+  const double sum = 0.5 * (rre(build_part(upright), 1e-6) + rre(build_part(opened), 1e-6));
+  std::vector<double> missing;
+  for (const double size_mm : {10.0, 20.0, 40.0}) {
+    PartZone left{{to_polygon({{0.0, 0.0}, {0.5 * size_mm, size_mm}})}, 25.0, upright};
+    PartZone right{{to_polygon({{0.5 * size_mm, 0.0}, {size_mm, size_mm}})}, 0.0, opened};
+    for (PartZone* zone : {&left, &right}) zone->elements.array.extent = Extent::finite;
+    missing.push_back(sum - rre(build_part(ZonedSpec{{size_mm, size_mm}, 1.0, {left, right}}), 1e-9));
+  }
+  EXPECT_GT(missing[0], 0.0);
+  EXPECT_LT(missing[2], 0.04 * sum);
+  for (const std::size_t k : {0, 1}) EXPECT_NEAR(missing[k] / missing[k + 1], 2.0, 0.3);
+}
+
 TEST(EqualPlaces, AreNotThereWhereElementsDiffer) {
   PartSpec tilted = finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::aligned, 4.0, 4.0, 1.0);
   tilted.random_tilts = {1.0, 1};
   const PartSpec small = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.0, 2.0, 1.0);
-  for (const PartSpec& spec : {tilted, small, single(HexagonalCube{1.0}, 1.0)}) {
-    const Part part = build_part(spec);
+  for (const Part& part :
+       {build_part(tilted), build_part(small), build_part(single(HexagonalCube{1.0}, 1.0)), columns(false)}) {
     EXPECT_FALSE(EqualPlaces::of(part, Vec2::Zero()));
     const BeamPolicy policy = policy_at(1e-6);
     EXPECT_EQ(BeamTracer(part, Elements::equal_at_once).trace(pmma(), from(10.0), {0.5}, policy).beams,
