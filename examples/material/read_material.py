@@ -1,13 +1,6 @@
-"""Reads a table that `retrace export DESIGN material.json` writes, with nothing but Python's own modules.
-
-    python3 read_material.py material.json ALPHA GAMMA BETA OMEGA
-
-prints R_A in cd/(lx m2) of linear red, green and blue for an observation, presentation, entrance and orientation angle
-in degrees (docs/theory/appearance.md); without angles it reads them from lines of standard input.
-"""
-
-import csv, json, sys
-from math import asin, atan2, cos, degrees, hypot, radians, sin, tan
+"""Reads a table that `retrace export DESIGN material.json` writes (docs/theory/appearance.md), with Python's own modules."""
+import csv, json
+from math import atan2, degrees, hypot
 from pathlib import Path
 
 
@@ -38,22 +31,3 @@ def r_a(table, source, observer):  # unit vectors of the part frame; None outsid
                 right, up = (cubic(place[k] - first[k]) for k in (0, 1))
                 return [sum(around[k // 4] * along[k % 4] * up[j] * right[i] * table["r_a"][light][(first[1] + j) * n + first[0] + i][band]
                             for k, light in enumerate(cell["directions"]) for j in range(4) for i in range(4)) for band in range(3)]
-
-
-def directions(alpha, gamma, beta, omega):  # of CIE 54.2, in degrees: to the source and to the observer
-    alpha, gamma, beta, omega = map(radians, (alpha, gamma, beta, omega))
-    beta1, beta2 = atan2(sin(beta) * cos(gamma), cos(beta)), asin(sin(beta) * sin(gamma))
-    epsilon = omega - radians(90) + atan2(sin(beta1), cos(beta1) * sin(beta2))
-
-    def in_part(v):  # by the transpose of R_x(-beta1) R_y(beta2) R_z(epsilon)
-        x, y, z = v[0], v[1] * cos(beta1) - v[2] * sin(beta1), v[1] * sin(beta1) + v[2] * cos(beta1)
-        x, z = x * cos(beta2) - z * sin(beta2), x * sin(beta2) + z * cos(beta2)
-        return x * cos(epsilon) + y * sin(epsilon), -x * sin(epsilon) + y * cos(epsilon), z
-
-    return in_part((0, 0, 1)), in_part((0, sin(alpha), cos(alpha)))
-
-
-if __name__ == "__main__":
-    table = read(sys.argv[1])
-    for line in [" ".join(sys.argv[2:])] if len(sys.argv) > 2 else sys.stdin:
-        print(*r_a(table, *directions(*map(float, line.split()))) or ("outside the table",))

@@ -232,7 +232,7 @@ TEST(EqualPlaces, PartsOfZonesComeToTheSumOfTheirZones) {
   }
   EXPECT_GT(missing[0], 0.0);
   EXPECT_LT(missing[2], 0.04 * sum);
-  for (const std::size_t k : {0, 1}) EXPECT_NEAR(missing[k] / missing[k + 1], 2.0, 0.3);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(missing[k] / missing[k + 1], 2.0, 0.3);
 }
 
 TEST(EqualPlaces, AreNotThereWhereElementsDiffer) {

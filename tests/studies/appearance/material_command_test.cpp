@@ -115,8 +115,7 @@ std::vector<Triple> read_by_example(const TemporaryFolder& folder, const std::ve
     const Triple angles = intrinsic_deg(reading);
     geometries << reading.observation_deg << ' ' << angles[0] << ' ' << angles[1] << ' ' << angles[2] << '\n';
   }
-  Child reader(folder.path(),
-               {RETRACE_PYTHON, "-B", RETRACE_SOURCE_DIR "/examples/material/read_material.py", "m.json"},
+  Child reader(folder.path(), {RETRACE_PYTHON, "-B", RETRACE_SOURCE_DIR "/examples/material/print_r_a.py", "m.json"},
                geometries.str());
   const Outcome outcome = reader.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -153,7 +152,8 @@ TEST(Material, ColoursAreThoseOfPhotometry) {
     folder.write("d.toml", design);
     ASSERT_EQ(retrace(folder, export_of("m.json")).code, 0);
     std::vector<Reading> at = {{0.1, 3.0, 1.0, 0.0}, {0.2, 0.5, -4.0, 20.0}, {0.3, -6.0, 2.0, 77.0}};
-    std::vector<Triple> told = read_by_example(folder, at);
+    const std::vector<Triple> told = read_by_example(folder, at);
+    ASSERT_EQ(told.size(), at.size());
     for (std::size_t k = 0; k < at.size(); ++k) {
       std::ostringstream row;
       row.precision(15);
