@@ -20,7 +20,7 @@ def r_a(table, source, observer):  # unit vectors of the part frame; None outsid
     signs = [-1 if table["mirror_" + axis] and source[k] < 0 else 1 for k, axis in enumerate("xy")]
     x, y = (signs[k] * source[k] for k in (0, 1))
     n, half = table["columns"], table["half_width"]
-    place = [(signs[k] * (observer[k] - source[k]) + half) * (n - 1) / (2 * half) for k in (0, 1)]
+    place = [(signs[k] * (observer[k] - table["back"][k] * source[k]) + half) * (n - 1) / (2 * half) for k in (0, 1)]
     first = [min(max(int(p) - 1, 0), n - 4) for p in place]
     entrance, azimuth = degrees(atan2(hypot(x, y), source[2])), degrees(atan2(y, x))
     for cell in table["cells"]:

@@ -138,7 +138,7 @@ def export_material(
     source_arcmin: float = 10.0,
     receiver_arcmin: float = 10.0,
     error: float = 0.02,
-    most_directions: int = 400,
+    most_directions: int = 1000,
     threads: int | None = None,
     progress: Progress = None,
 ) -> MaterialResult:

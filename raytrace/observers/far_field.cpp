@@ -35,6 +35,14 @@ Eigen::Matrix2d axes_of(const ReturnFrame& frame) {
   return axes;
 }
 
+ReturnFrame frame_about(const Vec3& direction) {
+  ReturnFrame frame;
+  frame.to_source = direction;
+  frame.right = source_axis(direction);
+  frame.up = direction.cross(frame.right);
+  return frame;
+}
+
 /// \param sums of what was followed exactly, and of each replicate over their number
 FarFieldIntensity mean_of_replicates(const Eigen::ArrayXd& sums) {
   const Eigen::Index count = sums.size() - 1;
@@ -101,6 +109,10 @@ double FarField::scattered_per_sr(const Vec3& direction) const {
   return direction.z() > 0.0 ? direction.z() * scattered_.lobes_per_cosines(direction.head<2>()) : 0.0;
 }
 
+double FarField::scattered_per_sr(const Vec3& direction, const ApertureKernel& kernel) const {
+  return direction.z() * scattered_.lobes_per_cosines(direction.head<2>(), axes_of(frame_about(direction)), kernel);
+}
+
 double FarField::scattered_within(const ReturnFrame& frame, double half_angle_rad) const {
   return scattered_.lobes_within(std::cos(half_angle_rad) * frame.to_source.head<2>(),
                                  std::sin(half_angle_rad) * axes_of(frame));
@@ -111,12 +123,9 @@ FarFieldIntensity FarField::intensity(const Vec3& direction, const ApertureKerne
   for (const FarFieldRay& ray : rays_)
     sums[ray.replicate ? 1 + *ray.replicate : 0] +=
         ray.power * kernel.per_sr(small_angle_between(ray.direction, direction));
-  ReturnFrame frame;
-  frame.to_source = direction;
-  frame.right = source_axis(direction);
-  frame.up = direction.cross(frame.right);
-  sums[0] += direction.z() * scattered_.lobes_per_cosines(direction.head<2>(), axes_of(frame), kernel);
+  sums[0] += scattered_per_sr(direction, kernel);
   if (groups_.empty()) return mean_of_replicates(sums);
+  const ReturnFrame frame = frame_about(direction);
   const std::vector<ApertureKernel::Node> nodes = kernel.nodes(detail_rad());
   std::vector<Vec3> directions;
   std::vector<Vec2> cosines;

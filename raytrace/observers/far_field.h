@@ -69,8 +69,10 @@ class FarField {
   /// The diffracted part alone, for a point as source and as receiver: the mean field, and the fringes of what
   /// scatters.
   double diffracted_per_sr(const Vec3& direction) const;
+  std::vector<double> diffracted_per_sr(const std::vector<Vec3>& directions) const;
   /// The lobes of what scatters, likewise.
   double scattered_per_sr(const Vec3& direction) const;
+  double scattered_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;  ///< that discs see
 
   /// Power by the bins of a grid, and outside of it at the end. Undiffracted light goes where its direction is;
   /// diffracted light by its density in the middle of a bin.
@@ -104,7 +106,6 @@ class FarField {
 
   Eigen::ArrayXXd by_replicate(const std::vector<geometry::Vec2>& cosines, const ApertureField& field) const;
   std::vector<double> per_cosines(const std::vector<geometry::Vec2>& cosines, const ApertureField& field) const;
-  std::vector<double> diffracted_per_sr(const std::vector<Vec3>& directions) const;
   double tail(const ReturnFrame& frame, double half_angle_rad) const;
 
   double wavelength_mm_ = 0.0;

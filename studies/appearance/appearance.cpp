@@ -7,14 +7,18 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/number_range.h"
 #include "core/random.h"
+#include "core/threads.h"
 #include "materials/chromaticity.h"
 #include "materials/io/spectrum_reader.h"
+#include "raytrace/observers/coefficients.h"
+#include "raytrace/observers/disc_means.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "studies/photometry/colour.h"
 #include "studies/photometry/photometer.h"
@@ -29,14 +33,23 @@ using View = raytrace::PhotometricDirections;
 constexpr std::size_t kParts = 2;
 constexpr std::size_t kPartsOfProbes = 4;
 // Grid steps from the middle of the discs' density to its end, along the plane of incidence at the largest entrance
-// angle, where it is narrowest: cubics err by the fourth power of the step (docs/theory/appearance.md).
+// angle, where it is narrowest, to begin with: cubics err by the fourth power of the step (docs/theory/appearance.md).
 constexpr double kStepsPerReach = 4.0;
 constexpr std::size_t kMostColumns = 161;
+// A grid is good enough if its views are off by this share of what is asked.
+constexpr double kShareOfGrid = 0.5;
+// By which a grid's points grow each way, and up to where they do for the error alone.
+constexpr double kFinerGrid = 1.5;
+constexpr std::size_t kMostColumnsForError = 121;
+// Prisms are told by a direction of light in which the directions that they may send it to lie apart.
+constexpr double kAsideDeg = 30.0;
 // Extents of the first cells, at most.
 constexpr double kFirstEntranceDeg = 20.0;
 constexpr double kFirstAzimuthDeg = 30.0;
 // Halvings of a first cell, at most: 3 steps of a cell times this are a lattice on which directions are known again.
-constexpr int kMostHalvings = 6;
+constexpr int kMostHalvings = 8;
+// A cell is not halved along a side where values bend by less than this share of how they bend along the other.
+constexpr double kLeastBend = 0.3;
 // Directions of light that are computed at once, and views of each by which a cell is judged.
 constexpr std::size_t kBatch = 16;
 constexpr std::uint32_t kViews = 48;
@@ -45,6 +58,7 @@ constexpr std::uint32_t kProbes = 200;
 constexpr double kJudgedShare = 0.95;
 constexpr RandomKey kViewKey{.seed = 0x6d61746cU, .stream = 1};
 constexpr RandomKey kProbeKey{.seed = 0x6d61746cU, .stream = 2};
+constexpr RandomKey kGridKey{.seed = 0x6d61746cU, .stream = 3};
 
 void check(double value, const NumberRange& range, const char* option) {
   if (!range.contains(value))
@@ -61,13 +75,14 @@ void check(const AppearanceRequest& request) {
   check(60.0 * request.apertures.receiver.deg(), discs, "--receiver-arcmin");
 }
 
-PhotometryRequest photometry_of(const AppearanceRequest& request) {
+/// \param back as ReflectionTable has it
+PhotometryRequest photometry_of(const AppearanceRequest& request, const Vec2& back) {
   PhotometryRequest photometry;
   photometry.apertures = request.apertures;
-  // The corners of the square, seen aslant.
-  const double widest =
+  // The corners of the square, seen aslant, from the direction back to the source.
+  photometry.window_deg =
       std::numbers::sqrt2 * request.window_deg / std::cos(Angle::from_deg(request.entrance_deg).rad());
-  photometry.window_deg = std::min(widest, 10.0);
+  if (back != Vec2::Ones()) photometry.window_deg += 2.0 * request.entrance_deg;
   photometry.light = PhotometricLight::illuminant_d65;
   photometry.engine = Engine::exact;
   return photometry;
@@ -82,9 +97,8 @@ Eigen::Matrix3d rgb_from_xyz(const materials::Tristimulus& white) {
   return (primaries * brightness.asDiagonal()).inverse();
 }
 
-/// None below the horizon.
-std::optional<View> view_of(const Vec3& to_source, const Vec2& deviation) {
-  const Vec2 across = to_source.head<2>() + deviation;
+/// None below the horizon. \param across x and y of the direction to the observer
+std::optional<View> view_of(const Vec3& to_source, const Vec2& across) {
   if (across.squaredNorm() >= 1.0) return std::nullopt;
   return View{to_source, {across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm())}};
 }
@@ -94,9 +108,11 @@ using LatticePlace = std::pair<int, int>;  ///< in entrance angle and azimuth
 
 /// A cell of the table to be.
 struct PlannedCell {
-  int entrance = 0, azimuth = 0;  ///< lattice place of its lower corner
-  int size = 0;                   ///< lattice steps along its sides: a multiple of 3
-  double error = 0.0;             ///< of what lies between its directions
+  std::array<int, 2> corner{};  ///< lattice place in entrance angle and azimuth of the lower one
+  std::array<int, 2> size{};    ///< lattice steps along its sides: multiples of 3
+  double error = 0.0;           ///< of what lies between its directions
+
+  bool is_least() const { return size[0] <= 3 && size[1] <= 3; }
 };
 
 /// Of x, y or z, without the mirror image, which goes where a mirror's does and not back to the source.
@@ -120,17 +136,61 @@ void check_engine(const Design& design, PhotometryRequest request) {
 
 constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
 
+/// Along which axes light comes back, and along which it goes on: of the three ways in which two faces of a prism, or
+/// three of a cube corner, can send it that which most of the light takes.
+Vec2 back_of(const Design& design, const AppearanceRequest& request) {
+  const Vec3 to_source = direction_of(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
+  const Photometer eye = photometer_of(design, photometry_of(request, -Vec2::Ones()), kEye, kParts);
+  const auto fields = eye.far_fields(to_source, eye.make_tracer(), nullptr).value();
+  const std::array<Vec2, 3> ways = {Vec2(1.0, 1.0), Vec2(1.0, -1.0), Vec2(-1.0, 1.0)};
+  std::array<double, 3> powers{};
+  const auto add = [&](const Vec2& cosines, double power) {
+    const auto distance = [&](const Vec2& way) { return (cosines - way.cwiseProduct(to_source.head<2>())).norm(); };
+    const auto nearest = std::min_element(ways.begin(), ways.end(),
+                                          [&](const Vec2& a, const Vec2& b) { return distance(a) < distance(b); });
+    if (distance(*nearest) < std::sin(Angle::from_deg(request.window_deg).rad()))
+      powers[static_cast<std::size_t>(nearest - ways.begin())] += power;
+  };
+  for (const Photometer::WeighedField& one : fields) {
+    for (const raytrace::FarFieldRay& ray : one.field.rays()) add(ray.direction.head<2>(), one.weight * ray.power);
+    for (const raytrace::CoherentGroup& group : one.field.groups())
+      for (const raytrace::FieldPolygon& polygon : group.polygons)
+        add(polygon.cosines, one.weight * group.copies * polygon.power);
+  }
+  const auto most = std::max_element(powers.begin(), powers.end());
+  return *most > powers[1] + powers[2] + powers[0] - *most ? ways[static_cast<std::size_t>(most - powers.begin())]
+                                                           : ways[0];
+}
+
+/// Of a value, or of a share of the greatest with that light.
+double error_of(double told, double truth, double most) {
+  return std::abs(told - truth) / std::max({truth, AppearanceError::kFloor * most, 1e-300});
+}
+
+double quantile(std::vector<double> errors, double share) {
+  std::sort(errors.begin(), errors.end());
+  return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
+}
+
+double share_within(const std::vector<double>& errors) {
+  return quantile(errors, kJudgedShare);
+}
+
 class TableMaker {
  public:
   TableMaker(const Design& design, const AppearanceRequest& request)
       : design_(design),
         request_(request),
-        photometry_(photometry_of(request)),
+        back_(back_of(design, request)),
+        photometry_(photometry_of(request, back_)),
         eye_(photometer_of(design, photometry_, kEye, kParts)) {
+    for (std::size_t response = 0; response < photometers_.size(); ++response)
+      photometers_[response] = std::make_unique<Photometer>(photometer_of(design, photometry_, response, kParts));
     const materials::SpectralCurve lamp = lamp_power(photometry_.light);
     const materials::Tristimulus sent = materials::tristimulus(lamp, materials::shipped_colour_matching());
     // Photometers tell shares of what their response makes of the light.
     rgb_of_shares_ = rgb_from_xyz(sent) * Eigen::Vector3d(sent[0], sent[1], sent[2]).asDiagonal() / sent[1];
+    table_.back = back_;
     table_.half_width = std::sin(Angle::from_deg(request.window_deg).rad());
     table_.most_entrance = Angle::from_deg(request.entrance_deg);
     table_.mirrors = eye_.mirrors();
@@ -142,6 +202,7 @@ class TableMaker {
 
   /// False if it was cancelled.
   bool make(Progress* progress, const Cancellation* cancel) {
+    if (!refine_grid(cancel)) return false;
     cells_ = first_cells();
     if (!compute(cells_, progress, cancel)) return false;
     first_directions_ = table_.directions.size();
@@ -149,10 +210,10 @@ class TableMaker {
       table_.cells.clear();
       for (const PlannedCell& cell : cells_) table_.cells.push_back(cell_of(cell));
       if (!judge(judged, cancel)) return false;
-      const auto worst = std::max_element(cells_.begin(), cells_.end(), [](const PlannedCell& a, const PlannedCell& b) {
-        return (a.size > 3 ? a.error : 0.0) < (b.size > 3 ? b.error : 0.0);
-      });
-      if (worst->error <= request_.error || worst->size <= 3) break;
+      const auto worst =
+          std::max_element(cells_.begin(), cells_.end(),
+                           [&](const PlannedCell& a, const PlannedCell& b) { return urgency(a) < urgency(b); });
+      if (!(urgency(*worst) > 0.0)) break;
       const std::vector<PlannedCell> parts = halves_of(*worst);
       if (new_places(parts).size() + table_.directions.size() > request_.most_directions) break;
       if (!compute(parts, progress, cancel)) return false;
@@ -173,7 +234,7 @@ class TableMaker {
       const Vec3 to_source =
           direction_of(Angle::from_rad(std::asin(sine)), Angle::from_deg(360.0 * unit_interval(random[1])));
       const Vec2 deviation = deviation_of(random[2], random[3]);
-      const std::optional<View> view = view_of(to_source, deviation);
+      const std::optional<View> view = view_of(to_source, table_.middle(to_source) + deviation);
       if (!view) continue;
       probes.push_back({view->to_source, view->to_observer, 0.0, most_of(to_source)});
       settings.push_back(setting_of(*view));
@@ -187,12 +248,19 @@ class TableMaker {
 
   double least_cell_deg() const {
     int least = lattice_size();
-    for (const PlannedCell& cell : cells_) least = std::min(least, cell.size);
+    for (const PlannedCell& cell : cells_) least = std::min(least, cell.size[0]);
     return least * entrance_step().deg();
   }
   ReflectionTable take() { return std::move(table_); }
 
  private:
+  /// Of halving a cell: its error, and how much of all light it is of; 0 if it is good enough.
+  double urgency(const PlannedCell& cell) const {
+    if (cell.error <= request_.error || cell.is_least()) return 0.0;
+    const double from = std::sin(entrance_at(cell.corner[0]).rad());
+    const double to = std::sin(entrance_at(cell.corner[0] + cell.size[0]).rad());
+    return cell.error * (to * to - from * from) * cell.size[1];
+  }
   /// Lattice steps along a first cell.
   static int lattice_size() { return 3 << kMostHalvings; }
   int entrance_cells() const { return static_cast<int>(std::ceil(request_.entrance_deg / kFirstEntranceDeg)); }
@@ -216,16 +284,43 @@ class TableMaker {
     std::vector<PlannedCell> cells;
     for (int e = 0; e < entrance_cells(); ++e)
       for (int a = 0; a < azimuth_cells(); ++a)
-        cells.push_back({e * lattice_size(), a * lattice_size(), lattice_size()});
+        cells.push_back({{e * lattice_size(), a * lattice_size()}, {lattice_size(), lattice_size()}});
     return cells;
   }
 
-  static std::vector<PlannedCell> halves_of(const PlannedCell& cell) {
-    std::vector<PlannedCell> parts;
-    const int half = cell.size / 2;
-    for (const int e : {0, half})
-      for (const int a : {0, half}) parts.push_back({cell.entrance + e, cell.azimuth + a, half});
+  /// Halved across each side along which values bend by much: by the third differences of what its directions see.
+  std::vector<PlannedCell> halves_of(const PlannedCell& cell) const {
+    const std::array<double, 2> bends = bends_of(cell);
+    const double most = std::max(bends[0], bends[1]);
+    std::vector<PlannedCell> parts = {cell};
+    for (const std::size_t side : {0U, 1U}) {
+      if (cell.size[side] <= 3) continue;
+      if (cell.size[1 - side] > 3 && bends[side] < kLeastBend * most) continue;
+      const std::size_t count = parts.size();
+      for (std::size_t k = 0; k < count; ++k) {
+        parts[k].size[side] /= 2;
+        parts.push_back(parts[k]);
+        parts.back().corner[side] += parts[k].size[side];
+      }
+    }
     return parts;
+  }
+
+  /// Mean third differences along entrance angle and azimuth.
+  std::array<double, 2> bends_of(const PlannedCell& planned) const {
+    const ReflectionTable::Cell cell = cell_of(planned);
+    const auto value = [&](std::size_t azimuth, std::size_t entrance, std::size_t point) {
+      return luminous(table_.directions[cell.directions[kPerSide * azimuth + entrance]].r_a[point]);
+    };
+    std::array<double, 2> bends{};
+    for (std::size_t point = 0; point < table_.columns * table_.columns; ++point)
+      for (std::size_t line = 0; line < kPerSide; ++line) {
+        bends[0] += std::abs(value(line, 3, point) - 3.0 * value(line, 2, point) + 3.0 * value(line, 1, point) -
+                             value(line, 0, point));
+        bends[1] += std::abs(value(3, line, point) - 3.0 * value(2, line, point) + 3.0 * value(1, line, point) -
+                             value(0, line, point));
+      }
+    return bends;
   }
 
   /// By azimuth, then by entrance angle. At normal incidence azimuths are one, and those of a full turn meet.
@@ -235,8 +330,8 @@ class TableMaker {
     const int turn = azimuth_cells() * lattice_size();
     for (int a = 0; a < static_cast<int>(kPerSide); ++a)
       for (int e = 0; e < static_cast<int>(kPerSide); ++e) {
-        const int entrance = cell.entrance + e * cell.size / 3;
-        const int azimuth = cell.azimuth + a * cell.size / 3;
+        const int entrance = cell.corner[0] + e * cell.size[0] / 3;
+        const int azimuth = cell.corner[1] + a * cell.size[1] / 3;
         places.emplace_back(entrance, entrance == 0 ? 0 : closes && azimuth == turn ? 0 : azimuth);
       }
     return places;
@@ -273,40 +368,90 @@ class TableMaker {
   }
 
   bool compute(std::span<const LatticePlace> places, const Cancellation* cancel) {
-    const std::size_t grid = table_.columns * table_.columns;
-    std::vector<PhotometerSetting> settings;
-    std::vector<std::size_t> of_value;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      const Vec3 to_source = direction_of(entrance_at(places[k].first), azimuth_at(places[k].second));
-      for (std::size_t point = 0; point < grid; ++point)
-        if (const auto view = view_of(to_source, table_.deviation(point))) {
-          settings.push_back(setting_of(*view));
-          of_value.push_back(k * grid + point);
-        }
-    }
-    std::vector<Rgb> values(places.size() * grid, Rgb{});
-    for (std::size_t response = 0; response < 3; ++response) {
-      const Photometer one = photometer_of(design_, photometry_, response, kParts);
-      const auto readings = one.measure(settings, nullptr, cancel);
-      if (!readings) return false;
-      for (std::size_t k = 0; k < settings.size(); ++k)
-        for (Eigen::Index band = 0; band < 3; ++band)
-          values[of_value[k]][static_cast<std::size_t>(band)] +=
-              rgb_of_shares_(band, static_cast<Eigen::Index>(response)) * (*readings)[k].r_a.front();
-    }
+    std::vector<ReflectionTable::Direction> computed(places.size());
+    for_each_in_parallel(places.size(), [&](std::size_t k) {
+      computed[k] = {entrance_at(places[k].first), azimuth_at(places[k].second), {}};
+      const Vec3 to_source = direction_of(computed[k].entrance, computed[k].azimuth);
+      if (std::optional<Fields> fields = fields_of(to_source, cancel))
+        computed[k].r_a = grid_of(to_source, *fields, cancel);
+    });
+    if (is_cancelled(cancel)) return false;
     for (std::size_t k = 0; k < places.size(); ++k) {
       known_[places[k]] = table_.directions.size();
-      const auto from = values.begin() + static_cast<std::ptrdiff_t>(k * grid);
-      table_.directions.push_back({entrance_at(places[k].first), azimuth_at(places[k].second),
-                                   std::vector<Rgb>(from, from + static_cast<std::ptrdiff_t>(grid))});
+      table_.directions.push_back(std::move(computed[k]));
     }
     return true;
   }
 
+  /// Far fields of the three responses, and what they count in red, green and blue.
+  struct Fields {
+    std::array<std::vector<Photometer::WeighedField>, 3> of_response;
+    std::vector<raytrace::WeighedField> weighed;
+  };
+  /// Nothing if it was cancelled.
+  std::optional<Fields> fields_of(const Vec3& to_source, const Cancellation* cancel) const {
+    Fields fields;
+    const Angle entrance = Angle::from_rad(std::acos(to_source.z()));
+    for (std::size_t response = 0; response < photometers_.size(); ++response) {
+      auto found = photometers_[response]->far_fields(to_source, photometers_[response]->make_tracer(), cancel);
+      if (!found) return std::nullopt;
+      fields.of_response[response] = *std::move(found);
+      for (const Photometer::WeighedField& one : fields.of_response[response]) {
+        raytrace::WeighedField& weighed = fields.weighed.emplace_back();
+        weighed.field = &one.field;
+        for (std::size_t band = 0; band < weighed.weights.size(); ++band)
+          weighed.weights[band] = rgb_of_shares_(static_cast<Eigen::Index>(band), static_cast<Eigen::Index>(response)) *
+                                  raytrace::coefficient_of_retroreflection(one.weight, entrance);
+      }
+    }
+    return fields;
+  }
+  std::vector<Rgb> grid_of(const Vec3& to_source, const Fields& fields, const Cancellation* cancel) const {
+    return raytrace::disc_means(fields.weighed, {table_.middle(to_source), table_.half_width, table_.columns},
+                                eye_.kernel(), cancel);
+  }
+
+  /// More points to the grid, until what lies between them is told, in the middle of the directions of light. False if
+  /// it was cancelled.
+  bool refine_grid(const Cancellation* cancel) {
+    const std::array<Angle, 2> range = table_.azimuths();
+    const Vec3 to_source = direction_of(Angle::from_rad(0.5 * table_.most_entrance.rad()),
+                                        Angle::from_rad(0.5 * (range[0].rad() + range[1].rad())));
+    const std::optional<Fields> fields = fields_of(to_source, cancel);
+    if (!fields) return false;
+    std::vector<Vec2> deviations;
+    std::vector<double> truth;
+    for (std::uint32_t k = 0; k < kProbes; ++k) {
+      const auto random = philox(kGridKey, k, 0);
+      const Vec2 deviation = deviation_of(random[0], random[1]);
+      const std::optional<View> view = view_of(to_source, table_.middle(to_source) + deviation);
+      if (!view) continue;
+      deviations.push_back(deviation);
+      Rgb sum{};
+      for (const raytrace::WeighedField& one : fields->weighed) {
+        const double per_sr = one.field->intensity(view->to_observer, eye_.kernel()).per_sr;
+        for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += one.weights[band] * per_sr;
+      }
+      truth.push_back(luminous(sum));
+    }
+    for (;;) {
+      const std::vector<Rgb> grid = grid_of(to_source, *fields, cancel);
+      if (is_cancelled(cancel)) return false;
+      double most = 0.0;
+      for (const Rgb& value : grid) most = std::max(most, luminous(value));
+      std::vector<double> errors;
+      for (std::size_t k = 0; k < truth.size(); ++k)
+        errors.push_back(error_of(luminous(table_.between(grid, deviations[k])), truth[k], most));
+      const auto finer = static_cast<std::size_t>(std::ceil(kFinerGrid * static_cast<double>(table_.columns)));
+      if (share_within(errors) <= kShareOfGrid * request_.error || finer > kMostColumnsForError) return true;
+      table_.columns = finer;
+    }
+  }
+
   ReflectionTable::Cell cell_of(const PlannedCell& planned) const {
     ReflectionTable::Cell cell;
-    cell.entrance = {entrance_at(planned.entrance), entrance_at(planned.entrance + planned.size)};
-    cell.azimuth = {azimuth_at(planned.azimuth), azimuth_at(planned.azimuth + planned.size)};
+    cell.entrance = {entrance_at(planned.corner[0]), entrance_at(planned.corner[0] + planned.size[0])};
+    cell.azimuth = {azimuth_at(planned.corner[1]), azimuth_at(planned.corner[1] + planned.size[1])};
     const std::vector<LatticePlace> places = places_of(planned);
     for (std::size_t k = 0; k < places.size(); ++k) cell.directions[k] = known_.at(places[k]);
     return cell;
@@ -333,20 +478,21 @@ class TableMaker {
   bool judge(std::size_t first, const Cancellation* cancel) {
     std::vector<PhotometerSetting> settings;
     std::vector<double> told;
-    std::vector<double> floor;
+    std::vector<double> most;
     std::vector<std::size_t> of_cell;
     for (std::size_t k = first; k < cells_.size(); ++k) {
       for (const double share : {1.0 / 6.0, 0.5, 5.0 / 6.0}) {
-        const Vec3 to_source = direction_of(entrance_at(cells_[k].entrance + share * cells_[k].size),
-                                            azimuth_at(cells_[k].azimuth + share * cells_[k].size));
-        const double least = AppearanceError::kFloor * most_of(to_source);
+        const Vec3 to_source = direction_of(entrance_at(cells_[k].corner[0] + share * cells_[k].size[0]),
+                                            azimuth_at(cells_[k].corner[1] + share * cells_[k].size[1]));
+        const double greatest = most_of(to_source);
         for (std::uint32_t view = 0; view < kViews; ++view) {
           const auto random = philox(kViewKey, view, static_cast<std::uint32_t>(k));
-          const std::optional<View> seen = view_of(to_source, deviation_of(random[0], random[1]));
+          const std::optional<View> seen =
+              view_of(to_source, table_.middle(to_source) + deviation_of(random[0], random[1]));
           if (!seen) continue;
           settings.push_back(setting_of(*seen));
           told.push_back(luminous(table_.r_a(seen->to_source, seen->to_observer).value()));
-          floor.push_back(least);
+          most.push_back(greatest);
           of_cell.push_back(k);
         }
       }
@@ -354,21 +500,18 @@ class TableMaker {
     const auto readings = eye_.measure(settings, nullptr, cancel);
     if (!readings) return false;
     std::map<std::size_t, std::vector<double>> errors;
-    for (std::size_t k = 0; k < settings.size(); ++k) {
-      const double truth = (*readings)[k].r_a.front();
-      errors[of_cell[k]].push_back(std::abs(told[k] - truth) / std::max({truth, floor[k], 1e-300}));
-    }
-    for (auto& [cell, of_views] : errors) {
-      std::sort(of_views.begin(), of_views.end());
-      cells_[cell].error = of_views[static_cast<std::size_t>(kJudgedShare * static_cast<double>(of_views.size() - 1))];
-    }
+    for (std::size_t k = 0; k < settings.size(); ++k)
+      errors[of_cell[k]].push_back(error_of(told[k], (*readings)[k].r_a.front(), most[k]));
+    for (auto& [cell, of_views] : errors) cells_[cell].error = share_within(of_views);
     return true;
   }
 
   const Design& design_;
   const AppearanceRequest& request_;
+  Vec2 back_;
   PhotometryRequest photometry_;
   Photometer eye_;
+  std::array<std::unique_ptr<Photometer>, 3> photometers_;
   Eigen::Matrix3d rgb_of_shares_;
   ReflectionTable table_;
   std::vector<PlannedCell> cells_;
@@ -380,21 +523,14 @@ class TableMaker {
 
 AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, const std::vector<double>& r_a) {
   std::vector<double> errors;
-  for (std::size_t k = 0; k < probes.size(); ++k) {
-    const double scale = std::max({probes[k].r_a, AppearanceError::kFloor * probes[k].r_a_most, 1e-300});
-    errors.push_back(std::abs(r_a[k] - probes[k].r_a) / scale);
-  }
-  std::sort(errors.begin(), errors.end());
-  const auto at = [&](double share) {
-    return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
-  };
-  return {errors.size(), at(0.5), at(0.95), errors.back()};
+  for (std::size_t k = 0; k < probes.size(); ++k) errors.push_back(error_of(r_a[k], probes[k].r_a, probes[k].r_a_most));
+  return {errors.size(), quantile(errors, 0.5), quantile(errors, 0.95), quantile(errors, 1.0)};
 }
 
 AppearanceResult compute_appearance(const Design& design, const AppearanceRequest& request, Progress* progress,
                                     const Cancellation* cancel) {
   check(request);
-  check_engine(design, photometry_of(request));
+  check_engine(design, photometry_of(request, Vec2::Ones()));
   const auto begin = std::chrono::steady_clock::now();
   AppearanceResult result;
   result.design = design;

@@ -54,7 +54,7 @@ class Fit {
       const ReflectionTable::Direction& direction = table.directions[static_cast<std::size_t>(light)];
       const Vec3 to_source = direction_of(direction.entrance, direction.azimuth);
       for (Index point = 0; point < points; ++point) {
-        const Vec2 view = to_source.head<2>() + table.deviation(static_cast<std::size_t>(point));
+        const Vec2 view = table.middle(to_source) + table.deviation(static_cast<std::size_t>(point));
         if (view.squaredNorm() >= 1.0) continue;
         const double share = table.step() * table.step() / (to_source.z() * std::sqrt(1.0 - view.squaredNorm()));
         const Rgb& r_a = direction.r_a[static_cast<std::size_t>(point)];
@@ -70,7 +70,7 @@ class Fit {
     colour();
     add_lattice();
     fit_powers();
-    ReflectionLobes result{{}, std::sin(table_.most_entrance.rad()), table_.mirrors};
+    ReflectionLobes result{{}, std::sin(table_.most_entrance.rad()), table_.mirrors, table_.back};
     Eigen::MatrixXd terms(luminous_.cols(), static_cast<Index>(Lobe::kTerms));
     for (Index light = 0; light < terms.rows(); ++light) {
       const ReflectionTable::Direction& direction = table_.directions[static_cast<std::size_t>(light)];
@@ -209,7 +209,7 @@ double Lobe::peak() const {
 
 Rgb ReflectionLobes::r_a(const Vec3& to_source, const Vec3& to_observer) const {
   Vec2 light = to_source.head<2>();
-  Vec2 deviation = (to_observer - to_source).head<2>();
+  Vec2 deviation = to_observer.head<2>() - back.cwiseProduct(light);
   for (const Eigen::Index axis : {0, 1})
     if (mirrors[static_cast<std::size_t>(axis)] && light[axis] < 0.0) {
       light[axis] = -light[axis];

@@ -33,6 +33,7 @@ struct ReflectionLobes {
   std::vector<Lobe> lobes;
   double scale = 1.0;  ///< sine of the largest entrance angle
   std::array<bool, 2> mirrors{};
+  geometry::Vec2 back = geometry::Vec2::Ones();  ///< as ReflectionTable has it
 
   /// In cd/(lx m^2), as ReflectionTable::r_a(); 0 of light from beyond the largest entrance angle.
   Rgb r_a(const geometry::Vec3& to_source, const geometry::Vec3& to_observer) const;

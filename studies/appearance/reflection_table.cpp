@@ -90,21 +90,28 @@ std::optional<ReflectionTable::Weighted> ReflectionTable::at(const Vec3& to_sour
   return std::nullopt;
 }
 
-std::optional<Rgb> ReflectionTable::r_a(const Vec3& to_source, const Vec3& to_observer) const {
-  const std::optional<Weighted> among = at(to_source);
-  const Vec2 deviation = (to_observer - to_source).head<2>();
-  if (!among || deviation.cwiseAbs().maxCoeff() > half_width) return std::nullopt;
-  const Vec2 place = (deviation.cwiseProduct(among->signs) + Vec2::Constant(half_width)) / step();
+Rgb ReflectionTable::between(const std::vector<Rgb>& grid, const Vec2& deviation) const {
+  const Vec2 place = (deviation + Vec2::Constant(half_width)) / step();
   const Stencil x = stencil_at(place.x(), columns);
   const Stencil y = stencil_at(place.y(), columns);
   Rgb sum{};
-  for (std::size_t k = 0; k < among->directions.size(); ++k)
-    for (std::size_t j = 0; j < kPerSide; ++j)
-      for (std::size_t i = 0; i < kPerSide; ++i) {
-        const Rgb& value = directions[among->directions[k]].r_a[(y.first + j) * columns + x.first + i];
-        const double weight = among->weights[k] * y.weights[j] * x.weights[i];
-        for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += weight * value[band];
-      }
+  for (std::size_t j = 0; j < kPerSide; ++j)
+    for (std::size_t i = 0; i < kPerSide; ++i) {
+      const Rgb& value = grid[(y.first + j) * columns + x.first + i];
+      for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += y.weights[j] * x.weights[i] * value[band];
+    }
+  return sum;
+}
+
+std::optional<Rgb> ReflectionTable::r_a(const Vec3& to_source, const Vec3& to_observer) const {
+  const std::optional<Weighted> among = at(to_source);
+  const Vec2 deviation = to_observer.head<2>() - middle(to_source);
+  if (!among || deviation.cwiseAbs().maxCoeff() > half_width) return std::nullopt;
+  Rgb sum{};
+  for (std::size_t k = 0; k < among->directions.size(); ++k) {
+    const Rgb value = between(directions[among->directions[k]].r_a, deviation.cwiseProduct(among->signs));
+    for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += among->weights[k] * value[band];
+  }
   return sum;
 }
 

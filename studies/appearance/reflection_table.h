@@ -23,11 +23,12 @@ double luminous(const Rgb& rgb);
 /// Values that a cubic is laid through, and directions along each side of a cell.
 inline constexpr std::size_t kPerSide = 4;
 
-/// R_A in cd/(lx m^2) about the direction back to the source. Of every direction of light it holds a square grid over
-/// the deviation o - s of the unit vectors to observer and source, along x and y of the part frame: what light does
-/// there changes least with its direction, as refraction at the entrance face leaves these components as they are
-/// (docs/theory/appearance.md). Directions of light are the corners and thirds of cells in entrance angle and azimuth;
-/// between grid points and between directions cubics are laid through four each way.
+/// R_A in cd/(lx m^2) about the direction back to the source, or, of prisms, about where they send the light: `back`
+/// turned. Of every direction of light it holds a square grid over the deviation o - back s of the unit vectors to
+/// observer and source, along x and y of the part frame: what light does there changes least with its direction, as
+/// refraction at the entrance face leaves these components as they are (docs/theory/appearance.md). Directions of light
+/// are the corners and thirds of cells in entrance angle and azimuth; between grid points and between directions cubics
+/// are laid through four each way.
 struct ReflectionTable {
   /// The R_A of one direction of light, row by row of rising y, x rising.
   struct Direction {
@@ -45,12 +46,17 @@ struct ReflectionTable {
   double half_width = 0.0;  ///< of the square of deviations: a share of a unit vector
   std::size_t columns = 0;  ///< and rows; >= 4
   Angle most_entrance;
-  std::array<bool, 2> mirrors{};  ///< whether light from -x, -y is the mirror image of that from x, y
+  geometry::Vec2 back = geometry::Vec2::Ones();  ///< 1 along axes whose light comes back, -1 where it goes on
+  std::array<bool, 2> mirrors{};                 ///< whether light from -x, -y is the mirror image of that from x, y
   std::vector<Direction> directions;
   std::vector<Cell> cells;
 
   double step() const { return 2.0 * half_width / static_cast<double>(columns - 1); }
   geometry::Vec2 deviation(std::size_t index) const;
+  /// x and y of the middle of the deviations, of a direction of light.
+  geometry::Vec2 middle(const geometry::Vec3& to_source) const { return back.cwiseProduct(to_source.head<2>()); }
+  /// What a grid says of a deviation within it.
+  Rgb between(const std::vector<Rgb>& grid, const geometry::Vec2& deviation) const;
   /// The range of azimuths that the cells cover: what mirrors do not tell.
   std::array<Angle, 2> azimuths() const;
 
@@ -77,7 +83,7 @@ void ReflectionTable::for_each_power(const geometry::Vec3& to_source, Visit visi
   const Weighted among = at(to_source).value();
   const auto at_border = [&](std::size_t k) { return k == 0 || k + 1 == columns ? 0.5 : 1.0; };
   for (std::size_t place = 0; place < columns * columns; ++place) {
-    const geometry::Vec2 view = to_source.head<2>() + deviation(place).cwiseProduct(among.signs);
+    const geometry::Vec2 view = middle(to_source) + deviation(place).cwiseProduct(among.signs);
     if (view.squaredNorm() >= 1.0) continue;
     double r_a = 0.0;
     for (std::size_t k = 0; k < among.directions.size(); ++k)

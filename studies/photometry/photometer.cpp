@@ -332,7 +332,7 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vec
   const std::size_t wavelengths = model_.spectral.size();
   std::vector<std::vector<Piece>> pieces(settings.size(), std::vector<Piece>(wavelengths));
   if (is_exact_) {
-    const raytrace::BeamTracer tracer(model_.part, raytrace::BeamTracer::Elements::equal_at_once);
+    const raytrace::BeamTracer tracer = make_tracer();
     const std::vector<LitAlike> traced = settings_lit_alike(settings);
     for_each_told(traced.size() * wavelengths, progress, [&](std::size_t k) {
       const LitAlike& alike = traced[k / wavelengths];

@@ -56,6 +56,20 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
                                                         Progress* progress, const Cancellation* cancel) const;
 
+  /// A far field, and its share of the response.
+  struct WeighedField {
+    raytrace::FarField field;
+    double weight = 0.0;
+  };
+  /// The far fields of light from one direction, of all wavelengths: what measure() makes readings of. Nothing if it
+  /// was cancelled. \param tracer from make_tracer() \pre is_exact()
+  std::optional<std::vector<WeighedField>> far_fields(const geometry::Vec3& to_source,
+                                                      const raytrace::BeamTracer& tracer,
+                                                      const Cancellation* cancel) const;
+  /// For any number of threads; outlived by the photometer.
+  raytrace::BeamTracer make_tracer() const;
+  const raytrace::ApertureKernel& kernel() const { return kernel_; }
+
   /// Whether the part, and the polarisation of the light, are their own mirror images along x and along y.
   std::array<bool, 2> mirrors() const;
   /// Which settings share their light.
@@ -103,6 +117,15 @@ class Photometer {
 
   raytrace::FarFieldPolicy far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const;
   raytrace::BeamPolicy beam_policy(std::size_t wavelength) const;
+  /// What comes back of one wavelength.
+  struct Traced {
+    raytrace::BeamResult beams;
+    raytrace::FarField field;
+    double scattered_from_cone = 0.0;  ///< by textures, of the detector's widest
+  };
+  /// Nothing if it was cancelled.
+  std::optional<Traced> traced(const geometry::Vec3& to_source, std::size_t wavelength,
+                               const raytrace::BeamTracer& tracer, const Cancellation* cancel) const;
   /// Of settings that share their light, in that order.
   std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
                                      std::size_t wavelength, const raytrace::BeamTracer& tracer,

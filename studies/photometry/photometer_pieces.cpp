@@ -76,32 +76,59 @@ raytrace::BeamPolicy Photometer::beam_policy(std::size_t wavelength) const {
   return beams;
 }
 
+raytrace::BeamTracer Photometer::make_tracer() const {
+  return raytrace::BeamTracer(model_.part, raytrace::BeamTracer::Elements::equal_at_once);
+}
+
+std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_source, std::size_t wavelength,
+                                                     const raytrace::BeamTracer& tracer,
+                                                     const Cancellation* cancel) const {
+  const SpectralOptics& light = model_.spectral[wavelength];
+  const raytrace::SourceAngles source = raytrace::source_angles(to_source);
+  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
+  raytrace::FarFieldCollector collector(model_.part, illumination, far_field_policy(light, cancel));
+  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
+  Traced traced;
+  traced.beams = tracer.trace(light.optics, illumination, cones, beam_policy(wavelength), cancel,
+                              [&](const raytrace::ReturnedBeam& beam) {
+                                if (beam.entry_trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
+                                if (beam.cone < cones.size())
+                                  traced.scattered_from_cone += beam.place_count() * scattered_power(beam);
+                              });
+  if (!traced.beams.complete) return std::nullopt;
+  traced.field = collector.finish();
+  return traced;
+}
+
+std::optional<std::vector<Photometer::WeighedField>> Photometer::far_fields(const geometry::Vec3& to_source,
+                                                                            const raytrace::BeamTracer& tracer,
+                                                                            const Cancellation* cancel) const {
+  std::vector<WeighedField> fields;
+  for (std::size_t wavelength = 0; wavelength < model_.spectral.size(); ++wavelength) {
+    std::optional<Traced> one = traced(to_source, wavelength, tracer, cancel);
+    if (!one) return std::nullopt;
+    fields.push_back({std::move(one->field), weights_[wavelength]});
+  }
+  return fields;
+}
+
 std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<PhotometerSetting>& settings,
                                                            const LitAlike& alike, std::size_t wavelength,
                                                            const raytrace::BeamTracer& tracer,
                                                            const Cancellation* cancel) const {
-  const SpectralOptics& light = model_.spectral[wavelength];
   const ReturnFrame frame = frame_of(settings[alike.front().index]);
-  const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
-  const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
-  raytrace::FarFieldCollector collector(model_.part, illumination, far_field_policy(light, cancel));
-  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
-  double scattered_from_cone = 0.0;
-  const raytrace::BeamResult traced = tracer.trace(
-      light.optics, illumination, cones, beam_policy(wavelength), cancel, [&](const raytrace::ReturnedBeam& beam) {
-        if (beam.entry_trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
-        if (beam.cone < cones.size()) scattered_from_cone += beam.place_count() * scattered_power(beam);
-      });
-  if (!traced.complete) return std::vector<Piece>(alike.size());
-  const raytrace::FarField field = collector.finish();
+  const std::optional<Traced> traced = this->traced(frame.to_source, wavelength, tracer, cancel);
+  if (!traced) return std::vector<Piece>(alike.size());
+  const raytrace::FarField& field = traced->field;
   Piece common;
   common.beyond_budget = field.beyond_budget_power();
-  common.rre = traced.ledgers.back()[raytrace::Account::retroreflected];
-  common.std_error = traced.std_error.back();
-  common.truncated = traced.ledgers.back()[raytrace::Account::truncated];
+  common.rre = traced->beams.ledgers.back()[raytrace::Account::retroreflected];
+  common.std_error = traced->beams.std_error.back();
+  common.truncated = traced->beams.ledgers.back()[raytrace::Account::truncated];
   if (keeps_phases_) {
     // What textures take from the cone's beams, and what falls into the cone of all that they scatter.
-    common.rre += field.scattered_within(frame, Angle::from_deg(cones.back()).rad()) - scattered_from_cone;
+    const Angle widest = Angle::from_deg(design_.detector.acceptance_half_angle_deg.back());
+    common.rre += field.scattered_within(frame, widest.rad()) - traced->scattered_from_cone;
     common.truncated += field.unplaced_power();
   }
   std::vector<Piece> pieces(alike.size(), common);

@@ -51,6 +51,7 @@ std::string table_text(const AppearanceResult& result, const std::string& values
   json["error"] = error_json(result.error);
   json["half_width"] = table.half_width;
   json["columns"] = table.columns;
+  json["back"] = {table.back.x(), table.back.y()};
   json["mirror_x"] = table.mirrors[0];
   json["mirror_y"] = table.mirrors[1];
   Json directions = Json::array();

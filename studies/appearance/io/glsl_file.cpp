@@ -43,10 +43,11 @@ std::string glsl_text(const ReflectionLobes& lobes, const std::vector<std::strin
   std::string text = fmt::format("// Written by retrace {}.\n", kVersion);
   for (const std::string& remark : remarks) text += "// " + remark + '\n';
   text +=
-      "// retrace_brdf: BRDF in 1/sr, linear sRGB, of light that comes back near the direction to its source, for "
-      "unit\n"
-      "// vectors from the surface in the part's frame (+z its normal, +y its datum mark). R_A is this times both\n"
-      "// cosines. The mirror image and what goes elsewhere are not in it.\n";
+      "// retrace_brdf: BRDF in 1/sr, linear sRGB, of light about the direction back to its source, or "
+      "where\n"
+      "// prisms send it, for unit vectors from the surface in the part's frame (+z its normal, +y its datum mark). "
+      "R_A is\n"
+      "// this times both cosines. The mirror image and what goes elsewhere are not in it.\n";
   text += fmt::format("const int RETRACE_LOBES = {};\n", lobes.lobes.size());
   text += "// Centres over the deviation, the inverses of covariances (xx, xy, yy), densities at centres.\n";
   text += constant(lobes, "vec2", "RETRACE_CENTRE", 1, [](const Lobe& lobe) {
@@ -69,7 +70,7 @@ std::string glsl_text(const ReflectionLobes& lobes, const std::vector<std::strin
   text += fmt::format(R"(
 vec3 retrace_brdf(vec3 to_source, vec3 to_observer) {{
   vec2 light = to_source.xy;
-  vec2 deviation = (to_observer - to_source).xy;
+  vec2 deviation = to_observer.xy - vec2({}, {}) * light;
 {}  light /= {};
   if (dot(light, light) > 1.0) return vec3(0.0);  // nothing was fitted there
   float x = light.x, y = light.y;
@@ -87,7 +88,8 @@ vec3 retrace_brdf(vec3 to_source, vec3 to_observer) {{
   return max(sum, vec3(0.0));
 }}
 )",
-                      mirroring(lobes), number(lobes.scale), Lobe::kTerms, Lobe::kTerms, Lobe::kTerms, Lobe::kTerms);
+                      number(lobes.back.x()), number(lobes.back.y()), mirroring(lobes), number(lobes.scale),
+                      Lobe::kTerms, Lobe::kTerms, Lobe::kTerms, Lobe::kTerms);
   return text;
 }
 

@@ -10,6 +10,7 @@
 #include "core/random.h"
 #include "materials/fresnel.h"
 #include "raytrace/observers/aperture_field.h"
+#include "raytrace/observers/disc_means.h"
 #include "raytrace/observers/far_field.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
@@ -36,7 +37,7 @@ FarField field_of(const Polygon& polygon, double wavelength_nm, const Vec3& dire
                   FarFieldPolicy policy = {}) {
   const Part part = build_part(single(HexagonalCube{1.0}, 1.0));
   policy.wavelength_nm = wavelength_nm;
-  policy.window_rad = 0.1;
+  policy.window_rad = 0.5;
   FarFieldCollector collector(part, {}, policy);
   ReturnedBeam beam;
   beam.direction = direction;
@@ -359,6 +360,76 @@ TEST(FarField, TellsWhatTheBudgetOfPolygonsLeavesUndiffracted) {
   // What the discs hide is not missed.
   policy.finest_detail_rad = 1.0;
   EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
+}
+
+/// By Gauss's rule along radii on either side of the kernel's kink, at so many points that what is between them is
+/// known.
+double mean_over(const FarField& field, const Vec3& direction, const ApertureKernel& kernel, double kink_rad) {
+  constexpr int kRound = 300;
+  const GaussRule rule = gauss_legendre(80);
+  const Vec3 right = direction.cross(Vec3::UnitY()).normalized();
+  const Vec3 up = direction.cross(right);
+  std::vector<Vec3> directions;
+  std::vector<double> weights;
+  for (const auto& [from, to] : {std::pair{0.0, kink_rad}, std::pair{kink_rad, kernel.reach_rad()}})
+    for (std::size_t node = 0; node < rule.nodes.size(); ++node) {
+      const double r = std::lerp(from, to, rule.nodes[node]);
+      for (int k = 0; k < kRound; ++k) {
+        const double a = 2.0 * pi * (k + 0.5) / kRound;
+        directions.push_back(std::cos(r) * direction + std::sin(r) * (std::cos(a) * right + std::sin(a) * up));
+        weights.push_back(rule.weights[node] * (to - from) * std::sin(r) * kernel.per_sr(r) * 2.0 * pi / kRound);
+      }
+    }
+  const std::vector<double> values = field.diffracted_per_sr(directions);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) sum += weights[k] * values[k];
+  return sum;
+}
+
+/// Of cells with details wider than the discs, as wide and much finer, square to the light and aslant.
+TEST(DiscMeans, AreMeansOverTheDiscs) {
+  for (const double discs_arcmin : {3.0, 10.0})
+    for (const double radius_mm : {0.1, 0.4, 1.5})
+      for (const double slant : {0.0, 0.3}) {
+        const FarField first = field_of(regular(6, radius_mm), 550.0, tilted(slant, 0.1 * slant));
+        const FarField second = field_of(regular(3, radius_mm), 610.0, tilted(slant + 1e-3, 0.1 * slant));
+        const ApertureKernel kernel({Angle::from_deg(discs_arcmin / 60.0), Angle::from_deg(0.5 * discs_arcmin / 60.0)});
+        const double kink_rad = 0.25 * Angle::from_deg(discs_arcmin / 60.0).rad();
+        const std::vector<WeighedField> fields = {{&first, {1.0, 0.5, 0.0}}, {&second, {0.0, 2.0, 3.0}}};
+        const CosineSquare square{Vec2(slant, 0.1 * slant), 0.006, 9};
+        const auto means = disc_means(fields, square, kernel, nullptr);
+        ASSERT_EQ(means.size(), 81U);
+        std::array<double, 3> greatest{};
+        for (const auto& mean : means)
+          for (std::size_t band = 0; band < 3; ++band) greatest[band] = std::max(greatest[band], mean[band]);
+        for (const std::size_t k : {40U, 41U, 31U, 50U, 22U, 77U}) {
+          const Vec2 at = square.at(k);
+          const double one = mean_over(first, tilted(at.x(), at.y()), kernel, kink_rad);
+          const double other = mean_over(second, tilted(at.x(), at.y()), kernel, kink_rad);
+          EXPECT_NEAR(means[k][0], one, 2e-4 * greatest[0]) << radius_mm << ' ' << slant << ' ' << k;
+          EXPECT_NEAR(means[k][1], 0.5 * one + 2.0 * other, 2e-4 * greatest[1])
+              << radius_mm << ' ' << slant << ' ' << k;
+          EXPECT_NEAR(means[k][2], 3.0 * other, 2e-4 * greatest[2]) << radius_mm << ' ' << slant << ' ' << k;
+        }
+      }
+}
+
+/// Light without a shape is the kernel itself about its direction; below the horizon there is none.
+TEST(DiscMeans, OfRaysAreTheKernel) {
+  FarFieldPolicy policy;
+  policy.diffraction = false;
+  const FarField field = field_of(regular(6, 5.0), 550.0, tilted(0.99), policy);
+  const ApertureKernel kernel({Angle::from_deg(1.0), Angle::from_deg(1.0)});
+  const CosineSquare square{Vec2(0.99, 0.0), 0.02, 41};
+  const std::vector<WeighedField> fields = {{&field, {1.0, 1.0, 1.0}}};
+  const auto means = disc_means(fields, square, kernel, nullptr);
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    const Vec2 at = square.at(k);
+    const bool is_above = at.squaredNorm() < 1.0;
+    const double expected =
+        is_above ? kernel.per_sr(std::acos(std::min(1.0, tilted(at.x(), at.y()).dot(tilted(0.99))))) : 0.0;
+    EXPECT_NEAR(means[k][0], expected, 1e-5 * kernel.per_sr(0.0)) << k;
+  }
 }
 
 }  // namespace

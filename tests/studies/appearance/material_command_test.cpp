@@ -141,6 +141,48 @@ TEST(Material, IsWithinTwoPercentOfPhotometryByItsExampleReader) {
   EXPECT_LT(header.at("error").at("of_95_percent"), 0.02);
 }
 
+/// Prisms send light back across their roof edge and on along it: tables lie about where it goes.
+TEST(Material, PrismsAreToldWhereTheySendTheLight) {
+  const TemporaryFolder folder;
+  folder.write("d.toml",
+               "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"aligned\"\n"
+               "extent = \"infinite\"\n[body]\nthickness_mm = 1\nrefractive_index = 1.4917\n");
+  Arguments arguments = export_of("m.json");
+  *std::find(arguments.begin(), arguments.end(), "64") = "300";
+  *std::find(arguments.begin(), arguments.end(), "8") = "4";
+  ASSERT_EQ(retrace(folder, arguments).code, 0);
+  const Json header = folder.json("m.json");
+  EXPECT_EQ(header.at("back"), Json::array({1.0, -1.0}));
+  // Along the roof edge, where next to nothing comes back, all that the facets reflect is in the table.
+  for (const Json& at : header.at("directions"))
+    if (at.at("azimuth_deg") == 90.0 && at.at("entrance_deg") == 4.0) {
+      EXPECT_GT(at.at("returned"), 0.85);
+    }
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> share(-1.0, 1.0);
+  std::vector<Reading> truth;
+  std::string limits = "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n";
+  for (int k = 0; k < 20; ++k) {
+    Reading at{0.1 + 0.1 * share(random), 0.1 * share(random), 3.9 * share(random), 0.0};
+    std::ostringstream row;
+    row.precision(15);
+    row << "S,,white," << at.observation_deg << ',' << at.v_deg << ',' << at.h_deg << ",1,cd/lx/m2,read\n";
+    limits += row.str();
+    truth.push_back(at);
+  }
+  folder.write("limits.csv", limits);
+  const Json json =
+      retrace_json(folder, {"photometry", "d.toml", "--standard", "limits.csv", "--area-cm2", "10", "--light", "d65",
+                            "--source-arcmin", "20", "--receiver-arcmin", "20", "--no-advice"});
+  for (std::size_t k = 0; k < truth.size(); ++k)
+    truth[k].r_a = json.at("points").at(k).at("r_a_cd_per_lx_m2").get<double>();
+  std::vector<double> told;
+  for (const Triple& rgb : read_by_example(folder, truth))
+    told.push_back(0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]);
+  ASSERT_EQ(told.size(), truth.size());
+  EXPECT_LT(errors_of(truth, told).back(), 0.02);
+}
+
 /// Parts of coloured bodies: chromaticity from red, green and blue by the primaries of sRGB (IEC 61966-2-1), against
 /// the colour that the photometer tells. The second is so red that it lies outside of what sRGB shows.
 TEST(Material, ColoursAreThoseOfPhotometry) {
