@@ -90,6 +90,12 @@ std::string error_text(const AppearanceError& error) {
                      percent(error.greatest));
 }
 
+/// What the views lie about.
+std::string_view where_of(const ReflectionTable& table) {
+  if (table.back == geometry::Vec2::Ones()) return "back to the source";
+  return table.back.y() < 0.0 ? "that is back along x and on along y" : "that is back along y and on along x";
+}
+
 AppearanceText radiance(const AppearanceResult& result) {
   const TensorTree tree = tensor_tree_of(result.table);
   const double leaf_deg = Angle::from_rad(tree.leaf_width()).deg();
@@ -146,9 +152,9 @@ std::string appearance_json(const AppearanceResult& result, const AppearanceText
 std::string appearance_table(const AppearanceResult& result, const AppearanceText& text) {
   const AppearanceRequest& request = result.request;
   std::string lines =
-      fmt::format("material of {}: R_A about the direction back to the source, CIE D65, discs of {} and {} arcmin\n",
-                  printable(short_name(result.design), 60), shortest(60.0 * request.apertures.source.deg()),
-                  shortest(60.0 * request.apertures.receiver.deg()));
+      fmt::format("material of {}: R_A about the direction {}, CIE D65, discs of {} and {} arcmin\n",
+                  printable(short_name(result.design), 60), where_of(result.table),
+                  shortest(60.0 * request.apertures.source.deg()), shortest(60.0 * request.apertures.receiver.deg()));
   lines +=
       fmt::format("  light      entrance angles to {} degrees: {} directions in {} cells, the least {} degrees wide\n",
                   shortest(request.entrance_deg), result.table.directions.size(), result.table.cells.size(),

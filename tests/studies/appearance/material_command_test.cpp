@@ -25,10 +25,15 @@ std::string cubes(const std::string& aperture_mm) {
 }
 
 /// \param window_deg wide enough for what the discs make of the spots
-Arguments export_of(const std::string& file, const std::string& window_deg = "0.4") {
-  return {"export",   "d.toml",          file, "--entrance-deg",    "8",  "--window-deg",
-          window_deg, "--source-arcmin", "20", "--receiver-arcmin", "20", "--most-directions",
-          "64",       "--quiet"};
+Arguments export_of(const std::string& file, const std::string& window_deg = "0.4", const std::string& error = "0.02") {
+  return {"export",   "d.toml",
+          file,       "--entrance-deg",
+          "8",        "--window-deg",
+          window_deg, "--source-arcmin",
+          "20",       "--receiver-arcmin",
+          "20",       "--most-directions",
+          "64",       "--error",
+          error,      "--quiet"};
 }
 
 /// A geometry of a goniometer, and what was read there.
@@ -263,7 +268,7 @@ TEST(Material, EveryFormatKeepsThePower) {
           .get<double>();
   ASSERT_GT(rre, 0.7);
 
-  ASSERT_EQ(retrace(folder, export_of("m.json", "0.6")).code, 0);
+  ASSERT_EQ(retrace(folder, export_of("m.json", "0.6", "0.1")).code, 0);
   const Json header = folder.json("m.json");
   // The grid of the direction that lies nearest, summed by the values' own file.
   std::size_t nearest = 0;
@@ -305,7 +310,7 @@ TEST(Material, EveryFormatKeepsThePower) {
   EXPECT_NEAR(sum, rre_there, 0.01 * rre_there) << there;
   EXPECT_NEAR(at.at("returned").get<double>(), sum, 0.005 * sum);
 
-  ASSERT_EQ(retrace(folder, export_of("m.xml", "0.6")).code, 0);
+  ASSERT_EQ(retrace(folder, export_of("m.xml", "0.6", "0.1")).code, 0);
   const RadianceFile bsdf(folder.read("m.xml"));
   EXPECT_NEAR(bsdf.reflected(to_source), rre, 0.01 * rre);
   // It goes back to where it came from, and nowhere else.
@@ -320,7 +325,7 @@ TEST(Material, EveryFormatKeepsThePower) {
   EXPECT_GT(about, 0.2 * rre);
   EXPECT_EQ(bsdf.brdf(to_source, {-to_source[0], -to_source[1], to_source[2]}), 0.0);
 
-  ASSERT_EQ(retrace(folder, export_of("m.glsl", "0.6")).code, 0);
+  ASSERT_EQ(retrace(folder, export_of("m.glsl", "0.6", "0.1")).code, 0);
   const GlslFile shader(folder.read("m.glsl"));
   double power = 0.0;
   constexpr int kPoints = 120;
