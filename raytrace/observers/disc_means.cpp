@@ -12,13 +12,13 @@ namespace {
 using geometry::Vec2;
 using Bands = std::array<double, 3>;
 
-// Lattice steps to the finest detail of what is diffracted, and to the kernel's reach: sums over a lattice are exact of
-// functions whose finest detail is two steps, and what the kernel has beyond falls by its cube.
+// Lattice steps to the finest detail of what is diffracted, and to the kernel's reach: what is diffracted is known from
+// its values half a detail apart, and of finer details the kernel has shares that fall by the cube of their fineness.
 constexpr double kStepsToADetail = 2.0;
 constexpr double kStepsToTheReach = 12.0;
 // Rays that lie apart by less than this share of the reach are told as one.
 constexpr double kSpot = 1e-3;
-// Of the table of the kernel.
+// Entries of the table of the kernel, but one.
 constexpr std::size_t kKernelSteps = 4096;
 
 /// Along +z. \pre above the horizon
@@ -56,25 +56,30 @@ class Lattice {
       : first_(square.middle - Vec2::Constant(square.half_width + margin)),
         step_(step),
         columns_(static_cast<std::size_t>(std::ceil(2.0 * (square.half_width + margin) / step)) + 1),
-        sums_(columns_ * columns_, Bands{}) {}
+        heights_(columns_ * columns_, 0.0),
+        sums_(columns_ * columns_, Bands{}) {
+    for (std::size_t place = 0; place < heights_.size(); ++place)
+      heights_[place] = std::sqrt(std::max(0.0, 1.0 - cosines(place / columns_, place % columns_).squaredNorm()));
+  }
 
   static double points(const CosineSquare& square, double margin, double step) {
     return std::pow(2.0 * (square.half_width + margin) / step + 2.0, 2.0);
   }
 
-  void add(const WeighedField& field, const Cancellation* cancel) {
+  void add(const BandedField& field, const Cancellation* cancel) {
     for (std::size_t row = 0; row < columns_ && !is_cancelled(cancel); ++row) {
       std::vector<Vec3> directions;
       std::vector<std::size_t> places;
       for (std::size_t column = 0; column < columns_; ++column) {
+        const std::size_t place = row * columns_ + column;
+        if (heights_[place] == 0.0) continue;
         const Vec2 at = cosines(row, column);
-        if (at.squaredNorm() >= 1.0) continue;
-        directions.push_back(upward(at));
-        places.push_back(row * columns_ + column);
+        directions.emplace_back(at.x(), at.y(), heights_[place]);
+        places.push_back(place);
       }
       const std::vector<double> diffracted = field.field->diffracted_per_sr(directions);
       for (std::size_t k = 0; k < places.size(); ++k) {
-        const double per_cosines = diffracted[k] / std::max(directions[k].z(), 1e-12);
+        const double per_cosines = diffracted[k] / heights_[places[k]];
         for (std::size_t band = 0; band < 3; ++band) sums_[places[k]][band] += field.weights[band] * per_cosines;
       }
     }
@@ -89,15 +94,15 @@ class Lattice {
     const double most = kernel.most() * kernel.most();
     for (std::size_t row = from_row; row < to_row; ++row)
       for (std::size_t column = from_column; column < to_column; ++column) {
+        const std::size_t place = row * columns_ + column;
+        const double z = heights_[place];
+        if (z == 0.0) continue;
         const Vec2 at = cosines(row, column);
-        const double height2 = 1.0 - at.squaredNorm();
-        if (height2 <= 0.0) continue;
-        const double z = std::sqrt(height2);
         const double chord2 = (at - direction.head<2>()).squaredNorm() + (z - direction.z()) * (z - direction.z());
         if (chord2 >= most) continue;
         const double weight = kernel.per_sr(std::sqrt(chord2));
         weights += weight / z;
-        for (std::size_t band = 0; band < 3; ++band) sum[band] += weight * sums_[row * columns_ + column][band];
+        for (std::size_t band = 0; band < 3; ++band) sum[band] += weight * sums_[place][band];
       }
     for (double& band : sum) band /= weights;
     return sum;
@@ -116,6 +121,7 @@ class Lattice {
   Vec2 first_;
   double step_;
   std::size_t columns_;
+  std::vector<double> heights_;  ///< z of the directions; 0 at the horizon and below
   std::vector<Bands> sums_;
 };
 
@@ -126,9 +132,9 @@ struct Spot {
   Bands bands{};
 };
 
-std::vector<Spot> spots_of(std::span<const WeighedField> fields, double apart) {
+std::vector<Spot> spots_of(std::span<const BandedField> fields, double apart) {
   std::map<std::array<std::int64_t, 2>, Spot> spots;
-  for (const WeighedField& one : fields)
+  for (const BandedField& one : fields)
     for (const FarFieldRay& ray : one.field->rays()) {
       Spot& spot = spots[{std::llround(ray.direction.x() / apart), std::llround(ray.direction.y() / apart)}];
       spot.direction += ray.power * ray.direction;
@@ -152,30 +158,30 @@ Vec2 CosineSquare::at(std::size_t index) const {
          step * Vec2(static_cast<double>(index % columns), static_cast<double>(index / columns));
 }
 
-std::vector<Bands> disc_means(std::span<const WeighedField> fields, const CosineSquare& square,
+std::vector<Bands> disc_means(std::span<const BandedField> fields, const CosineSquare& square,
                               const ApertureKernel& kernel, const Cancellation* cancel) {
   std::vector<Bands> means(square.columns * square.columns, Bands{});
   const auto add = [](Bands& to, const std::array<double, 3>& weights, double value) {
     for (std::size_t band = 0; band < 3; ++band) to[band] += weights[band] * value;
   };
   double detail = std::numeric_limits<double>::infinity();
-  for (const WeighedField& one : fields) detail = std::min(detail, one.field->detail_rad());
+  for (const BandedField& one : fields) detail = std::min(detail, one.field->detail_rad());
   const double step = std::min(detail / kStepsToADetail, kernel.reach_rad() / kStepsToTheReach);
   const bool is_diffracted = std::isfinite(detail);
-  // Of wide squares and small discs the latter's points are fewer than those of a lattice.
+  // Where a wide square is seen by small discs, points for each view are fewer than those of a lattice.
   const bool is_direct = is_diffracted && Lattice::points(square, kernel.reach_rad(), step) >
                                               static_cast<double>(means.size() * kernel.nodes(detail).size());
   if (is_direct) {
     for (std::size_t k = 0; k < means.size() && !is_cancelled(cancel); ++k)
       if (square.at(k).squaredNorm() < 1.0)
-        for (const WeighedField& one : fields)
+        for (const BandedField& one : fields)
           add(means[k], one.weights, one.field->intensity(upward(square.at(k)), kernel).per_sr);
     return means;
   }
   std::optional<Lattice> lattice;
   if (is_diffracted) {
     lattice.emplace(square, kernel.reach_rad(), step);
-    for (const WeighedField& one : fields) lattice->add(one, cancel);
+    for (const BandedField& one : fields) lattice->add(one, cancel);
   }
   const ChordKernel chords(kernel);
   const std::vector<Spot> spots = spots_of(fields, kSpot * kernel.reach_rad());
@@ -183,7 +189,7 @@ std::vector<Bands> disc_means(std::span<const WeighedField> fields, const Cosine
     if (square.at(k).squaredNorm() >= 1.0) continue;
     const Vec3 direction = upward(square.at(k));
     if (lattice) means[k] = lattice->mean(direction, chords);
-    for (const WeighedField& one : fields) add(means[k], one.weights, one.field->scattered_per_sr(direction, kernel));
+    for (const BandedField& one : fields) add(means[k], one.weights, one.field->scattered_per_sr(direction, kernel));
     for (const Spot& spot : spots)
       if (const double chord2 = (spot.direction - direction).squaredNorm(); chord2 < chords.most() * chords.most())
         add(means[k], spot.bands, chords.per_sr(std::sqrt(chord2)));

@@ -38,10 +38,10 @@ constexpr double kStepsPerReach = 4.0;
 constexpr std::size_t kMostColumns = 161;
 // A grid is good enough if its views are off by this share of what is asked.
 constexpr double kShareOfGrid = 0.5;
-// By which a grid's points grow each way, and up to where they do for the error alone.
+// A grid that is not good enough gets so many times as many points each way, up to this number.
 constexpr double kFinerGrid = 1.5;
 constexpr std::size_t kMostColumnsForError = 121;
-// Prisms are told by a direction of light in which the directions that they may send it to lie apart.
+// Azimuth of the light by which prisms are told from cube corners: the ways in which they may send it lie apart there.
 constexpr double kAsideDeg = 30.0;
 // Extents of the first cells, at most.
 constexpr double kFirstEntranceDeg = 20.0;
@@ -137,11 +137,12 @@ void check_engine(const Design& design, PhotometryRequest request) {
 constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
 
 /// Along which axes light comes back, and along which it goes on: of the three ways in which two faces of a prism, or
-/// three of a cube corner, can send it that which most of the light takes.
-Vec2 back_of(const Design& design, const AppearanceRequest& request) {
+/// three of a cube corner, can send it that which most of the light takes. Nothing if it was cancelled.
+std::optional<Vec2> back_of(const Design& design, const AppearanceRequest& request, const Cancellation* cancel) {
   const Vec3 to_source = direction_of(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
   const Photometer eye = photometer_of(design, photometry_of(request, -Vec2::Ones()), kEye, kParts);
-  const auto fields = eye.far_fields(to_source, eye.make_tracer(), nullptr).value();
+  const auto fields = eye.far_fields(to_source, eye.make_tracer(), cancel);
+  if (!fields) return std::nullopt;
   const std::array<Vec2, 3> ways = {Vec2(1.0, 1.0), Vec2(1.0, -1.0), Vec2(-1.0, 1.0)};
   std::array<double, 3> powers{};
   const auto add = [&](const Vec2& cosines, double power) {
@@ -151,15 +152,15 @@ Vec2 back_of(const Design& design, const AppearanceRequest& request) {
     if (distance(*nearest) < std::sin(Angle::from_deg(request.window_deg).rad()))
       powers[static_cast<std::size_t>(nearest - ways.begin())] += power;
   };
-  for (const Photometer::WeighedField& one : fields) {
+  for (const Photometer::WeighedField& one : *fields) {
     for (const raytrace::FarFieldRay& ray : one.field.rays()) add(ray.direction.head<2>(), one.weight * ray.power);
     for (const raytrace::CoherentGroup& group : one.field.groups())
       for (const raytrace::FieldPolygon& polygon : group.polygons)
         add(polygon.cosines, one.weight * group.copies * polygon.power);
   }
   const auto most = std::max_element(powers.begin(), powers.end());
-  return *most > powers[1] + powers[2] + powers[0] - *most ? ways[static_cast<std::size_t>(most - powers.begin())]
-                                                           : ways[0];
+  const bool has_most_light = 2.0 * *most > powers[0] + powers[1] + powers[2];
+  return has_most_light ? ways[static_cast<std::size_t>(most - powers.begin())] : ways[0];
 }
 
 /// Of a value, or of a share of the greatest with that light.
@@ -176,24 +177,29 @@ double share_within(const std::vector<double>& errors) {
   return quantile(errors, kJudgedShare);
 }
 
+/// A photometer and what it traces beams with.
+struct Instrument {
+  explicit Instrument(Photometer of_response) : photometer(std::move(of_response)), tracer(photometer.make_tracer()) {}
+
+  Photometer photometer;
+  raytrace::BeamTracer tracer;
+};
+
 class TableMaker {
  public:
-  TableMaker(const Design& design, const AppearanceRequest& request)
-      : design_(design),
-        request_(request),
-        back_(back_of(design, request)),
-        photometry_(photometry_of(request, back_)),
-        eye_(photometer_of(design, photometry_, kEye, kParts)) {
-    for (std::size_t response = 0; response < photometers_.size(); ++response)
-      photometers_[response] = std::make_unique<Photometer>(photometer_of(design, photometry_, response, kParts));
+  /// \param back as ReflectionTable has it
+  TableMaker(const Design& design, const AppearanceRequest& request, const Vec2& back)
+      : design_(design), request_(request), photometry_(photometry_of(request, back)) {
+    for (std::size_t response = 0; response < instruments_.size(); ++response)
+      instruments_[response] = std::make_unique<Instrument>(photometer_of(design, photometry_, response, kParts));
     const materials::SpectralCurve lamp = lamp_power(photometry_.light);
     const materials::Tristimulus sent = materials::tristimulus(lamp, materials::shipped_colour_matching());
     // Photometers tell shares of what their response makes of the light.
     rgb_of_shares_ = rgb_from_xyz(sent) * Eigen::Vector3d(sent[0], sent[1], sent[2]).asDiagonal() / sent[1];
-    table_.back = back_;
+    table_.back = back;
     table_.half_width = std::sin(Angle::from_deg(request.window_deg).rad());
     table_.most_entrance = Angle::from_deg(request.entrance_deg);
-    table_.mirrors = eye_.mirrors();
+    table_.mirrors = eye().mirrors();
     const double narrowest =
         raytrace::ApertureKernel(request.apertures).reach_rad() * std::cos(table_.most_entrance.rad());
     const double steps = 2.0 * table_.half_width * kStepsPerReach / narrowest;
@@ -261,6 +267,7 @@ class TableMaker {
     const double to = std::sin(entrance_at(cell.corner[0] + cell.size[0]).rad());
     return cell.error * (to * to - from * from) * cell.size[1];
   }
+  const Photometer& eye() const { return instruments_[kEye]->photometer; }
   /// Lattice steps along a first cell.
   static int lattice_size() { return 3 << kMostHalvings; }
   int entrance_cells() const { return static_cast<int>(std::ceil(request_.entrance_deg / kFirstEntranceDeg)); }
@@ -386,18 +393,19 @@ class TableMaker {
   /// Far fields of the three responses, and what they count in red, green and blue.
   struct Fields {
     std::array<std::vector<Photometer::WeighedField>, 3> of_response;
-    std::vector<raytrace::WeighedField> weighed;
+    std::vector<raytrace::BandedField> weighed;
   };
   /// Nothing if it was cancelled.
   std::optional<Fields> fields_of(const Vec3& to_source, const Cancellation* cancel) const {
     Fields fields;
     const Angle entrance = Angle::from_rad(std::acos(to_source.z()));
-    for (std::size_t response = 0; response < photometers_.size(); ++response) {
-      auto found = photometers_[response]->far_fields(to_source, photometers_[response]->make_tracer(), cancel);
+    for (std::size_t response = 0; response < instruments_.size(); ++response) {
+      const Instrument& with = *instruments_[response];
+      auto found = with.photometer.far_fields(to_source, with.tracer, cancel);
       if (!found) return std::nullopt;
       fields.of_response[response] = *std::move(found);
       for (const Photometer::WeighedField& one : fields.of_response[response]) {
-        raytrace::WeighedField& weighed = fields.weighed.emplace_back();
+        raytrace::BandedField& weighed = fields.weighed.emplace_back();
         weighed.field = &one.field;
         for (std::size_t band = 0; band < weighed.weights.size(); ++band)
           weighed.weights[band] = rgb_of_shares_(static_cast<Eigen::Index>(band), static_cast<Eigen::Index>(response)) *
@@ -408,7 +416,7 @@ class TableMaker {
   }
   std::vector<Rgb> grid_of(const Vec3& to_source, const Fields& fields, const Cancellation* cancel) const {
     return raytrace::disc_means(fields.weighed, {table_.middle(to_source), table_.half_width, table_.columns},
-                                eye_.kernel(), cancel);
+                                eye().kernel(), cancel);
   }
 
   /// More points to the grid, until what lies between them is told, in the middle of the directions of light. False if
@@ -428,8 +436,8 @@ class TableMaker {
       if (!view) continue;
       deviations.push_back(deviation);
       Rgb sum{};
-      for (const raytrace::WeighedField& one : fields->weighed) {
-        const double per_sr = one.field->intensity(view->to_observer, eye_.kernel()).per_sr;
+      for (const raytrace::BandedField& one : fields->weighed) {
+        const double per_sr = one.field->intensity(view->to_observer, eye().kernel()).per_sr;
         for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += one.weights[band] * per_sr;
       }
       truth.push_back(luminous(sum));
@@ -497,7 +505,7 @@ class TableMaker {
         }
       }
     }
-    const auto readings = eye_.measure(settings, nullptr, cancel);
+    const auto readings = eye().measure(settings, nullptr, cancel);
     if (!readings) return false;
     std::map<std::size_t, std::vector<double>> errors;
     for (std::size_t k = 0; k < settings.size(); ++k)
@@ -508,10 +516,8 @@ class TableMaker {
 
   const Design& design_;
   const AppearanceRequest& request_;
-  Vec2 back_;
   PhotometryRequest photometry_;
-  Photometer eye_;
-  std::array<std::unique_ptr<Photometer>, 3> photometers_;
+  std::array<std::unique_ptr<Instrument>, 3> instruments_;  ///< by response
   Eigen::Matrix3d rgb_of_shares_;
   ReflectionTable table_;
   std::vector<PlannedCell> cells_;
@@ -535,7 +541,10 @@ AppearanceResult compute_appearance(const Design& design, const AppearanceReques
   AppearanceResult result;
   result.design = design;
   result.request = request;
-  TableMaker maker(design, request);
+  const std::optional<Vec2> back = back_of(design, request, cancel);
+  result.complete = back.has_value();
+  if (!result.complete) return result;
+  TableMaker maker(design, request, *back);
   result.complete = maker.make(progress, cancel);
   std::optional<std::vector<AppearanceProbe>> probes;
   if (result.complete) probes = maker.probes(cancel);

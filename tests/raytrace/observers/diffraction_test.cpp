@@ -395,7 +395,7 @@ TEST(DiscMeans, AreMeansOverTheDiscs) {
         const FarField second = field_of(regular(3, radius_mm), 610.0, tilted(slant + 1e-3, 0.1 * slant));
         const ApertureKernel kernel({Angle::from_deg(discs_arcmin / 60.0), Angle::from_deg(0.5 * discs_arcmin / 60.0)});
         const double kink_rad = 0.25 * Angle::from_deg(discs_arcmin / 60.0).rad();
-        const std::vector<WeighedField> fields = {{&first, {1.0, 0.5, 0.0}}, {&second, {0.0, 2.0, 3.0}}};
+        const std::vector<BandedField> fields = {{&first, {1.0, 0.5, 0.0}}, {&second, {0.0, 2.0, 3.0}}};
         const CosineSquare square{Vec2(slant, 0.1 * slant), 0.006, 9};
         const auto means = disc_means(fields, square, kernel, nullptr);
         ASSERT_EQ(means.size(), 81U);
@@ -421,7 +421,7 @@ TEST(DiscMeans, OfRaysAreTheKernel) {
   const FarField field = field_of(regular(6, 5.0), 550.0, tilted(0.99), policy);
   const ApertureKernel kernel({Angle::from_deg(1.0), Angle::from_deg(1.0)});
   const CosineSquare square{Vec2(0.99, 0.0), 0.02, 41};
-  const std::vector<WeighedField> fields = {{&field, {1.0, 1.0, 1.0}}};
+  const std::vector<BandedField> fields = {{&field, {1.0, 1.0, 1.0}}};
   const auto means = disc_means(fields, square, kernel, nullptr);
   for (std::size_t k = 0; k < means.size(); ++k) {
     const Vec2 at = square.at(k);
