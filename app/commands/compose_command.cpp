@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/job_output.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/ranks.h"
@@ -18,6 +19,8 @@
 #include "studies/compose/io/compose_reader.h"
 #include "studies/compose/io/composition_files.h"
 #include "studies/compose/io/zone_designs.h"
+#include "studies/design/io/design_reader.h"
+#include "studies/fabrication/job_maker.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/shared_sweep.h"
 
@@ -43,6 +46,8 @@ struct ComposeOptions : StudyOptions {
   std::string design;
   std::string layout = "stripes";
   bool for_worst = false;
+  std::string job;  ///< job file to write of the whole part; empty: none
+  MakingOptions making;
   std::optional<double> x_length_mm;
   std::optional<double> y_length_mm;
 };
@@ -63,7 +68,25 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
     all.push_back({name, help, length});
     all.back().traits.needs = "--design";
   }
+  all.push_back({"--job FILE", "write the fabrication job of that part", &options.job, files(".toml")});
+  all.back().traits.needs = "--design";
+  for (Argument& argument : making_arguments(options.making, "--job")) all.push_back(std::move(argument));
   return all;
+}
+
+/// What can be told of the job before the search. \throw InputError
+void check_job_of(const ComposeOptions& options) {
+  if (options.job.empty()) return;
+  if (!options.making.tool_width_mm) throw InputError({"", 0, "--tool-width-mm"}, "is required with --job");
+  const studies::JobRequest request = job_request(options.making, *options.making.tool_width_mm);
+  studies::check_making(request);
+  studies::check_cuts_zones(request);
+}
+
+/// The job of the part of zones, which lies where `--design` says.
+studies::MadeJob job_of(const ComposeOptions& options, const std::string& part_text) {
+  return studies::make_job(studies::parse_design(part_text, options.design),
+                           job_request(options.making, *options.making.tool_width_mm));
 }
 
 studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
@@ -89,15 +112,20 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
     if (options.for_worst) return studies::zones_for_worst(composition);
     return composition.best ? composition.best->zones : std::vector<studies::Zone>{};
   };
-  ResultFiles files(common, study.files, "composition.json");
+  std::vector<std::string> inputs = study.files;
+  for (const std::string& file : files_of_making(options.making)) inputs.push_back(file);
+  ResultFiles files(common, inputs, "composition.json");
   files.add("composition.csv", [&] { return studies::composition_csv(study, request, composition); });
   files.add_drawing("composition", [&] { return report::composition_plot(study, request, composition); });
   for (std::size_t zone = 0; zone < studies::most_zone_designs(request); ++zone)
     files.add(fmt::format("zone_{}.toml", zone + 1), [&, zone] { return zone_design(study, written_zones(), zone); });
   const studies::ZonedDesignRequest zoned = zoned_design_of(options);
   if (!options.design.empty()) studies::check_zoned_design(study, zoned);
+  check_job_of(options);
   std::string part_text;
+  std::optional<studies::MadeJob> made;
   files.add_named("--design", options.design, [&] { return part_text; });
+  files.add_named("--job", options.job, [&] { return made ? job_text_at(*made, options.job) : ""; });
   const std::filesystem::path file = files.reserve("composition.sqlite");
   files.prepare();
   studies::ResultStore store(file, studies::compose_layout(study), if_exists_of(options));
@@ -116,8 +144,11 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   if (!options.design.empty() && composition.best) {
     try {
       part_text = studies::zoned_design_text(study, written_zones(), zoned);
+      if (!options.job.empty()) made = job_of(options, part_text);
+      if (made) warnings.insert(warnings.end(), made->warnings.begin(), made->warnings.end());
     } catch (const InputError& error) {  // what was found is not lost for that
-      warnings.push_back(fmt::format("{} is not written: {}", options.design, error.what()));
+      warnings.push_back(
+          fmt::format("{} is not written: {}", part_text.empty() ? options.design : options.job, error.what()));
       has_design = false;
     }
   }
@@ -153,9 +184,9 @@ Command compose_command() {
               "Looks for the cells, and their shares of the area, that make the worst of all goals as good as it can "
               "be, by linear programming; says what binds and at what price. Cells that were looked at are kept in "
               "`composition.sqlite` in the output folder and serve the next run. `--design` writes the part with its "
-              "zones as one design. Exits with 1 if no part reaches what is asked.",
-          .reads = {"retrace.study/1", "retrace.design/1"},
-          .writes = {"retrace.composition/1", "retrace.design/1"},
+              "zones as one design, `--job` its fabrication job. Exits with 1 if no part reaches what is asked.",
+          .reads = {"retrace.study/1", "retrace.design/1", "retrace.machine/1", "retrace.process/1"},
+          .writes = {"retrace.composition/1", "retrace.design/1", "retrace.job/1"},
           .begin = begins(compose_arguments, run_compose)};
 }
 

@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 965ef7a84b53344672ea2e4387a3455861480c9b81ba2265ab4bd024b0a3f5b3 */
+/* made by tools/live_page; engine.wasm.gz c7635843a71e0f0ef85874e86594e325e1952889f7306d65d22e3fab28d6fa9c */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "fabrication/job/substrate_cells.h"
+#include "fabrication/job/zone_cells.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/elements/whole_elements.h"
 
@@ -28,12 +29,28 @@ geometry::RtpElement& prism_of(Job& job) {
   return const_cast<geometry::RtpElement&>(prism_of(std::as_const(job)));
 }
 
-geometry::Element blank_element(const Job& job) {
+std::size_t zone_count(const Job& job) {
+  return std::max<std::size_t>(1, job.zones.size());
+}
+
+geometry::Element blank_element(const Job& job, std::size_t zone) {
+  const auto aperture_mm = [&](double own_mm) {
+    return blank_scale(job.workpiece) * (job.zones.empty() ? own_mm : job.zones[zone].aperture_mm.value_or(own_mm));
+  };
   if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&job.element))
-    return geometry::HexagonalCube{blank_scale(job.workpiece) * hexagonal->aperture_mm, {}};
+    return geometry::HexagonalCube{aperture_mm(hexagonal->aperture_mm), {}};
   if (const auto* const triangular = std::get_if<geometry::TriangularCube>(&job.element))
-    return geometry::TriangularCube{blank_scale(job.workpiece) * triangular->aperture_mm, {}};
+    return geometry::TriangularCube{aperture_mm(triangular->aperture_mm), {}};
   return blank_prism(job);
+}
+
+geometry::AngleErrors angle_errors_of(const Job& job, std::size_t zone) {
+  geometry::AngleErrors errors = job.angle_errors;
+  if (job.zones.empty()) return errors;
+  const CutZone& own = job.zones[zone];
+  errors.dihedral_error_arcmin = own.dihedral_error_arcmin.value_or(errors.dihedral_error_arcmin);
+  errors.facet_tilt_arcmin = own.facet_tilt_arcmin.value_or(errors.facet_tilt_arcmin);
+  return errors;
 }
 
 geometry::RtpElement blank_prism(const Job& job) {
@@ -83,7 +100,7 @@ std::vector<CutElement> cut_flat(const Job& job) {
 
 std::vector<CutElement> cut_elements(const Job& job) {
   if (job.substrate) return elements_on_substrate(job);
-  std::vector<CutElement> elements = cut_flat(job);
+  std::vector<CutElement> elements = job.zones.empty() ? cut_flat(job) : elements_of_zones(job);
   for (CutElement& element : elements) element.foot_mm = {element.centre_mm.x(), element.centre_mm.y(), 0.0};
   return elements;
 }

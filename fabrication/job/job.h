@@ -3,6 +3,8 @@
 // Fabrication jobs as data: elements and array, workpiece, chisel or V-shaped tool, strategy and process, and the
 // elements that a job cuts.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -100,14 +102,26 @@ struct Process {
   double finishing_plunge_sa_nm = 48.9;
 };
 
+/// Cube corners that are cut alike, at places of their own. What is not given is as the job's element has it.
+struct CutZone {
+  std::optional<double> aperture_mm;
+  std::optional<std::array<double, 3>> dihedral_error_arcmin;
+  std::optional<std::array<double, 3>> facet_tilt_arcmin;
+  double rotation_deg = 0.0;              ///< of each in the plane, counter-clockwise seen from +z of the part
+  std::vector<geometry::Vec2> apexes_mm;  ///< in the part frame
+};
+
 /// A fabrication job: all that a planner or a verifier needs to know, and nothing about light.
 struct Job {
   std::string source;  ///< the job file as given; empty if it was made
   std::string title;
   std::string design;  ///< file that the job was made from, for people
   Workpiece workpiece;
-  geometry::Element element;    ///< of the part, without cant
-  geometry::ArrayLayout array;  ///< finite; x and y lengths of `single` are those of the element's aperture
+  geometry::Element element;           ///< of the part, without cant
+  geometry::AngleErrors angle_errors;  ///< of cube corners
+  geometry::ArrayLayout array;         ///< finite; x and y lengths of `single` are those of the element's aperture
+  /// What is cut in place of the array, of which the extent alone counts then; none: the array.
+  std::vector<CutZone> zones;
   /// What the elements stand on, of moulds and of arrays without offsets and patterns; its highest place over the part
   /// is z = 0, and the blank's face has its shape. None: the plane z = 0.
   std::optional<geometry::Substrate> substrate;
@@ -134,23 +148,29 @@ struct CutElement {
   geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< on the blank: the middle of the aperture, or over the apex
   /// Turns directions of an element on a flat blank into those of this one: the third column is its axis.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  std::int32_t orientation = 0;  ///< elements with the same `turn` have the same
+  std::int32_t orientation = 0;  ///< elements with the same `turn` have the same; of a job of zones: those of one
+  std::size_t zone = 0;          ///< of the job; 0 without zones
 };
 
 /// The prism that a job cuts. \throw InputError if it cuts cube corners
 const geometry::RtpElement& prism_of(const Job& job);
 geometry::RtpElement& prism_of(Job& job);
 
-/// The elements of the job, row by row from y = 0, x rising, in the frame of the blank (a direct workpiece's is
-/// mirrored). Partial elements are left out. Their place in the list is their number everywhere. Sizes are the
-/// blank's, shrinkage included.
+/// The elements of the job, row by row from y = 0, x rising, of zones one after the other as they are listed, in the
+/// frame of the blank (a direct workpiece's is mirrored). Partial elements are left out. Their place in the list is
+/// their number everywhere. Sizes are the blank's, shrinkage included.
 std::vector<CutElement> cut_elements(const Job& job);
 
 /// By how much the blank is larger than the part: 1 + shrinkage_percent / 100.
 double blank_scale(const Workpiece& workpiece);
 
-/// The element as it is cut into the blank, shrinkage included.
-geometry::Element blank_element(const Job& job);
+/// How many kinds of elements it has: its zones, or 1.
+std::size_t zone_count(const Job& job);
+
+/// The element of the job, or of one of its zones, as it is cut into the blank, shrinkage included.
+geometry::Element blank_element(const Job& job, std::size_t zone = 0);
+/// Errors of angle that it is cut with, on purpose; none of prisms.
+geometry::AngleErrors angle_errors_of(const Job& job, std::size_t zone = 0);
 /// The same of prisms. \throw InputError if the job cuts cube corners
 geometry::RtpElement blank_prism(const Job& job);
 

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/angle.h"
 #include "core/number_format.h"
+#include "fabrication/job/cube_corner.h"
 #include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
@@ -43,35 +45,40 @@ VToolEdges v_tool_edges(const Tool& tool) {
   return edges;
 }
 
-double cavity_depth_mm(const geometry::Element& element) {
-  return geometry::element_depth_mm(element);
-}
-
 double cavity_edge_mm(const geometry::Element& element) {
-  return std::numbers::sqrt3 * cavity_depth_mm(element);
+  return std::numbers::sqrt3 * geometry::element_depth_mm(element);
 }
 
 double nose_strip_mm(const Tool& tool) {
   return 1e-3 * tool.edge_radius_um * (std::sin(rad(45.0)) / std::sin(rad(0.5 * tool.nose_angle_deg)) - 1.0);
 }
 
-void check_v_tool(const geometry::Element& element, const Tool& tool, const schema::Refuse& refuse) {
-  if (tool.nose_angle_deg >= 90.0)
-    refuse("tool.nose_angle_deg", fmt::format("must be < 90, the angle between the dihedral edges of a facet, for "
-                                              "the tool to reach the apex, got {}",
-                                              shortest(tool.nose_angle_deg)));
+void check_v_tool(const geometry::Element& element, const geometry::AngleErrors& errors, const Tool& tool,
+                  const schema::Refuse& refuse) {
+  // Facets and edges lie closer together by this, or farther apart.
+  double error_deg = 0.0;
+  double edge_mm = cavity_edge_mm(element);
+  if (errors != geometry::AngleErrors{}) {
+    const CubeCorner corner = cube_corner(element, errors);
+    error_deg = corner.largest_error_deg();
+    for (const Vec3& edge : corner.edges) edge_mm = std::max(edge_mm, corner.depth_mm / edge.z());
+  }
+  if (tool.nose_angle_deg >= 90.0 - error_deg)
+    refuse("tool.nose_angle_deg",
+           fmt::format("must be < {}, the angle between the dihedral edges of a facet, for "
+                       "the tool to reach the apex, got {}",
+                       error_deg == 0.0 ? "90" : fixed(90.0 - error_deg, 4), shortest(tool.nose_angle_deg)));
   const VToolEdges edges = v_tool_edges(tool);
   for (const Vec3& edge : {edges.leading, edges.trailing, edges.spine})
-    if (edge.minCoeff() < 0.0)
+    if (edge.z() < 0.0 || edge.head<2>().minCoeff() < std::sin(rad(error_deg)))
       refuse("tool.wedge_deg", fmt::format("is too wide: with nose_angle_deg and clearance_deg the tool runs into a "
                                            "neighbouring facet at the apex, got {}",
                                            shortest(tool.wedge_deg)));
-  if (covered_deg(edges) < 90.0)
+  if (covered_deg(edges) < 90.0 + error_deg)
     refuse("tool.wedge_deg", fmt::format("is too narrow: with nose_angle_deg and clearance_deg the cuts of two facets "
                                          "leave a fin along their edge, got {}",
                                          shortest(tool.wedge_deg)));
   constexpr double kMostRadiusShare = 0.1;
-  const double edge_mm = cavity_edge_mm(element);
   const double aperture_mm = geometry::bounding_box(geometry::element_cell(element).outline).upper.x() * 2.0;
   if (1e-3 * tool.edge_radius_um > kMostRadiusShare * aperture_mm)
     refuse("tool.edge_radius_um",

@@ -21,17 +21,16 @@ struct VToolEdges {
 };
 VToolEdges v_tool_edges(const Tool& tool);
 
-/// Length of the facets' edges from the apex to the blank's face: of full cubes twice the cube's edge.
-/// \pre the element is a cube corner
+/// Length of the facets' edges from the apex to the blank's face, but for errors of angle: of full cubes twice the
+/// cube's edge. \pre the element is a cube corner
 double cavity_edge_mm(const geometry::Element& element);
-/// Depth of the apex below the blank's face.
-double cavity_depth_mm(const geometry::Element& element);
 
 /// Width that a nose of the tool's radius leaves uncut on either facet along a dihedral edge.
 double nose_strip_mm(const Tool& tool);
 
 /// That the tool reaches the apex of a cube corner, and every place of its facets.
 /// \param element as it is cut into the blank \pre it is a cube corner
-void check_v_tool(const geometry::Element& element, const Tool& tool, const schema::Refuse& refuse);
+void check_v_tool(const geometry::Element& element, const geometry::AngleErrors& errors, const Tool& tool,
+                  const schema::Refuse& refuse);
 
 }  // namespace retrace::fabrication

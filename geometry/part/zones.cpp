@@ -10,7 +10,9 @@
 
 #include "core/error.h"
 #include "geometry/elements/array_sheet.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/elements/lattice.h"
+#include "geometry/elements/whole_elements.h"
 #include "geometry/part/tiling.h"
 
 namespace retrace::geometry {
@@ -58,6 +60,11 @@ bool is_box(const Polygon& region, double tolerance_mm) {
          });
 }
 
+/// Whether so much less than there was is more than rounding.
+bool is_loss(double lost_mm2, const Polygon& left, double tolerance_mm) {
+  return lost_mm2 > tolerance_mm * bounding_box(left).size().norm();
+}
+
 /// The tiles of one cell, consecutive, within a region.
 class RegionCutter {
  public:
@@ -86,7 +93,7 @@ class RegionCutter {
     }
     std::erase_if(tiles, [](const Tile& tile) { return tile.outline.empty(); });
     if (tiles.empty()) return;
-    const bool is_cut = lost_mm2 > tolerance_mm_ * bounding_box(tiles.front().outline).size().norm();
+    const bool is_cut = is_loss(lost_mm2, tiles.front().outline, tolerance_mm_);
     if (is_element) (is_cut ? within.partial : within.full) += 1;
     if (is_element && is_cut && partial_ == PartialElements::omit)
       for (Tile& tile : tiles) tile = {std::move(tile.outline), {}, FacetRole::flat_back, tile.cell, true, {}};
@@ -119,30 +126,51 @@ ArrayTiles tiles_of_cells(const PartZone& zone, const PartSpec& spec, const Arra
   return array;
 }
 
-/// What stands in a region, in the part frame.
-ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double tolerance_mm) {
-  const Rectangle box = bounding_box(region);
-  PartSpec spec = zone.elements;
-  const auto lay_out = [&](const Vec2& lengths_mm) {
+/// The array that fills a region: that of its box, or one that reaches beyond it on all sides.
+struct FillingArray {
+  PartSpec spec;
+  Turn to_part;  ///< from its middle
+  bool is_cut = false;
+
+  FillingArray(const PartZone& zone, const Polygon& region, double tolerance_mm)
+      : spec(zone.elements), to_part(zone.rotation_deg, Vec2::Zero(), bounding_box(region).middle()) {
+    is_cut = zone.rotation_deg != 0.0 || !is_box(region, tolerance_mm);
+    Vec2 lengths_mm = bounding_box(region).size();
+    if (is_cut) {
+      Vec2 reach = Vec2::Zero();
+      for (const Vec2& p : region) reach = reach.cwiseMax(to_part.back(p).cwiseAbs());
+      lengths_mm = 2.0 * (reach + 2.0 * pitch_of(spec));
+    }
     spec.array.x_length_mm = lengths_mm.x();
     spec.array.y_length_mm = lengths_mm.y();
-    return array_tiles(spec);
-  };
-  if (zone.rotation_deg == 0.0 && is_box(region, tolerance_mm)) {
-    ArrayTiles array = lay_out(box.size());
-    const Turn to_box(0.0, Vec2::Zero(), box.lower);
-    for (Tile& tile : array.tiles) turn(tile, to_box);
-    return array;
   }
-  const Turn to_middle(zone.rotation_deg, Vec2::Zero(), box.middle());
-  Vec2 reach = Vec2::Zero();
-  for (const Vec2& p : region) reach = reach.cwiseMax(to_middle.back(p).cwiseAbs());
-  const Vec2 lengths_mm = 2.0 * (reach + 2.0 * pitch_of(spec));
-  ArrayTiles array = lay_out(lengths_mm);
-  const Turn about_middle(zone.rotation_deg, 0.5 * lengths_mm, box.middle());
-  for (Tile& tile : array.tiles) turn(tile, about_middle);
-  RegionCutter(region, spec.array.partial_elements, tolerance_mm).cut(array);
+  Vec2 middle_mm() const { return 0.5 * Vec2(spec.array.x_length_mm, spec.array.y_length_mm); }
+};
+
+/// What stands in a region, in the part frame.
+ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double tolerance_mm) {
+  const FillingArray filling(zone, region, tolerance_mm);
+  ArrayTiles array = array_tiles(filling.spec);
+  const Rectangle box = bounding_box(region);
+  const Turn to_part =
+      filling.is_cut ? Turn(zone.rotation_deg, filling.middle_mm(), box.middle()) : Turn(0.0, Vec2::Zero(), box.lower);
+  for (Tile& tile : array.tiles) turn(tile, to_part);
+  if (filling.is_cut) RegionCutter(region, filling.spec.array.partial_elements, tolerance_mm).cut(array);
   return array;
+}
+
+/// The elements of the array that fills a region which lie wholly in it.
+void add_whole_elements(const PartZone& zone, const Polygon& region, double tolerance_mm,
+                        std::vector<StandingElement>& elements) {
+  const FillingArray filling(zone, region, tolerance_mm);
+  const Polygon round_apex = element_cell(filling.spec.element).outline;
+  for (const WholeElement& whole : whole_elements(filling.spec.array, filling.spec.element)) {
+    Polygon outline = round_apex;
+    for (Vec2& p : outline) p = filling.to_part.place(whole.centre_mm + (whole.is_rotated ? -1.0 : 1.0) * p);
+    const Polygon left = clip(outline, region, tolerance_mm);
+    if (left.empty() || is_loss(area(outline) - area(left), left, tolerance_mm)) continue;
+    elements.push_back({filling.to_part.place(whole.centre_mm), zone.rotation_deg + (whole.is_rotated ? 180.0 : 0.0)});
+  }
 }
 
 /// Corners beside the plate's border by less than the tolerance lie on it.
@@ -360,6 +388,32 @@ double element_estimate(const ZonedSpec& spec) {
   for (const PartZone& zone : spec.zones)
     for (const Polygon& region : zone.regions) sum += area(region) / room_of_element(zone.elements);
   return sum;
+}
+
+std::vector<std::vector<StandingElement>> whole_elements(const ZonedSpec& spec) {
+  const double tolerance_mm = kSamePlace * size_of(spec);
+  std::vector<std::vector<StandingElement>> elements(spec.zones.size());
+  if (!spec.is_by_cell) {
+    for (std::size_t z = 0; z < spec.zones.size(); ++z)
+      for (const Polygon& region : spec.zones[z].regions)
+        add_whole_elements(spec.zones[z], region, tolerance_mm, elements[z]);
+    return elements;
+  }
+  const ArrayPlan plan = plan_of_array(array_of_cells(spec, spec.zones.front()));
+  for (std::size_t z = 0; z < spec.zones.size(); ++z) {
+    const PartZone& zone = spec.zones[z];
+    auto cell = plan.cells.begin();
+    for (const std::uint32_t number : zone.cells) {
+      while (cell->number != number) ++cell;
+      if (!cell->is_element || !contains(plan.block_mm, cell->outline, tolerance_mm)) continue;
+      const Vec2 apex = centroid(cell->outline);
+      // A rotated triangle has no corner on the side of +x.
+      const bool is_rotated = std::ranges::none_of(
+          cell->outline, [&](const Vec2& p) { return p.x() - apex.x() > 0.75 * (p - apex).norm(); });
+      elements[z].push_back({apex, zone.rotation_deg + (is_rotated ? 180.0 : 0.0)});
+    }
+  }
+  return elements;
 }
 
 void add_zones(Part& part, const ZonedSpec& spec) {

@@ -65,6 +65,14 @@ std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec);
 /// About how many elements its zones have.
 double element_estimate(const ZonedSpec& spec);
 
+/// An element where it stands in the part.
+struct StandingElement {
+  Vec2 apex_mm = Vec2::Zero();  ///< in the part frame
+  double rotation_deg = 0.0;    ///< that of its zone, and 180 more where the zone's array rotates it
+};
+/// The elements of each zone that nothing cuts: the same that the part has. \pre as of build_part(), cube corners
+std::vector<std::vector<StandingElement>> whole_elements(const ZonedSpec& spec);
+
 /// Internal to geometry: adds what build_part() takes of zones.
 void add_zones(Part& part, const ZonedSpec& spec);
 

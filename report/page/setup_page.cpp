@@ -88,6 +88,7 @@ PageSection blank_section(const FabricationResult& result, const SetupSheet& she
   if (blank.free_radius_mm > 0.0)
     s.facts.push_back({"Face and clamps may reach, from C", mm(blank.free_radius_mm, 2), ""});
   if (!blank.base.empty()) s.paragraphs.push_back(blank.base);
+  for (const std::string& zone : blank.zones) s.paragraphs.push_back(zone);
   const double tilt_nm = 1e6 * 0.5 * blank.array_mm.maxCoeff() * std::tan(Angle::from_deg(1.0 / 3600.0).rad());
   s.steps = {
       fmt::format(

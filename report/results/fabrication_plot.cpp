@@ -38,18 +38,24 @@ std::pair<double, double> section_of(const fabrication::Job& job) {
 }
 
 /// Outline of an element that is cut, in plan.
-Polygon outline_of(const geometry::Element& element, const Vec2& centre, bool rotated) {
+Polygon outline_of(const fabrication::Job& job, const fabrication::CutElement& cut, const Vec2& centre) {
+  const geometry::Element element = fabrication::blank_element(job, cut.zone);
   if (const auto* const prism = std::get_if<geometry::RtpElement>(&element)) {
     const Vec2 half =
-        rotated ? 0.5 * Vec2(prism->width_mm, prism->base_mm) : 0.5 * Vec2(prism->base_mm, prism->width_mm);
+        cut.rotated ? 0.5 * Vec2(prism->width_mm, prism->base_mm) : 0.5 * Vec2(prism->base_mm, prism->width_mm);
     return rectangle(centre - half, centre + half);
   }
+  // On a base elements are drawn as they stand on its sheet.
+  const Eigen::Matrix2d turn =
+      job.zones.empty() ? Eigen::Matrix2d::Identity() : Eigen::Matrix2d(cut.turn.topLeftCorner<2, 2>());
   Polygon outline = geometry::element_cell(element).outline;
-  for (Vec2& p : outline) p = rotated ? Vec2(centre - p) : Vec2(centre + p);
+  for (Vec2& p : outline) p = cut.rotated ? Vec2(centre - p) : Vec2(centre + turn * p);
   return outline;
 }
 
-std::string sizes_of(const geometry::Element& element) {
+std::string sizes_of(const fabrication::Job& job) {
+  if (!job.zones.empty()) return fmt::format("cube corners of {} zones", job.zones.size());
+  const geometry::Element element = fabrication::blank_element(job);
   if (const auto* const prism = std::get_if<geometry::RtpElement>(&element))
     return fmt::format("base {} mm, width {} mm", shortest(prism->base_mm), shortest(prism->width_mm));
   const Vec2 size = geometry::bounding_box(geometry::element_cell(element).outline).size();
@@ -98,13 +104,10 @@ struct DrawnElements {
 /// From element `first` on: prisms that touch, where there are many elements, else that one alone.
 template <class InPlan>
 DrawnElements drawn_from(std::size_t first, const std::vector<fabrication::CutElement>& elements,
-                         const std::vector<std::int64_t>& places, const geometry::Element& element,
-                         const InPlan& in_plan) {
-  const auto outline_at = [&](std::size_t k) {
-    return outline_of(element, in_plan(elements[k].centre_mm), elements[k].rotated);
-  };
+                         const std::vector<std::int64_t>& places, const fabrication::Job& job, const InPlan& in_plan) {
+  const auto outline_at = [&](std::size_t k) { return outline_of(job, elements[k], in_plan(elements[k].centre_mm)); };
   DrawnElements drawn{outline_at(first), 1, places[first]};
-  if (!std::holds_alternative<geometry::RtpElement>(element) || elements.size() <= kMostElementsDrawn) return drawn;
+  if (!std::holds_alternative<geometry::RtpElement>(job.element) || elements.size() <= kMostElementsDrawn) return drawn;
   for (std::size_t next = first + 1; next < elements.size() && elements[next].row == elements[first].row &&
                                      elements[next].column == elements[next - 1].column + 1;
        ++next) {
@@ -121,8 +124,7 @@ DrawnElements drawn_from(std::size_t first, const std::vector<fabrication::CutEl
 
 MapPlot arrangement_plot(const studies::FabricationResult& result) {
   const std::vector<fabrication::CutElement>& elements = result.plan.elements;
-  const geometry::Element element = fabrication::blank_element(result.job);
-  const bool is_of_prisms = std::holds_alternative<geometry::RtpElement>(element);
+  const bool is_of_prisms = std::holds_alternative<geometry::RtpElement>(result.job.element);
   const std::vector<std::int64_t> places = studies::cutting_places(result);
   const Vec2 extent(fabrication::blank_extent_mm(result.job).y(), fabrication::blank_extent_mm(result.job).x());
   MapPlot plot;
@@ -132,7 +134,7 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
   plot.rest_label = "not cut";
   plot.full_value = 100.0;
   MapPanel panel;
-  panel.title = sizes_of(element);
+  panel.title = sizes_of(result.job);
   panel.remarks = {"the blank seen from the tool, in the frame of the part that is moulded in it"};
   if (result.job.workpiece.kind == fabrication::WorkpieceKind::direct)
     panel.remarks = {"the optic's back seen from the tool: mirrored against the design"};
@@ -141,7 +143,7 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
   const auto in_plan = [&](const Vec2& w) -> Vec2 { return Vec2(-w.y(), w.x()) + 0.5 * extent; };
   for (std::size_t k = 0; k < elements.size();) {
     const Vec2 centre = in_plan(elements[k].centre_mm);
-    const DrawnElements drawn = drawn_from(k, elements, places, element, in_plan);
+    const DrawnElements drawn = drawn_from(k, elements, places, result.job, in_plan);
     const double mean = static_cast<double>(drawn.places) / static_cast<double>(drawn.count);
     const Vec2 half = 0.5 * geometry::bounding_box(drawn.outline).size();
     panel.regions.push_back({drawn.outline, 100.0 * mean / static_cast<double>(elements.size())});

@@ -12,6 +12,7 @@
 #include "core/number_format.h"
 #include "fabrication/job/substrate_cells.h"
 #include "geometry/elements/element_cells.h"
+#include "studies/closed_loop/machined_zones.h"
 #include "studies/design/io/design_document.h"
 #include "studies/design/io/design_reader.h"
 
@@ -185,6 +186,24 @@ void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, As
         "cavities of hexagons reach beyond the elements' outlines at the border: left out on a base");
 }
 
+ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
+  std::vector<ElementTilts> elements;
+  for (const ElementResult& element : run.result.elements) {
+    ElementTilts& tilts = elements.emplace_back();
+    if (!element.figures.is_cut) continue;
+    const std::vector<double> three = tilts_of(element);
+    tilts = {three[0], three[1], three[2]};
+  }
+  if (run.result.border_overcut_mm3 > 0.0)
+    part.warnings.push_back(
+        run.result.elements_overcut == 0
+            ? "cavities of hexagons reach into the land at borders of zones: left out"
+            : fmt::format("cavities of hexagons reach beyond the elements' outlines at borders of zones, and take {} "
+                          "mm2 of the apertures of other elements: left out",
+                          fixed(run.result.zone_overcut_mm2, 4)));
+  return machined_zones(run.job, run.request.job, elements, part.warnings);
+}
+
 }  // namespace
 
 AsMachined as_machined(const VerificationRun& run) {
@@ -205,6 +224,8 @@ AsMachined as_machined(const VerificationRun& run) {
   if (is_direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
   if (is_direct)
     warn_of(unlike, part, "of a part that is cut directly");
+  else if (!run.job.zones.empty())
+    part.zones = zones_of_run(run, part);
   else if (run.job.substrate)
     check_on_substrate(run, unlike, part);
   else if (has_flares(run) || unlike.along_arcmin > kShownArcmin || unlike.spread_arcmin > kShownArcmin ||
@@ -232,31 +253,57 @@ AsMachined as_machined(const VerificationRun& run) {
   return part;
 }
 
-std::string as_machined_toml(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
-  const auto rounded = [](double value) { return std::round(1e3 * value) / 1e3; };
-  Design design;
-  design.title = (run.job.title.empty() ? "Part" : run.job.title) + ", as machined";
+namespace {
+
+/// Errors that are cut on purpose, and what the programs add.
+geometry::AngleErrors machined_errors(geometry::AngleErrors errors, const std::vector<double>& tilt_arcmin) {
+  for (std::size_t f = 0; f < tilt_arcmin.size(); ++f)
+    if (std::abs(tilt_arcmin[f]) >= 1e-6) errors.facet_tilt_arcmin[f] += tilt_arcmin[f];
+  return errors;
+}
+
+void add_edges(geometry::PartSpec& spec, const AsMachined& part) {
+  spec.edges.root_chamfer_mm = part.root_chamfer_um / kUmPerMm;
+  spec.edges.root_radius_mm = part.root_radius_um / kUmPerMm;
+  spec.thickness_mm = part.body.thickness_mm;
+}
+
+ElementArray array_shape(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
   ElementArray array{machined_elements(run.job, part.planes.has_value()), {}, {}};
   if (part.planes)
     array.facet_planes = FacetPlanesFile{facets_file, facets_file};
   else
-    for (std::size_t f = 0; f < part.facet_tilt_arcmin.size(); ++f)
-      if (std::abs(part.facet_tilt_arcmin[f]) >= 1e-6)
-        array.part.angle_errors.facet_tilt_arcmin[f] = part.facet_tilt_arcmin[f];
-  array.part.edges.root_chamfer_mm = part.root_chamfer_um / kUmPerMm;
-  array.part.edges.root_radius_mm = part.root_radius_um / kUmPerMm;
+    array.part.angle_errors = machined_errors(run.job.angle_errors, part.facet_tilt_arcmin);
+  add_edges(array.part, part);
   array.part.scratches = part.scratches;
-  array.part.thickness_mm = part.body.thickness_mm;
-  design.shape = std::move(array);
+  return array;
+}
+
+ZonedPart zoned_shape(const AsMachined& part) {
+  ZonedPart zones = *part.zones;
+  add_edges(zones.base, part);
+  zones.spec.thickness_mm = part.body.thickness_mm;
+  return zones;
+}
+
+}  // namespace
+
+std::string as_machined_toml(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
+  const auto rounded = [](double value) { return std::round(1e3 * value) / 1e3; };
+  Design design;
+  design.title = (run.job.title.empty() ? "Part" : run.job.title) + ", as machined";
+  design.shape = part.zones ? Shape(zoned_shape(part)) : Shape(array_shape(run, part, facets_file));
   design.substance = part.body.substance();
   design.surface.texture =
       HarveyShackTexture{rounded(part.texture.roughness_sq_nm), part.texture.correlation_length_um,
                          rounded(part.texture.waviness_sq_nm), rounded(part.texture.waviness_length_um)};
   design.detector.acceptance_half_angle_deg = {0.05, 0.5};
-  return design_text(
-      design, fmt::format("# Facets as the programs leave them: {}. Sa {} nm, as published for facets\n"
-                          "# that were made by such motions; feed marks at 7.07 Hz.\n",
-                          part.planes ? "a plane each" : "the mean over the elements", fixed(part.texture.sa_nm, 1)));
+  return design_text(design, fmt::format("# Facets as the programs leave them: {}. Sa {} nm, as published for facets\n"
+                                         "# that were made by such motions; feed marks at 7.07 Hz.\n",
+                                         part.planes  ? "a plane each"
+                                         : part.zones ? "the mean over the elements of each zone"
+                                                      : "the mean over the elements",
+                                         fixed(part.texture.sa_nm, 1)));
 }
 
 }  // namespace retrace::studies

@@ -344,7 +344,8 @@ struct Design {
 struct Takes {
   std::string_view what;  ///< asks, such as "retrace job"
   bool balls = false;
-  bool solids = false;  ///< meshes, plates and parts of zones
+  bool solids = false;  ///< meshes and plates
+  bool zones = false;   ///< parts of zones; also where solids are taken
   bool substrates = true;
   bool entrances = false;
   bool wet_backs = false;

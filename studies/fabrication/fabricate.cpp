@@ -6,6 +6,7 @@
 
 #include "core/message_text.h"
 #include "fabrication/chisel/plan/chiseling.h"
+#include "fabrication/job/cube_corner.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
@@ -34,10 +35,11 @@ geometry::Vec2 in_section(const FabricationResult& result, const fabrication::Cu
                                   deg(fabrication::kC)};
   (result.machine.tilt == fabrication::Tilt::table ? axes.a_deg : axes.b_deg) = deg(fabrication::kTilt);
   const Vec3 tip = fabrication::forward(result.machine, axes).reference_mm;
-  const Vec3 root(0.0, 0.0, -geometry::element_depth_mm(fabrication::blank_element(result.job)));
+  const Vec3 root(0.0, 0.0, -geometry::element_depth_mm(fabrication::blank_element(result.job, element.zone)));
   const Vec3 from_root = element.turn.transpose() * (tip - element.foot_mm) - root;
   if (result.job.strategy == fabrication::Strategy::dmc) {
-    const auto [first, second] = fabrication::cube_facet_edges({element.rotated, 1});
+    const fabrication::CubeCorner corner = fabrication::blank_corner(result.job, element.zone, element.rotated);
+    const auto& [first, second, third] = corner.edges;
     return {(second - first).normalized().dot(from_root), (second + first).normalized().dot(from_root)};
   }
   // Facet 1 has its wall on the side of +y_w; of turned elements on that of +x_w.

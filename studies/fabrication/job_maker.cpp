@@ -4,16 +4,25 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
+#include <utility>
 
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/schema/document.h"
+#include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/chisel/check/zone_overcut.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/elements/whole_elements.h"
 #include "geometry/io/mask_image.h"
 #include "geometry/part/part.h"
+#include "geometry/part/zones.h"
+#include "studies/design/zone_elements.h"
 #include "studies/fabrication/reachable.h"
 
 namespace retrace::studies {
@@ -41,12 +50,13 @@ std::string machine_of(const JobRequest& request) {
   return is_dmc(request) && request.machine == "ideal" ? "ideal-dmc" : request.machine;
 }
 
-template <class Cube>
-geometry::Element upright(const Cube& cube, const Design& design) {
-  if (cube.cant.deg != 0.0)
-    throw InputError({design.source_name(), 0, "element.cant_deg"},
-                     "must be 0 to be cut in this version, got " + shortest(cube.cant.deg));
-  return Cube{cube.aperture_mm, {}};
+/// \throw InputError at `where` for a cube corner that is canted
+void check_upright(const geometry::Element& element, const InputLocation& where) {
+  const double cant_deg = geometry::cant_of(element).deg;
+  if (cant_deg != 0.0)
+    throw InputError(where,
+                     fmt::format("{}must be 0 to be cut in this version, got {}",
+                                 where.key == "element.cant_deg" ? "" : "element.cant_deg ", shortest(cant_deg)));
 }
 
 /// The element of the design, its dihedral error included if it is a prism.
@@ -69,18 +79,25 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
         fmt::format("a chisel with a straight edge reaches {} % of the facets of this cube corner, and not "
                     "its apex: must be dmc, or --reachable FILE for the part that it can make, got {}",
                     fixed(100.0 * reachable_share(design.part().element, request.tool_width_mm), 2), request.strategy));
-  if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&design.part().element))
-    return upright(*hexagonal, design);
-  return upright(std::get<geometry::TriangularCube>(design.part().element), design);
+  check_upright(design.part().element, {design.source_name(), 0, "element.cant_deg"});
+  return design.part().element;
+}
+
+bool is_prism(const PartSpec& part) {
+  return std::holds_alternative<geometry::RtpElement>(part.element);
 }
 
 /// Whether the design has tilts or edges that a job does not know.
 bool has_errors(const PartSpec& part) {
   const std::array<double, 3> none{};
-  const bool is_prism = std::holds_alternative<geometry::RtpElement>(part.element);
-  if (!is_prism && part.angle_errors.dihedral_error_arcmin != none) return true;
-  return !part.edges.is_sharp() || !part.scratches.empty() || part.angle_errors.facet_tilt_arcmin != none ||
-         part.random_tilts.sigma_arcmin > 0.0;
+  return !part.edges.is_sharp() || !part.scratches.empty() || part.random_tilts.sigma_arcmin > 0.0 ||
+         (is_prism(part) && part.angle_errors.facet_tilt_arcmin != none);
+}
+
+void warn_of_errors(const PartSpec& part, const std::string& name, MadeJob& made) {
+  if (has_errors(part))
+    made.warnings.push_back(fmt::format("{}: {}random errors, edges and scratches of [surface] are not cut", name,
+                                        is_prism(part) ? "facet tilts, " : ""));
 }
 
 /// Partial elements of the array, whether or not a mask is to leave out others.
@@ -96,22 +113,102 @@ std::int64_t partial_elements(const PartSpec& part) {
   return geometry::build_part(nominal).elements_partial;
 }
 
+std::string cut_warning(const std::string& name, std::int64_t partial) {
+  return fmt::format("{}: array.partial_elements is \"cut\", but a job leaves partial elements out: {}", name, partial);
+}
+
 void add_warnings(const Design& design, MadeJob& made) {
   const std::string name = design.source_name();
   made.partial_elements = partial_elements(design.part());
   if (made.partial_elements > 0) {
     made.job.notes.push_back(fmt::format("{} partial elements are left out", made.partial_elements));
     if (design.part().array.partial_elements == geometry::PartialElements::cut)
-      made.warnings.push_back(
-          fmt::format("{}: array.partial_elements is \"cut\", but a job leaves partial elements out: {}", name,
-                      made.partial_elements));
+      made.warnings.push_back(cut_warning(name, made.partial_elements));
   }
-  if (has_errors(design.part()))
-    made.warnings.push_back(
-        fmt::format("{}: {}facet tilts, random errors, edges and scratches of [surface] are not cut", name,
-                    std::holds_alternative<geometry::RtpElement>(design.part().element) ? "" : "dihedral errors, "));
+  warn_of_errors(design.part(), name, made);
   if (design.part().array.arrangement == Arrangement::honeycomb)
     made.job.notes.push_back("cavities are triangular: those at the border reach beyond the elements' outlines");
+}
+
+/// \throw InputError for zones that differ in more than sizes, angles, places and turns of cube corners
+void check_zones(const Design& design, const JobRequest& request) {
+  const std::vector<geometry::PartZone>& zones = design.zoned()->spec.zones;
+  for (std::size_t z = 0; z < zones.size(); ++z) {
+    const InputLocation where = design.where(schema::path_of_entry("zone", z));
+    if (is_prism(zones[z].elements)) throw InputError(where, "must have cube corners to be cut, has prisms");
+    if (zones[z].elements.element.index() != zones.front().elements.element.index())
+      throw InputError(where, "must have the cube corners of the zones before it to be cut, hexagonal or triangular");
+    check_upright(zones[z].elements.element, where);
+  }
+  check_cuts_zones(request);
+}
+
+/// Far below the increments of controls.
+double rounded_mm(double mm) {
+  constexpr double kStepsPerMm = 1e9;
+  return std::round(mm * kStepsPerMm) / kStepsPerMm;
+}
+
+double aperture_mm(const geometry::Element& element) {
+  const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&element);
+  return hexagonal != nullptr ? hexagonal->aperture_mm : std::get<geometry::TriangularCube>(element).aperture_mm;
+}
+
+/// What the job cuts of each zone; of triangles the rotated ones apart.
+void add_zones(const Design& design, MadeJob& made) {
+  Job& job = made.job;
+  const geometry::ZonedSpec spec = zones_of(design);
+  const PartSpec& first = spec.zones.front().elements;
+  job.element = first.element;
+  job.angle_errors = first.angle_errors;
+  job.array.arrangement = first.array.arrangement;
+  job.array.x_length_mm = spec.size_mm.x();
+  job.array.y_length_mm = spec.size_mm.y();
+  const std::vector<std::vector<geometry::StandingElement>> whole = geometry::whole_elements(spec);
+  for (std::size_t z = 0; z < spec.zones.size(); ++z) {
+    const PartSpec& elements = spec.zones[z].elements;
+    std::map<double, fabrication::CutZone> by_turn;
+    for (const geometry::StandingElement& at : whole[z])
+      by_turn[std::remainder(at.rotation_deg, 360.0)].apexes_mm.emplace_back(rounded_mm(at.apex_mm.x()),
+                                                                             rounded_mm(at.apex_mm.y()));
+    if (by_turn.empty())
+      made.warnings.push_back(fmt::format("zone {} has no whole element: nothing of it is cut", z + 1));
+    for (auto& [turn_deg, zone] : by_turn) {
+      zone.rotation_deg = turn_deg;
+      if (aperture_mm(elements.element) != aperture_mm(job.element)) zone.aperture_mm = aperture_mm(elements.element);
+      const auto tell = [](const std::array<double, 3>& own, const std::array<double, 3>& all, auto& told) {
+        if (own != all) told = own;
+      };
+      tell(elements.angle_errors.dihedral_error_arcmin, job.angle_errors.dihedral_error_arcmin,
+           zone.dihedral_error_arcmin);
+      tell(elements.angle_errors.facet_tilt_arcmin, job.angle_errors.facet_tilt_arcmin, zone.facet_tilt_arcmin);
+      job.zones.push_back(std::move(zone));
+    }
+    warn_of_errors(elements, fmt::format("{}, zone {}", design.source_name(), z + 1), made);
+  }
+  made.partial_elements = geometry::build_part(spec).elements_partial;
+  if (made.partial_elements > 0)
+    job.notes.push_back(fmt::format("{} elements that borders cut are left out", made.partial_elements));
+  if (made.partial_elements > 0 && std::ranges::any_of(spec.zones, [](const geometry::PartZone& zone) {
+        return zone.elements.array.partial_elements == geometry::PartialElements::cut;
+      }))
+    made.warnings.push_back(cut_warning(design.source_name(), made.partial_elements));
+}
+
+/// What cavities of zones must take of each other's elements. \pre a job of zones that is right
+void tell_overcut(MadeJob& made) {
+  Job& job = made.job;
+  if (!std::holds_alternative<geometry::HexagonalCube>(job.element)) return;
+  job.notes.push_back("cavities are triangular: those at borders of zones reach beyond the elements' outlines");
+  const fabrication::Workpiece3d workpiece =
+      fabrication::workpiece_of(job, fabrication::load_machine(job.machine, {"", 0, "--machine"}));
+  const fabrication::ZoneOvercut overcut =
+      fabrication::zone_overcut(workpiece, std::vector<bool>(workpiece.grooves.size(), true));
+  if (overcut.elements == 0) return;
+  made.warnings.push_back(fmt::format(
+      "cavities must take {} mm2 of the apertures of {} of {} elements, as they reach into those of other zones: {} um "
+      "deep at most",
+      fixed(overcut.area_mm2, 4), overcut.elements, workpiece.grooves.size(), fixed(1e3 * overcut.deepest_mm, 1)));
 }
 
 }  // namespace
@@ -135,8 +232,17 @@ void check_making(const JobRequest& request) {
   fabrication::load_process(request.process, {"", 0, "--process"});
 }
 
+void check_cuts_zones(const JobRequest& request) {
+  if (!is_dmc(request))
+    throw InputError({"", 0, "--strategy"},
+                     fmt::format("must be dmc for a part of zones, got {}", in_quotes(request.strategy)));
+}
+
 void check_element(const Design& design, const JobRequest& request) {
-  element_of(design, request);
+  if (design.zoned())
+    check_zones(design, request);
+  else
+    element_of(design, request);
 }
 
 namespace {
@@ -148,8 +254,9 @@ fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
   const InputLocation at{"", 0, "--tool-width-mm"};
   if (job.strategy == fabrication::Strategy::dmc) {
     tool.wedge_deg = fabrication::kDmcWedgeDeg;
-    fabrication::check_v_tool(fabrication::blank_element(job), tool,
-                              [&](std::string_view, const std::string& text) { throw InputError(at, text); });
+    for (std::size_t zone = 0; zone < fabrication::zone_count(job); ++zone)
+      fabrication::check_v_tool(fabrication::blank_element(job, zone), fabrication::angle_errors_of(job, zone), tool,
+                                [&](std::string_view, const std::string& text) { throw InputError(at, text); });
     return tool;
   }
   const double element_width_mm = fabrication::blank_prism(job).width_mm;
@@ -165,7 +272,7 @@ namespace {
 
 /// Pins are ground one by one and bundled; elements that are cut into a base are cut into a mould.
 void check_substrate(const Design& design, const JobRequest& request) {
-  if (!design.part().substrate) return;
+  if (design.zoned() || !design.part().substrate) return;
   if (design.part().is_pin_bundle)
     throw InputError({design.source_name(), 0, "array.arrangement"},
                      "pins are ground one by one and bundled, not cut: must be \"honeycomb\" for a job, got \"pins\"");
@@ -177,7 +284,7 @@ void check_substrate(const Design& design, const JobRequest& request) {
 }  // namespace
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
-  check_taken(design, {.what = "retrace job", .wet_backs = true});
+  check_taken(design, {.what = "retrace job", .zones = true, .wet_backs = true});
   check_substrate(design, request);
   if (design.facet_planes())
     throw InputError(design.where("part.facets"), "planes of single facets are traced, not cut, in this version");
@@ -187,10 +294,16 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   if (design.source != "-") made.design_file = design.source;
   job.design = made.design_file.filename().string();
   job.strategy = strategy_of(request.strategy);
-  job.element = element_of(design, request);
-  job.array = design.part().array;
-  job.substrate = design.part().substrate;
+  check_element(design, request);
   check_making(request);
+  if (design.zoned()) {
+    add_zones(design, made);
+  } else {
+    job.element = element_of(design, request);
+    job.array = design.part().array;
+    job.substrate = design.part().substrate;
+    if (!is_prism(design.part())) job.angle_errors = design.part().angle_errors;
+  }
   job.workpiece.kind = static_cast<fabrication::WorkpieceKind>(
       word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords));
   job.workpiece.shrinkage_percent = request.shrinkage_percent;
@@ -201,9 +314,13 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
     job.array.pattern = geometry::mask_pattern(design.mask()->file, design.mask()->threshold,
                                                geometry::prism_block(job.array, fabrication::prism_of(job)).counts,
                                                design.where("array.mask"));
+  if (job.strategy == fabrication::Strategy::dmc && request.workpiece != fabrication::kWorkpieceWords[0])
+    throw InputError(
+        {"", 0, "--workpiece"},
+        "must be mould for cube corners, whose cavities are not their elements, got " + in_quotes(request.workpiece));
   fabrication::check_job(job, {design.source_name(), 0, ""});
   made.elements = static_cast<std::int64_t>(fabrication::cut_elements(job).size());
-  add_warnings(design, made);
+  design.zoned() ? tell_overcut(made) : add_warnings(design, made);
   return made;
 }
 

@@ -34,11 +34,15 @@ struct MadeJob {
 /// What can be told of a request without a design: its words, machine and process. \throw InputError
 void check_making(const JobRequest& request);
 
+/// Whether the strategy cuts parts of zones. \throw InputError at --strategy
+void check_cuts_zones(const JobRequest& request);
+
 /// Whether the strategy cuts the design's element. \throw InputError at --strategy, and for designs that nothing cuts
 void check_element(const Design& design, const JobRequest& request);
 
-/// The fabrication job of a design: prisms of its array its dihedral error included, other errors and edges of
-/// [surface] not; partial elements are left out. \throw InputError for designs and requests that cannot be cut
+/// The fabrication job of a design, or of a part of zones of cube corners: dihedral errors are cut, of cube corners
+/// facet tilts too, other errors and edges of [surface] are not; partial elements are left out. \throw InputError for
+/// designs and requests that cannot be cut
 MadeJob make_job(const Design& design, const JobRequest& request);
 
 }  // namespace retrace::studies

@@ -70,7 +70,7 @@ Design reached(const Design& design, const std::string& facets_file) {
 }
 
 void check_design(const Design& design, const JobRequest& request) {
-  check_taken(design, {.what = "retrace job", .wet_backs = true});
+  check_taken(design, {.what = "retrace job --reachable", .wet_backs = true});
   const geometry::PartSpec& part = design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element))
     throw InputError({"", 0, "--reachable"}, "is for cube corners: a chisel reaches all of a prism");

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/chisel/plan/routines.h"
+#include "fabrication/job/cube_corner.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/tool_angles.h"
 #include "fabrication/post/post.h"
@@ -72,9 +73,13 @@ double free_radius_mm(const FabricationResult& result) {
 BlankSetup blank_of(const FabricationResult& result) {
   BlankSetup blank;
   blank.array_mm = blank_extent_mm(result.job);
-  blank.deepest_mm = geometry::element_depth_mm(blank_element(result.job)) + result.plan.stock_mm;
+  for (std::size_t zone = 0; zone < zone_count(result.job); ++zone)
+    blank.deepest_mm = std::max(blank.deepest_mm, geometry::element_depth_mm(blank_element(result.job, zone)));
+  blank.deepest_mm += result.plan.stock_mm;
   blank.stock_mm = result.plan.stock_mm;
   if (result.job.substrate) blank.base = substrate_description(result.job);
+  for (std::size_t zone = 0; zone < result.job.zones.size(); ++zone)
+    blank.zones.push_back(zone_description(result.job, zone));
   if (const auto top = end_of_bodies(result.machine, Carrier::workpiece, true); top && *top < 0.0)
     blank.fixture_height_mm = -*top;
   if (result.machine.tilt == Tilt::table) blank.free_radius_mm = free_radius_mm(result);
@@ -123,8 +128,8 @@ std::vector<int> optional_stops_of(const Plan& plan) {
 /// Follows what stands on the facets of elements that are cut alike.
 class Standing {
  public:
-  explicit Standing(const FabricationResult& result)
-      : job_(result.job), depth_mm_(geometry::element_depth_mm(blank_element(result.job))) {}
+  Standing(const FabricationResult& result, std::size_t zone)
+      : job_(result.job), zone_(zone), depth_mm_(geometry::element_depth_mm(blank_element(result.job, zone))) {}
 
   /// After a cut along `facet`, from 1, that leaves so much. A plough leaves as much on the other one.
   void cut(int facet, bool ploughs, double left_um) {
@@ -140,13 +145,17 @@ class Standing {
       if (!left_um_[f]) return 0.0;
       sum_um += *left_um_[f];
     }
-    const double upright =
-        is_cube ? std::numbers::sqrt3 : 2.0 * std::sin(0.5 * Angle::from_deg(prism_of(job_).apex_angle_deg).rad());
+    if (is_cube) {
+      const Vec3 left_mm = Vec3(*left_um_[0], *left_um_[1], *left_um_[2]) / kUmPerMm;
+      return depth_mm_ - blank_corner(job_, zone_).apex_over(left_mm).z();
+    }
+    const double upright = 2.0 * std::sin(0.5 * Angle::from_deg(prism_of(job_).apex_angle_deg).rad());
     return depth_mm_ - sum_um / kUmPerMm / upright;
   }
 
  private:
   const Job& job_;
+  std::size_t zone_;
   double depth_mm_;
   std::array<std::optional<double>, 3> left_um_;
 };
@@ -174,7 +183,8 @@ std::vector<StageCheck> checks_of(const FabricationResult& result) {
     seconds += stage.time.total_s() + between_s;
     const auto program = programs.find(plan.subroutines[stage.subroutine].title);
     if (program == programs.end()) continue;
-    Standing& alike = standing.try_emplace({pose.facet.rotated, pose.orientation}, result).first->second;
+    Standing& alike =
+        standing.try_emplace({pose.facet.rotated, pose.orientation}, result, pose.facet.zone).first->second;
     StageCheck check;
     check.stage = stage.name;
     check.program = program->second;

@@ -269,7 +269,7 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
       {{"job", "d.toml", "--tool-width-mm", "0.451", "--machine", "ideal-dmc"},
        "--machine: must be a machine whose table tilts for strategy two-step, got \"ideal-dmc\""},
       {{"job", "cube.toml", "--tool-width-mm", "1", "--strategy", "dmc", "--workpiece", "direct"},
-       "cube.toml: workpiece.kind: must be \"mould\" for cube corners"},
+       "--workpiece: must be mould for cube corners"},
       {{"job", "cube.toml", "--tool-width-mm", "1", "--strategy", "dmc", "--set", "element.cant_deg=5"},
        "cube.toml: element.cant_deg: must be 0 to be cut in this version, got 5"},
       {{"job", "d.toml", "--tool-width-mm", "0.4", "--set", "array.extent=infinite"}, "d.toml"},

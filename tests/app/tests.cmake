@@ -4,6 +4,7 @@ retrace_test(command_tests
     app/bad_input_test.cpp
     app/balls_test.cpp
     app/substrate_job_test.cpp
+    app/zone_job_command_test.cpp
     app/commands_test.cpp
     app/derivatives_test.cpp
     app/chiseling_command_test.cpp

@@ -20,6 +20,7 @@
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/chisel/plan/plan.h"
+#include "fabrication/job/cube_corner.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
@@ -71,8 +72,10 @@ double degrees_between(const Vec3& a, const Vec3& b) {
 TEST(Chiseling, FacetsAndEdgesOfACubeOnItsCorner) {
   for (const bool rotated : {false, true})
     for (int k = 1; k <= 3; ++k) {
-      const Vec3 normal = cube_facet_normal({rotated, k});
-      const auto [first, second] = cube_facet_edges({rotated, k});
+      const CubeCorner corner = cube_corner(geometry::HexagonalCube{0.3, {}}, {}, rotated);
+      const Vec3& normal = corner.normals[static_cast<std::size_t>(k - 1)];
+      const Vec3& first = corner.edges[static_cast<std::size_t>(k - 1)];
+      const Vec3& second = corner.edges[static_cast<std::size_t>(k % 3)];
       EXPECT_NEAR(degrees_between(normal, Vec3::UnitZ()), 54.7356103172, 1e-9);
       for (const Vec3& edge : {first, second}) {
         EXPECT_NEAR(90.0 - degrees_between(edge, Vec3::UnitZ()), 35.2643896828, 1e-9);
@@ -89,7 +92,10 @@ TEST(Chiseling, ThePoseLaysTheToolOnTheFacetAndTheTipOnItsEdges) {
         const Job job = cube_job(false);
         const CuttingPose pose = chiseling_pose(job, m, {rotated, k}, 0.0);
         const RigidMotion motion = machine_from_workpiece(m, pose.rounded);
-        EXPECT_LT((motion.direction(cube_facet_normal({rotated, k})) - plunged_normal(m)).norm(), 4e-9);
+        EXPECT_LT((motion.direction(blank_corner(job, 0, rotated).normals[static_cast<std::size_t>(k - 1)]) -
+                   plunged_normal(m))
+                      .norm(),
+                  4e-9);
         EXPECT_NEAR(pose.rounded.a_deg, 35.2643897, m.name == "ideal-dmc" ? 1e-7 : 0.5);
       }
 }
@@ -238,7 +244,7 @@ TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
   // Cubes are told by their lowest corners in units of the edge: those of cells lie on i + j + k = 0.
   const auto elements = cut_elements(job);
   std::set<std::array<int, 3>> cells;
-  const auto [e1, e2] = cube_facet_edges({false, 1});
+  const auto& [e1, e2, third] = blank_corner(job).edges;
   const Vec3 e3 = e1.cross(e2);
   for (const CutElement& element : elements) {
     const Vec3 apex = Vec3(element.centre_mm.x(), element.centre_mm.y(), 0.0) -
@@ -266,7 +272,7 @@ TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
   const DexelField field = cut_dexels(sink.sweeps, sink.poses, v_tool_wedge(job.tool, m),
                                       {{-reach, -reach, -2.0 * edge_mm}, {reach, reach, 0.0}}, 2, 150);
   EXPECT_NEAR(field.volume_mm3(), volume_mm3, 3e-3 * volume_mm3);
-  const double low_mm = -cavity_depth_mm(job.element);
+  const double low_mm = -geometry::element_depth_mm(job.element);
   int below = 0;
   for (std::size_t row = 0; row < field.rows; ++row)
     for (std::size_t column = 0; column < field.columns; ++column) {

@@ -86,7 +86,7 @@ TEST(OnSubstrate, ElementsStandWhereThePartHasThem) {
     const auto* const prism = std::get_if<geometry::RtpElement>(&named.job.element);
     std::vector<Groove> grooves;
     for (const CutElement& element : elements)
-      grooves.push_back(prism != nullptr ? groove_of(element, *prism) : cavity_of(element, named.job.element));
+      grooves.push_back(prism != nullptr ? groove_of(element, *prism) : cavity_of(element, named.job.element, {}));
     const geometry::BoundaryMesh mesh = geometry::closed_boundary(part);
     std::set<std::pair<std::size_t, std::size_t>> seen;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

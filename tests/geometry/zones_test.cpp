@@ -13,6 +13,7 @@
 #include <random>
 #include <string>
 
+#include "geometry/elements/element_cells.h"
 #include "geometry/part/faceted_solid.h"
 #include "tests/geometry/part_checks.h"
 
@@ -208,6 +209,53 @@ TEST(Zones, PartialElementsAreLeftOutIfTheyAreNotWanted) {
   EXPECT_NEAR(retro_mm2, static_cast<double>(whole.elements_full) * cell_mm2, 1e-9);
 }
 
+/// That a part has the three facets of an element where it is said to stand whole, turned as is said.
+void expect_standing(const Part& part, const StandingElement& at, const PartSpec& kind) {
+  const Cell cell = element_cell(kind.element, kind.angle_errors);
+  const Vec3 apex(at.apex_mm.x(), at.apex_mm.y(), -element_depth_mm(kind.element, kind.angle_errors));
+  const Eigen::AngleAxisd turn(at.rotation_deg * std::numbers::pi / 180.0, Vec3::UnitZ());
+  const SurfacePatch& patch = part.patches[0];
+  for (const CellFacet& facet : cell.facets) {
+    const Vec3 normal = turn * Vec3(facet.plane.slope.x(), facet.plane.slope.y(), -1.0).normalized();
+    EXPECT_TRUE(std::ranges::any_of(patch.facets,
+                                    [&](const PatchFacet& own) {
+                                      if ((own.normal - normal).norm() > 1e-9 ||
+                                          std::abs(own.normal.dot(apex) - own.offset_mm) > 1e-9)
+                                        return false;
+                                      for (std::uint32_t k = 0; k < own.corner_count; ++k)
+                                        if ((patch.vertices[patch.corners[own.first_corner + k]] - apex).norm() < 1e-8)
+                                          return true;
+                                      return false;
+                                    }))
+        << at.apex_mm.transpose() << " turned by " << at.rotation_deg;
+  }
+}
+
+TEST(Zones, WholeElementsStandWhereThePartHasThem) {
+  PartSpec errors = hexagons(0.5);
+  errors.angle_errors = {{30.0, -10.0, 5.0}, {0.0, 20.0, 0.0}};
+  const std::vector<PartSpec> cubes = {hexagons(0.45), errors, triangles(0.6)};
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const auto any = [&] { return cubes[std::min<std::size_t>(2, static_cast<std::size_t>(unit(random) * 3.0))]; };
+  for (std::size_t trial = 0; trial < 8; ++trial) {
+    SCOPED_TRACE(trial);
+    const Vec2 size(3.0 + unit(random), 2.5 + unit(random));
+    const double middle = size.x() * (0.3 + 0.4 * unit(random));
+    const ZonedSpec spec =
+        plate(size, {{{box(0, 0, middle, size.y())}, 0.0, any()},
+                     {{{{middle, 0}, {size.x(), 0}, {size.x(), size.y()}}}, std::floor(360.0 * unit(random)), any()},
+                     {{{{middle, 0}, {size.x(), size.y()}, {middle, size.y()}}}, 0.0, any()}});
+    const Part part = build_part(spec);
+    const auto elements = whole_elements(spec);
+    ASSERT_EQ(elements.size(), 3U);
+    for (std::size_t z = 0; z < 3; ++z) {
+      EXPECT_EQ(static_cast<std::int64_t>(elements[z].size()), part.zones[z].full);
+      for (const StandingElement& at : elements[z]) expect_standing(part, at, spec.zones[z].elements);
+    }
+  }
+}
+
 // Turned twice round a polygon turns left everywhere; a width is that across the nearest side.
 TEST(Zones, RegionsAreConvexPolygonsThatGoRoundOnce) {
   const Polygon once = {{0, 0}, {4, 0}, {4, 3}, {0, 3}};
@@ -251,6 +299,19 @@ TEST(Zones, AlikeElementsByCellAreTheArray) {
       EXPECT_NEAR(part.zones[0].area_mm2 + part.zones[1].area_mm2, size.prod(), 1e-9);
       EXPECT_NEAR(volume_below(part), volume_below(array), 1e-9);
       EXPECT_NEAR(part.retro_facet_area_mm2, array.retro_facet_area_mm2, 1e-9);
+    }
+  }
+}
+
+TEST(Zones, WholeElementsByCellStandWhereThePartHasThem) {
+  for (const PartSpec& kind : {hexagons(0.45), triangles(0.6)}) {
+    const double turn_deg = std::holds_alternative<HexagonalCube>(kind.element) ? 60.0 : 120.0;
+    const ZonedSpec spec = dealt_out({3.1, 2.7}, {{{}, 0.0, kind}, {{}, turn_deg, kind}});
+    const Part part = build_part(spec);
+    const auto elements = whole_elements(spec);
+    for (std::size_t z = 0; z < 2; ++z) {
+      EXPECT_EQ(static_cast<std::int64_t>(elements[z].size()), part.zones[z].full);
+      for (const StandingElement& at : elements[z]) expect_standing(part, at, kind);
     }
   }
 }

@@ -30,6 +30,12 @@ Vec2 deepest_place(const SectionPlane& plane, const Groove& groove, const ToolWe
   const Vec3 from = back.point(sweep.from_mm);
   const Vec3 to = back.point(sweep.to_mm);
   const Vec3 tip = groove.over_face_mm(from) < groove.over_face_mm(to) ? from : to;
+  if (groove.is_cube()) {
+    // Along the dihedral edge that the section is across, which with errors of angle is not square to it.
+    const auto across = [&](const Vec3& edge) { return std::abs(plane.normal.dot(edge)); };
+    const Vec3& edge = *std::ranges::max_element(groove.edges, {}, across);
+    return plane.point(tip - plane.beside_mm(tip) / plane.normal.dot(edge) * edge);
+  }
   const Vec3 edge = back.direction(wedge.edge);
   const double across = plane.normal.dot(edge);
   if (wedge.half_width_mm <= 0.0 || std::abs(across) < 0.5) return plane.point(tip);
@@ -117,12 +123,15 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
     std::vector<double> bends;
     for (const double bend : limit.bends_mm())
       for (const double side : {-1.0, 1.0}) bends.push_back(deepest_mm + side * (bend + 1e-9));
+    // Lines of a section that is not quite square to a dihedral edge lean.
+    const double upright = groove_.is_cube() ? square.norm() : 1.0;
     for (const LineLength& line : line_lengths(removed[s], along, bends)) {
       const double most_mm = limit.at(std::abs(line.at_mm - deepest_mm), beside_mm);
-      thickest_mm = std::max(thickest_mm, line.length_mm);
-      figures_.thickest_share = std::max(figures_.thickest_share, line.length_mm / most_mm);
-      if (line.length_mm - most_mm <= worst_mm - allowed_mm) continue;
-      worst_mm = line.length_mm;
+      const double length_mm = upright * line.length_mm;
+      thickest_mm = std::max(thickest_mm, length_mm);
+      figures_.thickest_share = std::max(figures_.thickest_share, length_mm / most_mm);
+      if (length_mm - most_mm <= worst_mm - allowed_mm) continue;
+      worst_mm = length_mm;
       allowed_mm = most_mm;
     }
   }

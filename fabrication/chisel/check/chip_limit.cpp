@@ -8,14 +8,36 @@ namespace {
 
 using geometry::Vec3;
 
-/// Over the facet of a V, by how much its flanks rise for each mm from the dihedral edges.
-double flank_slope(const Groove& cavity, std::size_t facet, const Vec3& spine) {
-  double slope = 1.0;
-  for (const std::size_t k : {facet, (facet + 1) % 3}) {
-    const double away = spine.dot(cavity.edges[k]);
-    if (away > 0.0) slope = std::max(slope, spine.dot(cavity.facets[facet].normal) / away);
+/// What a V takes beside a dihedral edge, for each mm of a layer: how thick it is at most, between the flank and what
+/// stands on the neighbouring facet, and how far from the edge that reaches.
+struct BesideEdge {
+  double thickness = 1.0;
+  double reach = 1.0;
+};
+
+BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spine) {
+  BesideEdge most;
+  const Vec3& normal = cavity.facets[facet].normal;
+  const std::size_t next = (facet + 1) % 3;
+  for (const bool is_second : {false, true}) {
+    const Vec3& edge = cavity.edges[is_second ? next : facet];
+    const Vec3& other = cavity.edges[is_second ? facet : next];
+    const Vec3 across = other - other.dot(edge) * edge;
+    const double away = spine.dot(across.normalized());
+    if (away <= 0.0) continue;
+    const double slope = spine.dot(normal) / away;
+    // How far what stands on the neighbour leans over the facet, square to the edge and in the plane of the two others.
+    const Vec3& third = cavity.edges[(facet + 2) % 3];
+    const double cosine =
+        std::max(-normal.dot(cavity.facets[is_second ? next : (facet + 2) % 3].normal), other.dot(third));
+    const double sine = std::sqrt(1.0 - cosine * cosine);
+    constexpr double kLeast = 1e-3;
+    const double thickness = slope / std::max(kLeast, sine - slope * cosine);
+    most.thickness = std::max(most.thickness, thickness);
+    // Told along the other edge, as sections are.
+    most.reach = std::max(most.reach, (1.0 + thickness * cosine) / (sine * across.norm()));
   }
-  return slope;
+  return most;
 }
 
 }  // namespace
@@ -30,8 +52,10 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
     if (!cut) return;
     kind_ = Kind::v_shaped;
     const double depth_mm = depth_mm_ + slack_mm_;
-    share_ = flank_slope(groove, cut->facet, back.direction(wedge.rake_direction));
-    bends_mm_ = {depth_mm, depth_mm};
+    const BesideEdge beside = beside_edges(groove, cut->facet, back.direction(wedge.rake_direction));
+    share_ = beside.thickness;
+    reach_mm_ = beside.reach * depth_mm;
+    bends_mm_ = {reach_mm_, reach_mm_};
     return;
   }
   const Angle rake = Angle::from_deg(tool.clearance_deg + tool.wedge_deg + workpiece.machine->mount.turn_deg.value.x());
@@ -64,7 +88,7 @@ double ChipLimit::at(double from_tip_mm, double beside_mm) const {
     case Kind::plunge: return plunge_at(from_tip_mm);
     case Kind::plough: return share_ * depth_mm + slack_mm_;
     case Kind::between: return share_ * depth_mm + slack_mm_;
-    case Kind::v_shaped: return std::min(from_tip_mm, beside_mm) <= depth_mm ? share_ * depth_mm : depth_mm;
+    case Kind::v_shaped: return std::min(from_tip_mm, beside_mm) <= reach_mm_ ? share_ * depth_mm : depth_mm;
   }
   return 0.0;
 }

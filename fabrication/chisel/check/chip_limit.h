@@ -34,7 +34,8 @@ class ChipLimit {
   double slack_mm_ = 0.0;    ///< tolerance, and what tilted edges make unavoidable
   double rake_slope_ = 0.0;  ///< of the rake face against the plunged facet
   Angle apex_;
-  double share_ = 0.0;  ///< limit over depth, of kinds where it is one number
+  double share_ = 0.0;     ///< limit over depth, of kinds where it is one number
+  double reach_mm_ = 0.0;  ///< of a V: up to so far from an edge the share holds
   std::array<double, 2> bends_mm_{};
 };
 

@@ -17,8 +17,8 @@ ChiselingCheck::ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& we
     : CutCheck(workpiece, wedge, control, findings) {
   for (const Groove& cavity : workpiece.grooves) {
     State state;
-    // Where the blank's face cuts the axis, which makes equal angles with the facets.
-    state.left_mm.fill((cavity.face_mm - cavity.axis.dot(cavity.root_mm)) / std::numbers::sqrt3);
+    // What a layer leaves whose apex lies in the blank's face.
+    state.left_mm.fill((cavity.face_mm - cavity.axis.dot(cavity.root_mm)) / cavity.layer_rise);
     states_.push_back(state);
   }
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/angle.h"
+#include "fabrication/job/cube_corner.h"
 #include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
@@ -17,6 +18,7 @@ namespace {
 
 /// From the frame of an element on a flat blank, over its middle, to where it stands.
 void stand(Groove& groove, const CutElement& element, double stock_mm) {
+  groove.zone = element.zone;
   groove.axis = element.turn.col(2);
   groove.face_mm = groove.axis.dot(element.foot_mm) + stock_mm;
   groove.stock_mm = stock_mm;
@@ -38,7 +40,8 @@ Vec3 Groove::level_of(std::size_t facet) const {
 
 std::vector<Vec3> Groove::facet_corners(std::size_t facet) const {
   if (is_cube())
-    return {root_mm, root_mm + facet_length_mm * edges[facet], root_mm + facet_length_mm * edges[(facet + 1) % 3]};
+    return {root_mm, root_mm + edge_length_mm(facet) * edges[facet],
+            root_mm + edge_length_mm((facet + 1) % 3) * edges[(facet + 1) % 3]};
   const Vec3 up = facet_length_mm * facets[facet].up_slope;
   const Vec3 along = half_width_mm * root_direction;
   return {root_mm - along, root_mm + along, root_mm + up + along, root_mm + up - along};
@@ -70,25 +73,20 @@ Groove groove_of(const CutElement& element, const geometry::RtpElement& size, do
   return groove;
 }
 
-Groove cavity_of(const CutElement& element, const geometry::Element& size, double stock_mm) {
+Groove cavity_of(const CutElement& element, const geometry::Element& size, const geometry::AngleErrors& errors,
+                 double stock_mm) {
+  const CubeCorner corner = cube_corner(size, errors, element.rotated);
   Groove cavity;
-  cavity.depth_mm = geometry::element_depth_mm(size);
+  cavity.depth_mm = corner.depth_mm;
   cavity.root_mm = {0.0, 0.0, -cavity.depth_mm};
   cavity.facet_length_mm = std::numbers::sqrt3 * cavity.depth_mm;
   cavity.half_base_mm = cavity.half_width_mm = geometry::element_cell(size).outline.front().norm();
-  // The edges of a cube that stands on its corner: 1 / sqrt(3) up each, 120 degrees apart.
-  const double first = element.rotated ? 0.5 * std::numbers::pi : -0.5 * std::numbers::pi;
-  for (int k = 0; k < 3; ++k) {
-    const double azimuth = first + 2.0 * std::numbers::pi / 3.0 * k;
-    cavity.edges.emplace_back(std::sqrt(2.0 / 3.0) * std::cos(azimuth), std::sqrt(2.0 / 3.0) * std::sin(azimuth),
-                              1.0 / std::numbers::sqrt3);
-  }
+  cavity.edges.assign(corner.edges.begin(), corner.edges.end());
+  cavity.layer_rise = corner.layer_rise();
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3& a = cavity.edges[k];
-    const Vec3& b = cavity.edges[(k + 1) % 3];
     DesignFacet facet;
-    facet.normal = a.cross(b).normalized();  // along the third edge, into the cavity
-    facet.up_slope = (a + b).normalized();
+    facet.normal = corner.normals[k];
+    facet.up_slope = (corner.edges[k] + corner.edges[(k + 1) % 3]).normalized();
     cavity.facets.push_back(facet);
   }
   cavity.root_direction = Vec3::UnitZ().cross(cavity.facets.front().normal).normalized();
@@ -96,12 +94,16 @@ Groove cavity_of(const CutElement& element, const geometry::Element& size, doubl
   return cavity;
 }
 
-std::vector<Groove> designed_grooves(const Job& job) {
-  const geometry::Element size = blank_element(job);
+Groove groove_of(const CutElement& element, const Job& job, double stock_mm) {
+  const geometry::Element size = blank_element(job, element.zone);
   const auto* const prism = std::get_if<geometry::RtpElement>(&size);
+  return prism != nullptr ? groove_of(element, *prism, stock_mm)
+                          : cavity_of(element, size, angle_errors_of(job, element.zone), stock_mm);
+}
+
+std::vector<Groove> designed_grooves(const Job& job) {
   std::vector<Groove> grooves;
-  for (const CutElement& element : cut_elements(job))
-    grooves.push_back(prism != nullptr ? groove_of(element, *prism) : cavity_of(element, size));
+  for (const CutElement& element : cut_elements(job)) grooves.push_back(groove_of(element, job));
   return grooves;
 }
 

@@ -40,12 +40,17 @@ struct Groove {
   /// Of a prism: facet 1 faces -y_w (of a turned element -x_w), facet 2 the other way. Of a cube corner: facet k lies
   /// between dihedral edges k - 1 and k, of which edge 0 lies along -y_w (of a turned element +y_w).
   std::vector<DesignFacet> facets;
-  double half_width_mm = 0.0;    ///< along the root; of a cube corner the radius of its aperture
-  double half_base_mm = 0.0;     ///< likewise
-  double facet_length_mm = 0.0;  ///< from the root to the rim; of a cube corner from the apex along a dihedral edge
-  std::size_t group = 0;         ///< of elements that stand alike: index of Workpiece3d::predictions
+  double half_width_mm = 0.0;  ///< along the root; of a cube corner the radius of its aperture
+  double half_base_mm = 0.0;   ///< likewise
+  /// From the root to the rim; of a cube corner from the apex along a dihedral edge to the plane of its rims, but for
+  /// errors of angle.
+  double facet_length_mm = 0.0;
+  std::size_t group = 0;  ///< of elements that stand alike: index of Workpiece3d::predictions
+  std::size_t zone = 0;   ///< of the job
   /// Of a cube corner: the three dihedral edges, of length 1, from the apex. Facet k lies between k - 1 and k.
   std::vector<geometry::Vec3> edges;
+  /// Of a cube corner: how far up its axis the apex of a layer lies that leaves 1 mm on all facets.
+  double layer_rise = 0.0;
 
   bool is_cube() const { return !edges.empty(); }
 
@@ -55,6 +60,8 @@ struct Groove {
   double to_face_mm(const geometry::Vec3& p, const geometry::Vec3& direction) const {
     return -over_face_mm(p) / axis.dot(direction);
   }
+  /// Of a cube corner: along a dihedral edge, from its apex to the plane of its rims.
+  double edge_length_mm(std::size_t edge) const { return depth_mm / axis.dot(edges[edge]); }
   /// Along the root, from its middle.
   double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }
   /// Along a facet's level line, of length 1: of a prism along its root.
@@ -68,7 +75,10 @@ struct Groove {
 /// \param stock_mm by which the blank stands over the element's rims
 Groove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm = 0.0);
 /// The cavity of a cube corner. \pre size is one
-Groove cavity_of(const CutElement& element, const geometry::Element& size, double stock_mm = 0.0);
+Groove cavity_of(const CutElement& element, const geometry::Element& size, const geometry::AngleErrors& errors = {},
+                 double stock_mm = 0.0);
+/// One element of a job.
+Groove groove_of(const CutElement& element, const Job& job, double stock_mm = 0.0);
 /// All elements of a job on blanks that do not stand over their rims, in the order of cut_elements().
 std::vector<Groove> designed_grooves(const Job& job);
 

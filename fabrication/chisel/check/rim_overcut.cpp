@@ -68,7 +68,7 @@ double rim_overcut_mm(const std::vector<Groove>& grooves) {
         if (found == cells.end()) continue;
         for (const std::size_t j : found->second)
           for (const Vec3& p : rim)
-            if (j != i) most_mm = std::max(most_mm, depth_in(grooves[j], p));
+            if (j != i && grooves[j].zone == grooves[i].zone) most_mm = std::max(most_mm, depth_in(grooves[j], p));
       }
   }
   return most_mm > kMeetMm ? most_mm : 0.0;

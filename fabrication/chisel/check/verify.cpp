@@ -19,9 +19,11 @@
 #include "fabrication/chisel/check/simulation/nose.h"
 #include "fabrication/chisel/check/visits.h"
 #include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/chisel/check/zone_overcut.h"
 #include "fabrication/chisel/on_machine.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -59,19 +61,22 @@ void refuse_other_machine(const Job& job, const Machine& machine, const std::vec
   }
 }
 
-/// The error of a cube corner's dihedral angles that is the largest.
+/// By how much a dihedral angle of a cube corner misses the design's, where that is the most.
 double dihedral_error_arcmin(const Groove& cavity, const ElementFigures& figures) {
   std::vector<Vec3> normals;
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const DesignFacet& design = cavity.facets[f];
-    const Vec3 level = design.normal.cross(cavity.axis).normalized();
+    const Vec3 level = cavity.level_of(f);
     normals.push_back(
         (design.normal - figures.facets[f].slope_up * design.up_slope - figures.facets[f].slope_along * level)
             .normalized());
   }
   double largest = 0.0;
   for (std::size_t f = 0; f < normals.size(); ++f) {
-    const double error = std::asin(normals[f].dot(normals[(f + 1) % normals.size()])) * kArcminPerRad;
+    const std::size_t next = (f + 1) % normals.size();
+    const double error = (std::asin(normals[f].dot(normals[next])) -
+                          std::asin(cavity.facets[f].normal.dot(cavity.facets[next].normal))) *
+                         kArcminPerRad;
     if (std::abs(error) > std::abs(largest)) largest = error;
   }
   return largest;
@@ -150,16 +155,18 @@ class Judge {
   Verification& result_;
 };
 
-/// Volume of the material that an element takes; of hexagonal cube corners without what overlaps.
-double design_volume_mm3(const Groove& groove, bool is_hexagonal) {
-  const double edge_mm = groove.facet_length_mm;
-  if (groove.is_cube()) return edge_mm * edge_mm * edge_mm / (is_hexagonal ? 8.0 : 6.0);
-  return groove.half_base_mm * groove.depth_mm * 2.0 * groove.half_width_mm;
+/// Volume of the material that an element of a zone takes; of hexagonal cube corners without what overlaps.
+double design_volume_mm3(const Job& job, std::size_t zone) {
+  const geometry::Cell cell = geometry::element_cell(blank_element(job, zone), angle_errors_of(job, zone));
+  double volume_mm3 = 0.0;
+  for (const geometry::CellFacet& facet : cell.facets)
+    volume_mm3 -= geometry::area(facet.outline) * facet.plane.at(geometry::centroid(facet.outline));
+  return volume_mm3;
 }
 
-/// What triangular cavities take beyond the hexagons of their elements. In units of the cube's edge a the blank's face
-/// passes above N cubes that lie open, of which it leaves a sixth each, and cuts a sixth off each of the M cubes above
-/// them: M corners of hexagons at dihedral edges (docs/theory/micro_chiseling.md).
+/// What triangular cavities take beyond the hexagons of the elements. In units of the cube's edge a the
+/// blank's face passes above N cubes that lie open, of which it leaves a sixth each, and cuts a sixth off each of the M
+/// cubes above them: M corners of hexagons at dihedral edges (docs/theory/micro_chiseling.md).
 /// On a base that is so of the array when it is rolled out.
 double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
   const std::vector<Groove>& cavities = workpiece.grooves;
@@ -175,7 +182,7 @@ double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<Elemen
       const double azimuth = 2.0 * std::numbers::pi / 3.0 * k - 0.5 * std::numbers::pi;
       const geometry::Vec2 outwards(std::cos(azimuth), std::sin(azimuth));
       const geometry::Vec2 from_first =
-          workpiece.centres_mm[i] - workpiece.centres_mm.front() + cavities[i].half_base_mm * outwards;
+          workpiece.elements[i].centre_mm - workpiece.elements.front().centre_mm + cavities[i].half_base_mm * outwards;
       // Corners lie on a grid of half the radius by half the width of the hexagons.
       const double half_radius_mm = 0.5 * cavities[i].half_base_mm;
       corners.emplace(std::llround(from_first.x() / (std::numbers::sqrt3 * half_radius_mm)),
@@ -183,6 +190,27 @@ double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<Elemen
     }
   }
   return edge_mm * edge_mm * edge_mm * static_cast<double>(static_cast<std::int64_t>(corners.size()) - cut) / 6.0;
+}
+
+/// What triangular cavities of hexagonal elements take beyond these.
+void find_overcut(const Workpiece3d& workpiece, Verification& result) {
+  if (workpiece.job->zones.empty()) {
+    result.border_overcut_mm3 = border_overcut_mm3(workpiece, result.elements);
+    return;
+  }
+  std::vector<bool> is_cut;
+  for (const ElementResult& element : result.elements) is_cut.push_back(element.figures.is_cut);
+  const ZoneOvercut overcut = zone_overcut(workpiece, is_cut);
+  result.border_overcut_mm3 = overcut.volume_mm3;
+  result.zone_overcut_mm2 = overcut.area_mm2;
+  result.zone_overcut_um_max = 1e3 * overcut.deepest_mm;
+  result.elements_overcut = overcut.elements;
+}
+
+bool has_errors(const Job& job) {
+  for (std::size_t zone = 0; zone < zone_count(job); ++zone)
+    if (angle_errors_of(job, zone) != geometry::AngleErrors{}) return true;
+  return false;
 }
 
 /// Which elements the runs of a job with a base belong to; none for others.
@@ -303,11 +331,13 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
       findings.add(std::move(finding));
     }
   }
+  std::vector<double> volumes_mm3;
+  for (std::size_t zone = 0; zone < zone_count(job); ++zone) volumes_mm3.push_back(design_volume_mm3(job, zone));
   Judge judge(workpiece, findings, result);
   for (std::size_t i = 0; i < result.elements.size(); ++i) {
     judge.element(i, first);
     if (!result.elements[i].figures.is_cut) continue;
-    result.removed_volume_mm3 += design_volume_mm3(workpiece.grooves[i], is_hexagonal);
+    result.removed_volume_mm3 += volumes_mm3[workpiece.elements[i].zone];
     for (const FacetFigures& facet : result.elements[i].figures.facets) result.removed_volume_mm3 -= facet.residual_mm3;
   }
   for (const Prediction& prediction : workpiece.predictions) {
@@ -315,8 +345,8 @@ Verification verify_programs(const Job& job, const Machine& machine, const std::
     result.wall_overcut_nm_predicted = std::max(result.wall_overcut_nm_predicted, prediction.wall_mm * kNmPerMm);
   }
   result.wall_overcut_nm_max = check.deepest_wall_mm() * kNmPerMm;
-  if (is_hexagonal) result.border_overcut_mm3 = border_overcut_mm3(workpiece, result.elements);
-  if (job.substrate) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
+  if (is_hexagonal) find_overcut(workpiece, result);
+  if (job.substrate || has_errors(job)) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
   result.removed_volume_mm3 += result.border_overcut_mm3;
   if (job.strategy == Strategy::dmc)
     cut_with_nose(workpiece, check, poses, result);

@@ -59,6 +59,10 @@ struct Verification {
   double border_overcut_mm3 = 0.0;
   /// By which cuts of neighbours go under an element's rims where these stand at different heights, as they must.
   double rim_overcut_um_max = 0.0;
+  /// Of a job of zones: what cavities take of elements of other zones at borders, as they must, and of how many.
+  double zone_overcut_mm2 = 0.0;
+  double zone_overcut_um_max = 0.0;
+  std::int64_t elements_overcut = 0;
   double removed_volume_mm3 = 0.0;
   double free_tool_length_mm = 0.0;  ///< that the tool needs to keep its holder clear of the blank
   ProgramTime time;

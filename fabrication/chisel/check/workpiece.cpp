@@ -12,18 +12,15 @@ Workpiece3d workpiece_of(const Job& job, const Machine& machine, double toleranc
   workpiece.job = &job;
   workpiece.machine = &machine;
   workpiece.tolerance_mm = tolerance_nm / kNmPerMm;
-  const geometry::Element size = blank_element(job);
-  const auto* const prism = std::get_if<geometry::RtpElement>(&size);
-  const std::vector<CutElement> elements = cut_elements(job);
-  const double stock = stock_mm(job, elements);
+  workpiece.elements = cut_elements(job);
+  const double stock = stock_mm(job, workpiece.elements);
   std::map<std::pair<bool, std::int32_t>, std::size_t> groups;
-  for (const CutElement& element : elements) {
-    Groove groove = prism != nullptr ? groove_of(element, *prism, stock) : cavity_of(element, size, stock);
+  for (const CutElement& element : workpiece.elements) {
+    Groove groove = groove_of(element, job, stock);
     const auto [group, is_new] = groups.try_emplace({element.rotated, element.orientation}, groups.size());
     if (is_new) workpiece.predictions.push_back(predict(machine, groove, job.tool.width_mm));
     groove.group = group->second;
     workpiece.grooves.push_back(std::move(groove));
-    workpiece.centres_mm.push_back(element.centre_mm);
   }
   return workpiece;
 }

@@ -17,8 +17,8 @@ struct Workpiece3d {
   const Job* job = nullptr;
   const Machine* machine = nullptr;
   std::vector<Groove> grooves;
-  std::vector<Prediction> predictions;     ///< for elements that stand alike: Groove::group
-  std::vector<geometry::Vec2> centres_mm;  ///< of the elements, as CutElement has them
+  std::vector<Prediction> predictions;  ///< for elements that stand alike: Groove::group
+  std::vector<CutElement> elements;
   double tolerance_mm = 1e-5;
 
   const Prediction& prediction(std::size_t element) const { return predictions[grooves[element].group]; }

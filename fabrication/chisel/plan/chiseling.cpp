@@ -13,27 +13,14 @@
 #include "core/number_format.h"
 #include "fabrication/chisel/plan/process_facts.h"
 #include "fabrication/chisel/plan/routines.h"
+#include "fabrication/job/cube_corner.h"
 #include "fabrication/job/v_tool.h"
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
 namespace {
 
 using geometry::Vec3;
-
-/// Azimuth of dihedral edge 0, 1 or 2 in the workpiece frame, whose x runs along y of the part.
-double edge_azimuth_deg(bool rotated, int edge) {
-  return 120.0 * edge - 90.0 + (rotated ? 180.0 : 0.0);
-}
-
-Vec3 horizontal(double azimuth_deg) {
-  const double azimuth = Angle::from_deg(azimuth_deg).rad();
-  return {std::cos(azimuth), std::sin(azimuth), 0.0};
-}
-
-/// In the middle between its two edges.
-double facet_azimuth_deg(const FacetChoice& facet) {
-  return edge_azimuth_deg(facet.rotated, facet.facet - 1) + 60.0;
-}
 
 Vec3 words_of(const Machine& machine, const Vec3& point_mm, const RotaryPose& pose) {
   const AxisPositions axes = inverse(machine, point_mm, pose);
@@ -50,45 +37,37 @@ Vec3 in_words(const Machine& machine, const RotaryPose& pose, const Vec3& normal
 
 }  // namespace
 
-Vec3 cube_facet_normal(const FacetChoice& facet) {
-  return (std::numbers::sqrt2 * -horizontal(facet_azimuth_deg(facet)) + Vec3::UnitZ()) / std::numbers::sqrt3;
-}
-
-std::array<Vec3, 2> cube_facet_edges(const FacetChoice& facet) {
-  const auto edge = [&](int k) -> Vec3 {
-    const Vec3 outwards = horizontal(edge_azimuth_deg(facet.rotated, k));
-    return (std::numbers::sqrt2 * outwards + Vec3::UnitZ()) / std::numbers::sqrt3;
-  };
-  return {edge(facet.facet - 1), edge(facet.facet)};
-}
-
 double chiseling_allowance_mm(const Job& job) {
   return 1e-3 * job.process.finishing_cuts * job.process.finishing_depth_um;
 }
 
-double chiseling_across_mm(const Job& job, double stock_mm) {
-  // The blank's face is 1 / sqrt(3) of the depth from the apex of each facet's normal.
-  const double across_mm =
-      (cavity_depth_mm(blank_element(job)) + stock_mm) / std::numbers::sqrt3 - chiseling_allowance_mm(job);
+double chiseling_across_mm(const Job& job, std::size_t zone, double stock_mm) {
+  // A layer's apex comes to the blank's face before its facets do.
+  const CubeCorner corner = blank_corner(job, zone);
+  const double across_mm = (corner.depth_mm + stock_mm) / corner.layer_rise() - chiseling_allowance_mm(job);
   check_allowance(job, across_mm);
   return across_mm;
 }
 
-int chiseling_layers(const Job& job, double stock_mm) {
-  return whole_cuts(job, chiseling_across_mm(job, stock_mm) / (1e-3 * job.process.roughing_depth_um));
+int chiseling_layers(const Job& job, std::size_t zone, double stock_mm) {
+  return whole_cuts(job, chiseling_across_mm(job, zone, stock_mm) / (1e-3 * job.process.roughing_depth_um));
 }
 
 CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
                            const Stance& stance) {
   const InputLocation where = job.where("machine");
-  const double azimuth_deg = facet_azimuth_deg(facet);
-  const Vec3 normal = stance.turn * cube_facet_normal(facet);
   CuttingPose pose;
+  pose.corner = blank_corner(job, facet.zone, facet.rotated);
+  const Vec3& upright = pose.corner.normals[static_cast<std::size_t>(facet.facet - 1)];
+  const Vec3 normal = stance.turn * upright;
+  // In the middle between its edges, but for errors and the lean of a base.
+  const double azimuth_deg = 120.0 * facet.facet - 150.0 + (facet.rotated ? 180.0 : 0.0) +
+                             (job.zones.empty() ? 0.0 : job.zones[facet.zone].rotation_deg);
   pose.facet = facet;
   pose.orientation = stance.orientation;
   pose.turn = stance.turn;
-  pose.root = pose.turn * Vec3::UnitZ().cross(horizontal(azimuth_deg));
-  const double tilt_deg = Angle::from_rad(std::asin(1.0 / std::numbers::sqrt3)).deg();
+  pose.root = pose.turn * upright.cross(Vec3::UnitZ()).normalized();
+  const double tilt_deg = Angle::from_rad(std::asin(upright.z())).deg();
   const RotaryPose near{machine.a.sign.value * tilt_deg, -machine.c.sign.value * azimuth_deg};
   const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
   pose.root_tilt = solved.root_tilt;
@@ -97,7 +76,7 @@ CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetCh
                    machine.increments.rotary_units);
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
   check_tilt(machine, pose.rounded.a_deg, where, stance.who());
-  pose.section.depth_mm = cavity_depth_mm(blank_element(job));
+  pose.section.depth_mm = pose.corner.depth_mm;
   pose.section.stock_mm = stance.stock_mm;
   pose.section.start_mm = stance.start_mm;
   pose.section.apex = Angle::from_deg(90.0);
@@ -108,21 +87,19 @@ CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetCh
 
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
                           double feed_mm_per_min) {
-  const auto edges = cube_facet_edges(pose.facet);
-  const double up_axis = edges[0].z();
-  const Vec3 down = pose.turn * edges[0];
-  const Vec3 up = pose.turn * edges[1];
-  // From the design's apex to that of this layer, along the axis.
-  const double tip_mm = std::numbers::sqrt3 * left_mm;
-  const Vec3 tip = pose.turn * Vec3(0.0, 0.0, tip_mm);
-  const double to_go_mm = (pose.section.depth_mm + pose.section.start_mm + job.process.clearance_mm - tip_mm) / up_axis;
+  const CubeCorner& corner = pose.corner;
+  const auto facet = static_cast<std::size_t>(pose.facet.facet - 1);
+  const Vec3 tip = corner.apex_over(left_mm * Vec3::Ones());
+  const double to_go_mm = pose.section.depth_mm + pose.section.start_mm + job.process.clearance_mm - tip.z();
   const Vec3 zero = words_of(machine, Vec3::Zero(), pose.rounded);
   const auto rounded = [&](const Vec3& from_apex) {
-    return rounded_words(words_of(machine, from_apex, pose.rounded) - zero, pose.rounded_along, pose.section.step_nm);
+    return rounded_words(words_of(machine, pose.turn * from_apex, pose.rounded) - zero, pose.rounded_along,
+                         pose.section.step_nm);
   };
-  const Place start = rounded(tip + to_go_mm * down);
+  const auto up_edge = [&](const Vec3& edge) -> Vec3 { return tip + to_go_mm / edge.z() * edge; };
+  const Place start = rounded(up_edge(corner.edges[facet]));
   const Place middle = rounded(tip);
-  const Place end = rounded(tip + to_go_mm * up);
+  const Place end = rounded(up_edge(corner.edges[(facet + 1) % 3]));
   Routine routine;
   routine.start = start;
   std::vector<Step>& steps = routine.subroutine.steps;
@@ -137,15 +114,16 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
   if (stance.element < 0) return;
   const InputLocation where = job.where("machine");
   const VToolEdges edges = v_tool_edges(job.tool);
+  const double error_deg = poses[0].corner.largest_error_deg();
   std::array<Vec3, 3> spines;
   for (std::size_t k = 0; k < 3; ++k) {
     // The element is turned in the tool's view, so the tool the other way in the element's.
     const Eigen::AngleAxisd turn(-poses[k].root_tilt.rad(), Vec3::UnitZ());
     const auto azimuth_deg = [](const Vec3& v) { return Angle::from_rad(std::atan2(v.y(), v.x())).deg(); };
-    double room_deg = 90.0;
+    double room_deg = 90.0 - error_deg;
     for (const Vec3& edge : {edges.leading, edges.trailing, edges.spine}) {
       const double at_deg = azimuth_deg(edge);
-      room_deg = std::min(room_deg, poses[k].root_tilt.rad() > 0.0 ? at_deg : 90.0 - at_deg);
+      room_deg = std::min(room_deg, (poses[k].root_tilt.rad() > 0.0 ? at_deg : 90.0 - at_deg) - error_deg);
     }
     const double turned_deg = std::abs(poses[k].root_tilt.deg());
     if (turned_deg > room_deg)
@@ -161,11 +139,11 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
     const double covered_deg =
         Angle::from_rad(std::atan2(along_second.z(), along_second.x()) + std::atan2(along_first.z(), along_first.y()))
             .deg();
-    if (covered_deg < 90.0)
+    if (covered_deg < 90.0 + error_deg)
       throw InputError(where,
                        fmt::format("{}the tool stands so in facets {} and {} that a fin of {} degrees would stay "
                                    "between its cuts, 0 are allowed: tool.wedge_deg must be larger",
-                                   stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 - covered_deg, 3)));
+                                   stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 + error_deg - covered_deg, 3)));
   }
   double most_turned = 0.0;
   for (const CuttingPose& pose : poses) most_turned = std::max(most_turned, std::abs(pose.root_tilt.rad()));
@@ -181,21 +159,47 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
                     stance.who(), fixed(std::ceil(least_mm * 1e6) * 1e-6, 6), shortest(job.tool.width_mm)));
 }
 
+namespace {
+
+std::string errors_text(const char* what, const std::array<double, 3>& arcmin) {
+  if (arcmin == std::array<double, 3>{}) return "";
+  return fmt::format(", {} {} {} {} arcmin", what, shortest(arcmin[0]), shortest(arcmin[1]), shortest(arcmin[2]));
+}
+
+/// What is cut of a zone, for people.
+std::string elements_text(const Job& job, std::size_t zone, std::size_t elements) {
+  const geometry::Element element = blank_element(job, zone);
+  const geometry::AngleErrors errors = angle_errors_of(job, zone);
+  const double turn_deg = job.zones.empty() ? 0.0 : job.zones[zone].rotation_deg;
+  return fmt::format("{} {} cube corners, apex {} mm deep, edges {} mm to the face{}{}{}", elements,
+                     std::holds_alternative<geometry::HexagonalCube>(element) ? "hexagonal" : "triangular",
+                     fixed(geometry::element_depth_mm(element), 6), fixed(cavity_edge_mm(element), 6),
+                     turn_deg == 0.0 ? "" : fmt::format(", turned by {} deg", shortest(turn_deg)),
+                     errors_text("dihedral errors", errors.dihedral_error_arcmin),
+                     errors_text("facet tilts", errors.facet_tilt_arcmin));
+}
+
+}  // namespace
+
+std::string zone_description(const Job& job, std::size_t zone) {
+  return fmt::format("Zone {}: {}", zone + 1, elements_text(job, zone, job.zones[zone].apexes_mm.size()));
+}
+
 ProcessFacts chiseling_facts(const Job& job, double stock_mm, std::size_t elements) {
-  const geometry::Element element = blank_element(job);
-  const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(element);
   ProcessFacts facts;
-  facts.cuts_per_facet = chiseling_layers(job, stock_mm);
   facts.passes_mm = {0.0};
   facts.array_title = "Cube corner array";
-  facts.description = {
-      fmt::format("{} {} cube corners, apex {} mm deep, edges {} mm to the face", elements,
-                  is_hexagonal ? "hexagonal" : "triangular", fixed(cavity_depth_mm(element), 6),
-                  fixed(cavity_edge_mm(element), 6)),
-      zero_text(job) + ", dihedral edges along -Y and 120 deg apart at B0 C0. Controller transformation off",
+  for (std::size_t zone = 0; zone < zone_count(job); ++zone)
+    facts.cuts_per_facet = std::max(facts.cuts_per_facet, chiseling_layers(job, zone, stock_mm));
+  if (job.zones.empty()) facts.description.push_back(elements_text(job, 0, elements));
+  for (std::size_t zone = 0; zone < job.zones.size(); ++zone) facts.description.push_back(zone_description(job, zone));
+  facts.description.push_back(
+      fmt::format("{}, dihedral edges along -Y and 120 deg apart at B0 C0{}. Controller transformation off",
+                  zero_text(job), job.zones.empty() ? "" : " but for turns of zones"));
+  facts.description.push_back(
       fmt::format("Tool: V of {} deg, width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: the tip",
                   shortest(job.tool.nose_angle_deg), shortest(job.tool.width_mm), shortest(job.tool.wedge_deg),
-                  shortest(job.tool.clearance_deg))};
+                  shortest(job.tool.clearance_deg)));
   return facts;
 }
 

@@ -12,18 +12,14 @@
 
 namespace retrace::fabrication {
 
-/// Outward normal of facet 1, 2 or 3 of a cube corner, in the workpiece frame.
-geometry::Vec3 cube_facet_normal(const FacetChoice& facet);
-/// Its dihedral edges, from the apex outwards: down the first, up the second.
-std::array<geometry::Vec3, 2> cube_facet_edges(const FacetChoice& facet);
-
 /// What layers of roughing leave on all facets for the finishing layers.
 double chiseling_allowance_mm(const Job& job);
-/// What all layers of roughing take along the normal of each facet. \throw InputError if finishing leaves nothing
-double chiseling_across_mm(const Job& job, double stock_mm);
+/// What all layers of roughing take along the normal of each facet of a zone's elements.
+/// \throw InputError if finishing leaves nothing
+double chiseling_across_mm(const Job& job, std::size_t zone, double stock_mm);
 /// Roughing layers: nested cube corners, each `roughing_depth_um` further along the normals of all three facets.
 /// \param stock_mm by which the blank stands over the rims
-int chiseling_layers(const Job& job, double stock_mm = 0.0);
+int chiseling_layers(const Job& job, std::size_t zone = 0, double stock_mm = 0.0);
 
 /// The pose, with C as near to `previous_c_deg` as its limits let it. \throw InputError naming axis and limits if the
 /// machine cannot take it
@@ -38,6 +34,9 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
 /// Down one edge and up the other of a cube corner that leaves `left_mm` on all facets.
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
                           double feed_mm_per_min);
+
+/// What is cut of a zone, for people. \pre a job of zones
+std::string zone_description(const Job& job, std::size_t zone);
 
 /// Words in whole steps: each rounded by itself where `along` is 0, else that of the eight neighbours with the least
 /// error along it.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/elements/element_cells.h"
 
@@ -22,8 +23,11 @@ ClearWay::ClearWay(const Job& job, const Machine& machine)
       face_(job),
       half_edge_mm_(job.strategy == Strategy::dmc ? 0.0 : 0.5 * job.tool.width_mm),
       clearance_mm_(kShare * job.process.clearance_mm) {
-  const geometry::Vec2 size = geometry::bounding_box(geometry::aperture_outline(blank_element(job))).size();
-  step_mm_ = kStepShare * size.minCoeff();
+  double least_mm = std::numeric_limits<double>::infinity();
+  for (std::size_t zone = 0; zone < zone_count(job); ++zone)
+    least_mm = std::min(least_mm,
+                        geometry::bounding_box(geometry::aperture_outline(blank_element(job, zone))).size().minCoeff());
+  step_mm_ = kStepShare * least_mm;
 }
 
 double ClearWay::least_height_mm(const Place& at, const CuttingPose& pose) const {

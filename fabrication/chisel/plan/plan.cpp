@@ -109,6 +109,7 @@ class ProgramMaker {
         facts_(facts),
         starts_(starts),
         plan_(plan),
+        has_kinds_(job.substrate || !job.zones.empty()),
         way_(job, machine),
         account_(job) {
     for (const Subroutine& subroutine : plan.subroutines) routine_times_.push_back(routine_time(machine, subroutine));
@@ -166,7 +167,7 @@ class ProgramMaker {
   void begin() {
     program_ = {};
     program_seconds_ = 0.0;
-    if (!job_.substrate) program_.subroutines = plan_.subroutines;
+    if (!has_kinds_) program_.subroutines = plan_.subroutines;
     program_.tilt_letter = machine_.tilt_letter();
     program_.control = machine_.control;
     program_.has_mist = program_.needs_mist = job_.process.mist;
@@ -378,7 +379,7 @@ class ProgramMaker {
     spend(&stage, &TimeShares::retract_s, routine.retract_s);
     go_to(at_, linear_words(visit.start + reach.end));
     program_.items.emplace_back(visit);
-    if (job_.substrate) used_.insert(visit.subroutine);
+    if (has_kinds_) used_.insert(visit.subroutine);
   }
 
   void spend(Stage* stage, double TimeShares::*on, double seconds) {
@@ -389,7 +390,7 @@ class ProgramMaker {
   }
 
   bool is_full(const Stage& stage) const {
-    if (job_.substrate && is_out_of_numbers(stage)) return true;
+    if (has_kinds_ && is_out_of_numbers(stage)) return true;
     if (!options_.split_hours) return false;
     constexpr double kToLeaveS = 30.0;  // for the way home
     return program_seconds_ + routine_times_[stage.subroutine].total_s() + kToLeaveS >
@@ -402,7 +403,7 @@ class ProgramMaker {
     return used_.size() >= kMostSubroutines && !used_.contains(stage.subroutine);
   }
 
-  /// The subroutines that the program calls alone: of a base there is one for each tilt of its elements.
+  /// The subroutines that the program calls alone: there are some for each tilt of elements on a base, and each zone.
   void add_used_subroutines() {
     std::vector<Subroutine> left;
     std::map<std::uint32_t, std::uint32_t> places;
@@ -439,7 +440,7 @@ class ProgramMaker {
     raise();
     turn(0, 0);
     program_.header = header();
-    if (job_.substrate) add_used_subroutines();
+    if (has_kinds_) add_used_subroutines();
     used_.clear();
     plan_.program_times_s.push_back(program_seconds_);
     plan_.programs.push_back(std::move(program_));
@@ -467,9 +468,10 @@ class ProgramMaker {
                                       shortest(p.finishing_depth_um), shortest(p.clearance_mm))));
     constexpr std::size_t kMostPoses = 24;
     for (const CuttingPose& pose : std::span(plan_.poses).first(std::min(kMostPoses, plan_.poses.size())))
-      lines.push_back(fmt::format("Pose: facet {}{} {}{:.7f} C{:.7f}", pose.facet.facet,
-                                  pose.facet.rotated ? " of turned elements" : "", tilt, pose.rounded.a_deg,
-                                  pose.rounded.c_deg));
+      lines.push_back(fmt::format("Pose: facet {}{}{} {}{:.7f} C{:.7f}", pose.facet.facet,
+                                  pose.facet.rotated ? " of turned elements" : "",
+                                  job_.zones.empty() ? "" : fmt::format(" of zone {}", pose.facet.zone + 1), tilt,
+                                  pose.rounded.a_deg, pose.rounded.c_deg));
     if (plan_.poses.size() > kMostPoses)
       lines.push_back(fmt::format("And {} poses more, each where it begins", plan_.poses.size() - kMostPoses));
     const auto point = [](const RotaryAxis& axis) {
@@ -515,6 +517,7 @@ class ProgramMaker {
   bool has_visits_ = false;   ///< of the program
   bool has_roughed_ = false;  ///< the visit before, since the program began or stopped
   int stops_ = 0;             ///< of the program
+  bool has_kinds_ = false;    ///< elements stand on a base or in zones, in poses and by subroutines of their own
   ClearWay way_;
   EdgeAccount account_;
   std::set<std::uint32_t> used_;  ///< subroutines that the program calls
@@ -574,8 +577,10 @@ Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& option
   plan.cuts_per_facet = facts.cuts_per_facet;
   const std::vector<RoutineStart> starts = add_stages(job, machine, plan);
   plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);
-  plan.aperture_area_mm2 =
-      geometry::area(geometry::aperture_outline(blank_element(job))) * static_cast<double>(plan.elements.size());
+  for (std::size_t zone = 0; zone < zone_count(job); ++zone)
+    plan.aperture_area_mm2 +=
+        geometry::area(geometry::aperture_outline(blank_element(job, zone))) *
+        static_cast<double>(job.zones.empty() ? plan.elements.size() : job.zones[zone].apexes_mm.size());
   choose_stages(plan, options);
   ProgramMaker(job, machine, options, facts, starts, plan).run();
   return plan;

@@ -8,6 +8,7 @@
 
 #include "core/angle.h"
 #include "core/error.h"
+#include "fabrication/job/cube_corner.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/program/program.h"
@@ -20,6 +21,7 @@ namespace retrace::fabrication {
 struct FacetChoice {
   bool rotated = false;
   int facet = 1;
+  std::size_t zone = 0;  ///< of the job
 };
 
 /// What the tool sees of an element in a pose: the section across the root line at its middle, in words of the linear
@@ -52,6 +54,7 @@ struct CuttingPose {
   FacetChoice facet;
   std::int32_t orientation = 0;                        ///< of the elements that are cut in it
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< theirs
+  CubeCorner corner;                                   ///< that is cut, unturned; of micro chiseling
   RotaryUnits a = 0;                                   ///< as written, after rounding
   RotaryUnits c = 0;
   RotaryPose rounded;   ///< the same in degrees: what positions are computed from
@@ -81,6 +84,7 @@ void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& wh
 struct Stance {
   std::int32_t orientation = 0;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  std::size_t zone = 0;
   double stock_mm = 0.0;
   double start_mm = 0.0;      ///< the same for a start that keeps the clearance
   std::int64_t element = -1;  ///< one of them, for messages; -1: they stand on a flat blank

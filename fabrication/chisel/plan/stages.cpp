@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -59,28 +60,32 @@ class StageMaker {
       Stance stance;
       stance.orientation = element.orientation;
       stance.turn = element.turn;
+      stance.zone = element.zone;
       stance.stock_mm = plan_.stock_mm;
       stance.start_mm = start_mm;
       if (job_.substrate) stance.element = static_cast<std::int64_t>(k);
       groups_.try_emplace({element.rotated, element.orientation}, stance);
-      has_tilts_ = has_tilts_ || element.orientation > 0;
+      has_tilts_ = has_tilts_ || (job_.substrate && element.orientation > 0);
     }
   }
 
   /// Layer by layer, all elements on one facet, then on the next: chips come off with the third.
   void chisel() {
-    has_tilts_ ? add_poses_by_facet() : add_poses_by_group();
+    if (!job_.zones.empty())
+      add_poses_by_turn();
+    else
+      has_tilts_ ? add_poses_by_facet() : add_poses_by_group();
     const Process& process = job_.process;
     add_layers("layer", plan_.cuts_per_facet, process.roughing_feed_mm_per_min);
     add_layers("finishing", process.finishing_cuts, process.finishing_feed_mm_per_min);
   }
 
   /// What stays over the design on the facets of a layer, or of a finishing cut.
-  double left_mm(std::string_view what, int cut, int cuts) const {
+  double left_mm(std::string_view what, int cut, int cuts, std::size_t zone = 0) const {
     if (what == "finishing") return 1e-3 * job_.process.finishing_depth_um * (cuts - cut);
     const bool is_dmc = job_.strategy == Strategy::dmc;
     const double across_mm =
-        is_dmc ? chiseling_across_mm(job_, plan_.stock_mm) : roughing_across_mm(job_, plan_.stock_mm);
+        is_dmc ? chiseling_across_mm(job_, zone, plan_.stock_mm) : roughing_across_mm(job_, plan_.stock_mm);
     // The second plunge of the first shell takes least: what the first one's rake face has left of the triangle.
     double share = 1.0;
     if (!is_dmc) {
@@ -97,7 +102,8 @@ class StageMaker {
   }
 
   CuttingPose next_pose(const ElementGroup& group, int facet) {
-    CuttingPose pose = chiseling_pose(job_, machine_, {group.first, facet}, previous_c_deg_, groups_.at(group));
+    const Stance& stance = groups_.at(group);
+    CuttingPose pose = chiseling_pose(job_, machine_, {group.first, facet, stance.zone}, previous_c_deg_, stance);
     previous_c_deg_ = pose.rounded.c_deg;
     return pose;
   }
@@ -122,25 +128,74 @@ class StageMaker {
     }
   }
 
+  /// C turns one way from pose to pose, over all but the widest gap between two, so that the facets of every element
+  /// follow each other as those of a single zone do: chips at dihedral edges would be thicker else.
+  void add_poses_by_turn() {
+    std::vector<CuttingPose> poses;
+    for (const auto& [group, stance] : groups_)
+      for (int facet = 1; facet <= 3; ++facet) poses.push_back(next_pose(group, facet));
+    const double sense = machine_.c.sign.value;
+    const auto turn_deg = [&](const CuttingPose& pose) {
+      const double c_deg = -sense * pose.rounded.c_deg;
+      return c_deg - 360.0 * std::floor(c_deg / 360.0);
+    };
+    std::stable_sort(poses.begin(), poses.end(),
+                     [&](const CuttingPose& a, const CuttingPose& b) { return turn_deg(a) < turn_deg(b); });
+    std::size_t first = 0;
+    double widest_deg = turn_deg(poses.front()) + 360.0 - turn_deg(poses.back());
+    constexpr double kSameDeg = 1e-6;
+    for (std::size_t k = 1; k < poses.size(); ++k)
+      if (const double gap_deg = turn_deg(poses[k]) - turn_deg(poses[k - 1]); gap_deg > widest_deg + kSameDeg) {
+        widest_deg = gap_deg;
+        first = k;
+      }
+    std::rotate(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(first), poses.end());
+    // As near to 0 as all of them have room between the limits of C.
+    const double begin_deg = poses.front().rounded.c_deg;
+    const double span_deg = -sense * (360.0 - widest_deg);
+    double farthest_deg = std::numeric_limits<double>::infinity();
+    previous_c_deg_ = 0.0;
+    for (const double turns : {0.0, 1.0, -1.0, 2.0, -2.0}) {
+      const double from_deg = begin_deg + 360.0 * turns;
+      const double to_deg = from_deg + span_deg;
+      const Interval& limits = machine_.c.limits_deg.value;
+      const double far_deg = std::max(std::abs(from_deg), std::abs(to_deg));
+      if (!limits.contains(from_deg) || !limits.contains(to_deg) || far_deg >= farthest_deg - kSameDeg) continue;
+      farthest_deg = far_deg;
+      previous_c_deg_ = from_deg;
+    }
+    for (const CuttingPose& pose : poses)
+      plan_.poses.push_back(next_pose({pose.facet.rotated, pose.orientation}, pose.facet.facet));
+  }
+
+  /// Zones, of which one may need more cuts than another, all end together.
   void add_layers(std::string_view what, int cuts, double feed_mm_per_min) {
     for (int cut = 1; cut <= cuts; ++cut)
       for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
-        Stage stage;
-        stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, plan_.poses[pose].facet.facet, group_name(pose));
-        stage.roughs = what == "layer";
-        stage.cut = cut;
-        stage.cuts = cuts;
-        stage.left_mm = left_mm(what, cut, cuts);
-        Routine routine = chiseling_routine(job_, machine_, plan_.poses[pose], stage.left_mm, feed_mm_per_min);
-        routine.subroutine.title = fmt::format("{}: down one edge, up the other", stage.name);
-        add(std::move(stage), pose, std::move(routine));
+        const bool is_one_of_many = what == "layer" && !job_.zones.empty();
+        const int own_cuts =
+            is_one_of_many ? chiseling_layers(job_, plan_.poses[pose].facet.zone, plan_.stock_mm) : cuts;
+        if (cut > cuts - own_cuts) add_layer(what, cut - (cuts - own_cuts), own_cuts, pose, feed_mm_per_min);
       }
+  }
+
+  void add_layer(std::string_view what, int cut, int cuts, std::size_t pose, double feed_mm_per_min) {
+    Stage stage;
+    stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, plan_.poses[pose].facet.facet, group_name(pose));
+    stage.roughs = what == "layer";
+    stage.cut = cut;
+    stage.cuts = cuts;
+    stage.left_mm = left_mm(what, cut, cuts, plan_.poses[pose].facet.zone);
+    Routine routine = chiseling_routine(job_, machine_, plan_.poses[pose], stage.left_mm, feed_mm_per_min);
+    routine.subroutine.title = fmt::format("{}: down one edge, up the other", stage.name);
+    add(std::move(stage), pose, std::move(routine));
   }
 
   /// What tells the elements of a pose apart in the names of its stages.
   std::string group_name(std::size_t pose) const {
     std::string name = plan_.poses[pose].facet.rotated ? "-turned" : "";
     if (has_tilts_) name += fmt::format("-tilt-{}", plan_.poses[pose].orientation + 1);
+    if (!job_.zones.empty()) name += fmt::format("-zone-{}", plan_.poses[pose].facet.zone + 1);
     return name;
   }
 

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/angle.h"
 #include "core/atomic_file.h"
@@ -16,6 +19,7 @@
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
+#include "fabrication/job/zone_cells.h"
 #include "geometry/elements/whole_elements.h"
 #include "geometry/io/substrate_rows.h"
 #include "geometry/part/substrate_part.h"
@@ -25,6 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using namespace schema;
+using geometry::AngleErrors;
 using geometry::Arrangement;
 using geometry::ArrayLayout;
 using geometry::RtpElement;
@@ -38,9 +43,11 @@ constexpr Words kElements = {"rtp", "hexagonal_icc", "triangular_icc"};
 /// From a tenth of a micrometre to ten metres, in which nanometres still are whole numbers of 64 bits.
 constexpr Kind kSize = Number{{.low = 1e-4, .high = 1e4}};
 constexpr Kind kGap = Number{{.low = 0.0, .high = 1e4}};
+constexpr Kind kThreeErrors = Numbers{3, {.low = -300.0, .high = 300.0}};
 constexpr Kind kWedge = Number{{.low = 10.0, .high = 80.0}};
 /// Keeps the memory of a plan within reason: about 1 KiB an element.
 constexpr double kMostElements = 2e6;
+constexpr std::size_t kMostZoneElements = 2'000'000;
 /// A tool this much wider than the element fits it all the same.
 constexpr double kFitToleranceMm = 1e-6;
 constexpr std::size_t kMostChips = 100;
@@ -81,6 +88,45 @@ Value get_tiled(const ArrayLayout& array) {
 template <Arrangement tiled>
 void set_tiled(ArrayLayout& array, const Value& value) {
   array.arrangement = std::get<double>(value) == 0.0 ? Arrangement::single : tiled;
+}
+
+// Errors of angle, which a file names where there are some.
+
+using Three = std::array<double, 3>;
+
+Value three_numbers(const Three& numbers) {
+  return std::vector<double>(numbers.begin(), numbers.end());
+}
+Three three_of(const Value& value) {
+  const auto& numbers = std::get<std::vector<double>>(value);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+template <auto member>
+Value get_errors(const Job& job) {
+  return job.angle_errors.*member == Three{} ? Value() : three_numbers(job.angle_errors.*member);
+}
+template <auto member>
+void set_errors(Job& job, const Value& value) {
+  job.angle_errors.*member = three_of(value);
+}
+template <auto member>
+Value get_own_errors(const CutZone& zone) {
+  return zone.*member ? three_numbers(*(zone.*member)) : Value();
+}
+template <auto member>
+void set_own_errors(CutZone& zone, const Value& value) {
+  zone.*member = three_of(value);
+}
+
+Value get_apexes(const CutZone& zone) {
+  std::vector<std::vector<double>> apexes;
+  for (const geometry::Vec2& apex : zone.apexes_mm) apexes.push_back({apex.x(), apex.y()});
+  return apexes;
+}
+void set_apexes(CutZone& zone, const Value& value) {
+  zone.apexes_mm.clear();
+  for (const auto& apex : std::get<std::vector<std::vector<double>>>(value))
+    zone.apexes_mm.emplace_back(apex[0], apex[1]);
 }
 
 bool has_edge_life(const Tool& tool) {
@@ -126,7 +172,24 @@ constexpr Row kElementRows[] = {
     {"apex_angle_deg", Number{{.low = 60.0, .high = 120.0}}, 90.0, "Included angle of the two facets.",
      access_in<&Job::element, &RtpElement::apex_angle_deg>, kOfPrisms},
     {"aperture_mm", kSize, kRequired, "Diameter of the circle round the aperture, of the part.",
-     access_by<get_aperture, set_aperture>, kOfCubes}};
+     access_by<get_aperture, set_aperture>, kOfCubes},
+    {"dihedral_error_arcmin", kThreeErrors, kNone,
+     "By how much the angles between facets exceed 90 degrees, on purpose: three, as in a [design](design_file.md).",
+     access_by<get_errors<&AngleErrors::dihedral_error_arcmin>, set_errors<&AngleErrors::dihedral_error_arcmin>>,
+     kOfCubes},
+    {"facet_tilt_arcmin", kThreeErrors, kNone, "By how much each facet is turned open besides, likewise.",
+     access_by<get_errors<&AngleErrors::facet_tilt_arcmin>, set_errors<&AngleErrors::facet_tilt_arcmin>>, kOfCubes}};
+constexpr Row kZoneRows[] = {
+    {"aperture_mm", kSize, kNone, "Where it is not that of `[element]`.", access_given<&CutZone::aperture_mm>},
+    {"dihedral_error_arcmin", kThreeErrors, kNone, "Where they are not those of `[element]`.",
+     access_by<get_own_errors<&CutZone::dihedral_error_arcmin>, set_own_errors<&CutZone::dihedral_error_arcmin>>},
+    {"facet_tilt_arcmin", kThreeErrors, kNone, "Likewise.",
+     access_by<get_own_errors<&CutZone::facet_tilt_arcmin>, set_own_errors<&CutZone::facet_tilt_arcmin>>},
+    {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
+     "Of each element about its axis, counter-clockwise seen from the light.", access<&CutZone::rotation_deg>},
+    {"apexes_mm", NumberRows{2, {.low = 0.0, .high = 1e4}, 1, kMostZoneElements, "places"}, kRequired,
+     "`[[x, y], ...]`: where its elements have their apexes, in the plan of the part from its lower left corner.",
+     access_by<get_apexes, set_apexes>}};
 constexpr Row kArrayRows[] = {
     {"arrangement", Word{kArrangements}, kRequired, "Of prisms, as in a [design](design_file.md).",
      access<&ArrayLayout::arrangement>, kOfPrisms},
@@ -214,6 +277,13 @@ const Table kJobTables[] = {
      .meaning = "How elements are laid out, at most 2,000,000 of them.",
      .rows = kArrayRows,
      .child = child<&Job::array>},
+    {.name = "zone",
+     .meaning = "What is cut in place of the array, of cube corners: elements of one kind at places of their own. Of "
+                "`[array]` the lengths alone count then.",
+     .rows = kZoneRows,
+     .child = children<&Job::zones>,
+     .presence = Presence::list,
+     .when = kOfVTools},
     {.name = "base",
      .meaning = "What the elements stand on, in place of z = 0.",
      .rows = geometry::substrate_rows().first(geometry::substrate_rows().size() - 1),
@@ -278,6 +348,24 @@ void check_chisel(const Job& job, const Refuse& refuse) {
                        fixed(side_limit_deg, 3), shortest(job.tool.side_clearance_deg)));
 }
 
+void check_zones(const Job& job, const Refuse& refuse) {
+  if (job.zones.empty()) return;
+  const ArrayLayout& array = job.array;
+  if (array.arrangement == Arrangement::single)
+    refuse("array.arrangement", "must not be \"single\" where [[zone]] says what is cut, got \"single\"");
+  for (const auto& [key, is_given] : {std::pair("array.x_offset_mm", array.x_offset_mm != 0.0),
+                                      {"array.y_offset_mm", array.y_offset_mm != 0.0},
+                                      {"array.pattern", !array.pattern.empty()},
+                                      {"base.kind", job.substrate.has_value()}})
+    if (is_given) refuse(key, "not allowed together with [[zone]]");
+  std::size_t elements = 0;
+  for (const CutZone& zone : job.zones) elements += zone.apexes_mm.size();
+  if (elements > kMostZoneElements)
+    refuse("zone", fmt::format("must have at most {} elements in all, got {}", kMostZoneElements, elements));
+  if (const std::optional<ZoneMisfit> misfit = misfit_of_zones(job))
+    refuse(path_in(path_of_entry("zone", misfit->zone), "apexes_mm"), misfit->text);
+}
+
 void check_row(const std::string& row, std::size_t k, std::int64_t columns, const Refuse& refuse) {
   if (static_cast<std::int64_t>(row.size()) != columns)
     refuse("array.pattern", fmt::format("must have {} cells in every row, as many as the array, got {} in row {}",
@@ -301,7 +389,7 @@ void check_pattern(const Job& job, const Refuse& refuse) {
 
 void check_room(const Job& job, const Refuse& refuse) {
   const ArrayLayout& array = job.array;
-  if (array.arrangement == Arrangement::single) return;
+  if (array.arrangement == Arrangement::single || !job.zones.empty()) return;
   if (const double elements = geometry::element_estimate(array, job.element); elements > kMostElements)
     refuse("array.x_length_mm",
            fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed", elements, kMostElements));
@@ -367,7 +455,8 @@ void check_tool(const Job& job, const Refuse& refuse) {
   if (is_prism(job))
     check_chisel(job, refuse);
   else
-    check_v_tool(blank_element(job), job.tool, refuse);
+    for (std::size_t zone = 0; zone < zone_count(job); ++zone)
+      check_v_tool(blank_element(job, zone), angle_errors_of(job, zone), job.tool, refuse);
 }
 
 void check_stops(const Job& job, const Refuse& refuse) {
@@ -385,6 +474,7 @@ constexpr Words kArrayOnSubstrateKeys = {"base.kind",         "workpiece.kind", 
                                          "array.x_offset_mm", "array.y_offset_mm", "array.pattern"};
 constexpr Words kArrayKeys = {"array.x_length_mm", "array.y_length_mm"};
 constexpr Words kPatternKeys = {"array.pattern"};
+constexpr Words kZoneKeys = {"zone", "array.arrangement", "array.x_offset_mm", "array.y_offset_mm", "array.pattern"};
 constexpr Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr Words kToolKeys = {"tool.width_mm", "tool.wedge_deg", "tool.clearance_deg", "tool.side_clearance_deg"};
 constexpr Words kSubstrateKeys = {"base.kind"};
@@ -395,6 +485,10 @@ constexpr Rule kJobRules[] = {
     Check{kChipKeys, "Chips lie on the edge, at most 100 of them, clear of each other.", check_by<check_chips>},
     Check{kArrayOnSubstrateKeys, "On a `[base]` stand moulds of arrays without margins and pattern, not `single`.",
           check_by<check_array_on_substrate>},
+    Check{kZoneKeys,
+          "Zones have no margins, pattern and base. All their elements, at most 2,000,000, lie within the array's "
+          "lengths and beside each other.",
+          check_by<check_zones>},
     Check{kArrayKeys, "There is room for one element between the margins, and for at most 2,000,000.",
           check_by<check_room>},
     Check{kSquareKeys, "In a checker base and width are equal.", check_by<check_square>},

@@ -55,6 +55,9 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"removed_volume_mm3", r.removed_volume_mm3},
                      {"border_overcut_mm3", r.border_overcut_mm3},
                      {"rim_overcut_um_max", r.rim_overcut_um_max},
+                     {"zone_overcut_mm2", r.zone_overcut_mm2},
+                     {"zone_overcut_um_max", r.zone_overcut_um_max},
+                     {"elements_overcut", r.elements_overcut},
                      {"free_tool_length_mm", r.free_tool_length_mm},
                      {"poses", poses_json(r, run.machine)},
                      {"time_s", r.time.total_s()},
@@ -85,6 +88,10 @@ std::string verification_table(const VerificationRun& run) {
   row("removed", fixed(r.removed_volume_mm3, 6) + " mm3");
   if (r.border_overcut_mm3 > 0.0)
     row("beyond the apertures", fixed(r.border_overcut_mm3, 6) + " mm3, as triangular cavities must");
+  if (r.elements_overcut > 0)
+    row("of other elements",
+        fmt::format("{} reached into, {} mm2 of their apertures, {} um deep at most, at borders", r.elements_overcut,
+                    fixed(r.zone_overcut_mm2, 4), fixed(r.zone_overcut_um_max, 3)));
   if (r.rim_overcut_um_max > 0.0)
     row("under rims", fixed(r.rim_overcut_um_max, 3) + " um, as neighbours at other heights must");
   row("free tool length", fixed(r.free_tool_length_mm, 2) + " mm needed");

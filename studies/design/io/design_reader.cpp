@@ -361,7 +361,9 @@ void check_taken(const Design& design, const Takes& takes) {
                         },
                         [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
-                        [&](const ZonedPart&) { refuse_solid("zone", "part of zones"); },
+                        [&](const ZonedPart&) {
+                          if (!takes.zones) refuse_solid("zone", "part of zones");
+                        },
                         [&](const raytrace::BallLayer&) {
                           if (!takes.balls)
                             throw InputError(design.where("element.kind"),

@@ -60,6 +60,7 @@ Json poses_json(const FabricationResult& result) {
                      {"root_tilt_arcmin", 60.0 * pose.root_tilt.deg()},
                      {"lift_nm", 1e6 * pose.section.lift_mm}});
     if (result.job.substrate) poses.back()["tilt"] = pose.orientation + 1;
+    if (!result.job.zones.empty()) poses.back()["zone"] = pose.facet.zone + 1;
   }
   return poses;
 }

@@ -28,6 +28,7 @@ Json blank_json(const FabricationResult& result, const BlankSetup& blank) {
     json["base"] = blank.base;
     json["stock_mm"] = blank.stock_mm;
   }
+  if (!blank.zones.empty()) json["zones"] = blank.zones;
   if (blank.fixture_height_mm) json["fixture_height_mm"] = *blank.fixture_height_mm;
   if (blank.free_radius_mm > 0.0) json["free_radius_mm"] = blank.free_radius_mm;
   return json;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/app/program.h"
@@ -78,6 +79,49 @@ TEST(ComposeCommand, WritesThePartOfZones) {
                 1e-6);
   // Two or more rows of each, of which the narrower ones are eight elements high.
   EXPECT_GE(inspected.at("design").at("zone").at(0).at("rectangles_mm").size(), 2U);
+}
+
+/// The same study, of errors of angle in place of cants.
+std::string study_of_errors() {
+  std::string text = study("most_zones = 2\nrounds = 0\n");
+  for (const auto& [from, to] :
+       {std::pair("element.cant_deg", "surface.dihedral_error_arcmin"), {"to = 12", "to = 20"}})
+    text.replace(text.find(from), std::string(from).size(), to);
+  return text;
+}
+
+TEST(ComposeCommand, WritesTheJobOfThePart) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study_of_errors());
+  const Outcome outcome =
+      retrace(folder, compose({"--design", "part.toml", "--x-length-mm", "30", "--y-length-mm", "24", "--job",
+                               "job.toml", "--strategy", "dmc", "--tool-width-mm", "2.5", "--quiet"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  ASSERT_EQ(retrace(folder, {"fabricate", "job.toml", "-o", "nc", "--quiet"}).code, 0);
+  const Json verified = retrace_json(folder, {"verify", "job.toml", "nc/program.ngc"});
+  EXPECT_EQ(verified.at("verdict"), "pass");
+  EXPECT_EQ(verified.at("elements_cut"), retrace_json(folder, {"inspect", "part.toml"}).at("elements_full"));
+}
+
+TEST(ComposeCommand, RefusesJobsThatMeanNothing) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", study_of_errors());
+  const auto refused = [&](const Arguments& more) {
+    const Outcome outcome = retrace(folder, compose(with({"--x-length-mm", "30", "--y-length-mm", "24"}, more)));
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    return outcome.err;
+  };
+  EXPECT_EQ(refused({"--design", "part.toml", "--job", "job.toml"}),
+            "retrace: --tool-width-mm: is required with --job\n");
+  EXPECT_NE(refused({"--design", "part.toml", "--job", "job.toml", "--tool-width-mm", "2.5", "--strategy", "spiral"})
+                .find("--strategy: must be"),
+            std::string::npos);
+  EXPECT_EQ(refused({"--design", "part.toml", "--job", "job.toml", "--tool-width-mm", "2"}),
+            "retrace: --strategy: must be dmc for a part of zones, got \"two-step\"\n");
+  EXPECT_NE(refused({"--design", "part.toml", "--job", "part.toml", "--tool-width-mm", "2.5", "--strategy", "dmc"})
+                .find("part.toml"),
+            std::string::npos);
+  EXPECT_EQ(folder.names().size(), 1U) << "nothing is written";
 }
 
 TEST(ComposeCommand, RefusesPartsOfZonesThatMeanNothing) {

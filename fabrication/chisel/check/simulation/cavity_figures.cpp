@@ -27,9 +27,10 @@ constexpr double kBesideLeadingRad = 1e-5;
 /// Places of a facet: along its two dihedral edges, from the apex.
 class Places {
  public:
+  /// \param edges_mm lengths of the two
   /// \param turn of the facet in the tool's view
-  Places(double edge_mm, bool is_hexagonal, double nose_angle_deg, Angle turn)
-      : edge_mm_(edge_mm),
+  Places(const Vec2& edges_mm, bool is_hexagonal, double nose_angle_deg, Angle turn)
+      : edges_mm_(edges_mm),
         is_hexagonal_(is_hexagonal),
         leading_rad_(Angle::from_deg(45.0 + 0.5 * nose_angle_deg).rad() - turn.rad()) {}
 
@@ -49,9 +50,8 @@ class Places {
     }
     for (const double off : {kAtEdgeMm, kBesideEdgeMm})
       for (const double share : shares()) {
-        const double along = share * (is_hexagonal_ ? 0.5 * edge_mm_ : edge_mm_ - off);
-        places.emplace_back(along, off);
-        places.emplace_back(off, along);
+        places.emplace_back(share * along(0, off), off);
+        places.emplace_back(off, share * along(1, off));
       }
     return places;
   }
@@ -62,10 +62,15 @@ class Places {
   }
   /// From the apex to the facet's border.
   double reach(const Vec2& unit) const {
-    return is_hexagonal_ ? 0.5 * edge_mm_ / unit.maxCoeff() : edge_mm_ / unit.sum();
+    const Vec2 shares = unit.cwiseQuotient(edges_mm_);
+    return is_hexagonal_ ? 0.5 / shares.maxCoeff() : 1.0 / shares.sum();
+  }
+  /// Along one of the edges, at a distance from it.
+  double along(Eigen::Index edge, double off_mm) const {
+    return is_hexagonal_ ? 0.5 * edges_mm_[edge] : edges_mm_[edge] - off_mm;
   }
 
-  double edge_mm_;
+  Vec2 edges_mm_;
   bool is_hexagonal_;
   double leading_rad_;
 };
@@ -78,6 +83,22 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
             swept_span(wedge, sweep, poses[sweep.pose].point(point), poses[sweep.pose].direction(direction)))
       spans.push_back(*span);
   return surface_along(spans, exit);
+}
+
+/// Where a line normal to a facet leaves what says something of that facet: at the blank's face, close to a dihedral
+/// edge where the edge's residue ends, and before another facet that includes less than 90 degrees with it.
+double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge) {
+  constexpr double kParallel = 1e-9;
+  const Vec3& normal = cavity.facets[facet].normal;
+  double exit = cavity.to_face_mm(point, normal);
+  if (is_at_edge) exit = std::min(exit, kStripMm);
+  for (std::size_t other = 0; other < cavity.facets.size(); ++other) {
+    const double towards = -normal.dot(cavity.facets[other].normal);
+    if (other == facet || towards < kParallel) continue;
+    const double height_mm = cavity.facets[other].height_mm(point);
+    exit = std::min(exit, (is_at_edge ? 0.5 * height_mm : height_mm - kStripMm) / towards);
+  }
+  return exit;
 }
 
 /// Share of a facet's breadth at its edges, and of its edges' length below the blank's face, from which its plane is
@@ -104,22 +125,27 @@ ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& first = cavity.edges[k];
     const Vec3& second = cavity.edges[(k + 1) % 3];
-    const std::vector<Vec2> places = Places(edge_mm, is_hexagonal, nose_angle_deg, prediction.poses[k].root_tilt).all();
+    const Vec2 edges_mm(cavity.edge_length_mm(k), cavity.edge_length_mm((k + 1) % 3));
+    const Vec3 level = cavity.level_of(k);
+    const std::vector<Vec2> places =
+        Places(edges_mm, is_hexagonal, nose_angle_deg, prediction.poses[k].root_tilt).all();
     FacetFigures facet;
     PlaneFit plane;
     for (const Vec2& place : places) {
-      const Vec3 point = cavity.root_mm + place.x() * first + place.y() * second;
+      const Vec3 from_apex = place.x() * first + place.y() * second;
+      const Vec3 point = cavity.root_mm + from_apex;
       const Vec3& normal = cavity.facets[k].normal;
       const double at_face = cavity.to_face_mm(point, normal);
-      const double exit = place.minCoeff() <= kStripMm ? std::min(at_face, kStripMm) : at_face;
+      const double exit = exit_of(cavity, k, point, place.minCoeff() <= kStripMm);
+      if (exit <= 0.0) continue;
       const LineSurface surface = surface_at(point, normal, exit, sweeps, poses, wedge, spans);
       take(facet, place, surface);
       if (std::min(place.minCoeff(), at_face) < kPlaneMargin * edge_mm) continue;
-      plane.add(place.sum() / std::numbers::sqrt2, (place.y() - place.x()) / std::numbers::sqrt2, surface.lowest);
+      plane.add(cavity.facets[k].up_slope.dot(from_apex), level.dot(from_apex), surface.lowest);
     }
     plane.fit(facet);
     facet.distance_nm = std::max(facet.highest.nm, -facet.deepest.nm);
-    const double area_mm2 = (is_hexagonal ? 0.25 : 0.5) * edge_mm * edge_mm;
+    const double area_mm2 = (is_hexagonal ? 0.25 : 0.5) * edges_mm.prod() * first.cross(second).norm();
     facet.residual_mm3 = facet.mean_nm / kNmPerMm * area_mm2;
     figures.facets.push_back(facet);
   }

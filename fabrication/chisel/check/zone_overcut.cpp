@@ -1,0 +1,154 @@
+#include "fabrication/chisel/check/zone_overcut.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace retrace::fabrication {
+namespace {
+
+using geometry::Vec2;
+using geometry::Vec3;
+
+/// Triangles of a side, into which half a corner of a cavity is divided.
+constexpr int kDivisions = 32;
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+Vec2 towards(double azimuth_deg) {
+  return {std::cos(azimuth_deg * kDeg), std::sin(azimuth_deg * kDeg)};
+}
+
+class Overcutter {
+ public:
+  Overcutter(const Workpiece3d& workpiece, const std::vector<bool>& is_cut)
+      : grooves_(workpiece.grooves), elements_(workpiece.elements) {
+    for (const Groove& cavity : grooves_) width_mm_ = std::max(width_mm_, 2.0 * cavity.half_base_mm);
+    for (std::size_t i = 0; i < grooves_.size(); ++i)
+      if (is_cut[i]) squares_[square_of(apex_of(i))].push_back(i);
+  }
+
+  ZoneOvercut run() {
+    for (const auto& [square, elements] : squares_)
+      for (const std::size_t i : elements)
+        for (int k = 0; k < 3; ++k)
+          for (const double side : {-1.0, 1.0}) add_half_corner(i, k, side);
+    result_.elements = static_cast<std::int64_t>(reached_.size());
+    return result_;
+  }
+
+ private:
+  using Square = std::pair<std::int64_t, std::int64_t>;
+
+  Vec2 apex_of(std::size_t i) const { return grooves_[i].root_mm.head<2>(); }
+  Square square_of(const Vec2& p) const {
+    return {static_cast<std::int64_t>(std::floor(p.x() / width_mm_)),
+            static_cast<std::int64_t>(std::floor(p.y() / width_mm_))};
+  }
+  /// Cavities reach as far as an element is wide.
+  template <class Take>
+  void for_each_near(const Vec2& p, const Take& take) const {
+    const auto [column, row] = square_of(p);
+    for (std::int64_t i = column - 1; i <= column + 1; ++i)
+      for (std::int64_t j = row - 1; j <= row + 1; ++j)
+        if (const auto square = squares_.find({i, j}); square != squares_.end())
+          for (const std::size_t element : square->second) take(element);
+  }
+
+  /// How deep a cavity is under a place of the blank's face; 0 beside it.
+  double depth_mm(std::size_t i, const Vec2& p) const {
+    const Groove& cavity = grooves_[i];
+    const Vec2 from_apex = p - apex_of(i);
+    double height_mm = cavity.root_mm.z();
+    for (const DesignFacet& facet : cavity.facets)
+      height_mm = std::max(height_mm, cavity.root_mm.z() - facet.normal.head<2>().dot(from_apex) / facet.normal.z());
+    return std::max(0.0, -height_mm);
+  }
+
+  /// The hexagon has corners at the dihedral edges of the cavity without errors of angle, and between them.
+  bool is_in_hexagon(std::size_t i, const Vec2& p) const {
+    const Vec2 v = elements_[i].turn.topLeftCorner<2, 2>().transpose() * (p - apex_of(i));
+    const double inner_mm = 0.5 * std::numbers::sqrt3 * grooves_[i].half_base_mm;
+    return std::ranges::all_of(std::array{0.0, 60.0, 120.0},
+                               [&](double azimuth) { return std::abs(v.dot(towards(azimuth))) <= inner_mm; });
+  }
+
+  bool has_neighbour(std::size_t i, const Vec2& apex) const {
+    constexpr double kSameShare = 1e-3;
+    bool is_there = false;
+    for_each_near(apex, [&](std::size_t k) {
+      is_there |=
+          elements_[k].zone == elements_[i].zone && (apex_of(k) - apex).norm() < kSameShare * grooves_[i].half_base_mm;
+    });
+    return is_there;
+  }
+
+  /// The half of the cavity's corner at dihedral edge k that lies in one neighbour's hexagon: an equilateral triangle.
+  void add_half_corner(std::size_t i, int k, double side) {
+    const double radius_mm = grooves_[i].half_base_mm;
+    const double edge_deg = 120.0 * k - 90.0;
+    const auto place = [&](double azimuth_deg, double mm) -> Vec2 {
+      return apex_of(i) + elements_[i].turn.topLeftCorner<2, 2>() * (mm * towards(azimuth_deg));
+    };
+    if (has_neighbour(i, place(edge_deg + 30.0 * side, std::numbers::sqrt3 * radius_mm))) return;
+    const Vec2 a = place(edge_deg, radius_mm);
+    const Vec2 u = (place(edge_deg, 2.0 * radius_mm) - a) / kDivisions;
+    const Vec2 v = (place(edge_deg + 60.0 * side, radius_mm) - a) / kDivisions;
+    const double area_mm2 = 0.25 * std::numbers::sqrt3 * u.squaredNorm();
+    for (int m = 0; m < kDivisions; ++m)
+      for (int n = 0; m + n < kDivisions; ++n) {
+        take(i, a + (m + 1.0 / 3.0) * u + (n + 1.0 / 3.0) * v, area_mm2);
+        if (m + n + 1 < kDivisions) take(i, a + (m + 2.0 / 3.0) * u + (n + 2.0 / 3.0) * v, area_mm2);
+      }
+    // The deepest places lie on borders.
+    for (int m = 0; m <= kDivisions; ++m)
+      for (int n = 0; m + n <= kDivisions; ++n) take(i, a + m * u + n * v, 0.0);
+  }
+
+  /// A place in a neighbour's hexagon that is not cut; counts where this cavity is the deepest of those without one.
+  void take(std::size_t i, const Vec2& p, double area_mm2) {
+    const double own_mm = depth_mm(i, p);
+    if (own_mm <= 0.0) return;
+    std::optional<std::size_t> holder;
+    bool is_deepest = true;
+    for_each_near(p, [&](std::size_t k) {
+      if (k == i) return;
+      if (is_in_hexagon(k, p)) {
+        holder = k;
+        return;
+      }
+      const double other_mm = depth_mm(k, p);
+      is_deepest &= other_mm < own_mm || (other_mm == own_mm && k > i);
+    });
+    const double held_mm = holder ? depth_mm(*holder, p) : 0.0;
+    if (!is_deepest || held_mm >= own_mm) return;
+    result_.volume_mm3 += area_mm2 * (own_mm - held_mm);
+    // On their common border neighbours of one zone differ by what errors of angle make.
+    const bool is_on_border = area_mm2 == 0.0;
+    if (!holder || (is_on_border && elements_[*holder].zone == elements_[i].zone)) return;
+    result_.area_mm2 += area_mm2;
+    result_.deepest_mm = std::max(result_.deepest_mm, own_mm - held_mm);
+    if (!is_on_border) reached_.insert(*holder);
+  }
+
+  const std::vector<Groove>& grooves_;
+  const std::vector<CutElement>& elements_;
+  double width_mm_ = 0.0;
+  std::map<Square, std::vector<std::size_t>> squares_;
+  std::set<std::size_t> reached_;
+  ZoneOvercut result_;
+};
+
+}  // namespace
+
+ZoneOvercut zone_overcut(const Workpiece3d& workpiece, const std::vector<bool>& is_cut) {
+  return Overcutter(workpiece, is_cut).run();
+}
+
+}  // namespace retrace::fabrication

@@ -1,0 +1,169 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/app/program.h"
+
+// A part of zones from its design to NC text, and back to a part of zones that is traced.
+
+namespace retrace::test::zone_job_command_test {
+namespace {
+
+std::string zoned_design(const std::string& kind, double length_mm = 6.0) {
+  return "title = \"Zones\"\n[element]\nkind = \"" + kind +
+         "\"\naperture_mm = 0.5\n[array]\nx_length_mm = " + std::to_string(length_mm) +
+         "\ny_length_mm = 4\npartial_elements = \"omit\"\n[body]\nthickness_mm = 2\nrefractive_index = 1.4917\n"
+         "[[zone]]\nshare = 0.5\nset = [\"surface.dihedral_error_arcmin=9.5\"]\n"
+         "[[zone]]\nshare = 0.3\nrotation_deg = 33\n"
+         "set = [\"surface.dihedral_error_arcmin=[3, 0, -8]\", \"surface.facet_tilt_arcmin=[1, 0, 2]\"]\n"
+         "[[zone]]\nshare = 0.2\nrotation_deg = 180\nset = [\"element.aperture_mm=0.4\"]\n";
+}
+
+class ZoneJobCommand : public ::testing::Test {
+ protected:
+  Outcome job(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"job", "design.toml", "-o", "job.toml", "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    for (const auto& [option, value] : {std::pair("--strategy", "dmc"), {"--tool-width-mm", "0.75"}})
+      if (std::ranges::find(more, option) == more.end()) words.insert(words.end(), {option, value});
+    return retrace(folder_, words);
+  }
+  /// The verification of the job's program, which writes the part as machined.
+  Json verified() {
+    const Outcome run = retrace(
+        folder_, {"verify", "job.toml", "nc/program.ngc", "--as-machined", "part.toml", "--json", "v.json", "--quiet"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return folder_.json("v.json");
+  }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder_.path() / name); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ZoneJobCommand, ComesBackAsThePartOfZonesThatItIsMadeOf) {
+  for (const std::string kind : {"hexagonal_icc", "triangular_icc"}) {
+    folder_.write("design.toml", zoned_design(kind));
+    const Outcome made = job();
+    ASSERT_EQ(made.code, 0) << made.err;
+    ASSERT_EQ(retrace(folder_, {"fabricate", "job.toml", "-o", "nc", "--quiet", "--dialect", "rs274ngc"}).code, 0);
+    const Json planned = folder_.json("nc/fabrication.json");
+    const Json design = retrace_json(folder_, {"inspect", "design.toml"});
+    EXPECT_EQ(planned["elements"], design["elements_full"]);
+    const Json json = verified();
+    EXPECT_EQ(json["verdict"], "pass") << json.dump().substr(0, 1000);
+    EXPECT_EQ(json["elements_cut"], design["elements_full"]);
+    EXPECT_LT(json["facet_distance_nm_max"].get<double>(), 1.0);
+    folder_.write("smooth.toml", without_texture(folder_.read("part.toml")));
+    for (const std::string angle : {"0", "20"}) {
+      const auto rre = [&](const std::string& name) {
+        return retrace_json(folder_, {"rre", name, "--incidence", angle, "--engine", "embree", "--samples", "100000",
+                                      "--set", "detector.acceptance_half_angle_deg=0.5"})["points"][0]["rre"]
+            .get<double>();
+      };
+      // The same rays, on facets that lie where they are meant to up to a nanometre.
+      EXPECT_NEAR(rre("smooth.toml"), rre("design.toml"), 2e-3) << kind << " " << angle;
+    }
+  }
+}
+
+TEST_F(ZoneJobCommand, RowsInTurnAreCutInTheirPlaces) {
+  folder_.write("design.toml",
+                "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 0.5\n[array]\nx_length_mm = 4\ny_length_mm = 3\n"
+                "[body]\nthickness_mm = 2\n[[zone]]\nrows = [1]\nevery = 2\n[[zone]]\nrest = true\nrotation_deg = 180\n"
+                "set = [\"surface.dihedral_error_arcmin=5\"]\n");
+  const Outcome made = job();
+  ASSERT_EQ(made.code, 0) << made.err;
+  ASSERT_EQ(retrace(folder_, {"fabricate", "job.toml", "-o", "nc", "--quiet"}).code, 0);
+  const Json json = verified();
+  EXPECT_EQ(json["verdict"], "pass") << json.dump().substr(0, 1000);
+  const Json design = retrace_json(folder_, {"inspect", "design.toml"});
+  EXPECT_EQ(json["elements_cut"], design["elements_full"]);
+  const Json part = retrace_json(folder_, {"inspect", "part.toml"});
+  EXPECT_EQ(part["elements_full"], design["elements_full"]);
+}
+
+TEST_F(ZoneJobCommand, WhatCannotBeCutIsRefusedAndNothingWritten) {
+  struct Case {
+    std::string from, to;
+    std::vector<std::string> more;
+    std::string message;
+  };
+  const std::string good = zoned_design("hexagonal_icc");
+  const std::vector<Case> cases = {
+      {"", "", {"--strategy", "two-step"}, "--strategy: must be dmc for a part of zones, got \"two-step\""},
+      {"", "", {"--workpiece", "direct"}, "--workpiece: must be mould for cube corners"},
+      {"", "", {"--tool-width-mm", "0.3"}, "--tool-width-mm: must be >="},
+      {"element.aperture_mm=0.4", "element.cant_deg=3", {}, "zone[3]: element.cant_deg must be 0 to be cut"},
+      {"element.aperture_mm=0.4",
+       "element.kind=\\\"triangular_icc\\\"\", \"element.aperture_mm=0.5",
+       {},
+       "zone[3]: must have the cube corners of the zones before it to be cut"},
+      {"\"element.aperture_mm=0.4\"",
+       "'element.kind=\"rtp\"', \"element.base_mm=0.5\", \"element.width_mm=0.5\"",
+       {},
+       "zone[3]: must have cube corners to be cut, has prisms"},
+  };
+  for (const Case& wrong : cases) {
+    SCOPED_TRACE(wrong.message);
+    std::string text = good;
+    if (!wrong.from.empty()) {
+      const std::size_t at = text.find(wrong.from);
+      ASSERT_NE(at, std::string::npos);
+      text.replace(at, wrong.from.size(), wrong.to);
+    }
+    folder_.write("design.toml", text);
+    const Outcome made = job(wrong.more);
+    EXPECT_EQ(made.code, 2) << made.out;
+    EXPECT_NE(made.err.find(wrong.message), std::string::npos) << made.err;
+    EXPECT_FALSE(exists("job.toml"));
+  }
+}
+
+/// A job that was edited is cut as it says, and comes back so or not at all.
+TEST_F(ZoneJobCommand, EditedJobsComeBackAsTheyAreCut) {
+  folder_.write("design.toml", zoned_design("hexagonal_icc"));
+  ASSERT_EQ(job().code, 0);
+  const std::string made = folder_.read("job.toml");
+  const auto edit = [&](const std::string& from, const std::string& to) {
+    std::string text = made;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    folder_.write("job.toml", text.replace(at, from.size(), to));
+    ASSERT_EQ(retrace(folder_, {"fabricate", "job.toml", "-o", "nc", "--quiet"}).code, 0);
+  };
+  edit("dihedral_error_arcmin = [3, 0, -8]", "dihedral_error_arcmin = [13, 1, -8]");
+  EXPECT_EQ(verified()["verdict"], "pass");
+  EXPECT_NE(folder_.read("part.toml").find("surface.dihedral_error_arcmin=[13, 1, -8]"), std::string::npos)
+      << folder_.read("part.toml");
+  std::filesystem::remove(folder_.path() / "part.toml");
+  for (const auto& [from, to] :
+       {std::pair("rotation_deg = 33", "rotation_deg = 33.01"), {"aperture_mm = 0.4", "aperture_mm = 0.39"}}) {
+    edit(from, to);
+    const Outcome run = retrace(folder_, {"verify", "job.toml", "nc/program.ngc", "--as-machined", "part.toml"});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find("has another kind, size or turn in the job's design"), std::string::npos) << run.err;
+    EXPECT_FALSE(exists("part.toml"));
+  }
+}
+
+TEST_F(ZoneJobCommand, AsMachinedNeedsTheDesignOfTheJob) {
+  folder_.write("design.toml", zoned_design("hexagonal_icc"));
+  ASSERT_EQ(job().code, 0);
+  ASSERT_EQ(retrace(folder_, {"fabricate", "job.toml", "-o", "nc", "--quiet"}).code, 0);
+  std::string text = folder_.read("job.toml");
+  const std::string name = "design = \"design.toml\"";
+  folder_.write("other.toml", text.replace(text.find(name), name.size(), "design = \"gone.toml\""));
+  const Outcome gone = retrace(folder_, {"verify", "other.toml", "nc/program.ngc", "--as-machined", "part.toml"});
+  EXPECT_EQ(gone.code, 2);
+  EXPECT_NE(gone.err.find("--as-machined: the regions of zones are those of the job's design"), std::string::npos)
+      << gone.err;
+  EXPECT_FALSE(exists("part.toml"));
+}
+
+}  // namespace
+}  // namespace retrace::test::zone_job_command_test
