@@ -27,8 +27,7 @@
 #include "fabrication/post/post.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/part.h"
-#include "tests/fabrication/chiseling_jobs.h"
-#include "tests/fabrication/controls.h"
+#include "tests/fabrication/chiseling_programs.h"
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/swept_volume_sink.h"
 
@@ -40,30 +39,7 @@ namespace {
 
 using geometry::Vec3;
 
-Machine machine(const std::string& name = "ideal-dmc") {
-  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
-}
-
-/// A machine whose axes are off by minutes of arc and whose pivots by tenths of a millimetre.
-Machine crooked_machine() {
-  Machine m = machine();
-  m.name = "crooked";
-  m.a.direction.value = Vec3(0.0013, 1.0, -0.0021).normalized();
-  m.a.point_mm.value = {0.2, -0.1, 90.0};
-  m.c.direction.value = Vec3(-0.0008, 0.0011, 1.0).normalized();
-  m.c.point_mm.value = {0.3, 0.15, -2.0};
-  return m;
-}
-
-std::string text_of(const Job& job, const Machine& m, std::string_view dialect = "rs274ngc") {
-  return nc_text(make_plan(job, for_dialect(m, dialect)).programs.front(), dialect);
-}
-
-Verification verified(const Job& job, const Machine& m, const std::string& text,
-                      NcDialect dialect = NcDialect::rs274ngc) {
-  return verify_programs(job, m, {parse_nc(text, "p.ngc", dialect, control_texts())}, {},
-                         {machine("ideal"), machine("paper"), machine("thesis"), machine()});
-}
+using namespace chiseling;
 
 double degrees_between(const Vec3& a, const Vec3& b) {
   return std::acos(a.normalized().dot(b.normalized())) * 180.0 / std::numbers::pi;

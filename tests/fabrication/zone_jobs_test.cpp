@@ -13,19 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "core/atomic_file.h"
 #include "core/error.h"
-#include "fabrication/chisel/check/verify.h"
 #include "fabrication/chisel/plan/chiseling.h"
-#include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/cube_corner.h"
 #include "fabrication/job/io/job_files.h"
-#include "fabrication/machine/io/machine_files.h"
-#include "fabrication/post/post.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/polygon.h"
-#include "tests/fabrication/chiseling_jobs.h"
-#include "tests/fabrication/controls.h"
+#include "tests/fabrication/chiseling_programs.h"
 #include "tests/fabrication/findings_text.h"
 
 // Cube corners that are cut with errors of angle on purpose, and in zones: against closed forms, against what the
@@ -40,28 +34,7 @@ using geometry::Vec3;
 
 constexpr double kRadPerArcmin = std::numbers::pi / (180.0 * 60.0);
 
-Machine machine() {
-  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/ideal-dmc.toml"), "ideal-dmc");
-}
-
-Machine crooked_machine() {
-  Machine m = machine();
-  m.name = "crooked";
-  m.a.direction.value = Vec3(0.0013, 1.0, -0.0021).normalized();
-  m.a.point_mm.value = {0.2, -0.1, 90.0};
-  m.c.direction.value = Vec3(-0.0008, 0.0011, 1.0).normalized();
-  m.c.point_mm.value = {0.3, 0.15, -2.0};
-  return m;
-}
-
-std::string text_of(const Job& job, const Machine& m, std::string_view dialect = "rs274ngc") {
-  return nc_text(make_plan(job, for_dialect(m, dialect)).programs.front(), dialect);
-}
-
-Verification verified(const Job& job, const Machine& m, const std::string& text,
-                      NcDialect dialect = NcDialect::rs274ngc) {
-  return verify_programs(job, m, {parse_nc(text, "p.ngc", dialect, control_texts())}, {}, {});
-}
+using namespace chiseling;
 
 /// Whole hexagons of an array about a place, as many as are listed in its own frame.
 std::vector<Vec2> honeycomb(const Vec2& middle, double turn_deg, double aperture_mm, int columns, int rows) {

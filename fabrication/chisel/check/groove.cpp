@@ -34,6 +34,14 @@ void stand(Groove& groove, const CutElement& element, double stock_mm) {
 
 }  // namespace
 
+double Groove::cavity_height_mm(const geometry::Vec2& place) const {
+  const geometry::Vec2 from_apex = place - root_mm.head<2>();
+  double height_mm = root_mm.z();
+  for (const DesignFacet& facet : facets)
+    height_mm = std::max(height_mm, root_mm.z() - facet.normal.head<2>().dot(from_apex) / facet.normal.z());
+  return height_mm;
+}
+
 Vec3 Groove::level_of(std::size_t facet) const {
   return is_cube() ? Vec3((edges[(facet + 1) % 3] - edges[facet]).normalized()) : root_direction;
 }
@@ -162,10 +170,7 @@ std::optional<std::size_t> GrooveMap::deepest(double x_mm, double y_mm) const {
       const auto [first, last] = cells_.equal_range(cell_of(x_mm, y_mm, dx, dy));
       for (auto entry = first; entry != last; ++entry) {
         const Groove& cavity = grooves_[entry->second];
-        const Vec3 from_apex(x_mm - cavity.root_mm.x(), y_mm - cavity.root_mm.y(), 0.0);
-        double height_mm = cavity.root_mm.z();
-        for (const DesignFacet& facet : cavity.facets)
-          height_mm = std::max(height_mm, cavity.root_mm.z() - facet.normal.dot(from_apex) / facet.normal.z());
+        const double height_mm = cavity.cavity_height_mm({x_mm, y_mm});
         if (height_mm >= lowest_mm) continue;
         lowest_mm = height_mm;
         best = entry->second;

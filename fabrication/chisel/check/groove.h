@@ -62,6 +62,8 @@ struct Groove {
   }
   /// Of a cube corner: along a dihedral edge, from its apex to the plane of its rims.
   double edge_length_mm(std::size_t edge) const { return depth_mm / axis.dot(edges[edge]); }
+  /// Of a cube corner on a flat blank: how high its cavity lies in a place, which may lie beside it, along z.
+  double cavity_height_mm(const geometry::Vec2& place) const;
   /// Along the root, from its middle.
   double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }
   /// Along a facet's level line, of length 1: of a prism along its root.

@@ -164,9 +164,9 @@ double design_volume_mm3(const Job& job, std::size_t zone) {
   return volume_mm3;
 }
 
-/// What triangular cavities take beyond the hexagons of the elements. In units of the cube's edge a the
-/// blank's face passes above N cubes that lie open, of which it leaves a sixth each, and cuts a sixth off each of the M
-/// cubes above them: M corners of hexagons at dihedral edges (docs/theory/micro_chiseling.md).
+/// What triangular cavities take beyond the hexagons of their elements. In units of the cube's edge a the blank's face
+/// passes above N cubes that lie open, of which it leaves a sixth each, and cuts a sixth off each of the M cubes above
+/// them: M corners of hexagons at dihedral edges (docs/theory/micro_chiseling.md).
 /// On a base that is so of the array when it is rolled out.
 double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
   const std::vector<Groove>& cavities = workpiece.grooves;

@@ -15,7 +15,6 @@ namespace retrace::fabrication {
 namespace {
 
 using geometry::Vec2;
-using geometry::Vec3;
 
 /// Triangles of a side, into which half a corner of a cavity is divided.
 constexpr int kDivisions = 32;
@@ -62,14 +61,7 @@ class Overcutter {
   }
 
   /// How deep a cavity is under a place of the blank's face; 0 beside it.
-  double depth_mm(std::size_t i, const Vec2& p) const {
-    const Groove& cavity = grooves_[i];
-    const Vec2 from_apex = p - apex_of(i);
-    double height_mm = cavity.root_mm.z();
-    for (const DesignFacet& facet : cavity.facets)
-      height_mm = std::max(height_mm, cavity.root_mm.z() - facet.normal.head<2>().dot(from_apex) / facet.normal.z());
-    return std::max(0.0, -height_mm);
-  }
+  double depth_mm(std::size_t i, const Vec2& p) const { return std::max(0.0, -grooves_[i].cavity_height_mm(p)); }
 
   /// The hexagon has corners at the dihedral edges of the cavity without errors of angle, and between them.
   bool is_in_hexagon(std::size_t i, const Vec2& p) const {
