@@ -83,12 +83,6 @@ void check_job_of(const ComposeOptions& options) {
   studies::check_cuts_zones(request);
 }
 
-/// The job of the part of zones, which lies where `--design` says.
-studies::MadeJob job_of(const ComposeOptions& options, const std::string& part_text) {
-  return studies::make_job(studies::parse_design(part_text, options.design),
-                           job_request(options.making, *options.making.tool_width_mm));
-}
-
 studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
   studies::ZonedDesignRequest request;
   request.layout = studies::read_zone_layout(options.layout);
@@ -97,6 +91,33 @@ studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
                      "missing beside the other length");
   if (options.x_length_mm) request.size_mm = {*options.x_length_mm, *options.y_length_mm};
   return request;
+}
+
+/// The part with its zones, as far as it was asked for.
+struct WholePart {
+  std::string design;
+  std::optional<studies::MadeJob> job;
+  bool is_complete = true;
+};
+
+/// \param warnings is told why one of them cannot be written: what was found is not lost for that
+WholePart whole_part_of(const ComposeOptions& options, const studies::Study& study,
+                        const std::vector<studies::Zone>& zones, const studies::ZonedDesignRequest& zoned,
+                        std::vector<std::string>& warnings) {
+  WholePart whole;
+  if (options.design.empty()) return whole;
+  try {
+    whole.design = studies::zoned_design_text(study, zones, zoned);
+    if (options.job.empty()) return whole;
+    whole.job = studies::make_job(studies::parse_design(whole.design, options.design),
+                                  job_request(options.making, *options.making.tool_width_mm));
+    warnings.insert(warnings.end(), whole.job->warnings.begin(), whole.job->warnings.end());
+  } catch (const InputError& error) {
+    warnings.push_back(
+        fmt::format("{} is not written: {}", whole.design.empty() ? options.design : options.job, error.what()));
+    whole.is_complete = false;
+  }
+  return whole;
 }
 
 /// \param session null without MPI
@@ -122,10 +143,9 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const studies::ZonedDesignRequest zoned = zoned_design_of(options);
   if (!options.design.empty()) studies::check_zoned_design(study, zoned);
   check_job_of(options);
-  std::string part_text;
-  std::optional<studies::MadeJob> made;
-  files.add_named("--design", options.design, [&] { return part_text; });
-  files.add_named("--job", options.job, [&] { return made ? job_text_at(*made, options.job) : ""; });
+  WholePart whole;
+  files.add_named("--design", options.design, [&] { return whole.design; });
+  files.add_named("--job", options.job, [&] { return whole.job ? job_text_at(*whole.job, options.job) : ""; });
   const std::filesystem::path file = files.reserve("composition.sqlite");
   files.prepare();
   studies::ResultStore store(file, studies::compose_layout(study), if_exists_of(options));
@@ -140,25 +160,14 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string why_not = studies::why_not_reached(study, request, composition);
   std::vector<std::string> warnings = remarks_of(session);
-  bool has_design = true;
-  if (!options.design.empty() && composition.best) {
-    try {
-      part_text = studies::zoned_design_text(study, written_zones(), zoned);
-      if (!options.job.empty()) made = job_of(options, part_text);
-      if (made) warnings.insert(warnings.end(), made->warnings.begin(), made->warnings.end());
-    } catch (const InputError& error) {  // what was found is not lost for that
-      warnings.push_back(
-          fmt::format("{} is not written: {}", part_text.empty() ? options.design : options.job, error.what()));
-      has_design = false;
-    }
-  }
+  if (composition.best) whole = whole_part_of(options, study, written_zones(), zoned, warnings);
   const ExitCode code = files.write(studies::composition_json(study, request, composition, elapsed_s),
                                     studies::composition_text(study, request, composition), warnings,
                                     {.complete = composition.complete,
                                      .interrupted = fmt::format("cells looked at: {}", composition.evaluations),
                                      .is_yes = why_not.empty()});
   if (code == ExitCode::answer_is_no) say("retrace: no such part: " + why_not);
-  return code == ExitCode::done && !has_design ? ExitCode::failed : code;
+  return code == ExitCode::done && !whole.is_complete ? ExitCode::failed : code;
 }
 
 ExitCode run_compose(const ComposeOptions& options, const CommonOptions& common) {
