@@ -179,7 +179,9 @@ ReturnedBeam BeamWalk::returned_beam(const Beam& beam, CoherentLight light, cons
     returned.entered_mm.push_back(beam.entry.of(p));
     returned.left_mm.push_back(p.head<2>() + centre_mm_);
   }
-  returned.entry_trace = beam.entry.slope(0, 0) + beam.entry.slope(1, 1);
+  returned.entry_from_exit.linear() = beam.entry.slope.leftCols<2>();
+  returned.entry_from_exit.translation() = beam.entry.of({0.0, 0.0, setup_.thickness_mm}) - centre_mm_;
+  returned.index = setup_.optics.index;
   // Light that is reflected an odd number of times sees its polygon turned over.
   for (geometry::Polygon* polygon : {&returned.entered_mm, &returned.left_mm})
     if (geometry::area(*polygon) < 0.0) std::reverse(polygon->begin(), polygon->end());

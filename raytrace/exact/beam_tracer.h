@@ -3,6 +3,7 @@
 // The exact engine: follows polygonal beams through a part without sampling, and tells RRE, ledger and every returned
 // beam.
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -77,17 +78,19 @@ struct ReturnedBeam {
   /// infinite part's light enters within the central period. Empty if it never entered.
   geometry::Polygon entered_mm;
   geometry::Polygon left_mm;
-  /// Trace of the map from where on the face light leaves to where it entered: 2 of a mirror's light, -2 of light that
-  /// cube corners send back, 0 where one axis alone is turned round.
-  double entry_trace = 2.0;
+  /// Maps where on the face light leaves to where it entered, relative to the part's centre. Its trace is 2 for the
+  /// light of a mirror, -2 for light that cube corners send back, 0 where only one axis is reversed.
+  Eigen::Affine2d entry_from_exit = Eigen::Affine2d::Identity();
+  double index = 1.0;  ///< refractive index of the part
   /// Of the field: along source_axis() and the axis across it, of its own direction, for unit amplitudes along those
   /// of the source.
   JonesMatrix jones = JonesMatrix::Identity();
   double transmission = 0.0;  ///< share of the incident power that a matrix of unit gain would bring here
   /// Of WeakBeams: the mean over replicates counts. None of a beam that was followed exactly.
   std::optional<std::uint32_t> replicate;
-  /// The field on the face is that at left_mm times exp(2 pi i (phase_mm + direction . p) / wavelength), p in the plane
-  /// of the face, relative to the part's centre as the incident wave is: exp(-2 pi i to_source . p / wavelength).
+  /// Optical path of the wave. The field on the face is exp(2 pi i (phase_mm + direction . p) / wavelength) times that
+  /// of `jones`, where p lies in the plane of the face, relative to the part's centre. The incident wave is exp(-2 pi i
+  /// to_source . p / wavelength).
   double phase_mm = 0.0;
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< that centre
   CellTrail trail;

@@ -62,8 +62,8 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
   Beam whole;
   whole.direction = entry.direction;
   whole.light = entry.light;
-  // Continuous on the face with the incident wave, whose phase is 0 at the origin.
-  whole.phase_mm = (-setup_.to_source - setup_.optics.index * entry.direction).z() * setup_.thickness_mm;
+  // Continuous on the face with the incident wave, whose phase is 0 at the part's centre in that plane.
+  whole.phase_mm = -setup_.optics.index * entry.direction.z() * setup_.thickness_mm;
   whole.start = {-Vec3::UnitZ(), -setup_.thickness_mm};
   whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
   whole.entry.constant_mm = centre_mm_;

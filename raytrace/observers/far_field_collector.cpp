@@ -10,6 +10,7 @@
 
 #include "raytrace/exact/flat_polygon.h"
 #include "raytrace/light/light_setup.h"
+#include "raytrace/observers/error_free_exit.h"
 #include "raytrace/observers/far_field.h"
 #include "raytrace/observers/formed_aperture.h"
 #include "raytrace/observers/small_angle.h"
@@ -177,25 +178,30 @@ double FarFieldCollector::replicates_of(const ReturnedBeam& beam) const {
   return beam.replicate ? static_cast<double>(policy_.replicates) : 1.0;
 }
 
-/// The part without errors repeats, and its fields with it: moved by T they are those of light that comes in with the
-/// phase that it has at T.
+/// Moves a beam to the cell's first copy, and its outline to where it would leave without errors of angle. The part
+/// without errors repeats, and its fields with it: moved by T they are those of light that comes in with the phase that
+/// it has at T.
 FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam) const {
   const Vec2 by = beam.trail.first->offset_mm;
+  const ErrorFreeExit exit = error_free_exit(beam, to_source_, by).value_or(ErrorFreeExit{});
+  const Eigen::Affine2d home_from_exit = Eigen::Translation2d(-by) * exit.from_exit;
   Piece piece;
-  for (const Vec2& p : beam.left_mm) piece.outline_mm.push_back(p - beam.centre_mm - by);
+  for (const Vec2& p : beam.left_mm) piece.outline_mm.push_back(home_from_exit * (p - beam.centre_mm));
   piece.direction = beam.direction;
   piece.jones = beam.jones;
   piece.transmission = beam.transmission / replicates_of(beam);
-  piece.phase_mm = beam.phase_mm + (beam.direction + to_source_).head<2>().dot(by);
+  piece.phase_mm = beam.phase_mm + exit.phase_change_mm + (beam.direction + to_source_).head<2>().dot(by);
   piece.power = beam.stokes.i / replicates_of(beam);
   piece.replicate = beam.replicate;
   const Vec3 moved(by.x(), by.y(), 0.0);
+  const Eigen::Affine2d exit_from_home = home_from_exit.inverse();
+  const Vec2 exit_of_home = exit_from_home.translation();
   for (const TexturedHit& hit : beam.hits) {
     FieldHit at_home;
     at_home.normal = hit.plane.normal;
     at_home.offset_mm = hit.plane.offset_mm - hit.plane.normal.dot(moved);
-    at_home.constant_mm = hit.of({by.x(), by.y(), thickness_mm_}) - moved;
-    at_home.slope = hit.slope.leftCols<2>();
+    at_home.constant_mm = hit.of({exit_of_home.x(), exit_of_home.y(), thickness_mm_}) - moved;
+    at_home.slope = hit.slope.leftCols<2>() * exit_from_home.linear();
     at_home.phase = hit.phase;
     at_home.path_per_height = hit.path_per_height;
     Eigen::Matrix<double, 2, 3> axes;

@@ -23,7 +23,7 @@ constexpr std::uint32_t kReplicatesOfGuide = 4;
 constexpr double kCutoffOfGuide = 3.0;
 // Beams of a direction and wavelength beyond which the choice is Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
-// ReturnedBeam::entry_trace from which on light is a mirror's.
+// Smallest trace of ReturnedBeam::entry_from_exit for the light of a mirror.
 constexpr double kLeastMirrorTrace = 1.0;
 // Lattice points of the window, beyond which its power is not integrated.
 constexpr double kMostLatticePoints = 300'000.0;
@@ -91,7 +91,8 @@ std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_so
   Traced traced;
   traced.beams = tracer.trace(light.optics, illumination, cones, beam_policy(wavelength), cancel,
                               [&](const raytrace::ReturnedBeam& beam) {
-                                if (beam.entry_trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
+                                const double trace = beam.entry_from_exit.linear().trace();
+                                if (trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
                                 if (beam.cone < cones.size())
                                   traced.scattered_from_cone += beam.place_count() * scattered_power(beam);
                               });

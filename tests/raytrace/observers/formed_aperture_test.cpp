@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -16,6 +15,7 @@
 #include "raytrace/paths/monte_carlo.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
+#include "tests/support/pixel_cube.h"
 
 namespace retrace::testing::formed_aperture_test {
 namespace {
@@ -54,109 +54,6 @@ FacetForm paraboloid(double depth_mm, double radius_mm) {
   return form;
 }
 
-/// One cube corner under normal light, pixel by pixel: rays and field vectors in space, and the way that heights of its
-/// facets add. Shares nothing with the engine.
-class PixelCube {
- public:
-  struct Pixel {
-    Vec2 out;
-    Eigen::Matrix<Complex, 3, 2> field;
-  };
-  /// \param height over a facet by the places level and down it, in mm
-  template <class Height>
-  PixelCube(double aperture_mm, bool mirrors, const Height& height)
-      : edge_(aperture_mm / (2.0 * std::sqrt(2.0 / 3.0))) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double a = 120.0 * static_cast<double>(k) * kDeg;
-      edges_[k] = {std::sqrt(2.0 / 3.0) * std::cos(a), std::sqrt(2.0 / 3.0) * std::sin(a), 1.0 / std::sqrt(3.0)};
-    }
-    constexpr int kPixels = 400;
-    step_ = aperture_mm / kPixels;
-    for (int j = 0; j < kPixels; ++j)
-      for (int i = 0; i < kPixels; ++i) {
-        const Vec2 p = step_ * Vec2(i + 0.5 - 0.5 * kPixels, j + 0.5 - 0.5 * kPixels);
-        if (is_in_aperture(p)) trace(p, mirrors, height);
-      }
-  }
-
-  /// Intensity over its peak without form for mirrors.
-  double at(const Vec2& q) const {
-    Eigen::Matrix<Complex, 3, 2> sum = Eigen::Matrix<Complex, 3, 2>::Zero();
-    for (const Pixel& pixel : pixels_) sum += std::polar(1.0, -2.0 * pi / kWave * q.dot(pixel.out)) * pixel.field;
-    return 0.5 * sum.squaredNorm() / std::pow(static_cast<double>(pixels_.size()), 2.0);
-  }
-  double area_mm2() const { return static_cast<double>(pixels_.size()) * step_ * step_; }
-
- private:
-  bool is_in_aperture(const Vec2& p) const {
-    for (int k = 0; k < 3; ++k) {
-      const double a = (60.0 * k + 30.0) * kDeg;
-      if (std::abs(p.x() * std::cos(a) + p.y() * std::sin(a)) > edge_ / std::numbers::sqrt2) return false;
-    }
-    return true;
-  }
-
-  template <class Height>
-  void trace(const Vec2& place, bool mirrors, const Height& height) {
-    Pixel pixel;
-    pixel.field.setZero();
-    pixel.field(0, 0) = pixel.field(1, 1) = 1.0;
-    Vec3 p(place.x(), place.y(), 10.0);
-    Vec3 d = -Vec3::UnitZ();
-    double way_mm = 0.0;
-    std::array<bool, 3> met{};
-    for (int bounce = 0; bounce < 3; ++bounce) {
-      double nearest = 1e9;
-      std::size_t facet = 3;
-      // The facet across edge k has it for its normal, into the body.
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (met[k] || edges_[k].dot(d) >= -1e-12) continue;
-        const double t = -edges_[k].dot(p) / edges_[k].dot(d);
-        if (t >= nearest) continue;
-        nearest = t;
-        facet = k;
-      }
-      if (facet == 3) return;
-      met[facet] = true;
-      p += nearest * d;
-      const Vec3& first = edges_[(facet + 1) % 3];
-      const Vec3& second = edges_[(facet + 2) % 3];
-      const Vec3 from_middle = p - 0.5 * edge_ * (first + second);
-      const double c = -edges_[facet].dot(d);
-      way_mm += 2.0 * kPmma * c *
-                height((first - second).dot(from_middle) / std::numbers::sqrt2,
-                       -(first + second).dot(from_middle) / std::numbers::sqrt2);
-      reflect(edges_[facet], c, mirrors, d, pixel.field);
-    }
-    pixel.out = p.head<2>();
-    pixel.field *= std::polar(1.0, 2.0 * pi / kWave * way_mm);
-    pixels_.push_back(pixel);
-  }
-
-  static void reflect(const Vec3& normal, double c, bool mirrors, Vec3& d, Eigen::Matrix<Complex, 3, 2>& field) {
-    Complex rs = -1.0;
-    Complex rp = 1.0;
-    if (!mirrors) {
-      // Born and Wolf, 1.5.2 (20), with the root of total reflection for exp(-i w t).
-      const double m = 1.0 / (kPmma * kPmma);
-      const Complex root = std::sqrt(Complex(m - (1.0 - c * c)));
-      rs = (c - root) / (c + root);
-      rp = (m * c - root) / (m * c + root);
-    }
-    const Vec3 s = d.cross(-normal).normalized();
-    const Vec3 p_in = d.cross(s);
-    d += 2.0 * c * normal;
-    const Eigen::Matrix<Complex, 1, 2> along_s = s.transpose().cast<Complex>() * field;
-    const Eigen::Matrix<Complex, 1, 2> along_p = p_in.transpose().cast<Complex>() * field;
-    field = rs * s.cast<Complex>() * along_s + rp * d.cross(s).cast<Complex>() * along_p;
-  }
-
-  double edge_;
-  double step_ = 0.0;
-  std::array<Vec3, 3> edges_;
-  std::vector<Pixel> pixels_;
-};
-
 // A sink, and a form without any symmetry whose places, signs and axes all count.
 TEST(FormedAperture, CubeCornerAgreesWithAPixelModel) {
   constexpr double kAperture = 0.5;
@@ -172,9 +69,12 @@ TEST(FormedAperture, CubeCornerAgreesWithAPixelModel) {
       optics.mirror_facets = mirrors;
       optics.lossless_entrance = true;
       const FarField field = field_of(single(HexagonalCube{kAperture}, 0.3), optics, form);
-      const PixelCube cube(kAperture, mirrors, [&](double level, double down) {
-        return form.height_mm({level, down});
-      });
+      const PixelCube cube({.aperture_mm = kAperture,
+                            .wavelength_mm = kWave,
+                            .mirrors = mirrors,
+                            .height = [&](double level, double down) {
+                              return form.height_mm({level, down});
+                            }});
       const double peak = cube.area_mm2() / (kWave * kWave);
       double most = 0.0;
       for (const double radius_in_fringes : {0.0, 0.7, 1.5, 2.5})

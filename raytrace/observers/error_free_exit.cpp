@@ -1,0 +1,102 @@
+#include "raytrace/observers/error_free_exit.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace retrace::raytrace {
+namespace {
+
+using Eigen::Matrix3d, geometry::Vec2;
+
+// Largest departure of M^T M from the identity that rounding can cause. Refraction at the back causes more.
+constexpr double kIsometryTolerance = 1e-7;
+// Largest angle between a path's isometry and the nearest involution, in radians: errors of angle are smaller.
+constexpr double kLargestError_rad = 0.1;
+// Smallest determinant of the map from exit to entry, below which light grazes the face.
+constexpr double kLeastDeterminant = 1e-6;
+
+/// Direction inside the part of light with the cosines `in_air`.
+Vec3 inside(const Vec2& in_air, double index, double sign_of_z) {
+  const Vec2 across = in_air / index;
+  return {across.x(), across.y(), sign_of_z * std::sqrt(std::max(0.0, 1.0 - across.squaredNorm()))};
+}
+
+/// Product of the reflections of a path, from where light enters and leaves the face: along horizontal vectors e the
+/// exit moves by `exit_from_entry` e, within the face, and M e differs from that along the direction of exit only.
+Matrix3d product_of_reflections(const Eigen::Matrix2d& exit_from_entry, const Vec3& entering, const Vec3& leaving) {
+  Matrix3d m;
+  for (const Eigen::Index k : {0, 1}) {
+    const Vec3 moved(exit_from_entry(0, k), exit_from_entry(1, k), 0.0);
+    m.col(k) = moved + (entering[k] - moved.dot(leaving)) * leaving;
+  }
+  m.col(2) = (leaving - entering.x() * m.col(0) - entering.y() * m.col(1)) / entering.z();
+  return m;
+}
+
+/// The symmetric orthogonal matrix nearest to an orthogonal one.
+struct Involution {
+  Matrix3d matrix = Matrix3d::Identity();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> reversed;  ///< orthonormal axes that it reverses
+};
+
+std::optional<Involution> nearest_involution(const Matrix3d& m) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(0.5 * (m + m.transpose()));
+  Involution nearest;
+  nearest.matrix.setZero();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double value = axes.eigenvalues()[k];
+    if (std::abs(value) < std::cos(kLargestError_rad)) return std::nullopt;
+    const Vec3 axis = axes.eigenvectors().col(k);
+    nearest.matrix += (value < 0.0 ? -1.0 : 1.0) * axis * axis.transpose();
+    if (value > 0.0) continue;
+    nearest.reversed.conservativeResize(3, nearest.reversed.cols() + 1);
+    nearest.reversed.rightCols<1>() = axis;
+  }
+  return nearest;
+}
+
+/// Moves a point along a direction onto the entrance face, z = 0 here.
+Vec2 onto_face(const Vec3& point, const Vec3& direction) {
+  return (point - point.z() / direction.z() * direction).head<2>();
+}
+
+}  // namespace
+
+std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec3& to_source, const Vec2& cell_mm) {
+  const Eigen::Affine2d& entry_from_exit = beam.entry_from_exit;
+  if (std::abs(entry_from_exit.linear().determinant()) < kLeastDeterminant) return std::nullopt;
+  const Vec3 entering = inside(-to_source.head<2>(), beam.index, -1.0);
+  const Vec3 leaving = inside(beam.direction.head<2>(), beam.index, 1.0);
+  const Matrix3d m = product_of_reflections(entry_from_exit.linear().inverse(), entering, leaving);
+  if (((m.transpose() * m) - Matrix3d::Identity()).norm() > kIsometryTolerance) return std::nullopt;
+  const std::optional<Involution> ideal = nearest_involution(m);
+  if (!ideal) return std::nullopt;
+  const Vec3 leaving_ideal = ideal->matrix * entering;
+  if (ideal->reversed.cols() == 0 || leaving_ideal.z() < kLargestError_rad) return std::nullopt;
+
+  // x -> M x + t from the incident ray to the outgoing one: both have the same optical path there.
+  const Vec2& entered = entry_from_exit.translation();
+  const double length_mm = (beam.phase_mm + to_source.head<2>().dot(entered)) / beam.index;
+  const Vec3 t = -length_mm * leaving - m.leftCols<2>() * entered;
+  // Its fixed point: the apex. Along axes that are not reversed the position of the cell stands for it.
+  const auto& axes = ideal->reversed;
+  const Eigen::MatrixXd system = axes.transpose() * (Matrix3d::Identity() - m) * axes;
+  const Vec3 reversed_part = axes * system.partialPivLu().solve(axes.transpose() * t);
+  const Vec3 cell(cell_mm.x(), cell_mm.y(), 0.0);
+  const Vec3 apex = reversed_part + cell - axes * (axes.transpose() * cell);
+
+  const auto exit_of = [&](const Vec2& entry) {
+    return onto_face(ideal->matrix.leftCols<2>() * entry + 2.0 * reversed_part, leaving_ideal);
+  };
+  ErrorFreeExit exit;
+  Eigen::Affine2d from_entry;
+  from_entry.translation() = exit_of(Vec2::Zero());
+  for (const Eigen::Index k : {0, 1}) from_entry.linear().col(k) = exit_of(Vec2::Unit(k)) - from_entry.translation();
+  from_entry.makeAffine();
+  exit.from_exit = from_entry * entry_from_exit;
+  exit.phase_change_mm = -beam.index * apex.z() / leaving_ideal.z() * (1.0 - leaving.dot(leaving_ideal));
+  return exit;
+}
+
+}  // namespace retrace::raytrace
