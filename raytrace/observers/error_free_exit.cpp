@@ -79,7 +79,7 @@ std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec
   const Vec2& entered = entry_from_exit.translation();
   const double length_mm = (beam.phase_mm + to_source.head<2>().dot(entered)) / beam.index;
   const Vec3 t = -length_mm * leaving - m.leftCols<2>() * entered;
-  // Its fixed point: the apex. Along axes that are not reversed the position of the cell stands for it.
+  // Its fixed point is the apex. Along axes that are not reversed, the position of the cell is used instead.
   const auto& axes = ideal->reversed;
   const Eigen::MatrixXd system = axes.transpose() * (Matrix3d::Identity() - m) * axes;
   const Vec3 reversed_part = axes * system.partialPivLu().solve(axes.transpose() * t);
