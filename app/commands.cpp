@@ -92,16 +92,18 @@ std::vector<Argument> common_arguments(CommonOptions& common) {
     for (std::string& word : words) word += '=';
     return words;
   };
-  return {
-      {"--json FILE", "write the result as JSON to FILE; - is standard output", &common.json, files(".json")},
-      {"-o,--out DIR", "write the result's files to folder DIR (init, job, export, validate: to file FILE)",
-       &common.out, files("/")},
-      {"--threads N", "threads to use [all cores the process may use]", &common.threads, whole(1, 4096)},
-      {"--seed S", "seed of the random numbers", &common.seed, whole(0, std::numeric_limits<std::uint32_t>::max())},
-      {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4", &common.overrides, one_of(keys)},
-      {"--quiet", "no progress bar, no table, no remarks", &common.quiet},
-      {"--version", "show the version and leave", {}},
-      {"-h,--help", "show this help and leave", {}}};
+  return {{"--json FILE", "write the result as JSON to FILE, or to standard output if FILE is -", &common.json,
+           files(".json")},
+          {"-o,--out DIR",
+           "write the result's files to folder DIR; with init, job, export and validate, DIR is the file to write",
+           &common.out, files("/")},
+          {"--threads N", "number of threads [all cores that the process may use]", &common.threads, whole(1, 4096)},
+          {"--seed S", "seed of the random numbers", &common.seed, whole(0, std::numeric_limits<std::uint32_t>::max())},
+          {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4; KEY= unsets the key",
+           &common.overrides, one_of(keys)},
+          {"--quiet", "print no progress bar, no table and no warnings", &common.quiet},
+          {"--version", "show the version and exit", {}},
+          {"-h,--help", "show this help and exit", {}}};
 }
 
 }  // namespace retrace::app

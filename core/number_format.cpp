@@ -73,4 +73,21 @@ std::string fixed(double value, int digits) {
   return text;
 }
 
+std::string fixed_visible(double value, int digits) {
+  constexpr double kRounding = 1e-6;
+  const double magnitude = std::abs(value);
+  if (!(magnitude >= kRounding && magnitude < std::pow(10.0, 1 - digits))) return fixed(value, digits);
+  return fmt::format("{:.3g}", value);
+}
+
+std::string fixed_apart(double value, double other, int digits) {
+  constexpr int kMostDigits = 17;
+  for (; digits <= kMostDigits; ++digits) {
+    std::string text = fixed(value, digits);
+    const double shown = std::strtod(text.c_str(), nullptr);
+    if ((shown < other) == (value < other) && (shown > other) == (value > other)) return text;
+  }
+  return shortest(value);
+}
+
 }  // namespace retrace

@@ -80,8 +80,6 @@ class TomlTable {
   Shape shape_of(std::string_view key) const;
   /// The value of a key that was given, as a message shows it: -3, "text", a table, a list.
   std::string shown(std::string_view key) const;
-  /// Whether a key was given by an override.
-  bool is_overridden(std::string_view key) const;
   /// What is in the table, in the order of the file, and then of the overrides.
   std::vector<std::string> names() const;
   /// The same, by name.
@@ -111,10 +109,16 @@ class TomlTable {
 inline constexpr std::size_t kShortTomlBytes = 16384;
 inline constexpr std::size_t kMostDesignBytes = std::size_t{1} << 20;  ///< designs and studies
 
-/// The text of a TOML file; `source_name` stands for the file in messages. Overrides are of the form KEY=VALUE and add
-/// or replace values; their text stands for the file in messages about them.
+/// Returns the key that an override of the form `KEY=` unsets. Returns nothing for an override of another form.
+std::optional<std::string_view> unset_key(std::string_view override_text);
+
+/// Parses the text of a TOML file and applies overrides to it.
+/// \param source_name name of the file in messages
+/// \param most_bytes maximum length of the text
+/// \param overrides texts that add or replace a value (KEY=VALUE) or remove a key (KEY=); a message about an override
+/// quotes its text instead of the name of the file
 /// \throw InputError for text that is not TOML, that is longer than `most_bytes`, or whose keys nest too deeply, and
-/// for an override that is not KEY=VALUE
+/// for an override that is neither KEY=VALUE nor KEY=
 TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes = kMostTextBytes,
                      std::span<const std::string> overrides = {});
 

@@ -63,4 +63,8 @@ std::vector<std::filesystem::path> Design::files() const {
   return content_->design.files();
 }
 
+std::vector<std::string> Design::warnings() const {
+  return content_->design.warnings();
+}
+
 }  // namespace retrace

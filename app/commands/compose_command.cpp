@@ -160,6 +160,8 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string why_not = studies::why_not_reached(study, request, composition);
   std::vector<std::string> warnings = remarks_of(session);
+  const std::vector<std::string> without_effect = studies::keys_without_effect(study);
+  warnings.insert(warnings.end(), without_effect.begin(), without_effect.end());
   if (composition.best) whole = whole_part_of(options, study, written_zones(), zoned, warnings);
   const ExitCode code = files.write(studies::composition_json(study, request, composition, elapsed_s),
                                     studies::composition_text(study, request, composition), warnings,

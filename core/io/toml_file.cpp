@@ -88,6 +88,16 @@ toml::table parse_override(const std::string& text, const std::string& label) {
   }
 }
 
+/// Removes the key or table at a dotted path. Does nothing if the table has no such key.
+void erase(toml::table& table, std::string_view path) {
+  const std::size_t dot = path.find('.');
+  if (dot == std::string_view::npos) {
+    table.erase(path);
+  } else if (toml::table* const inner = table.get_as<toml::table>(path.substr(0, dot))) {
+    erase(*inner, path.substr(dot + 1));
+  }
+}
+
 /// Moves everything of `from` into `into`; tables are merged, anything else is replaced.
 void merge(toml::table& into, toml::table& from) {
   for (auto&& [key, node] : from) {
@@ -393,10 +403,6 @@ std::string TomlTable::as_json() const {
   return json_text(*hidden_->table);
 }
 
-bool TomlTable::is_overridden(std::string_view key) const {
-  return position(key).source > 0;
-}
-
 TomlTable::Position TomlTable::position(std::string_view key) const {
   const toml::node* const node = hidden_->find(key);
   return node != nullptr ? hidden_->source->position(*node) : Position{};
@@ -427,6 +433,14 @@ void TomlTable::finish() const {
   for (const TomlTable& table : hidden_->handed_out) table.finish();
 }
 
+std::optional<std::string_view> unset_key(std::string_view override_text) {
+  const std::size_t equals = override_text.find('=');
+  if (equals == std::string_view::npos || !trimmed(override_text.substr(equals + 1)).empty()) return std::nullopt;
+  const std::string_view key = trimmed(override_text.substr(0, equals));
+  if (key.empty() || key.find_first_not_of(kBareKeyCharacters) != std::string_view::npos) return std::nullopt;
+  return key;
+}
+
 TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes,
                      std::span<const std::string> overrides) {
   auto source = std::make_shared<TomlSource>();
@@ -436,7 +450,13 @@ TomlTable parse_toml(std::string_view text, const std::string& source_name, std:
   source->root = parse_file(text, source->file);
   source->paths.push_back(source->root.source().path);
   for (const std::string& each : overrides) {
-    toml::table table = parse_override(each, "--set " + printable(each, 200));
+    std::string label = "--set " + printable(each, 200);
+    if (const auto key = unset_key(each)) {
+      erase(source->root, *key);
+      source->paths.push_back(std::make_shared<const std::string>(std::move(label)));
+      continue;
+    }
+    toml::table table = parse_override(each, label);
     source->paths.push_back(table.source().path);
     merge(source->root, table);
   }

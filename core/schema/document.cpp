@@ -71,7 +71,7 @@ std::size_t Document::index(std::string_view path) const {
 fs::path Document::file(std::string_view path) const {
   const Given& given = given_.find(path)->second;
   const std::string& name = std::get<std::string>(given.value);
-  return given.is_overridden ? fs::path(name) : folder_ / name;
+  return given.source > 0 ? fs::path(name) : folder_ / name;
 }
 
 std::vector<fs::path> Document::files() const {
@@ -139,8 +139,13 @@ const Condition* Document::refused_by(When when, std::string_view around) const 
   return failed != when.end() ? &*failed : nullptr;
 }
 
-void Document::set(const std::string& path, Value value, InputLocation place, bool is_overridden) {
-  given_[path] = {std::move(value), std::move(place), is_overridden};
+void Document::set(const std::string& path, Value value, InputLocation place, std::size_t source) {
+  given_[path] = {std::move(value), std::move(place), source};
+}
+
+std::size_t Document::source_of(std::string_view path) const {
+  const auto found = given_.find(path);
+  return found == given_.end() ? 0 : found->second.source;
 }
 
 }  // namespace retrace::schema

@@ -86,8 +86,13 @@ class Document {
   /// The first of the conditions that does not hold; null if all do.
   const Condition* refused_by(When when, std::string_view around) const;
 
-  /// Gives a key, a table or an entry of a list. \param value of a table: nothing
-  void set(const std::string& path, Value value, InputLocation place = {}, bool is_overridden = false);
+  /// Stores that a key, a table or an entry of a list was given.
+  /// \param value value of the key; empty for a table or an entry of a list
+  /// \param source 0 if the file gave the key, otherwise the number of the override that gave it, counted from 1
+  void set(const std::string& path, Value value, InputLocation place = {}, std::size_t source = 0);
+  /// Returns the number of the override that gave a key, counted from 1. Returns 0 if the file gave the key, or if the
+  /// key was not given.
+  std::size_t source_of(std::string_view path) const;
   /// Takes a key back. \pre it was given
   void drop(std::string_view path) { given_.erase(given_.find(path)); }
 
@@ -99,7 +104,7 @@ class Document {
   struct Given {
     Value value;
     InputLocation place;
-    bool is_overridden = false;
+    std::size_t source = 0;
   };
 
   const Table* table_;

@@ -222,8 +222,12 @@ void add_ties(const Place& place, std::string_view key, Json& json) {
   std::string path(key);
   for (const Place* at = &place; at != nullptr; at = at->around) {
     for (const Rule& rule : at->table.rules)
-      if (const Check* const check = std::get_if<Check>(&rule))
-        if (std::ranges::count(check->keys, std::string_view(path)) > 0) add_meaning(check->meaning, json);
+      std::visit(
+          [&](const auto& each) {
+            if constexpr (requires { each.meaning; })
+              if (std::ranges::count(each.keys, std::string_view(path)) > 0) add_meaning(each.meaning, json);
+          },
+          rule);
     path = path_in(at->table.name, path);
   }
 }
@@ -290,6 +294,7 @@ void add_rule(const OneOf& rule, Json& json) {
 void add_rule(const Check& rule, Json& json) {
   if (rule.keys.empty()) add_meaning(rule.meaning, json);
 }
+void add_rule(const Precedence&, Json&) {}
 
 Json table_json(const Table& table, Place* around) {
   Place place = {table, around};

@@ -67,7 +67,7 @@ class Names {
       } else if (std::ranges::count(table.rows, name, &Row::key) > 0) {
         Value word;
         if (source.shape_of(name) == Shape::text) word = *source.text(name);
-        document_.set(path_in(path, name), std::move(word), source.where(name), source.is_overridden(name));
+        document_.set(path_in(path, name), std::move(word), source.where(name), source.position(name).source);
       } else if (!table.is_open) {
         source.fail(name, unknown_name(table, name, source.shape_of(name) == Shape::table, path.empty()));
       }
@@ -77,7 +77,7 @@ class Names {
  private:
   void take_table(const Table& table, TomlTable& around, const std::string& path) {
     const std::string name(table.name);
-    document_.set(path, {}, around.where(name), around.is_overridden(name));
+    document_.set(path, {}, around.where(name), around.position(name).source);
     if (table.presence != Presence::list) {
       if (around.shape_of(name) != Shape::table)
         around.fail(name, fmt::format("must be {}, got {}", shape_of(table), around.shown(name)));
@@ -87,7 +87,7 @@ class Names {
     std::size_t index = 0;
     for (const TomlTable& entry : entries(table, around)) {
       const std::string entry_path = path_of_entry(path, index++);
-      document_.set(entry_path, {}, entry.where(), around.is_overridden(name));
+      document_.set(entry_path, {}, entry.where(), around.position(name).source);
       take(table, entry, entry_path);
     }
   }
@@ -309,7 +309,7 @@ class Values {
       if (document_.has(path)) refuse(path, *refused, source);
     } else if (document_.has(path)) {
       check_word(table, *served, path, source);
-      document_.set(path, given(served->kind, key, source), document_.where(path), source.is_overridden(key));
+      document_.set(path, given(served->kind, key, source), document_.where(path), source.position(key).source);
     } else if (std::holds_alternative<Required>(served->otherwise)) {
       document_.fail(path, "missing, must be " + allowed(served->kind));
     }
@@ -370,6 +370,21 @@ void add_keys(const Table& table, const std::string& path, std::vector<std::stri
   }
 }
 
+bool has_key_or_table(const Table& root, std::string_view path) {
+  const auto [around, name] = split_path(path);
+  const Table* const table = table_at(root, around);
+  return table != nullptr &&
+         (table_at(*table, name) != nullptr || std::ranges::count(table->rows, name, &Row::key) > 0);
+}
+
+/// Checks that every key that the overrides unset is a key of the format. The key may be absent from the file.
+/// \throw InputError for the first override that names an unknown key
+void check_unset_keys(const Format& format, std::span<const std::string> overrides) {
+  for (const std::string& each : overrides)
+    if (const auto key = unset_key(each); key && !has_key_or_table(format.root, *key))
+      throw InputError({"--set " + printable(each, 200), 0, ""}, complaint_about_key(format, *key));
+}
+
 /// The root without the key that names the format.
 TomlTable checked_root(const Format& format, TomlTable root) {
   const std::string_view ids[] = {format.id};
@@ -381,6 +396,7 @@ TomlTable checked_root(const Format& format, TomlTable root) {
 
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
                        std::size_t most_bytes, std::span<const std::string> overrides) {
+  check_unset_keys(format, overrides);
   const TomlTable root = checked_root(format, parse_toml(text, source_name, most_bytes, overrides));
   Document document(format.root, root.where(), std::filesystem::path(source_name).parent_path());
   Names(document).take(format.root, root, "");
@@ -438,6 +454,53 @@ void check(const Document& document, const Table& table, const std::string& path
 void check(const Table& table, const void* object, const Refuse& refuse) {
   for (const Rule& rule : table.rules)
     if (const Check* const check = std::get_if<Check>(&rule)) check->check(object, refuse);
+}
+
+namespace {
+
+/// Returns the warning that `key` has no effect because `winner` takes precedence. Returns an empty
+/// text if no warning is due.
+/// \param winner path of the key that takes precedence
+std::string superseded_text(const Precedence& rule, const Document& document, const std::string& winner,
+                            const std::string& key) {
+  const Row* const row = document.row(key);
+  if (row == nullptr || !document.has(key) || document.value(key) == default_value(*row)) return {};
+  const std::size_t winner_source = document.source_of(winner), source = document.source_of(key);
+  // If the file gives the key and an override gives the winner, the user meant to replace the key. No warning is due.
+  // If the rule is a refinement, a warning is due only if an override gives the key after the winner was given.
+  if (rule.is_refinement ? source <= winner_source : source == 0 && winner_source > 0) return {};
+  const InputLocation where = document.where(winner);
+  const std::string place = where.line > 0 ? fmt::format(" (line {})", where.line) : std::string();
+  std::string text =
+      fmt::format("has no effect {}: {}{} takes precedence; remove one of the two", rule.effect, where.key, place);
+  if (winner.find('[') == std::string::npos) text += fmt::format(", or unset one with --set {}=", winner);
+  return InputError(document.where(key), text).what();
+}
+
+void add_superseded(const Document& document, const Table& table, const std::string& path,
+                    std::vector<std::string>& warnings) {
+  for (const Rule& rule : table.rules) {
+    const Precedence* const precedence = std::get_if<Precedence>(&rule);
+    if (precedence == nullptr || !document.holds({&precedence->winner, 1}, path)) continue;
+    const std::string winner = document.path_of(precedence->winner.key, path);
+    for (const std::string_view key : precedence->keys)
+      if (std::string text = superseded_text(*precedence, document, winner, path_in(path, key)); !text.empty())
+        warnings.push_back(std::move(text));
+  }
+  for (const Table& inner : table.tables) {
+    const std::string inner_path = path_in(path, inner.name);
+    for (std::size_t i = 0; i < document.count(inner_path); ++i)
+      add_superseded(document, inner, inner.presence == Presence::list ? path_of_entry(inner_path, i) : inner_path,
+                     warnings);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> superseded_keys(const Document& document) {
+  std::vector<std::string> warnings;
+  add_superseded(document, document.table(), "", warnings);
+  return warnings;
 }
 
 Document read_object(const Format& format, std::string_view text, const std::string& source_name, void* object) {

@@ -16,7 +16,7 @@ namespace retrace::schema {
 
 /// Reads a document of the format: every key known, of its kind, and meaning something beside the others.
 /// \param source_name stands for the file in messages; names of files are meant from its folder
-/// \param overrides each KEY=VALUE
+/// \param overrides each KEY=VALUE, or KEY= to unset a key
 /// \throw InputError with file, line and key for the first value that is not what the format allows, and for text that
 /// is no TOML or longer than `most_bytes`
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
@@ -29,6 +29,10 @@ Document with(const Format& format, const Document& document, std::span<const st
 /// unchecked. It knows the files that it names.
 Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
                          std::size_t most_bytes, std::span<const std::string> overrides);
+
+/// Returns a warning for each key that has no effect because another key takes precedence. A key whose value is its
+/// default causes no warning.
+std::vector<std::string> superseded_keys(const Document& document);
 
 /// Reads a document into an object, which is that of the format's root.
 /// \throw InputError likewise, and where values that are allowed each by itself do not fit together

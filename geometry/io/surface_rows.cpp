@@ -56,17 +56,18 @@ constexpr Condition kRectangleOnly[] = {is("kind", only(kCurves, "rectangle"))};
 constexpr Condition kPointsOnly[] = {is("kind", only(kCurves, "points"))};
 constexpr Condition kSampledOnly[] = {is("kind", kSampled)};
 constexpr Row kBoundaryRows[] = {
-    {"kind", Word{kCurves}, kRequired, "What gives the curve."},
-    {"radius_mm", kPositiveMm, kRequired, "Of the circle.", kCircleOnly},
-    {"size_mm", Numbers{2, kSize}, kRequired, "`[width, height]`.", kRectangleOnly},
-    {"corner_mm", kPositiveMm, kRequired, "Radius of the corners.", kRectangleOnly},
-    {"points_mm", NumberRows{2, kPlace, 1, 4000, "points"}, kRequired, "In their order along the curve.", Access(),
-     kPointsOnly},
-    {"scattered", Flag{}, false, "Whether they come in any order.", kPointsOnly},
-    {"formula", Text{"a formula"}, kRequired, "The radius, of `theta`.", kOfFormula},
-    {"centre_mm", Numbers{2, kPlace}, Computed{"0, 0; of points their mean"}, "Of the polar form."},
-    {"degree", kSplineDegree, 3.0, "Of the periodic spline: C^(degree - 1) in azimuth."},
-    {"samples", kSamples, 180.0, "Of the curve.", kSampledOnly}};
+    {"kind", Word{kCurves}, kRequired, "Kind of curve."},
+    {"radius_mm", kPositiveMm, kRequired, "Radius of the circle.", kCircleOnly},
+    {"size_mm", Numbers{2, kSize}, kRequired, "`[width, height]` of the rectangle.", kRectangleOnly},
+    {"corner_mm", kPositiveMm, kRequired, "Radius of the rounded corners.", kRectangleOnly},
+    {"points_mm", NumberRows{2, kPlace, 1, 4000, "points"}, kRequired,
+     "Points of the curve; in order along the curve unless `scattered` is true.", Access(), kPointsOnly},
+    {"scattered", Flag{}, false, "True if the points are in no particular order.", kPointsOnly},
+    {"formula", Text{"a formula"}, kRequired, "Radius as a function of `theta`.", kOfFormula},
+    {"centre_mm", Numbers{2, kPlace}, Computed{"0, 0; for points the centroid of the enclosed area"},
+     "Point from which radii are measured."},
+    {"degree", kSplineDegree, 3.0, "Degree of the periodic spline, which is C^(degree - 1) in azimuth."},
+    {"samples", kSamples, 180.0, "Number of samples of the curve.", kSampledOnly}};
 
 constexpr Row kExtrapolationRows[] = {{"order", Whole{{.low = 1.0, .high = jets::kMostOrder}}, 2.0,
                                        "n: C^n along radial lines; smooth all round with a `degree` of n + 1."}};

@@ -77,6 +77,7 @@ void bind_design(py::module_& module) {
       .def_property_readonly("text", &Design::text)
       .def_property_readonly("overrides", &Design::overrides)
       .def_property_readonly("files", &Design::files)
+      .def_property_readonly("warnings", &Design::warnings)
       .def("json", &Design::json);
   py::class_<Drawing>(module, "Drawing")
       .def("__bool__", [](const Drawing& drawing) { return static_cast<bool>(drawing); })

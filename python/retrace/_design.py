@@ -95,13 +95,16 @@ def toml_text(tables: Mapping[str, object]) -> str:
 
 
 def overrides_of(changes: Mapping[str, object]) -> list[str]:
-    """As --set of the command line takes them."""
+    """Returns the changes as arguments of --set: key=value, or key= if the value is None."""
     if not isinstance(changes, Mapping):
         raise refuse("changes", 'a dict such as {"element.base_mm": 0.5}', changes)
     for key in changes:
         if not isinstance(key, str) or not re.fullmatch(r"[A-Za-z0-9_.\[\]-]+", key):
             raise InputError(f'keys must be such as "element.base_mm", got {shown(key)}')
-    return [f"{key}={toml_value(key, value)}" for key, value in changes.items()]
+    return [
+        f"{key}=" if value is None else f"{key}={toml_value(key, value)}"
+        for key, value in changes.items()
+    ]
 
 
 class Design:
@@ -152,7 +155,7 @@ class Design:
         )
 
     def replace(self, changes: Mapping[str, object]) -> Design:
-        """The same design with some keys at other values."""
+        """Returns a copy of the design with some keys changed; the value None unsets a key."""
         try:
             return self._of(self._core.replaced(overrides_of(changes)), self._keeps)
         except InputError as error:
@@ -191,6 +194,11 @@ class Design:
     def files(self) -> list[str]:
         """Every file that it names."""
         return [str(file) for file in self._core.files]
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings: one for each key that has no effect because another key takes precedence."""
+        return self._core.warnings
 
     @property
     def json(self) -> str:

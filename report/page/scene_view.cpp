@@ -28,7 +28,7 @@ SceneView scene_view(const studies::DesignScene& scene) {
   view.edges = scene.edges;
   for (const studies::ScenePath& path : scene.paths) {
     ScenePathView shown;
-    shown.label = fmt::format("Incidence {} deg: {} ({} % of the light)", fixed(path.incidence_deg, 1),
+    shown.label = fmt::format("Incidence {} deg: {} ({} % of the light)", fixed_visible(path.incidence_deg, 1),
                               studies::fate_of(path.path), fixed(100.0 * path.share, 0));
     for (const geometry::Vec3& p : path.path.points_mm) shown.points_mm.push_back(numbers(p));
     for (const raytrace::PathStep& step : path.path.steps) shown.events.push_back(studies::words_of(step));

@@ -96,7 +96,7 @@ void add_summary_facts(const ResultDocument& document, std::vector<PageFact>& fa
     if (const double n = number(json, "elements_full"); std::isfinite(n))
       facts.push_back({"Whole elements", fmt::format("{:.0f}", n), ""});
     if (const double limit = number(json, "tir_limit_deg"); std::isfinite(limit))
-      facts.push_back({"Total reflection up to", fixed(limit, 2) + " deg", ""});
+      facts.push_back({"Total reflection up to", fixed_visible(limit, 2) + " deg", ""});
   }
   if (document.kind == "photometry")
     facts.push_back({"Photometry", text(json, "verdict"), verdict_style(text(json, "verdict"))});

@@ -153,8 +153,8 @@ ImagePlot false_colour_plot(const CameraResult& result) {
   ImagePlot plot;
   plot.title = studies::short_name(result.design);
   plot.remarks.push_back(fmt::format("{} lx, observation angle {}°, entrance angle {}°",
-                                     shortest(result.request.illuminance_lx), fixed(result.observation_deg, 2),
-                                     fixed(result.entrance_deg, 2)));
+                                     shortest(result.request.illuminance_lx), fixed_visible(result.observation_deg, 2),
+                                     fixed_visible(result.entrance_deg, 2)));
   if (result.image.part_means.size() > 1)
     plot.remarks.push_back(fmt::format("mean luminance of the part {} cd/m²", fixed(result.image.part_mean(), 3)));
   ImagePanel panel{"Luminance",

@@ -79,8 +79,8 @@ std::string road_png(const RoadResult& result, double scale) {
                 Align::left);
     canvas.text({x, kHead + height + 35.0},
                 fmt::format("observation angle {}\u00b0, reflectors {} and {} cd/m\u00b2",
-                            fixed(view.reflectors[0].observation_deg[0], 2), fixed(view.reflectors[0].luminance, 1),
-                            fixed(view.reflectors[1].luminance, 1)),
+                            fixed_visible(view.reflectors[0].observation_deg[0], 2),
+                            fixed(view.reflectors[0].luminance, 1), fixed(view.reflectors[1].luminance, 1)),
                 {11.0, false}, kFaint, Align::left);
     x += kViewWidth + kMargin;
   }

@@ -48,10 +48,8 @@ raytrace::Illumination illumination_of(const Design& design, const DetectorReque
 }
 
 raytrace::ReturnFrame frame_of(const raytrace::Illumination& light) {
-  const double t = light.incidence.rad();
-  const double p = light.azimuth.rad();
   raytrace::ReturnFrame frame;
-  frame.to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+  frame.to_source = raytrace::direction_to_source(light);
   frame.right = raytrace::source_axis(frame.to_source);
   frame.up = frame.to_source.cross(frame.right);
   return frame;

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/sin_cos.h"
+
 namespace retrace::studies {
 namespace {
 
@@ -83,8 +85,7 @@ double LuminousIntensity::largest_cd() const {
 }
 
 geometry::Vec3 from_aimed(const geometry::Vec3& direction, double down_deg) {
-  const double sine = std::sin(down_deg * kRadPerDeg);
-  const double cosine = std::cos(down_deg * kRadPerDeg);
+  const auto [sine, cosine] = sin_cos_deg(down_deg);
   return {direction.x(), cosine * direction.y() - sine * direction.z(), sine * direction.y() + cosine * direction.z()};
 }
 

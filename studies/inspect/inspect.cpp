@@ -108,9 +108,9 @@ void tell_early_end(Inspection& result) {
   const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element) || circumstances(result).empty()) return;
   result.warnings.push_back(fmt::format(
-      "{}: total reflection at the facets ends at {:.2f} degrees of incidence at azimuth {:.1f} (n = {:.4f}{}){}",
-      result.design.source_name(), *result.tir_limit_deg, *result.tir_limit_azimuth_deg, least_index(result.light),
-      circumstances(result), of_turned_elements(part)));
+      "{}: total reflection at the facets ends at {} degrees of incidence at azimuth {:.1f} (n = {:.4f}{}){}",
+      result.design.source_name(), fixed_visible(*result.tir_limit_deg, 2), *result.tir_limit_azimuth_deg,
+      least_index(result.light), circumstances(result), of_turned_elements(part)));
 }
 
 /// Says so if light that falls in along the normal is not totally reflected, or not all of it.
@@ -241,8 +241,9 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
     return result;
   }
   if (!design.elements()) {
-    // make_model() refuses one that is not; what was mended is in the warnings.
-    result.boundary = result.warnings.empty() ? "closed, free of self-intersections" : "see warnings";
+    // make_model() has added a warning for each repair of the mesh.
+    const bool is_mended = result.warnings.size() > design.warnings().size();
+    result.boundary = is_mended ? "see warnings" : "closed, free of self-intersections";
     return result;
   }
   if (!model.optics.facet_form.is_plane()) result.form = report_form(design, model.optics.facet_form);

@@ -27,7 +27,7 @@ std::string face_name(FacetRole role) {
 
 std::string words_of(const raytrace::PathStep& step) {
   const std::string face = face_name(step.role);
-  const std::string at = fmt::format("at {} deg", fixed(step.incidence_deg, 1));
+  const std::string at = fmt::format("at {} deg", fixed_visible(step.incidence_deg, 1));
   const std::string left = fmt::format("{} % goes on", fixed(100.0 * step.power, 1));
   switch (step.event) {
     case PathEvent::enters: return fmt::format("Enters {} {}; {}.", face, at, left);
@@ -53,7 +53,8 @@ std::string fate_of(const raytrace::LightPath& path) {
   if (path.is_returned)
     return fmt::format("comes back after {} total reflection{}", reflections, reflections == 1 ? "" : "s");
   if (last == PathEvent::leaves)
-    return fmt::format("leaves the face {} deg off the way back", fixed(path.deviation_deg, 1));
+    return fmt::format("leaves through the entrance face at {} deg from the direction to the source",
+                       fixed_visible(path.deviation_deg, 1));
   if (last == PathEvent::leaves_side) return "leaves through a side";
   return last == PathEvent::escapes ? "is lost behind the part" : "fades inside";
 }

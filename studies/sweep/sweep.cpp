@@ -227,7 +227,7 @@ bool run_sweep(const Sweep& sweep, ResultStore& store, SweepObserver* observer, 
 }
 
 SweepResult collect(const Sweep& sweep, const ResultStore& store, bool complete) {
-  SweepResult result{sweep, store.points(), 0.0, complete, {}};
+  SweepResult result{sweep, store.points(), 0.0, complete, keys_without_effect(sweep.study())};
   const auto failed = [](const StoredPoint& point) { return point.failed; };
   const auto first = std::find_if(result.points.begin(), result.points.end(), failed);
   if (first != result.points.end())

@@ -212,7 +212,7 @@ TEST(Photometry, RefusesBadInputInOneLine) {
       {instead(4, "--colour=green"), "--colour: must be red, amber, white for UN R3 / R150, got \"green\""},
       {{"photometry", "d.toml", "--standard=r150", "--colour=red", "--area-cm2=30"}, "--class: is required"},
       {{"photometry", "d.toml", "--standard=j594", "--class=IA", "--colour=red", "--area-cm2=1"}, "--class: SAE J594"},
-      {instead(5, "--area-cm2=0"), "--area-cm2: must be a number above 0, to 1e+06, got 0"},
+      {instead(5, "--area-cm2=0"), "--area-cm2: must be greater than 0 and at most 1e+06, got 0"},
       {instead(5, "--area-cm2=-3"), "--area-cm2: must be"},
       {instead(5, "--area-cm2=big"), "--area-cm2: "},
       {also("--window-deg=1"), "r150:12: observation_deg: must lie within the far field that is computed"},

@@ -100,6 +100,30 @@ TEST(Fixed, ZeroHasNoSign) {
   EXPECT_EQ(fixed(-0.6, 0), "-1");
 }
 
+TEST(FixedVisible, SmallValuesAreNotZero) {
+  EXPECT_EQ(fixed_visible(1.0 / 3.0, 2), "0.33");
+  EXPECT_EQ(fixed_visible(12.3456, 2), "12.35");
+  EXPECT_EQ(fixed_visible(1.0 / 300.0, 2), "0.00333");
+  EXPECT_EQ(fixed_visible(-0.005, 2), "-0.005");
+  EXPECT_EQ(fixed_visible(0.0, 2), "0.00");
+  EXPECT_EQ(fixed_visible(1e-12, 2), "0.00") << "a rounding error counts as 0";
+}
+
+// The printed number is on the same side of the bound as the exact value.
+TEST(FixedApart, KeepsTheSideOfTheBound) {
+  EXPECT_EQ(fixed_apart(88.001, 88.0, 2), "88.001");
+  EXPECT_EQ(fixed_apart(88.2, 88.0, 2), "88.20");
+  EXPECT_EQ(fixed_apart(88.0, 88.0, 2), "88.00");
+  rc::check("any value and bound", [](double value, double step) {
+    RC_PRE(std::isfinite(value) && std::isfinite(step));
+    const double bound = value + step;
+    RC_PRE(std::isfinite(bound));
+    const double shown = std::stod(fixed_apart(value, bound, 2));
+    RC_ASSERT((shown < bound) == (value < bound));
+    RC_ASSERT((shown > bound) == (value > bound));
+  });
+}
+
 /// Numbers as Germans write them; needs no locale installed.
 class GermanNumbers : public std::numpunct<char> {
  protected:

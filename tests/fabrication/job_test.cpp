@@ -291,8 +291,7 @@ TEST(JobFile, BasesThatCannotBeAreRefused) {
   masked.array.pattern = {"####", "###-", "####", "###-"};
   expect(masked, plane, ".incline_deg: not allowed together with array.pattern");
   expect(square_job(1), plane, ".incline_deg: not allowed for arrangement = \"single\"");
-  expect(good, "kind = \"plane\"\nincline_deg = 50\n",
-         ".incline_deg: must leave the facets of its elements at most 88");
+  expect(good, "kind = \"plane\"\nincline_deg = 50\n", ".incline_deg: must keep all facets at most 88");
 }
 
 TEST(JobFile, APatternMustLeaveSomethingToCut) {

@@ -125,6 +125,15 @@ TEST(LiveEngine, ChangesKeys) {
   const Json back =
       told(engine, {{"ask", "set"}, {"design", after["design"]}, {"changes", {{"body.material", nullptr}}}});
   EXPECT_EQ(studies::parse_design(back["toml"].get<std::string>(), "").substance.material, "PMMA");
+  // A warning names a key that has no effect because another key takes precedence over it.
+  EXPECT_TRUE(after["warnings"].empty()) << after["warnings"];
+  const Json both =
+      told(engine, {{"ask", "set"}, {"design", after["design"]}, {"changes", {{"body.refractive_index", 1.6}}}});
+  ASSERT_EQ(both["warnings"].size(), 1U) << both["warnings"];
+  const auto warning = both["warnings"][0].get<std::string>();
+  EXPECT_NE(warning.find("body.material: has no effect on the refractive index: body.refractive_index"),
+            std::string::npos)
+      << warning;
 }
 
 TEST(LiveEngine, RefusesChangesThatMakeNoDesign) {

@@ -155,6 +155,19 @@ class Designs(unittest.TestCase):
         self.assertEqual(hash(same), hash(design))
         self.assertNotEqual(design.replace({"title": "yours"}), design)
 
+    def test_keys_are_unset(self):
+        """None unsets a key, and a warning names a key without effect and the key that takes precedence over it."""
+        plain = rt.Design.load(PRISM).replace({"body.refractive_index": None})
+        given = plain.replace({"body.refractive_index": 1.6, "body.material": "PC"})
+        self.assertEqual(plain.warnings, [])
+        self.assertEqual(len(given.warnings), 1)
+        self.assertIn("body.material: has no effect", given.warnings[0])
+        self.assertIn("body.refractive_index", given.warnings[0])
+        self.assertIn(given.warnings[0], rt.rre(given).warnings)
+        unset = given.replace({"body.refractive_index": None})
+        self.assertEqual(unset.warnings, [])
+        self.assertEqual(unset.json, plain.replace({"body.material": "PC"}).json)
+
     def test_every_example_of_its_keys(self):
         """A design as results quote it, without what is filled in, is that design."""
         import tomllib

@@ -94,7 +94,7 @@ TEST(BallDesign, WhatMeansNothingForBallsIsRefused) {
   EXPECT_EQ(refusal({"element.mirror_half_angle_deg=91"}),
             "--set element.mirror_half_angle_deg=91: element.mirror_half_angle_deg: must be > 0 and <= 90, got 91");
   EXPECT_NE(refusal({"element.mirror_offset_mm=0.025", "element.mirror_half_angle_deg=31"})
-                .find("must be <= 30.000000 where the bowls of neighbours meet, got 31"),
+                .find("must be <= 30.000000 degrees, at which neighbouring bowls touch, got 31"),
             std::string::npos)
       << refusal({"element.mirror_offset_mm=0.025", "element.mirror_half_angle_deg=31"});
   EXPECT_EQ(refusal({"element.mirror_offset_mm=0.01", "idealisation.facets=real"}),

@@ -322,11 +322,57 @@ TEST(DesignReader, FilesAreNamedInTheOrderThatStoresOfStudiesHave) {
             std::vector<std::filesystem::path>{});
 }
 
+// Unsetting a key has the same effect as removing it from the file. The last override of a key wins.
+TEST(DesignReader, KeysAreUnset) {
+  const std::string text = joined(kLines) + "refractive_index = 1.6\nmaterial = \"PC\"\n[form]\nsink_um = 0.1\n";
+  const auto read = [&](const std::vector<std::string>& overrides) { return parse_design(text, "d.toml", overrides); };
+  EXPECT_EQ(read({}).substance.refractive_index, 1.6);
+  EXPECT_EQ(read({"body.refractive_index="}).substance.refractive_index, std::nullopt);
+  EXPECT_EQ(read({"body.material = "}).substance.material, "PMMA");
+  EXPECT_TRUE(read({"form="}).surface.form.is_plane());
+  EXPECT_EQ(read({"body.refractive_index=", "body.refractive_index=1.7"}).substance.refractive_index, 1.7);
+  EXPECT_EQ(read({"body.refractive_index=1.7", "body.refractive_index="}).substance.refractive_index, std::nullopt);
+  EXPECT_EQ(with(read({"body.refractive_index=1.7"}), std::vector<std::string>{"body.refractive_index="})
+                .substance.refractive_index,
+            std::nullopt);
+  EXPECT_EQ(read({"light.spectrum="}).light.wavelength_nm(), read({}).light.wavelength_nm())
+      << "a key that the file does not have";
+  EXPECT_EQ(set_complaint({"element.base_mm="}), "d.toml:1: element.base_mm: missing, must be > 0");
+  EXPECT_EQ(set_complaint({"body.refractve_index="}),
+            "--set body.refractve_index=: \"body.refractve_index\" is no key of a design, did you mean "
+            "\"body.refractive_index\"?");
+}
+
+// A warning names a key that has no effect together with the key that takes precedence over it.
+TEST(DesignReader, KeysWithoutEffectAreTold) {
+  const std::string index = joined(kLines) + "refractive_index = 1.6\n";  // line 11
+  const auto warnings = [](const std::string& text, const std::vector<std::string>& overrides) {
+    return parse_design(text, "d.toml", overrides).warnings();
+  };
+  using Warnings = std::vector<std::string>;
+  const std::string ends =
+      " has no effect on the refractive index: body.refractive_index (line 11) takes precedence; remove one of the "
+      "two, or unset one with --set body.refractive_index=";
+  EXPECT_EQ(warnings(index, {}), Warnings{});
+  EXPECT_EQ(warnings(index, {"body.material=PC"}), Warnings{"--set body.material=PC: body.material:" + ends});
+  EXPECT_EQ(warnings(index + "material = \"PC\"\n", {}), Warnings{"d.toml:12: body.material:" + ends});
+  EXPECT_EQ(warnings(index, {"body.refractive_index=", "body.material=PC"}), Warnings{});
+  EXPECT_EQ(warnings(index, {"body.material=PMMA"}), Warnings{}) << "an override by the default";
+  // If the override sets the key that takes precedence, the user intends this effect, and no warning is given. A file
+  // may give both an absorption and a material without a warning.
+  const std::string plastic = joined(kLines) + "material = \"PC\"\n";
+  EXPECT_EQ(warnings(plastic, {"body.refractive_index=1.6"}), Warnings{});
+  EXPECT_EQ(warnings(plastic + "absorption_per_mm = 0.1\n", {}), Warnings{});
+  EXPECT_EQ(warnings(joined(kLines) + "absorption_per_mm = 0.1\n", {"body.material=PC"}).size(), 1U);
+  EXPECT_EQ(warnings(joined(kLines), {"idealisation.facets=mirror", "body.facet_coating=aluminium"}).size(), 1U);
+}
+
 TEST(DesignReader, ErrorsInOverridesNameTheOverride) {
   EXPECT_EQ(set_complaint({"element.base_mm=0"}), "--set element.base_mm=0: element.base_mm: must be > 0, got 0");
   EXPECT_EQ(set_complaint({"element.base_mm=0.4mm"}),
             "--set element.base_mm=0.4mm: element.base_mm: must be a number, got \"0.4mm\"");
-  EXPECT_EQ(set_complaint({"element.base_mm="}), "--set element.base_mm=: element.base_mm: must be a number, got \"\"");
+  EXPECT_EQ(set_complaint({"element.base_mm=\"\""}),
+            "--set element.base_mm=\"\": element.base_mm: must be a number, got \"\"");
   EXPECT_EQ(set_complaint({"elemnt.base_mm=1"}),
             "--set elemnt.base_mm=1: elemnt: unknown table, did you mean \"element\"? (allowed: element, array, base, "
             "zone, part, "

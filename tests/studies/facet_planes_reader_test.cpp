@@ -111,7 +111,7 @@ TEST(FacetPlanesReader, CubeCornersMayHaveCaps) {
   EXPECT_EQ(refused_cube(kHead + caps), "p.csv:3: facet: must stand behind the three facets of its element");
   EXPECT_EQ(refused_cube(kHead + cube + "2,2,8,-0.5,2,0\n"), "p.csv:6: facet: must follow in the order 7, 8, 9");
   EXPECT_EQ(refused_cube(kHead + cube + "2,2,7,0.5,-1,-1.7\n"),
-            "p.csv:6: height_mm: must be > -0.707107 and < 0, over the apex, got 0.5");
+            "p.csv:6: height_mm: must be > -0.707107 (the apex) and < 0 (the rim), got 0.5");
 }
 
 }  // namespace

@@ -195,9 +195,12 @@ std::string key_table(const Table& table) {
 
 std::string rule_table(const Table& root) {
   std::string text;
-  for (const Rule& rule : root.rules)
+  for (const Rule& rule : root.rules) {
     if (const Check* const check = std::get_if<Check>(&rule); check != nullptr && !check->keys.empty())
       text += fmt::format("| `{}` | {} |\n", fmt::join(check->keys, "`, `"), check->meaning);
+    if (const Precedence* const precedence = std::get_if<Precedence>(&rule))
+      text += fmt::format("| `{}` | {} |\n", fmt::join(precedence->keys, "`, `"), precedence->meaning);
+  }
   return text.empty() ? text : "| keys | what holds of them together |\n|---|---|\n" + text;
 }
 

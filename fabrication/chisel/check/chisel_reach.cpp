@@ -151,7 +151,7 @@ void check_chisel_reach(const geometry::Element& element, const Tool& tool, cons
   const double rake_deg = tool.clearance_deg + tool.wedge_deg;
   if (rake_deg <= least_deg)
     throw InputError(wedge, fmt::format("with clearance_deg must be > {}, or fins stay along dihedral edges, got {}",
-                                        fixed(least_deg, 3), shortest(rake_deg)));
+                                        fixed_apart(least_deg, rake_deg, 3), shortest(rake_deg)));
   const double rake = Angle::from_deg(rake_deg).rad();
   // Height of the core over the apex for each mm of the edge.
   const double rise =
@@ -160,7 +160,7 @@ void check_chisel_reach(const geometry::Element& element, const Tool& tool, cons
   if (tool.width_mm >= most_mm)
     throw InputError(width,
                      fmt::format("must be < {}, or what it leaves over the apex reaches the blank's face, got {}",
-                                 fixed(most_mm, 6), shortest(tool.width_mm)));
+                                 fixed_apart(most_mm, tool.width_mm, 6), shortest(tool.width_mm)));
 }
 
 }  // namespace retrace::fabrication

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
+#include <span>
 
 #include "core/angle.h"
 #include "fabrication/job/cube_corner.h"
+#include "geometry/centroid.h"
 #include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
@@ -56,8 +57,7 @@ std::vector<Vec3> Groove::facet_corners(std::size_t facet) const {
 }
 
 Vec3 Groove::facet_middle(std::size_t facet) const {
-  const std::vector<Vec3> corners = facet_corners(facet);
-  return std::accumulate(corners.begin(), corners.end(), Vec3(Vec3::Zero())) / static_cast<double>(corners.size());
+  return geometry::centroid(std::span<const Vec3>(facet_corners(facet)));
 }
 
 Groove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm) {

@@ -57,8 +57,9 @@ void StopCheck::check_length(const CutMove& cut, const FacetCut& along) {
   if (is_worn_ || cut_mm_ <= *life_mm * kSlack) return;
   is_worn_ = true;
   findings_.add("edge_worn", cut.motion.place.line,
-                fmt::format("the edge has cut {} mm, its life is {}", fixed(cut_mm_, 3), shortest(*life_mm)), cut_mm_,
-                *life_mm, static_cast<std::int64_t>(cut.element));
+                fmt::format("the edge has cut {} mm, which exceeds its tool life of {} mm",
+                            fixed_apart(cut_mm_, *life_mm, 3), shortest(*life_mm)),
+                cut_mm_, *life_mm, static_cast<std::int64_t>(cut.element));
 }
 
 void StopCheck::check_time(const NcPlace& place, std::int64_t element, double now_s) {
@@ -67,7 +68,7 @@ void StopCheck::check_time(const NcPlace& place, std::int64_t element, double no
   if (!has_cut_ && ran_s * kSlack < warm_s)
     findings_.add("cold", place.line,
                   fmt::format("the first cut comes {} s after the machine began to move, it is warm after {}",
-                              fixed(ran_s, 1), shortest(warm_s)),
+                              fixed_apart(ran_s, warm_s, 1), shortest(warm_s)),
                   ran_s, warm_s, element);
   has_cut_ = true;
   const auto& most_min = workpiece_.job->process.stop_every_min;

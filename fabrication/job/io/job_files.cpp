@@ -345,7 +345,8 @@ void check_chisel(const Job& job, const Refuse& refuse) {
   if (job.tool.side_clearance_deg >= side_limit_deg)
     refuse("tool.side_clearance_deg",
            fmt::format("must be < {}, or the diamond ends in a point within its element, got {}",
-                       fixed(side_limit_deg, 3), shortest(job.tool.side_clearance_deg)));
+                       fixed_apart(side_limit_deg, job.tool.side_clearance_deg, 3),
+                       shortest(job.tool.side_clearance_deg)));
 }
 
 void check_zones(const Job& job, const Refuse& refuse) {

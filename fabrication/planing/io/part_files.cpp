@@ -182,7 +182,8 @@ void check_zones(const Document& file) {
   if (part.lathe && !nose_fits(profile, part.lathe->nose_radius_mm))
     file.fail("lathe.nose_radius_mm",
               fmt::format("must be <= {}, or the nose does not reach the bottom of every zone, got {}",
-                          fixed(largest_nose_mm(profile), 3), shortest(part.lathe->nose_radius_mm)));
+                          fixed_apart(largest_nose_mm(profile), part.lathe->nose_radius_mm, 3),
+                          shortest(part.lathe->nose_radius_mm)));
 }
 
 constexpr Words kClearKeys = {"mill.clear_mm", "mill.least_move_mm"};

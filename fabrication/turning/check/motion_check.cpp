@@ -52,8 +52,8 @@ class Worst {
               const char* unit, const char* whose) const {
     if (count_ == 0) return;
     Finding finding{kind, program, line_, -1, "", excess_, *limit_, count_};
-    finding.message =
-        fmt::format("{} of {} {} exceeds the {} {}", what, fixed(excess_, 4), unit, whose, shortest(*limit_));
+    finding.message = fmt::format("{} of {} {} exceeds the {} limit of {}", what, fixed_apart(excess_, *limit_, 4),
+                                  unit, whose, shortest(*limit_));
     findings.add(std::move(finding));
   }
 

@@ -255,8 +255,8 @@ class TouchCheck {
       stretch.now.line = line;
       stretch.now.value = nm;
       stretch.now.limit = limit_nm_;
-      stretch.now.message =
-          fmt::format("{} by {} nm, beyond the tolerance of {} nm", stretch.message, fixed(nm, 2), shortest(limit_nm_));
+      stretch.now.message = fmt::format("{} by {} nm, which exceeds the tolerance of {} nm", stretch.message,
+                                        fixed_apart(nm, limit_nm_, 2), shortest(limit_nm_));
     }
     ++stretch.now.count;
   }

@@ -58,10 +58,10 @@ double widest_blend_mm(const std::vector<CutPass>& passes) {
 void judge(double tolerance_nm, double blend_nm, const Inspection& inspection, FindingList& findings) {
   const auto check = [&](const char* kind, const char* what, double value) {
     if (value > tolerance_nm)
-      findings.add(
-          kind, 0,
-          fmt::format("{} of {} nm exceeds the tolerance of {} nm", what, fixed(value, 2), shortest(tolerance_nm)),
-          value, tolerance_nm);
+      findings.add(kind, 0,
+                   fmt::format("{} of {} nm exceeds the tolerance of {} nm", what, fixed_apart(value, tolerance_nm, 2),
+                               shortest(tolerance_nm)),
+                   value, tolerance_nm);
   };
   check("form", blend_nm > 0.0 ? "a form error, blends included," : "a form error",
         inspection.form_error_nm + blend_nm);

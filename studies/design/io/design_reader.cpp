@@ -15,6 +15,7 @@
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "core/schema/reader.h"
+#include "core/sin_cos.h"
 #include "geometry/io/substrate_rows.h"
 #include "materials/io/index_record.h"
 #include "studies/design/io/design_document.h"
@@ -191,8 +192,8 @@ raytrace::Stokes read_polarisation(const Document& document) {
   if (word == "right_circular") return {1.0, 0.0, 0.0, 1.0};
   if (word == "left_circular") return {1.0, 0.0, 0.0, -1.0};
   if (word != "linear") return raytrace::kUnpolarised;
-  const double angle = Angle::from_deg(document.number("light.polarisation_angle_deg")).rad();
-  return {1.0, std::cos(2.0 * angle), std::sin(2.0 * angle), 0.0};
+  const auto [sine, cosine] = sin_cos_deg(2.0 * document.number("light.polarisation_angle_deg"));
+  return {1.0, cosine, sine, 0.0};
 }
 
 std::vector<double> read_acceptance(const Document& document) {
@@ -280,6 +281,10 @@ Design resolved(std::shared_ptr<const Document> given) {
 
 std::vector<fs::path> Design::files() const {
   return document ? document->files() : std::vector<fs::path>();
+}
+
+std::vector<std::string> Design::warnings() const {
+  return document ? schema::superseded_keys(*document) : std::vector<std::string>();
 }
 
 void Design::set_where(const std::string& key, InputLocation place) {

@@ -13,8 +13,9 @@
 namespace retrace::studies {
 
 /// Reads and checks a design file; "-" is standard input.
-/// \param overrides `key=value` texts that take precedence over the file, such as `element.base_mm=0.4`; the value is
-///        TOML, or a bare string where it is not (`array.arrangement=offset`). The last one for a key wins.
+/// \param overrides Each text `key=value`, such as `element.base_mm=0.4`, replaces the value in the file. A value that
+///        is invalid as TOML is read as a string, such as `array.arrangement=offset`. The text `key=` removes the key.
+///        If several texts have the same key, the last one applies.
 /// \throw InputError naming file, line, key, what was given and what is allowed, on one line.
 Design read_design(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 

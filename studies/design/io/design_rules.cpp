@@ -249,7 +249,7 @@ void check_angles(const Document& document, const PartSpec& part) {
   if (deg > steepest_deg)
     document.fail(blamed_error(document, kRandomTilt),
                   fmt::format("the steepest facet of the canted cube with its errors must be <= {} degrees, got {}",
-                              steepest_deg, fixed(deg, 2)));
+                              steepest_deg, fixed_apart(deg, steepest_deg, 2)));
 }
 
 void check_mask(const Document& document, const PartSpec& part) {
@@ -296,8 +296,8 @@ void check_bowl(const Document& document) {
   const auto given_deg = document.number_if("element.mirror_half_angle_deg");
   if (given_deg && *given_deg > most_deg + 1e-9)
     document.fail("element.mirror_half_angle_deg",
-                  fmt::format("must be <= {} where the bowls of neighbours meet, got {}", fixed(most_deg, 6),
-                              shortest(*given_deg)));
+                  fmt::format("must be <= {} degrees, at which neighbouring bowls touch, got {}",
+                              fixed_apart(most_deg, *given_deg, 6), shortest(*given_deg)));
 }
 
 void check_entrance(const Document& document) {
@@ -352,6 +352,9 @@ constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap
 constexpr schema::Words kHeightKeys = {kRoughness, kRoughnessLength, kWaviness, kWavinessLength};
 constexpr schema::Words kModelKeys = {"surface.model", kRoughness, kWaviness};
 constexpr schema::Words kMaterialKeys = {"body.material"};
+constexpr schema::Words kMirrorWord = {"mirror"};
+constexpr schema::Words kFacetCoatingKeys = {"body.facet_coating"};
+constexpr schema::Words kIndexKeys = {"body.material", "body.catalogue"};
 constexpr schema::Words kAbsorptionKeys = {kAbsorption};
 constexpr schema::Words kSpectrumKeys = {"light.spectrum"};
 constexpr schema::Words kStokesKeys = {"light.polarisation"};
@@ -427,6 +430,15 @@ constexpr schema::Rule kRules[] = {
                   "Heights are 0 but for `\"harvey_shack\"`, which has both, and `\"microfacet\"`, which has waviness.",
                   check_by<check_heights>},
     schema::Check{kMaterialKeys, "A material has a name.", check_by<check_material>},
+    schema::Precedence{schema::beside("body.refractive_index"), kIndexKeys, "on the refractive index",
+                       "`body.refractive_index` takes precedence over the index of the material."},
+    schema::Precedence{schema::is("idealisation.facets", kMirrorWord), kFacetCoatingKeys, "on the facets",
+                       "`idealisation.facets` = `\"mirror\"` takes precedence over the coating of the body."},
+    schema::Precedence{.winner = schema::beside("body.absorption_per_mm"),
+                       .keys = kIndexKeys,
+                       .effect = "on the absorption",
+                       .meaning = "`body.absorption_per_mm` takes precedence over the absorption of the material.",
+                       .is_refinement = true},
     schema::Check{kAbsorptionKeys, "Wavelengths of a curve ascend.", check_by<check_absorption>},
     schema::Check{kSpectrumKeys, "A list of lines has each wavelength once.", check_by<check_lines>},
     schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",

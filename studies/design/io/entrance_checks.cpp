@@ -32,7 +32,7 @@ void check_haze(const Document& document) {
   if (haze > most)
     document.fail("entrance.haze", fmt::format("must be <= {}, what a lobe of that haze_spread_deg has beyond 2.5 "
                                                "degrees, got {}",
-                                               fixed(most, 6), shortest(haze)));
+                                               fixed_apart(most, haze, 6), shortest(haze)));
 }
 
 void check_roughness_of_face(const Document& document) {

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "geometry/direction.h"
 
 namespace retrace::studies {
 namespace {
@@ -103,9 +104,9 @@ class Reader {
   /// Of a facet over the root or apex; of a flare over the middle of its hexagon, whose corner is half as deep.
   double nominal_height_mm(const FacetRow& row) const {
     if (row.facet < kFlares) return -depth_mm_;
-    const double angle = Angle::from_deg(120.0 * static_cast<double>(row.facet - kFlares)).rad();
+    const Angle angle = Angle::from_deg(120.0 * static_cast<double>(row.facet - kFlares));
     const double radius_mm = 0.5 * std::get<geometry::HexagonalCube>(spec_.element).aperture_mm;
-    const Vec2 corner = radius_mm * Vec2(std::cos(angle), std::sin(angle));
+    const Vec2 corner = radius_mm * geometry::direction_at(angle);
     return -0.5 * depth_mm_ - nominal_slopes_[(row.facet - kFlares + 1) % 3].dot(corner);
   }
 
@@ -113,8 +114,8 @@ class Reader {
   void check_cap(const FacetRow& row) const {
     if (!(row.plane.height_mm > -depth_mm_ && row.plane.height_mm < 0.0))
       fail(row.line, "height_mm",
-           fmt::format("must be > {} and < 0, over the apex, got {}", fixed(-depth_mm_, 6),
-                       shortest(row.plane.height_mm)));
+           fmt::format("must be > {} (the apex) and < 0 (the rim), got {}",
+                       fixed_apart(-depth_mm_, row.plane.height_mm, 6), shortest(row.plane.height_mm)));
   }
 
   void check(const FacetRow& row) const {
@@ -129,8 +130,9 @@ class Reader {
     if (std::abs(row.plane.height_mm - nominal_mm) > kMostHeightShare * depth_mm_)
       fail(row.line, "height_mm",
            fmt::format("must be {} to {}, near the root of the design's element, got {}",
-                       fixed(nominal_mm - kMostHeightShare * depth_mm_, 6),
-                       fixed(nominal_mm + kMostHeightShare * depth_mm_, 6), shortest(row.plane.height_mm)));
+                       fixed_apart(nominal_mm - kMostHeightShare * depth_mm_, row.plane.height_mm, 6),
+                       fixed_apart(nominal_mm + kMostHeightShare * depth_mm_, row.plane.height_mm, 6),
+                       shortest(row.plane.height_mm)));
   }
 
   void take(const FacetRow& row) {

@@ -145,8 +145,9 @@ std::string road_table(const RoadResult& result) {
     for (std::size_t side = 0; side < 2; ++side) {
       const RoadReflector& r = view.reflectors[side];
       table += fmt::format("{:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>12}\n", shortest(view.distance_m),
-                           side == 0 ? "left" : "right", fixed(r.observation_deg[0], 2), fixed(r.observation_deg[1], 2),
-                           fixed(r.r_a[0], 2), fixed(r.r_a[1], 2), fixed(r.luminance, 2));
+                           side == 0 ? "left" : "right", fixed_visible(r.observation_deg[0], 2),
+                           fixed_visible(r.observation_deg[1], 2), fixed(r.r_a[0], 2), fixed(r.r_a[1], 2),
+                           fixed(r.luminance, 2));
     }
   return table;
 }

@@ -22,7 +22,7 @@ std::string total_reflection(const Inspection& i) {
   if (i.coating.facets && i.coating.facets->stack.absorbs()) return "none: layers on the facets absorb";
   if (!i.tir_limit_deg) return "none at normal incidence";
   const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part().element);
-  return fmt::format("up to {} degrees {}", fixed(*i.tir_limit_deg, 2),
+  return fmt::format("up to {} degrees {}", fixed_visible(*i.tir_limit_deg, 2),
                      is_rtp ? "across the roof edge" : "at every azimuth");
 }
 
@@ -77,7 +77,7 @@ std::string entrance_text(const Inspection& i) {
   if (!i.entrance) return {};
   return fmt::format("  front               {}, z = {} to {} mm, up to {} degrees steep\n",
                      printable(i.design.entrance->name), fixed(i.entrance->range.lowest_mm, 6),
-                     fixed(i.entrance->range.highest_mm, 6), fixed(i.entrance->steepest_deg, 2));
+                     fixed(i.entrance->range.highest_mm, 6), fixed_visible(i.entrance->steepest_deg, 2));
 }
 
 nlohmann::ordered_json coating_json(const CoatingReport& face) {
@@ -182,8 +182,9 @@ std::string wet_back_text(const Inspection& i) {
   return fmt::format("  wet back            {} of {} elements, {} behind them: {}\n", i.wet_back->elements,
                      i.wet_back->of_all, shortest(i.design.wet_back->index), place_text(i.design.wet_back->where)) +
          fmt::format("                      total reflection in them {}\n",
-                     i.wet_back->tir_limit_deg ? fmt::format("up to {} degrees", fixed(*i.wet_back->tir_limit_deg, 2))
-                                               : "nowhere, or not stated");
+                     i.wet_back->tir_limit_deg
+                         ? fmt::format("up to {} degrees", fixed_visible(*i.wet_back->tir_limit_deg, 2))
+                         : "nowhere, or not stated");
 }
 
 nlohmann::ordered_json wet_back_json(const Inspection& i) {
@@ -199,7 +200,7 @@ std::string substrate_text(const Inspection& i) {
   const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = i.substrate->measures;
   const std::string radius = std::isfinite(least_radius_mm) ? fixed(least_radius_mm, 4) + " mm" : "plane";
   return fmt::format("  base                {} mm2, {} mm high, up to {} degrees steep\n", fixed(area_mm2, 4),
-                     fixed(highest_mm - lowest_mm, 4), fixed(steepest_deg, 2)) +
+                     fixed(highest_mm - lowest_mm, 4), fixed_visible(steepest_deg, 2)) +
          fmt::format("  least radius        {}; an element measures {} mm across\n", radius,
                      fixed(i.substrate->element_mm, 4)) +
          fmt::format(
@@ -322,13 +323,13 @@ std::string ball_text(const Inspection& i) {
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));
   text += fmt::format("  packing             {} % of the plan\n", fixed(100.0 * balls.packing_share, 3));
   text += fmt::format("  mirror              {} mm behind the balls, to {} degrees from their axes\n",
-                      shortest(i.design.balls()->mirror_offset_mm), fixed(balls.mirror_half_angle_deg, 2));
+                      shortest(i.design.balls()->mirror_offset_mm), fixed_visible(balls.mirror_half_angle_deg, 2));
   text += fmt::format("  in focus at         {}\n",
                       balls.focal_offset_mm ? fixed(*balls.focal_offset_mm, 6) + " mm" : "no offset");
   text += light_text(i);
   text += coatings_text(i);
   text += fmt::format("  paraxial error      {} rad over height / radius\n", fixed(balls.paraxial_error, 6));
-  text += fmt::format("  largest error       {} degrees\n", fixed(balls.largest_return_error_deg, 3));
+  text += fmt::format("  max. return error   {} degrees\n", fixed_visible(balls.largest_return_error_deg, 3));
   text +=
       fmt::format("  within acceptance   {} % of a ball's aperture\n", fixed(100.0 * balls.share_within_acceptance, 3));
   return text;

@@ -1,0 +1,51 @@
+// Tests of keys that have no effect because another key takes precedence: a warning names both keys. The tests cover
+// all tables of a format.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/schema/conditions.h"
+#include "core/schema/json_schema.h"
+#include "core/schema/reader.h"
+
+namespace retrace::precedence_test {
+namespace {
+
+using namespace schema;
+
+constexpr Words kColours = {"red", "any"};
+constexpr Words kAny = {"any"};
+constexpr Row kPartRows[] = {{"colour", Word{kColours}, "red", "Its colour."},
+                             {"dye", Text{}, kNone, "Its dye."},
+                             {"length_mm", Number{}, kNone, "Its length."},
+                             {"size_mm", Number{}, 1.0, "Its size."}};
+constexpr Words kDye = {"dye"};
+constexpr Words kSize = {"size_mm"};
+constexpr Rule kPartRules[] = {
+    Precedence{is("colour", kAny), kDye, "on the colour", "A part of any colour has no dye."},
+    Precedence{beside("length_mm"), kSize, "on the length", "A length takes precedence over the size.", true}};
+constexpr Table kTables[] = {
+    {.name = "part", .meaning = "A part.", .rows = kPartRows, .rules = kPartRules, .presence = Presence::list}};
+constexpr Format kThing = {"thing", "retrace.thing/1", "Thing", {"", "A thing.", {}, kTables}, true};
+
+std::vector<std::string> warnings(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  const Document document = read_document(kThing, text, "f.toml", kMostTextBytes, overrides);
+  return superseded_keys(document);
+}
+
+TEST(Precedence, WarningsNameBothKeys) {
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(warnings("[[part]]\ndye = 'x'\n"), Lines{});
+  EXPECT_EQ(warnings("[[part]]\n[[part]]\ndye = 'x'\ncolour = 'any'\n"),
+            Lines{"f.toml:3: part[2].dye: has no effect on the colour: part[2].colour (line 4) takes precedence; "
+                  "remove one of the two"});
+  EXPECT_EQ(warnings("[[part]]\nsize_mm = 2\nlength_mm = 3\n"), Lines{}) << "a file may give both keys of a refinement";
+}
+
+TEST(Precedence, IsSaidWithItsKeys) {
+  const std::string json = json_schema(kThing).dump();
+  EXPECT_NE(json.find("Its dye. A part of any colour has no dye."), std::string::npos) << json;
+}
+
+}  // namespace
+}  // namespace retrace::precedence_test
