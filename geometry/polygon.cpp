@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+
+#include "geometry/centroid.h"
 
 namespace retrace::geometry {
 namespace {
@@ -51,9 +54,7 @@ double area(const Polygon& polygon) {
 }
 
 Vec2 centroid(const Polygon& polygon) {
-  Vec2 sum = Vec2::Zero();
-  for (const Vec2& p : polygon) sum += p;
-  return sum / static_cast<double>(polygon.size());
+  return centroid(std::span<const Vec2>(polygon));
 }
 
 Polygon to_polygon(const Rectangle& r) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/overloaded.h"
+#include "geometry/direction.h"
 #include "geometry/elements/element_cells.h"
 
 namespace retrace::geometry {
@@ -17,8 +18,7 @@ double rad_from_arcmin(double arcmin) {
 
 /// Point at `angle_deg` on the circle of the cell's rim.
 Vec2 rim_point(const Vec2& centre, double radius_mm, double angle_deg) {
-  const double a = angle_deg * std::numbers::pi / 180.0;
-  return centre + radius_mm * Vec2(std::cos(a), std::sin(a));
+  return centre + radius_mm * direction_at(Angle::from_deg(angle_deg));
 }
 
 /// The angle between the vertical and each facet of a prism.
@@ -80,7 +80,7 @@ std::array<Vec2, 3> cube_slopes(const AngleErrors& errors, const Cant& cant) {
   std::array<Vec2, 3> slopes = upright_cube_slopes(errors);
   if (cant.deg == 0.0) return slopes;
   const Vec2 towards = rim_point(Vec2::Zero(), 1.0, cant.azimuth_deg);
-  const Eigen::AngleAxisd turn(cant.deg * std::numbers::pi / 180.0, Vec3(-towards.y(), towards.x(), 0.0));
+  const Eigen::Matrix3d turn = rotation_about(Vec3(-towards.y(), towards.x(), 0.0), Angle::from_deg(cant.deg));
   for (Vec2& slope : slopes) {
     const Vec3 normal = turn * Vec3(slope.x(), slope.y(), -1.0);
     slope = -normal.head<2>() / normal.z();

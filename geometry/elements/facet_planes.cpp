@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "geometry/direction.h"
 #include "geometry/elements/plane_polygon.h"
 
 namespace retrace::geometry {
@@ -51,8 +52,7 @@ void add_flares(std::vector<ElementPlanes>& elements, double radius_mm) {
     return Key{std::llround((at - first).x() / step.x()), std::llround((at - first).y() / step.y())};
   };
   const auto corner = [&](std::size_t k) -> Vec2 {
-    const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k);
-    return radius_mm * Vec2(std::cos(angle), std::sin(angle));
+    return radius_mm * direction_at(Angle::from_deg(120.0 * static_cast<double>(k)));
   };
   std::set<Key> cut;
   for (const ElementPlanes& element : elements) cut.insert(key_of(element.centre_mm));

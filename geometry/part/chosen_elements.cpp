@@ -2,22 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
-#include "core/angle.h"
 #include "core/overloaded.h"
 #include "core/random.h"
+#include "geometry/centroid.h"
+#include "geometry/direction.h"
 #include "geometry/elements/facet_planes.h"
 
 namespace retrace::geometry {
 namespace {
 
-/// Of what is seen of a cell along z; where nothing is, of its box.
+bool is_wall(const PatchFacet& facet) {
+  return facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
+}
+
+/// Returns the (x, y) centroid of a cell in projection along z, without its walls. If the projected area is 0, returns
+/// the centre of the cell's bounding box.
 Vec2 middle_in_plan(const SurfacePatch& patch, const PatchCell& cell) {
   Vec2 sum = Vec2::Zero();
   double area_mm2 = 0.0;
   for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
     const PatchFacet& facet = patch.facets[f];
-    if (facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall) continue;
+    if (is_wall(facet)) continue;
     Polygon plan;
     for (std::uint32_t k = 0; k < facet.corner_count; ++k)
       plan.push_back(patch.vertices[patch.corners[facet.first_corner + k]].head<2>());
@@ -27,6 +34,13 @@ Vec2 middle_in_plan(const SurfacePatch& patch, const PatchCell& cell) {
     area_mm2 += of_facet_mm2;
   }
   return area_mm2 > 0.0 ? Vec2(sum / area_mm2) : Vec2(0.5 * (cell.lower + cell.upper).head<2>());
+}
+
+/// Returns the (x, y) position of a wall's centroid, moved by `by_mm` along the wall's outward normal. If the wall
+/// separates two cells, the returned position is in the shallower cell.
+Vec2 beyond_wall(const SurfacePatch& patch, const PatchFacet& wall, double by_mm) {
+  const std::span<const std::uint32_t> ring(&patch.corners[wall.first_corner], wall.corner_count);
+  return (ring_centroid(patch.vertices, ring) + by_mm * wall.normal).head<2>();
 }
 
 bool has_retro_facet(const SurfacePatch& patch, const PatchCell& cell) {
@@ -61,6 +75,11 @@ ChosenElements::ChosenElements(const Part& part, const ElementChoice& choice)
       const bool chosen = is_chosen(element, place_mm);
       std::fill_n(facets_.begin() + static_cast<std::ptrdiff_t>(first + cell.first_facet), cell.facet_count, chosen);
       (chosen ? none : all) = false;
+      for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
+        if (!is_wall(patch.facets[f])) continue;
+        const Vec2 behind = placement.offset_mm + beyond_wall(patch, patch.facets[f], inwards_.x());
+        facets_[first + f] = is_chosen(element_at(behind), behind);
+      }
       if (!element.is_within || !has_retro_facet(patch, cell)) continue;
       ++of_all_;
       if (chosen) ++count_;
@@ -113,8 +132,8 @@ bool ChosenElements::is_chosen(const Place& element, const Vec2& place_mm) const
                                },
                                [&](const Disc& disc) { return (at - disc.centre_mm).norm() <= disc.radius_mm; },
                                [&](const HalfPlane& half) {
-                                 const double azimuth = Angle::from_deg(half.azimuth_deg).rad();
-                                 return (at - half.through_mm).dot(Vec2(std::cos(azimuth), std::sin(azimuth))) >= 0.0;
+                                 const Vec2 towards = direction_at(Angle::from_deg(half.azimuth_deg));
+                                 return (at - half.through_mm).dot(towards) >= 0.0;
                                }},
                     choice_);
 }

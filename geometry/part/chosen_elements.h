@@ -11,10 +11,16 @@
 
 namespace retrace::geometry {
 
-/// The facets of the elements that a choice names, for tracers to look up. An element is chosen as a whole, by where
-/// its middle lies: a prism's in the middle of its rectangle, a cube corner's over its apex, and of one that the border
-/// cuts where in the part that is nearest. Land, which belongs to no element, is chosen by its own place in a region,
-/// and with the nearest element where chance decides; so are the outer walls.
+/// Table that contains, for each facet, whether it belongs to a chosen element. An element is chosen as a whole. A
+/// choice by region uses the position of the element's centre: the centre of a prism's rectangle or the apex of a cube
+/// corner. If the centre is outside the part, the position on the part nearest to it is used.
+///
+/// Land belongs to no element. In a choice by region, the position of land itself decides whether the land is chosen.
+/// In a random choice, land is chosen together with the nearest element. An outer wall is chosen together with the
+/// element or land next to it.
+///
+/// A vertical wall between two elements is a face of the deeper element, but is chosen together with the shallower one:
+/// the medium outside the wall is the medium below the shallower element.
 class ChosenElements {
  public:
   /// \param part a finite array on the plane z = 0, not `single`
@@ -22,7 +28,9 @@ class ChosenElements {
   ChosenElements(const ChosenElements&) = delete;
   ChosenElements& operator=(const ChosenElements&) = delete;
 
-  /// Whether a facet, the `facet`th of the patch of the `placement`th placement, is one of theirs.
+  /// Returns true if the space behind a facet belongs to a chosen element.
+  /// \param placement index in Part::placements
+  /// \param facet index in the facets of that placement's patch
   bool has(std::uint32_t placement, std::uint32_t facet) const {
     return facets_[first_of_placement_[placement] + facet];
   }

@@ -3,6 +3,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "geometry/centroid.h"
+
 namespace retrace::geometry {
 namespace {
 
@@ -27,10 +29,8 @@ class EntranceVertices {
 };
 
 void add_fan(BoundaryMesh& mesh, const std::vector<std::uint32_t>& ring, FacetRole role) {
-  Vec3 middle = Vec3::Zero();
-  for (const std::uint32_t v : ring) middle += mesh.vertices[v];
   const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.push_back(middle / static_cast<double>(ring.size()));
+  mesh.vertices.push_back(ring_centroid(mesh.vertices, ring));
   for (std::size_t i = 0; i < ring.size(); ++i) {
     mesh.triangles.push_back({hub, ring[i], ring[(i + 1) % ring.size()]});
     mesh.roles.push_back(role);

@@ -1,4 +1,5 @@
 #include "geometry/part/mould_boundary.h"
+#include "geometry/centroid.h"
 #include "geometry/part/triangle_mesh.h"
 
 #include <algorithm>
@@ -91,9 +92,7 @@ class MouldBuilder {
     ring.insert(ring.end(), {under_a.bottom, under_b.bottom});
     for (const auto& [z, v] : under_b.vertices)
       if (z < mesh_.vertices[b].z()) ring.push_back(v);
-    Vec3 middle = 0.25 * (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[under_a.bottom] +
-                          mesh_.vertices[under_b.bottom]);
-    const std::uint32_t hub = add_vertex(middle);
+    const std::uint32_t hub = add_vertex(ring_centroid(mesh_.vertices, ring));
     for (std::size_t i = 0; i < ring.size(); ++i)
       add_triangle(hub, ring[i], ring[(i + 1) % ring.size()], FacetRole::side);
   }

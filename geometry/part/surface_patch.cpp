@@ -6,6 +6,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "geometry/centroid.h"
 #include "geometry/part/vertex_index.h"
 
 namespace retrace::geometry {
@@ -273,11 +274,10 @@ class PatchBuilder {
       for (std::size_t i = 1; i + 1 < ring.size(); ++i) triangle(ring[0], ring[i], ring[i + 1]);
       return;
     }
-    // Vertices inside an edge would make flat triangles in a fan from a corner; a fan from the middle has none.
-    Vec3 middle = Vec3::Zero();
-    for (const std::uint32_t c : corners) middle += patch_.vertices[c];
+    // The ring has vertices inside its straight edges. A fan of triangles from a corner could therefore contain
+    // triangles without area. A fan from the centroid contains only triangles with area.
     const auto hub = static_cast<std::uint32_t>(patch_.vertices.size());
-    patch_.vertices.push_back(middle / static_cast<double>(corners.size()));
+    patch_.vertices.push_back(ring_centroid(patch_.vertices, corners));
     for (std::size_t i = 0; i < ring.size(); ++i) triangle(hub, ring[i], ring[(i + 1) % ring.size()]);
   }
 

@@ -39,6 +39,9 @@ struct PatchCell {
   std::uint32_t facet_count = 0;
   Vec3 lower = Vec3::Zero();
   Vec3 upper = Vec3::Zero();
+  /// Index of the first cell of the element to which this cell belongs. If it is not set, the cell is an element of its
+  /// own.
+  std::optional<std::uint32_t> first_of_element = {};
 };
 
 /// A welded piece of the part's back surface, everything below the plate but the outer walls, in coordinates local to

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
-#include <numbers>
 
 #include "core/error.h"
+#include "geometry/direction.h"
 #include "geometry/elements/array_sheet.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/elements/lattice.h"
@@ -25,22 +24,20 @@ constexpr double kSamePlace = 1e-9;
 class Turn {
  public:
   Turn(double deg, const Vec2& on_sheet, const Vec2& in_part)
-      : cos_(std::cos(deg * std::numbers::pi / 180.0)),
-        sin_(std::sin(deg * std::numbers::pi / 180.0)),
-        on_sheet_(on_sheet),
-        in_part_(in_part) {}
+      : along_(direction_at(Angle::from_deg(deg))), on_sheet_(on_sheet), in_part_(in_part) {}
 
-  Vec2 turned(const Vec2& v) const { return {cos_ * v.x() - sin_ * v.y(), sin_ * v.x() + cos_ * v.y()}; }
+  Vec2 turned(const Vec2& v) const {
+    return {along_.x() * v.x() - along_.y() * v.y(), along_.y() * v.x() + along_.x() * v.y()};
+  }
   Vec2 place(const Vec2& p) const { return turned(p - on_sheet_) + in_part_; }
   /// Where a place of the part lies, seen from in_part and turned back.
   Vec2 back(const Vec2& p) const {
     const Vec2 v = p - in_part_;
-    return {cos_ * v.x() + sin_ * v.y(), -sin_ * v.x() + cos_ * v.y()};
+    return {along_.x() * v.x() + along_.y() * v.y(), -along_.y() * v.x() + along_.x() * v.y()};
   }
 
  private:
-  double cos_;
-  double sin_;
+  Vec2 along_;  ///< direction of the sheet's x axis in the part frame
   Vec2 on_sheet_;
   Vec2 in_part_;
 };

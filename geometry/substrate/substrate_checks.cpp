@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/number_format.h"
+#include "geometry/direction.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/substrate_part.h"
 
@@ -62,8 +64,8 @@ void check_steepness(const PartSpec& spec, const SubstrateSurface& surface, cons
   const double spare = 6.0 * spec.random_tilts.sigma_arcmin / 60.0;
   const double steepest = std::acos(std::clamp(least, -1.0, 1.0)) / kRadPerDegree + spare;
   if (steepest > kSteepestFacet)
-    throw InputError(fmt::format("must leave the facets of its elements at most {} degrees steep, one is {:.2f}",
-                                 kSteepestFacet, steepest));
+    throw InputError(fmt::format("must keep all facets at most {} degrees steep, but the steepest facet has {} degrees",
+                                 kSteepestFacet, fixed_apart(steepest, kSteepestFacet, 2)));
 }
 
 /// Pins touch their neighbours along their sides. Where one stands out by more than its tip is deep, its rim is beyond
@@ -74,15 +76,15 @@ void check_contact(const PartSpec& spec, const SubstrateSurface& surface, const 
   double most = 0.0;
   visit_grid(half_mm, [&](const Vec2& p) {
     for (const double degrees : {30.0, 90.0, 150.0}) {
-      const Vec2 next = p + pitch * Vec2(std::cos(degrees * kRadPerDegree), std::sin(degrees * kRadPerDegree));
+      const Vec2 next = p + pitch * direction_at(Angle::from_deg(degrees));
       most = std::max(most, std::abs(surface.at(next).value - surface.at(p).value));
     }
   });
   if (most >= depth)
     throw InputError(
-        fmt::format("must keep pins in contact: neighbours differ by {:.4g} mm along their axis, which must "
-                    "be less than the depth of their tips, {:.4g} mm",
-                    most, depth));
+        fmt::format("must keep pins in contact: neighbouring pins are shifted along their axis by up to {} mm, but the "
+                    "shift must be less than the depth of their tips, {} mm",
+                    fixed_apart(most, depth, 4), shortest(depth)));
 }
 
 }  // namespace
@@ -105,12 +107,13 @@ SubstrateMeasures check_substrate(const PartSpec& spec) {
   const double across = width_across_mm(spec.element);
   if (measures.least_radius_mm < across)
     throw InputError(
-        fmt::format("must not bend more tightly than its elements: its radius of curvature falls to {:.4g} "
-                    "mm, an element measures {:.4g} mm across",
-                    measures.least_radius_mm, across));
+        fmt::format("must have a radius of curvature of at least the width of an element: its smallest radius is {} "
+                    "mm, but an element measures {} mm across",
+                    fixed_apart(measures.least_radius_mm, across, 4), shortest(across)));
   if (measures.steepest_deg > kMostIncline + 1e-9)
-    throw InputError(fmt::format("must rise by at most {} degrees over the part, it rises by {:.2f}", kMostIncline,
-                                 measures.steepest_deg));
+    throw InputError(
+        fmt::format("must have a slope of at most {} degrees over the part, but its maximum slope is {} degrees",
+                    kMostIncline, fixed_apart(measures.steepest_deg, kMostIncline, 2)));
   if (spec.is_pin_bundle) check_contact(spec, surface, half_mm);
   if (!surface.is_upright()) check_steepness(spec, surface, half_mm);
   return measures;

@@ -15,6 +15,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/overloaded.h"
+#include "geometry/direction.h"
 
 namespace retrace::geometry {
 namespace {
@@ -23,17 +24,16 @@ namespace {
 constexpr double kMostSine = 0.999;
 
 Eigen::Matrix3d turn_of(const PlaneSubstrate& plane) {
-  const double azimuth = plane.azimuth_deg * kDegree;
   // About the horizontal line across the azimuth, so that the plane rises towards it.
-  const Vec3 axis(std::sin(azimuth), -std::cos(azimuth), 0.0);
-  return Eigen::AngleAxisd(plane.incline_deg * kDegree, axis).toRotationMatrix();
+  const Vec2 along = direction_at(Angle::from_deg(plane.azimuth_deg));
+  return rotation_about({along.y(), -along.x(), 0.0}, Angle::from_deg(plane.incline_deg));
 }
 
 Sag sag_of(const PlaneSubstrate& plane) {
   const double rise = std::tan(plane.incline_deg * kDegree);
-  const double azimuth = plane.azimuth_deg * kDegree;
+  const Vec2 along = direction_at(Angle::from_deg(plane.azimuth_deg));
   Sag sag;
-  sag.polynomial = XyPolynomial{1.0, 1, {0.0, rise * std::sin(azimuth), rise * std::cos(azimuth)}};
+  sag.polynomial = XyPolynomial{1.0, 1, {0.0, rise * along.y(), rise * along.x()}};
   return sag;
 }
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <numbers>
+#include <span>
 
 #include "core/angle.h"
 #include "core/number_format.h"
+#include "geometry/centroid.h"
 
 namespace retrace::geometry {
 namespace {
@@ -48,6 +50,14 @@ std::vector<double> unwound(const std::vector<Vec2>& points, const Vec2& centre)
     angles.push_back(angles.empty() ? angle : angles.back() + std::remainder(angle - angles.back(), kTurn));
   }
   return angles;
+}
+
+/// Returns the average of the points, which lies inside their convex hull. If no centre is given, scattered points are
+/// first sorted by their angle about this point.
+Vec2 inner_point(const std::vector<Vec2>& points) {
+  Vec2 mean = Vec2::Zero();
+  for (const Vec2& p : points) mean += p / static_cast<double>(points.size());
+  return mean;
 }
 
 void sort_by_angle(std::vector<Vec2>& points, const Vec2& centre) {
@@ -92,9 +102,8 @@ Boundary boundary_from_points(std::vector<Vec2> points_mm, std::optional<Vec2> c
   if (points_mm.size() < static_cast<std::size_t>(degree) + 2)
     throw InputError(where, fmt::format("must have at least {} points for a spline of degree {}, got {}", degree + 2,
                                         degree, points_mm.size()));
-  Vec2 centre = Vec2::Zero();
-  for (const Vec2& p : points_mm) centre += p / static_cast<double>(points_mm.size());
-  if (centre_mm) centre = *centre_mm;
+  if (scattered) sort_by_angle(points_mm, centre_mm.value_or(inner_point(points_mm)));
+  const Vec2 centre = centre_mm.value_or(centroid(std::span<const Vec2>(points_mm)));
   for (std::size_t i = 0; i < points_mm.size(); ++i)
     if (!((points_mm[i] - centre).norm() > 0.0))
       throw InputError(where, fmt::format("must have a radius > 0 at every angle, point {} is the centre", i + 1));

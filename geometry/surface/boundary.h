@@ -44,9 +44,11 @@ struct BoundaryOptions {
 Boundary boundary_from_radii(const Vec2& centre_mm, const std::vector<double>& angles_rad,
                              const std::vector<double>& radii_mm, int degree, const InputLocation& where);
 
-/// A boundary through points in their order along the curve, either way round. Without a centre theirs is the mean.
-/// \param scattered the points come in any order and are sorted by angle
-/// \throw InputError for a curve that crosses itself or has several radii at an angle, as seen from the centre
+/// Returns a boundary through points.
+/// \param points_mm points in order along the curve, in either direction
+/// \param centre_mm centre of the boundary; if it has no value, the centroid of the enclosed area is the centre
+/// \param scattered true if the points are in no particular order; they are then sorted by their angle about the centre
+/// \throw InputError if the curve crosses itself or has several radii at one angle about the centre
 Boundary boundary_from_points(std::vector<Vec2> points_mm, std::optional<Vec2> centre_mm, bool scattered, int degree,
                               const InputLocation& where);
 

@@ -72,6 +72,7 @@ FlatPolygon flattened(const Corners& corners, const Frame& frame, double merge_m
   for (const Vec3& p : corners) add_corner(polygon, frame.across(p), merge_mm);
   close(polygon, merge_mm);
   if (area(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
+  make_convex(polygon);
   return polygon;
 }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <tuple>
 
 #include "core/random.h"
+#include "geometry/centroid.h"
 #include "raytrace/exact/beam_walk.h"
 
 namespace retrace::raytrace {
@@ -60,11 +62,9 @@ Vec2 scale_of(const geometry::Part& part) {
   return (box.upper - box.lower).cwiseInverse();
 }
 
-/// Where it starts, in the mean.
-Vec2 middle_of(const Beam& beam) {
-  Vec2 at = Vec2::Zero();
-  for (const Vec3& p : beam.corners) at += p.head<2>();
-  return at / static_cast<double>(beam.corners.size());
+/// Returns the x and y coordinates of the centroid of the beam's start polygon.
+Vec2 centroid_of(const Beam& beam) {
+  return geometry::centroid(std::span<const Vec3>(beam.corners.data(), beam.corners.size())).head<2>();
 }
 
 /// Where it starts in the period or outline: neighbours there mostly have numbers that are near.
@@ -91,7 +91,7 @@ BeamGeneration::BeamGeneration(const geometry::Part& part, const WaitingBeams& b
   entries_.reserve(beams.size());
   for (std::size_t k = 0; k < beams.size(); ++k)
     if (beams[k].power > 0.0)
-      entries_.push_back({std::uint64_t{ranks[k]} << 32 | number_of_place(middle_of(beams[k]), scale), k, 0.0});
+      entries_.push_back({std::uint64_t{ranks[k]} << 32 | number_of_place(centroid_of(beams[k]), scale), k, 0.0});
   std::sort(entries_.begin(), entries_.end(),
             [](const Entry& a, const Entry& b) { return std::tie(a.order, a.beam) < std::tie(b.order, b.beam); });
   for (Entry& entry : entries_) entry.power_up_to = power_ += beams[entry.beam].total_power();

@@ -1,7 +1,9 @@
 #include "raytrace/exact/beam_walk.h"
 #include "core/infinity.h"
+#include "geometry/centroid.h"
 
 #include <algorithm>
+#include <span>
 
 namespace retrace::raytrace {
 namespace {
@@ -62,7 +64,7 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
   Beam whole;
   whole.direction = entry.direction;
   whole.light = entry.light;
-  // Continuous on the face with the incident wave, whose phase is 0 at the part's centre in that plane.
+  // The beam starts with the phase of the incident wave, which is 0 at the centre of the entrance face.
   whole.phase_mm = -setup_.optics.index * entry.direction.z() * setup_.thickness_mm;
   whole.start = {-Vec3::UnitZ(), -setup_.thickness_mm};
   whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
@@ -299,7 +301,7 @@ Horizon BeamWalk::horizon_of(const Beam& beam) const {
   }
   const double dz = beam.direction.z();
   const double slack = 1e-6 * part_.size_mm;
-  if (dz > -kGrazing && low >= setup_.top_mm - slack) return {};
+  if (dz > -kGrazing && low >= setup_.top_mm - merge_mm_) return {};
   double first = 0.0;  // when the last of the beam has come into the layer, or its first if that takes very long
   double last = kInfinity;
   if (dz > 0.0) last = (setup_.top_mm - low) / dz;
@@ -333,19 +335,33 @@ std::pair<double, double> BeamWalk::distances_to_hull(const Beam& beam) const {
   return {least, greatest};
 }
 
-void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon) {
-  candidates_.clear();
-  if (horizon.t <= 0.0) return;
+/// Returns the bounding box, in x and y, of the part of the beam's path that is below the plane z = LightSetup::top_mm.
+/// This plane is the top of the layer of elements.
+/// \param horizon maximum distance along the beam at which facets are searched
+PlanBox BeamWalk::sweep_in_layer(const Beam& beam, const Horizon& horizon) const {
+  // Due to rounding, a corner of the beam at the top of the layer may be slightly above the layer. If the beam is
+  // nearly horizontal, its computed entry into the layer would be many elements further on. The search would miss the
+  // facets before that entry. The top is therefore raised by the tolerance `merge_mm_`.
+  const double top_mm = setup_.top_mm + merge_mm_;
   PlanBox plan;
-  double nearest = kInfinity;
   for (const Vec3& p : beam.corners) {
-    const double above = p.z() - setup_.top_mm;
+    const double above = p.z() - top_mm;
     const bool falls_in = above > 0.0 && beam.direction.z() < 0.0;
     const double from = falls_in ? std::min(horizon.t, above / -beam.direction.z()) : 0.0;
     plan.include((p + from * beam.direction).head<2>());
     plan.include((p + horizon.t * beam.direction).head<2>());
-    nearest = std::min(nearest, beam.direction.dot(p));
   }
+  // If the beam's polygon crosses the top of the layer, the box also includes the line of intersection.
+  for (const Vec3& p : cut(beam.corners, {-Vec3::UnitZ(), -top_mm})) plan.include(p.head<2>());
+  return plan;
+}
+
+void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon) {
+  candidates_.clear();
+  if (horizon.t <= 0.0) return;
+  const PlanBox plan = sweep_in_layer(beam, horizon);
+  double nearest = kInfinity;
+  for (const Vec3& p : beam.corners) nearest = std::min(nearest, beam.direction.dot(p));
   // Beyond the horizon facets may be hidden by others that were not looked for.
   const Plane far{-beam.direction, -(nearest + horizon.t)};
   const PlanBox box = box_of(whole);
@@ -383,6 +399,7 @@ void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon&
   const FlatPolygon seen = flattened(corners, frame, merge_mm_);
   if (seen.size() < 3) return;
   FlatPolygon piece = intersection(whole, seen, merge_mm_);
+  make_convex(piece);
   if (piece.size() < 3 || area(piece) <= least_area_) return;
   const PlanBox piece_box = box_of(piece);
   std::optional<Vec2> middle_mm = facet.middle_mm;
@@ -408,7 +425,7 @@ FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
     work_ += kWorkOfCut;
     const FlatPolygon common = intersection(own.piece, other.piece, merge_mm_);
     if (common.size() < 3 || area(common) <= least_area_) continue;
-    const Vec2 at = middle(common);
+    const Vec2 at = geometry::centroid(std::span<const Vec2>(common.data(), common.size()));
     const double behind = own.distance.at(at) - other.distance.at(at);
     // Of two at the same distance the first counts.
     if (behind < 0.0 || (behind == 0.0 && k < j)) continue;

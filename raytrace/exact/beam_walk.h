@@ -87,8 +87,8 @@ class BeamWalk {
   void take_waiting(WaitingBeams& into);
   /// Beams that it tells of belong to this replicate.
   void serve_replicate(std::uint32_t replicate) { replicate_ = replicate; }
-  /// Where rough facets take from the beams that are followed from here on is added to these, in place of `truncated`.
-  /// \pre beams stand for several places of endless parts alone
+  /// Makes the walk append a ScatterSite to `sites` wherever a rough facet scatters light. Without this call, the
+  /// scattered power is booked as `truncated`.
   void collect(std::vector<ScatterSite>& sites) { sites_ = &sites; }
   /// Power that is given up.
   void book_truncated(double power) { tally_.other[Account::truncated] += power; }
@@ -133,6 +133,7 @@ class BeamWalk {
   Horizon horizon_of(const Beam& beam) const;
   PlanBox sweep_of(const Beam& beam) const;
   std::pair<double, double> distances_to_hull(const Beam& beam) const;
+  PlanBox sweep_in_layer(const Beam& beam, const Horizon& horizon) const;
   void find_candidates(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon);
   void consider(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const PlanBox& box, const Plane* far,
                 const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet, const Vec3& shift,

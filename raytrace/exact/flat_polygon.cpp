@@ -13,12 +13,29 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - b.y()) - (b.y() - a.y()) * (c.x() - b.x());
 }
 
+using Points = boost::container::small_vector<Vec2, 24>;
+
+/// Sorts points by x. Points whose x coordinates differ only by rounding are sorted by y. Otherwise the points of a
+/// vertical side would be in random order, and convex_hull() could remove an end point of the side as collinear.
+/// \param least_area maximum of twice the area of a triangle for its corners to be treated as collinear
+void sort_along_x(Points& points, double least_area) {
+  std::sort(points.begin(), points.end(), [](const Vec2& p, const Vec2& q) { return p.x() < q.x(); });
+  const auto is_lower = [](const Vec2& p, const Vec2& q) { return p.y() < q.y(); };
+  const auto [lowest, highest] = std::minmax_element(points.begin(), points.end(), is_lower);
+  const double near_mm = least_area / (highest->y() - lowest->y());
+  for (auto first = points.begin(); first != points.end();) {
+    auto end = first + 1;
+    while (end != points.end() && !(end->x() - end[-1].x() > near_mm)) ++end;
+    std::sort(first, end, is_lower);
+    first = end;
+  }
+}
+
 /// Andrew's monotone chain; corners that turn by less than `least_area` are left out.
 FlatPolygon convex_hull(const FlatPolygon& a, const FlatPolygon& b, double least_area) {
-  boost::container::small_vector<Vec2, 24> points(a.begin(), a.end());
+  Points points(a.begin(), a.end());
   points.insert(points.end(), b.begin(), b.end());
-  std::sort(points.begin(), points.end(),
-            [](const Vec2& p, const Vec2& q) { return p.x() < q.x() || (p.x() == q.x() && p.y() < q.y()); });
+  sort_along_x(points, least_area);
   FlatPolygon hull;
   const auto add_chain = [&](auto first, auto last) {
     const std::size_t start = hull.size();
@@ -43,6 +60,21 @@ Box box_around(const FlatPolygon& polygon, double slack_mm) {
 
 }  // namespace
 
+void make_convex(FlatPolygon& polygon) {
+  // The removal of a corner changes the angles at its two neighbours. Both are therefore checked again.
+  std::size_t unchecked = polygon.size();
+  for (std::size_t k = 0; unchecked > 0 && polygon.size() > 3; --unchecked) {
+    const std::size_t n = polygon.size();
+    if (turn(polygon[(k + n - 1) % n], polygon[k], polygon[(k + 1) % n]) >= 0.0) {
+      k = (k + 1) % n;
+      continue;
+    }
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(k));
+    k = (k + n - 2) % (n - 1);
+    unchecked = std::min(unchecked + 2, n);
+  }
+}
+
 void join_convex(FlatPolygons& polygons, double least_area) {
   if (polygons.size() < 2) return;
   // What does not touch has no convex union.
@@ -66,6 +98,17 @@ void join_convex(FlatPolygons& polygons, double least_area) {
       boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(j));
       j = i + 1;  // those that did not fit before may fit now
     }
+}
+
+void subtract(const FlatPolygon& a, const FlatPolygon& b, double least_area, double merge_mm, FlatPolygons& out) {
+  FlatPolygon rest = a;
+  for (std::size_t i = 0; i < b.size() && !rest.empty(); ++i) {
+    const HalfPlane inner = left_of(b[i], b[(i + 1) % b.size()]);
+    FlatPolygon& outer = out.emplace_back(rest);
+    clip(outer, {-inner.a, -inner.b, -inner.c}, merge_mm);
+    if (outer.size() < 3 || area(outer) <= least_area) out.pop_back();
+    clip(rest, inner, merge_mm);
+  }
 }
 
 }  // namespace retrace::raytrace

@@ -34,12 +34,6 @@ inline double area(const FlatPolygon& polygon) {
   return 0.5 * twice;
 }
 
-inline geometry::Vec2 middle(const FlatPolygon& polygon) {
-  geometry::Vec2 sum = geometry::Vec2::Zero();
-  for (const auto& p : polygon) sum += p;
-  return sum / static_cast<double>(polygon.size());
-}
-
 /// Adds a corner unless it is the last one again. Corners nearer than `merge_mm` are one: the edge between them would
 /// have a direction made of rounding, and cutting along it would be anywhere.
 inline void add_corner(FlatPolygon& polygon, const geometry::Vec2& p, double merge_mm) {
@@ -52,6 +46,11 @@ inline void close(FlatPolygon& polygon, double merge_mm) {
     polygon.pop_back();
   if (polygon.size() < 3) polygon.clear();
 }
+
+/// Removes corners at which the outline turns clockwise. Rounding causes such corners because it changes the direction
+/// of very short edges. The line through such an edge crosses the polygon. Clipping another polygon at this line would
+/// therefore remove too much.
+void make_convex(FlatPolygon& polygon);
 
 /// Cuts a polygon back to a half plane; empty if nothing is in it.
 inline void clip(FlatPolygon& polygon, const HalfPlane& half, double merge_mm) {
@@ -88,6 +87,8 @@ inline HalfPlane left_of(const geometry::Vec2& p, const geometry::Vec2& q) {
   return {a, b, a * p.x() + b * p.y()};
 }
 
+/// Returns the intersection of two polygons.
+/// \pre `b` is convex and counter-clockwise; see make_convex()
 inline FlatPolygon intersection(const FlatPolygon& a, const FlatPolygon& b, double merge_mm) {
   FlatPolygon result = a;
   for (std::size_t i = 0; i < b.size() && !result.empty(); ++i)
@@ -98,16 +99,9 @@ inline FlatPolygon intersection(const FlatPolygon& a, const FlatPolygon& b, doub
 /// Joins polygons whose union is convex, to within `least_area`. \pre they do not overlap
 void join_convex(FlatPolygons& polygons, double least_area);
 
-/// Adds to `out` what `b` leaves of `a`, as convex pieces larger than `least_area`.
-template <class Polygons>
-void subtract(const FlatPolygon& a, const FlatPolygon& b, double least_area, double merge_mm, Polygons& out) {
-  FlatPolygon rest = a;
-  for (std::size_t i = 0; i < b.size() && !rest.empty(); ++i) {
-    const HalfPlane inner = left_of(b[i], b[(i + 1) % b.size()]);
-    FlatPolygon outer = clipped(rest, {-inner.a, -inner.b, -inner.c}, merge_mm);
-    if (outer.size() >= 3 && area(outer) > least_area) out.push_back(std::move(outer));
-    clip(rest, inner, merge_mm);
-  }
-}
+/// Splits the part of `a` outside `b` into convex polygons and appends them to `out`. Polygons whose area is at most
+/// `least_area` are dropped.
+/// \pre `b` is convex and counter-clockwise; see make_convex()
+void subtract(const FlatPolygon& a, const FlatPolygon& b, double least_area, double merge_mm, FlatPolygons& out);
 
 }  // namespace retrace::raytrace

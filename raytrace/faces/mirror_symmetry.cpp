@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "geometry/centroid.h"
 #include "raytrace/exact/point_lookup.h"
 
 namespace retrace::raytrace {
@@ -20,17 +22,16 @@ constexpr double kSameNormal = 1e-9;
 /// A facet where it stands.
 struct StandingFacet {
   std::vector<Vec3> corners;
-  Vec3 middle = Vec3::Zero();  ///< mean of the corners
+  Vec3 middle = Vec3::Zero();  ///< centroid of the corners
   Vec3 normal = Vec3::UnitZ();
   geometry::FacetRole role = geometry::FacetRole::retro_facet;
 };
 
 StandingFacet standing(const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift) {
   StandingFacet result{{}, Vec3::Zero(), facet.normal, facet.role};
-  for (std::uint32_t c = 0; c < facet.corner_count; ++c) {
+  for (std::uint32_t c = 0; c < facet.corner_count; ++c)
     result.corners.push_back(patch.vertices[patch.corners[facet.first_corner + c]] + shift);
-    result.middle += result.corners.back() / facet.corner_count;
-  }
+  result.middle = geometry::centroid(std::span<const Vec3>(result.corners));
   return result;
 }
 

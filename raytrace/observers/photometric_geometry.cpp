@@ -4,23 +4,21 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/direction.h"
+
 namespace retrace::raytrace {
 namespace {
 
-using geometry::Vec2, geometry::Vec3, std::numbers::pi;
+using geometry::Vec2, geometry::Vec3, geometry::rotation_about, std::numbers::pi;
 
 // Sines below this are those of parallel directions.
 constexpr double kParallel = 1e-14;
 
-Eigen::Matrix3d turn(double angle_rad, const Vec3& axis) {
-  return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
-}
-
 /// Turns vectors of the part frame into the laboratory's: x the first axis, y from the source towards the observer, z
 /// to the source.
 Eigen::Matrix3d lab_from_part(const PhotometricGeometry& g) {
-  return turn(-g.beta1.rad(), Vec3::UnitX()) * turn(g.beta2.rad(), Vec3::UnitY()) *
-         turn(g.epsilon.rad(), Vec3::UnitZ());
+  return rotation_about(Vec3::UnitX(), Angle::from_rad(-g.beta1.rad())) * rotation_about(Vec3::UnitY(), g.beta2) *
+         rotation_about(Vec3::UnitZ(), g.epsilon);
 }
 
 /// Into (-pi, pi]; rounding does not choose between the ends.
@@ -44,11 +42,10 @@ EntranceAngles entrance_angles(const PhotometricGeometry& geometry) {
   return {Angle::from_rad(-geometry.beta1.rad()), Angle::from_rad(-geometry.beta2.rad())};
 }
 
-PhotometricDirections directions_of(const PhotometricGeometry& geometry) {
-  const Eigen::Matrix3d part_from_lab = lab_from_part(geometry).transpose();
-  const double alpha = geometry.alpha.rad();
-  return {(part_from_lab * Vec3::UnitZ()).normalized(),
-          (part_from_lab * Vec3(0.0, std::sin(alpha), std::cos(alpha))).normalized()};
+PhotometricDirections directions_of(const PhotometricGeometry& angles) {
+  const Eigen::Matrix3d part_from_lab = lab_from_part(angles).transpose();
+  const Vec3 to_observer = geometry::direction_at(angles.alpha, Angle::from_deg(90.0));
+  return {(part_from_lab * Vec3::UnitZ()).normalized(), (part_from_lab * to_observer).normalized()};
 }
 
 PhotometricGeometry geometry_of(const PhotometricDirections& directions) {

@@ -15,6 +15,7 @@
 #include "core/number_range.h"
 #include "core/random.h"
 #include "core/threads.h"
+#include "geometry/direction.h"
 #include "materials/chromaticity.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/observers/coefficients.h"
@@ -71,8 +72,8 @@ void check(const AppearanceRequest& request) {
   check(request.error, {.low = 0.001, .high = 0.5}, "--error");
   check(static_cast<double>(request.most_directions), {.low = 64.0, .high = 10000.0}, "--most-directions");
   const NumberRange discs{.low = 1.0, .high = 120.0};
-  check(60.0 * request.apertures.source.deg(), discs, "--source-arcmin");
-  check(60.0 * request.apertures.receiver.deg(), discs, "--receiver-arcmin");
+  check(arcmin_of(request.apertures.source), discs, "--source-arcmin");
+  check(arcmin_of(request.apertures.receiver), discs, "--receiver-arcmin");
 }
 
 /// \param back as ReflectionTable has it
@@ -139,7 +140,7 @@ constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
 /// Along which axes light comes back, and along which it goes on: of the three ways in which two faces of a prism, or
 /// three of a cube corner, can send it that which most of the light takes. Nothing if it was cancelled.
 std::optional<Vec2> back_of(const Design& design, const AppearanceRequest& request, const Cancellation* cancel) {
-  const Vec3 to_source = direction_of(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
+  const Vec3 to_source = geometry::direction_at(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
   const Photometer eye = photometer_of(design, photometry_of(request, -Vec2::Ones()), kEye, kParts);
   const auto fields = eye.far_fields(to_source, eye.make_tracer(), cancel);
   if (!fields) return std::nullopt;
@@ -238,7 +239,7 @@ class TableMaker {
       const auto random = philox(kProbeKey, k, 0);
       const double sine = std::sin(table_.most_entrance.rad()) * std::sqrt(unit_interval(random[0]));
       const Vec3 to_source =
-          direction_of(Angle::from_rad(std::asin(sine)), Angle::from_deg(360.0 * unit_interval(random[1])));
+          geometry::direction_at(Angle::from_rad(std::asin(sine)), Angle::from_deg(360.0 * unit_interval(random[1])));
       const Vec2 deviation = deviation_of(random[2], random[3]);
       const std::optional<View> view = view_of(to_source, table_.middle(to_source) + deviation);
       if (!view) continue;
@@ -378,7 +379,7 @@ class TableMaker {
     std::vector<ReflectionTable::Direction> computed(places.size());
     for_each_in_parallel(places.size(), [&](std::size_t k) {
       computed[k] = {entrance_at(places[k].first), azimuth_at(places[k].second), {}};
-      const Vec3 to_source = direction_of(computed[k].entrance, computed[k].azimuth);
+      const Vec3 to_source = geometry::direction_at(computed[k].entrance, computed[k].azimuth);
       if (std::optional<Fields> fields = fields_of(to_source, cancel))
         computed[k].r_a = grid_of(to_source, *fields, cancel);
     });
@@ -423,8 +424,8 @@ class TableMaker {
   /// it was cancelled.
   bool refine_grid(const Cancellation* cancel) {
     const std::array<Angle, 2> range = table_.azimuths();
-    const Vec3 to_source = direction_of(Angle::from_rad(0.5 * table_.most_entrance.rad()),
-                                        Angle::from_rad(0.5 * (range[0].rad() + range[1].rad())));
+    const Vec3 to_source = geometry::direction_at(Angle::from_rad(0.5 * table_.most_entrance.rad()),
+                                                  Angle::from_rad(0.5 * (range[0].rad() + range[1].rad())));
     const std::optional<Fields> fields = fields_of(to_source, cancel);
     if (!fields) return false;
     std::vector<Vec2> deviations;
@@ -490,8 +491,8 @@ class TableMaker {
     std::vector<std::size_t> of_cell;
     for (std::size_t k = first; k < cells_.size(); ++k) {
       for (const double share : {1.0 / 6.0, 0.5, 5.0 / 6.0}) {
-        const Vec3 to_source = direction_of(entrance_at(cells_[k].corner[0] + share * cells_[k].size[0]),
-                                            azimuth_at(cells_[k].corner[1] + share * cells_[k].size[1]));
+        const Vec3 to_source = geometry::direction_at(entrance_at(cells_[k].corner[0] + share * cells_[k].size[0]),
+                                                      azimuth_at(cells_[k].corner[1] + share * cells_[k].size[1]));
         const double greatest = most_of(to_source);
         for (std::uint32_t view = 0; view < kViews; ++view) {
           const auto random = philox(kViewKey, view, static_cast<std::uint32_t>(k));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/direction.h"
 #include "studies/appearance/appearance.h"
 
 namespace retrace::studies {
@@ -52,7 +53,7 @@ class Fit {
     for (ArrayXXd* power : {&power_[0], &power_[1], &power_[2], &luminous_}) *power = ArrayXXd::Zero(points, lights);
     for (Index light = 0; light < lights; ++light) {
       const ReflectionTable::Direction& direction = table.directions[static_cast<std::size_t>(light)];
-      const Vec3 to_source = direction_of(direction.entrance, direction.azimuth);
+      const Vec3 to_source = geometry::direction_at(direction.entrance, direction.azimuth);
       for (Index point = 0; point < points; ++point) {
         const Vec2 view = table.middle(to_source) + table.deviation(static_cast<std::size_t>(point));
         if (view.squaredNorm() >= 1.0) continue;
@@ -74,7 +75,7 @@ class Fit {
     Eigen::MatrixXd terms(luminous_.cols(), static_cast<Index>(Lobe::kTerms));
     for (Index light = 0; light < terms.rows(); ++light) {
       const ReflectionTable::Direction& direction = table_.directions[static_cast<std::size_t>(light)];
-      const auto row = terms_of(direction_of(direction.entrance, direction.azimuth).head<2>() / result.scale);
+      const auto row = terms_of(geometry::direction_at(direction.entrance, direction.azimuth).head<2>() / result.scale);
       for (Index term = 0; term < terms.cols(); ++term) terms(light, term) = row[static_cast<std::size_t>(term)];
     }
     const Eigen::MatrixXd coefficients = terms.colPivHouseholderQr().solve(of_light_.matrix());

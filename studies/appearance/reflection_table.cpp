@@ -54,11 +54,6 @@ double luminous(const Rgb& rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }
 
-Vec3 direction_of(Angle entrance, Angle azimuth) {
-  return {std::sin(entrance.rad()) * std::cos(azimuth.rad()), std::sin(entrance.rad()) * std::sin(azimuth.rad()),
-          std::cos(entrance.rad())};
-}
-
 Vec2 ReflectionTable::deviation(std::size_t index) const {
   return Vec2(static_cast<double>(index % columns), static_cast<double>(index / columns)) * step() -
          Vec2::Constant(half_width);

@@ -93,7 +93,4 @@ void ReflectionTable::for_each_power(const geometry::Vec3& to_source, Visit visi
   }
 }
 
-/// A unit vector of an entrance angle and an azimuth, from +x towards +y.
-geometry::Vec3 direction_of(Angle entrance, Angle azimuth);
-
 }  // namespace retrace::studies

@@ -154,8 +154,8 @@ FacetForm form_of_design(const Design& design, std::vector<std::string>& warning
     }
   const double steepest = facet.steepest(form);
   if (!(steepest <= kSteepest))
-    throw InputError(design.where_form(),
-                     fmt::format("the slope of the form over a facet must be <= {}, got {:.3g}", kSteepest, steepest));
+    throw InputError(design.where_form(), fmt::format("the slope of the form over a facet must be <= {}, got {}",
+                                                      kSteepest, fixed_apart(steepest, kSteepest, 4)));
   return form;
 }
 

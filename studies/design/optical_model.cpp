@@ -441,6 +441,8 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
   }
   add_coating_warnings(design, library, model);
   add_texture_warnings(design, model);
+  const std::vector<std::string> superseded = design.warnings();
+  model.warnings.insert(model.warnings.end(), superseded.begin(), superseded.end());
   return model;
 }
 

@@ -20,9 +20,7 @@ bool is_stronger(const FarFieldSpot& a, const FarFieldSpot& b) {
 }  // namespace
 
 FarFieldBuilder::FarFieldBuilder(const raytrace::Illumination& illumination) : places_(FarField::kOneDirection_rad) {
-  const double t = illumination.incidence.rad();
-  const double p = illumination.azimuth.rad();
-  const Vec3 to_source = Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+  const Vec3 to_source = raytrace::direction_to_source(illumination);
   spots_.push_back({to_source, {}, std::numeric_limits<std::uint32_t>::max()});
   places_.insert(to_source, 0);
 }

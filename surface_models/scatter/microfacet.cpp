@@ -65,8 +65,8 @@ double Microfacet::pdf_per_sr(const ScatterEvent& event, Lobe lobe, const Vec3& 
 std::vector<std::string> Microfacet::warnings(double index, double wavelength_nm) const {
   std::vector<std::string> found;
   if (slopes_.rms_slope() > kLargestSlope)
-    found.push_back("rms slope " + fixed(slopes_.rms_slope(), 3) + " is above " + shortest(kLargestSlope) +
-                    ": multiple reflection is left out");
+    found.push_back("rms slope " + fixed_apart(slopes_.rms_slope(), kLargestSlope, 3) + " is above " +
+                    shortest(kLargestSlope) + ": multiple reflection is left out");
   const double phase = reflection_phase_rad(waviness_sq_nm_, index, 1.0, wavelength_nm);
   if (waviness_sq_nm_ > 0.0 && phase * phase < kSlopePhase2)
     found.push_back("waviness of " + shortest(waviness_sq_nm_) +

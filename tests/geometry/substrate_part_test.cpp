@@ -366,9 +366,11 @@ std::string complaint(const PartSpec& spec) {
 TEST(SubstrateCheck, RefusesWhatCannotCarryTheElements) {
   PartSpec spec = spec_of(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 3.0, 2.0);
   spec.substrate = Substrate{CylinderSubstrate{0.6, true}, ElementAxes::normal};
-  EXPECT_NE(complaint(spec).find("must not bend more tightly than its elements"), std::string::npos) << complaint(spec);
+  EXPECT_NE(complaint(spec).find("must have a radius of curvature of at least the width of an element"),
+            std::string::npos)
+      << complaint(spec);
   spec.substrate = Substrate{SphereSubstrate{1.5}, ElementAxes::normal};
-  EXPECT_NE(complaint(spec).find("must rise by at most 60 degrees"), std::string::npos) << complaint(spec);
+  EXPECT_NE(complaint(spec).find("must have a slope of at most 60 degrees"), std::string::npos) << complaint(spec);
   spec.substrate = formula("0.5*sin(20*x)");
   EXPECT_NE(complaint(spec).find("must"), std::string::npos);
   spec.substrate = formula("sqrt(1 - x^2 - y^2)");

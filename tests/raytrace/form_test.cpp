@@ -194,8 +194,7 @@ TEST(FormedFacets, LedgersCloseAndEnginesAgree) {
         };
         const ConeResult one = trace(MonteCarlo::Engine::embree);
         const ConeResult all = trace(MonteCarlo::Engine::cell);
-        EXPECT_NEAR(one.rre, all.rre, 5.0 * std::hypot(one.std_error, all.std_error) + 1e-6)
-            << at.first << " " << is_rough;
+        EXPECT_NEAR(one.rre, all.rre, 5.0 * std::hypot(one.spread, all.spread) + 1e-6) << at.first << " " << is_rough;
         for (std::size_t k = 0; k < kAccountCount; ++k)
           EXPECT_NEAR(one.ledger.power[k], all.ledger.power[k], 0.02) << kAccountNames[k];
       }

@@ -175,7 +175,7 @@ TEST(InclinedArray, HasTheApertureOfCubesAtThatAngle) {
     const ConeResult small = rre(30.0, incline);
     const ConeResult large = rre(60.0, incline);
     const double expected = 2.0 - 4.0 / 3.0 / std::pow(std::cos(incline * kDeg), 2);
-    const double error = std::hypot(small.std_error, 2.0 * large.std_error);
+    const double error = std::hypot(small.spread, 2.0 * large.spread);
     EXPECT_NEAR(2.0 * large.rre - small.rre, expected, 4.0 * error + 2e-3) << incline;
   }
 }

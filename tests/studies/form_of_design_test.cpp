@@ -262,6 +262,50 @@ TEST(FormOfDesign, PhotometryIsContinuousInTheSink) {
   }
 }
 
+// Unequal dihedral errors move the edges of facets away from the corners of the outline. Facets then have an additional
+// corner. The effect of the errors must go to 0 as the errors go to 0.
+TEST(FormOfDesign, RreIsContinuousInUnequalDihedralErrors) {
+  const auto rre = [](double arcmin, const std::string& lengths) {
+    Design design = parse_design(
+        "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\n" + lengths +
+            "[body]\nthickness_mm = 2\n[form]\nterms = [{ level = 1, down = 1, height_um = 1 }]\n[detector]\n"
+            "acceptance_half_angle_deg = [0.03, 0.1, 0.2]\n",
+        "d.toml");
+    design.part().angle_errors.dihedral_error_arcmin = {arcmin, 2.0 * arcmin, 3.0 * arcmin};
+    RreRequest request;
+    request.rays = 1U << 13;
+    request.engine = Engine::montecarlo;
+    std::vector<double> values;
+    for (const RrePoint& point : RreStudy({design}, request).run().points) values.push_back(point.rre);
+    return values;
+  };
+  for (const std::string lengths : {"extent = \"infinite\"\n", "x_length_mm = 6\ny_length_mm = 4\n"}) {
+    const std::vector<double> without = rre(0.0, lengths);
+    ASSERT_EQ(without.size(), 3U);
+    for (const double arcmin : {1e-6, 1e-4}) {
+      const std::vector<double> with = rre(arcmin, lengths);
+      for (std::size_t k = 0; k < with.size(); ++k) EXPECT_NEAR(with[k], without[k], 2e-3) << k << " " << lengths;
+    }
+  }
+}
+
+TEST(FormOfDesign, PhotometryIsContinuousInUnequalDihedralErrors) {
+  Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
+  design.surface.form.sink_um = 0.1;
+  PhotometryRequest request = request_of(points_at({0.2}, 100.0));
+  request.diffraction = true;
+  request.engine = Engine::exact;
+  const auto r_a = [&](double arcmin) {
+    design.part().angle_errors.dihedral_error_arcmin = {arcmin, 2.0 * arcmin, 3.0 * arcmin};
+    return Photometer(design, request, 1)
+        .measure({{.v_deg = 5.0, .observation_deg = {0.2, 1.0 / 3.0}}}, nullptr, nullptr)
+        ->front()
+        .r_a;
+  };
+  const std::vector<double> without = r_a(0.0), with = r_a(1e-5);
+  for (std::size_t k = 0; k < without.size(); ++k) EXPECT_NEAR(with[k], without[k], 1e-3 * without[k]) << k;
+}
+
 TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
   Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
   design.surface.form.sink_um = 0.1;

@@ -9,6 +9,7 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/text.h"
+#include "geometry/direction.h"
 #include "studies/appearance/io/glsl_file.h"
 #include "studies/appearance/io/radiance_file.h"
 #include "studies/appearance/lobes.h"
@@ -58,7 +59,7 @@ std::string table_text(const AppearanceResult& result, const std::string& values
   for (const ReflectionTable::Direction& at : table.directions)
     directions.push_back({{"entrance_deg", at.entrance.deg()},
                           {"azimuth_deg", at.azimuth.deg()},
-                          {"returned", table.returned(direction_of(at.entrance, at.azimuth))}});
+                          {"returned", table.returned(geometry::direction_at(at.entrance, at.azimuth))}});
   json["directions"] = directions;
   Json cells = Json::array();
   for (const ReflectionTable::Cell& cell : table.cells)
@@ -101,7 +102,7 @@ AppearanceText radiance(const AppearanceResult& result) {
   const double leaf_deg = Angle::from_rad(tree.leaf_width()).deg();
   AppearanceText text;
   text.what = fmt::format("{} leaves of a tensor tree, each the mean over {} degrees of light and of view",
-                          tree.leaves.size(), fixed(leaf_deg, 2));
+                          tree.leaves.size(), fixed_visible(leaf_deg, 2));
   text.text = radiance_text(tree, printable(short_name(result.design), 60));
   return text;
 }
