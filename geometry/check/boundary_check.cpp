@@ -8,7 +8,9 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
@@ -28,6 +30,27 @@ bool passes_edges_both_ways(const BoundaryMesh& mesh) {
       balance[{low, high}] += t[k] == low ? 1 : -1;
     }
   return std::all_of(balance.begin(), balance.end(), [](const auto& entry) { return entry.second == 0; });
+}
+
+using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
+
+/// Returns the centroid of the smallest of all triangles that intersect another triangle.
+Vec3 crossing_of(const Surface& surface) {
+  std::vector<std::pair<Surface::Face_index, Surface::Face_index>> pairs;
+  pmp::self_intersections(surface, std::back_inserter(pairs));
+  Vec3 place = Vec3::Zero();
+  double least = INFINITY;
+  for (const auto& pair : pairs)
+    for (const Surface::Face_index face : {pair.first, pair.second}) {
+      Vec3 sum = Vec3::Zero();
+      for (const auto v : CGAL::vertices_around_face(surface.halfedge(face), surface))
+        sum += Vec3(surface.point(v).x(), surface.point(v).y(), surface.point(v).z());
+      const double area = pmp::face_area(face, surface);
+      if (area >= least) continue;
+      least = area;
+      place = sum / 3.0;
+    }
+  return place;
 }
 
 }  // namespace
@@ -54,9 +77,10 @@ BoundaryReport check_boundary(const BoundaryMesh& mesh) {
   report.is_closed = passes_edges_both_ways(mesh);
   report.is_manifold = pmp::is_polygon_soup_a_polygon_mesh(polygons);
   if (!report.is_manifold) return report;
-  CGAL::Surface_mesh<Kernel::Point_3> surface;
+  Surface surface;
   pmp::polygon_soup_to_polygon_mesh(points, polygons, surface);
   report.self_intersects = pmp::does_self_intersect(surface);
+  if (report.self_intersects) report.crossing_mm = crossing_of(surface);
   if (!report.is_closed || report.self_intersects) return report;
   report.bounds_a_volume = pmp::does_bound_a_volume(surface);
   report.volume_mm3 = pmp::volume(surface);

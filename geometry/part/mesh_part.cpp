@@ -6,19 +6,30 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 
 #include "core/error.h"
+#include "geometry/centroid.h"
+#include "geometry/part/region_elements.h"
 #include "geometry/part/triangle_mesh.h"
 
 namespace retrace::geometry {
 namespace {
 
-// Relative to the size of the mesh: what single precision leaves of planes.
+// Maximum distance of a vertex from the entrance plane for the vertex to be moved onto it, relative to the size of the
+// mesh. The maximum distance from a side is twice as large. Rounding to single precision causes smaller distances.
 constexpr double kSinglePrecision = 1e-6;
-// Sine of the angle to level or upright below which a triangle is so.
+// Maximum sine of the angle between a facet and the horizontal for the facet to count as horizontal. The same limit
+// applies to the angle between a facet and the vertical.
 constexpr double kLevel = 1e-4;
+// Maximum error of a vertex, relative to the largest coordinate: a few rounding errors of single precision.
+constexpr double kVertexRounding = 0x1p-21;
+// Maximum length of an edge for its two ends to be merged, in multiples of the maximum error of a vertex. The length is
+// measured after the vertices were moved onto their planes.
+constexpr double kSamePoint = 0x1p-4;
+// Maximum number of facets of an element for the element to be stored in a single cell. Elements with more facets are
+// divided into several cells by position. Each ray is then tested against few facets.
+constexpr std::size_t kMaxFacetsOfCell = 16;
 
 using Ring = std::vector<std::uint32_t>;
 
@@ -63,6 +74,7 @@ class PartBuilder {
     }
     top_z_ = upper.z();
     tolerance_mm_ = kSinglePrecision * (upper - lower).norm();
+    rounding_mm_ = kVertexRounding * std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff());
   }
 
   Part build() {
@@ -140,9 +152,11 @@ class PartBuilder {
     }
   }
 
-  /// Onto the planes they are meant to be on; what lies outside of the entrance face's outline is refused.
+  /// Moves vertices that are near the entrance plane or a side onto it.
+  /// \throw InputError if a vertex is outside the outline of the entrance face
   void settle_vertices() {
     settled_ = mesh_.vertices;
+    freedom_.reserve(settled_.size());
     for (Vec3& p : settled_) {
       if (top_z_ - p.z() <= tolerance_mm_) p.z() = top_z_;
       for (const Side& side : sides_) {
@@ -152,20 +166,32 @@ class PartBuilder {
               fmt::format("the mesh must lie below its entrance face, ({}, {}, {}) mm is {:.3g} mm outside", p.x(),
                           p.y(), p.z(), beyond));
       }
-      settle(p);
+      freedom_.push_back(settle(p));
     }
   }
 
-  void settle(Vec3& p) const {
+  /// Moves a vertex that is near a corner or a side of the outline onto this corner or side. Returns the projection
+  /// onto the directions in which the vertex may still move. A vertex on a corner may move along z. A vertex on a side
+  /// may move within the plane of the side. Any other vertex may move in all directions.
+  Freedom settle(Vec3& p) const {
     for (const Vec2& corner : outline_)
       if ((p.head<2>() - corner).norm() <= 2.0 * tolerance_mm_) {
         p.head<2>() = corner;
-        return;
+        return Vec3::UnitZ() * Vec3::UnitZ().transpose();
       }
+    const Side* nearest = nullptr;
+    double least_mm = 2.0 * tolerance_mm_;
     for (const Side& side : sides_) {
-      const double beyond = side.normal.dot(p.head<2>()) - side.offset_mm;
-      if (std::abs(beyond) <= 2.0 * tolerance_mm_) p.head<2>() -= beyond * side.normal;
+      const double away_mm = std::abs(side.normal.dot(p.head<2>()) - side.offset_mm);
+      if (away_mm > least_mm) continue;
+      nearest = &side;
+      least_mm = away_mm;
     }
+    Freedom free = Freedom::Identity();
+    if (nearest == nullptr) return free;
+    p.head<2>() -= (nearest->normal.dot(p.head<2>()) - nearest->offset_mm) * nearest->normal;
+    free.topLeftCorner<2, 2>() -= nearest->normal * nearest->normal.transpose();
+    return free;
   }
 
   bool is_side(const std::array<std::uint32_t, 3>& triangle) const {
@@ -187,8 +213,43 @@ class PartBuilder {
     return std::abs(normal.z()) < kLevel ? FacetRole::inner_wall : FacetRole::retro_facet;
   }
 
-  /// \param part gets its heights and sizes
+  /// Builds the back surface.
+  /// \param part part whose heights and sizes are set
   SurfacePatch make_patch(Part& part) {
+    check_plate();
+    PlaneRegions regions = settled_regions();
+    move_to_zero(part, regions.planes);
+    const Rectangle box = bounding_box(outline_);
+    // Typical size of an element: side of a square with the area of four average facets.
+    part.size_mm = std::clamp(2.0 * std::sqrt(area(outline_) / static_cast<double>(regions.planes.size())),
+                              1e-3 * box.size().minCoeff(), box.size().minCoeff());
+    part.spec.element = RtpElement{part.size_mm, part.size_mm, 90.0};
+    part.spec.thickness_mm = part.thickness_mm;
+    return fill_patch(regions, part.size_mm);
+  }
+
+  /// Finds the plane regions of the back and moves its vertices onto their planes. After that, some vertices may
+  /// coincide, and edges between them have no direction. Some strips may be too narrow to be facets. A second pass
+  /// therefore merges coincident vertices and finds the regions again.
+  PlaneRegions settled_regions() {
+    PlaneRegions regions;
+    for (int pass = 0; pass < 2; ++pass) {
+      if (pass > 0) weld_short_edges(settled_, kSamePoint * rounding_mm_, back_);
+      regions = plane_regions(settled_, back_, rounding_mm_);
+      settle_on_planes(settled_, back_, freedom_, regions);
+    }
+    return regions;
+  }
+
+  void check_plate() const {
+    for (const auto& t : back_)
+      for (const std::uint32_t v : t)
+        if (settled_[v].z() >= top_z_)
+          throw InputError("the mesh must have a plate: its back must be below the entrance face, but touches it");
+  }
+
+  /// Moves the mesh along z so that the highest point of its back is at z = 0, and sets the heights of the part.
+  void move_to_zero(Part& part, std::vector<FacetPlane>& planes) {
     double highest = -INFINITY;
     double lowest = INFINITY;
     for (const auto& t : back_)
@@ -196,60 +257,68 @@ class PartBuilder {
         highest = std::max(highest, settled_[v].z());
         lowest = std::min(lowest, settled_[v].z());
       }
-    if (highest >= top_z_) throw InputError("the mesh must have a plate: its back reaches up to the entrance face");
     for (Vec3& p : settled_) p.z() -= highest;
+    for (FacetPlane& plane : planes) plane.offset_mm -= highest * plane.normal.z();
     part.thickness_mm = top_z_ - highest;
     part.top_mm = 0.0;
     part.element_depth_mm = highest - lowest;
-    const Rectangle box = bounding_box(outline_);
-    // About as large as what four facets cover.
-    part.size_mm = std::clamp(2.0 * std::sqrt(area(outline_) / static_cast<double>(back_.size())),
-                              1e-3 * box.size().minCoeff(), box.size().minCoeff());
-    part.spec.element = RtpElement{part.size_mm, part.size_mm, 90.0};
-    part.spec.thickness_mm = part.thickness_mm;
-    return fill_patch(part.size_mm);
   }
 
-  /// Triangles that stand near each other make a cell.
-  SurfacePatch fill_patch(double cell_mm) {
-    using Bin = std::pair<std::int64_t, std::int64_t>;
-    std::map<Bin, std::vector<std::array<std::uint32_t, 3>>> bins;
-    for (const auto& t : back_) {
-      const Vec3 middle = (settled_[t[0]] + settled_[t[1]] + settled_[t[2]]) / 3.0;
-      bins[{static_cast<std::int64_t>(std::floor(middle.y() / cell_mm)),
-            static_cast<std::int64_t>(std::floor(middle.x() / cell_mm))}]
-          .push_back(t);
-    }
+  /// Builds the patch: the convex polygons of the plane regions become facets, grouped by element.
+  SurfacePatch fill_patch(const PlaneRegions& regions, double cell_mm) const {
+    const RegionTriangles needed =
+        without_needless_vertices(settled_, {back_, regions.region_of}, regions.planes, rounding_mm_);
+    std::vector<FacetRole> roles;
+    for (const FacetPlane& plane : regions.planes) roles.push_back(role_of(plane.normal));
+    const std::vector<std::uint32_t> element_of =
+        elements_of_regions(settled_, needed, regions.planes, roles, rounding_mm_);
+    std::map<std::uint32_t, std::vector<RegionPiece>> elements;
+    for (RegionPiece& piece : convex_pieces(settled_, needed, regions.planes))
+      elements[element_of[piece.region]].push_back(std::move(piece));
     SurfacePatch patch;
     patch.vertices = settled_;
-    for (const auto& [bin, triangles] : bins) {
-      PatchCell cell;
-      cell.first_facet = static_cast<std::uint32_t>(patch.facets.size());
-      cell.lower.setConstant(INFINITY);
-      cell.upper.setConstant(-INFINITY);
-      for (const auto& t : triangles) add_facet(patch, cell, t);
-      cell.facet_count = static_cast<std::uint32_t>(patch.facets.size()) - cell.first_facet;
-      if (cell.facet_count > 0) patch.cells.push_back(cell);
-    }
+    for (const auto& [number, pieces] : elements) add_element(patch, pieces, regions.planes, roles, cell_mm);
     return patch;
   }
 
-  void add_facet(SurfacePatch& patch, PatchCell& cell, const std::array<std::uint32_t, 3>& t) const {
-    const Vec3 twice = (settled_[t[1]] - settled_[t[0]]).cross(settled_[t[2]] - settled_[t[0]]);
-    const double longest = std::max({(settled_[t[1]] - settled_[t[0]]).norm(), (settled_[t[2]] - settled_[t[1]]).norm(),
-                                     (settled_[t[0]] - settled_[t[2]]).norm()});
-    if (twice.norm() <= 1e-3 * tolerance_mm_ * longest) return;  // a needle: no ray meets it, and it has no normal
+  void add_element(SurfacePatch& patch, const std::vector<RegionPiece>& pieces, const std::vector<FacetPlane>& planes,
+                   const std::vector<FacetRole>& roles, double cell_mm) const {
+    std::map<std::pair<std::int64_t, std::int64_t>, std::vector<const RegionPiece*>> bins;
+    for (const RegionPiece& piece : pieces) {
+      const Vec3 place =
+          pieces.size() > kMaxFacetsOfCell ? Vec3(ring_centroid(settled_, piece.corners) / cell_mm) : Vec3::Zero();
+      bins[{static_cast<std::int64_t>(std::floor(place.y())), static_cast<std::int64_t>(std::floor(place.x()))}]
+          .push_back(&piece);
+    }
+    const auto first_of_element = static_cast<std::uint32_t>(patch.cells.size());
+    for (const auto& [bin, own] : bins) {
+      PatchCell cell;
+      cell.first_facet = static_cast<std::uint32_t>(patch.facets.size());
+      cell.facet_count = static_cast<std::uint32_t>(own.size());
+      cell.lower.setConstant(INFINITY);
+      cell.upper.setConstant(-INFINITY);
+      cell.first_of_element = first_of_element;
+      for (const RegionPiece* piece : own) add_facet(patch, cell, *piece, planes[piece->region], roles[piece->region]);
+      patch.cells.push_back(cell);
+    }
+  }
+
+  void add_facet(SurfacePatch& patch, PatchCell& cell, const RegionPiece& piece, const FacetPlane& plane,
+                 FacetRole role) const {
+    const std::vector<std::uint32_t>& corners = piece.corners;
+    for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
+      patch.triangles.push_back({corners[0], corners[k], corners[k + 1]});
+      patch.triangle_facet.push_back(static_cast<std::uint32_t>(patch.facets.size()));
+    }
     PatchFacet facet;
-    facet.normal = twice.normalized();
-    facet.offset_mm = facet.normal.dot(settled_[t[0]]);
-    facet.role = role_of(facet.normal);
+    facet.normal = plane.normal;
+    facet.offset_mm = plane.offset_mm;
+    facet.role = role;
     facet.first_corner = static_cast<std::uint32_t>(patch.corners.size());
-    facet.corner_count = 3;
-    patch.corners.insert(patch.corners.end(), t.begin(), t.end());
-    patch.triangles.push_back(t);
-    patch.triangle_facet.push_back(static_cast<std::uint32_t>(patch.facets.size()));
+    facet.corner_count = static_cast<std::uint32_t>(corners.size());
+    patch.corners.insert(patch.corners.end(), corners.begin(), corners.end());
     patch.facets.push_back(facet);
-    for (const std::uint32_t v : t) {
+    for (const std::uint32_t v : corners) {
       cell.lower = cell.lower.cwiseMin(settled_[v]);
       cell.upper = cell.upper.cwiseMax(settled_[v]);
     }
@@ -258,9 +327,11 @@ class PartBuilder {
   const TriangleMesh& mesh_;
   double top_z_ = 0.0;
   double tolerance_mm_ = 0.0;
+  double rounding_mm_ = 0.0;
   Polygon outline_;
   std::vector<Side> sides_;
   std::vector<Vec3> settled_;
+  std::vector<Freedom> freedom_;
   std::vector<std::array<std::uint32_t, 3>> back_;
 };
 
@@ -277,10 +348,8 @@ ClosedMesh with_openings_closed(const TriangleMesh& mesh) {
       closed.mesh.triangles.push_back({ring[0], ring[2], ring[1]});
       continue;
     }
-    Vec3 middle = Vec3::Zero();
-    for (const std::uint32_t v : ring) middle += mesh.vertices[v];
     const auto hub = static_cast<std::uint32_t>(closed.mesh.vertices.size());
-    closed.mesh.vertices.push_back(middle / static_cast<double>(ring.size()));
+    closed.mesh.vertices.push_back(ring_centroid(mesh.vertices, ring));
     // The border has the mesh on its left; what fills the opening runs the other way.
     for (std::size_t i = 0; i < ring.size(); ++i)
       closed.mesh.triangles.push_back({hub, ring[(i + 1) % ring.size()], ring[i]});

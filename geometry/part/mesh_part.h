@@ -25,15 +25,20 @@ BoundaryMesh boundary_of(const TriangleMesh& mesh);
 /// The mesh with every triangle turned over.
 TriangleMesh turned_over(const TriangleMesh& mesh);
 
-/// A part whose shape is a closed mesh, in the mesh's own x and y; z counts from the highest point of its back. Its
-/// entrance face is the highest level face of the mesh, with a convex outline; everything else lies below it and within
-/// its outline, so that the sides are upright. Facets are the mesh's triangles: level ones are flat back, upright ones
-/// walls, the others retro facets.
+/// Returns a part that has the shape of a closed mesh. The x and y coordinates are those of the mesh; z is 0 at the
+/// highest point of the back. The highest face of the mesh must be horizontal and have a convex outline; it becomes the
+/// entrance face. The rest of the mesh must be below the entrance face and within its outline. The sides are therefore
+/// vertical.
 ///
-/// Vertices within 1e-6 of the mesh's size of the entrance face's plane or of a side are put there: meshes come in
-/// single precision.
-/// \pre the mesh is closed, outward and does not cross itself (check_boundary())
-/// \throw InputError if it is no such part
+/// The facets are the plane regions of the back, whatever their triangulation. Horizontal regions become flat back,
+/// vertical regions become walls, and all other regions become retro facets. A region that is not convex is stored as
+/// several facets in the same plane. elements_of_regions() determines which facets form an element.
+///
+/// Meshes are often stored in single precision. A vertex near the plane of the entrance face or of a side is therefore
+/// moved onto this plane; the maximum distance is about 1e-6 of the size of the mesh. Vertices of the back are also
+/// moved onto the planes of their facets, typically by less than 5e-7 of the largest coordinate.
+/// \pre the mesh is closed, its normals point outward, and it does not intersect itself (check_boundary())
+/// \throw InputError if the mesh does not have the shape described above
 Part part_of_mesh(const TriangleMesh& mesh);
 
 }  // namespace retrace::geometry

@@ -304,6 +304,8 @@ struct Design {
 
   /// Every file that a key names, from the working directory: what is read beside the source.
   std::vector<std::filesystem::path> files() const;
+  /// Returns one warning for each key of the file that another key makes ineffective.
+  std::vector<std::string> warnings() const;
   /// Where a key was given, or would be missed.
   InputLocation where(std::string_view key) const;
   /// The same of what decides the texture of the facets.

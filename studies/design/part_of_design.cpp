@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "core/atomic_file.h"
 #include "core/number_format.h"
 #include "geometry/check/boundary_check.h"
+#include "geometry/check/mesh_union.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/part/faceted_solid.h"
 #include "geometry/part/mesh_part.h"
@@ -30,7 +32,7 @@ geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh,
   geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
   if (report.is_closed) return mesh;
   if (!design.mesh()->allow_open)
-    throw InputError("the mesh is not closed; allow_open = true in [part] traces it as it is");
+    throw InputError("the mesh is not closed; set allow_open = true in [part] to close its openings by flat pieces");
   geometry::ClosedMesh mended = geometry::with_openings_closed(mesh);
   tell(warnings, design,
        fmt::format("the mesh is not closed: {} opening{} with {} edges {} closed by flat pieces, results are those of "
@@ -38,6 +40,28 @@ geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh,
                    mended.openings, mended.openings == 1 ? "" : "s", mended.open_edges,
                    mended.openings == 1 ? "was" : "were"));
   return std::move(mended.mesh);
+}
+
+/// Returns the union of the bodies of a mesh. The bodies may cross or contain each other.
+/// \param report result of check_boundary() for the mesh
+/// \pre the mesh is closed and manifold
+geometry::TriangleMesh united(const Design& design, const geometry::TriangleMesh& mesh,
+                              const geometry::BoundaryReport& report, std::vector<std::string>* warnings) {
+  std::string fault = "does not enclose one volume";
+  if (const auto& p = report.crossing_mm)
+    fault = fmt::format("crosses itself near ({}, {}, {}) mm", fixed(p->x(), 3), fixed(p->y(), 3), fixed(p->z(), 3));
+  if (!design.mesh()->allow_open)
+    throw InputError(
+        fmt::format("the mesh {}; set allow_open = true in [part] to trace the union of its bodies", fault));
+  std::optional<geometry::MeshUnion> all = geometry::union_of_bodies(mesh);
+  if (!all)
+    throw InputError(
+        fmt::format("the mesh {} and its bodies cannot be united: each body must be a closed surface that does not "
+                    "cross itself; repair the mesh in the program that made it",
+                    fault));
+  tell(warnings, design,
+       fmt::format("the mesh {}; results are those of the union of its {} bodies", fault, all->bodies));
+  return std::move(all->mesh);
 }
 
 geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh, std::vector<std::string>* warnings) {
@@ -48,12 +72,10 @@ geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh
   }
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
   if (report.ok()) return mesh;
-  const char* const fault = !report.is_manifold      ? "touches itself along edges"
-                            : report.self_intersects ? "crosses itself"
-                                                     : "does not enclose one volume";
+  if (report.is_manifold) return united(design, mesh, report, warnings);
   if (!design.mesh()->allow_open)
-    throw InputError(fmt::format("the mesh {}; allow_open = true in [part] traces it as it is", fault));
-  tell(warnings, design, fmt::format("the mesh {}; it is traced as it is", fault));
+    throw InputError("the mesh touches itself along edges; set allow_open = true in [part] to trace it unchanged");
+  tell(warnings, design, "the mesh touches itself along edges; it is traced unchanged");
   return mesh;
 }
 
@@ -61,7 +83,7 @@ void check_thickness(const Design& design, const geometry::Part& part) {
   const double given_mm = design.thickness_mm();
   if (given_mm == 0.0 || std::abs(given_mm - part.thickness_mm) <= kSameThickness * part.thickness_mm) return;
   throw InputError(fmt::format("its plate is {} mm thick, which body.thickness_mm must say or leave out, got {}",
-                               fixed(part.thickness_mm, 6), shortest(given_mm)));
+                               fixed_apart(part.thickness_mm, given_mm, 6), shortest(given_mm)));
 }
 
 }  // namespace

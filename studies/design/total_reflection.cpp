@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/direction.h"
+
 namespace retrace::studies {
 namespace {
 
@@ -48,7 +50,7 @@ struct ShutOut {
 std::vector<ShutOut> shut_out_by(const std::vector<geometry::Vec3>& directions, double critical_angle_rad,
                                  Angle azimuth) {
   const double cos_critical = std::cos(critical_angle_rad);
-  const geometry::Vec2 along(std::cos(azimuth.rad()), std::sin(azimuth.rad()));
+  const geometry::Vec2 along = geometry::direction_at(azimuth);
   std::vector<ShutOut> shut_out;
   for (const geometry::Vec3& direction : directions) {
     const double in_plane = direction.head<2>().dot(along);
@@ -100,8 +102,7 @@ std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, 
     }
   }
   const double sine = index * std::sin(inside);
-  const geometry::Vec3 light(std::sin(inside) * std::cos(azimuth.rad()), std::sin(inside) * std::sin(azimuth.rad()),
-                             std::cos(inside));
+  const geometry::Vec3 light = geometry::direction_at(Angle::from_rad(inside), azimuth);
   for (const geometry::Vec3& direction : directions)
     if (direction.dot(light) <= 0.0) return std::nullopt;  // does not meet all facets
   return sine < 1.0 ? std::optional(Angle::from_rad(std::asin(sine)).deg()) : std::nullopt;
@@ -117,6 +118,24 @@ std::vector<double> total_reflection_edges_deg(const geometry::PartSpec& part, d
     }
   std::sort(edges.begin(), edges.end());
   return edges;
+}
+
+std::vector<double> total_reflection_margins(const geometry::PartSpec& part, const geometry::Vec3& to_source,
+                                             double index, double back_index) {
+  const geometry::Vec2 across = to_source.head<2>() / index;
+  const double along = std::sqrt(std::max(0.0, 1.0 - across.squaredNorm()));
+  const double critical = std::cos(critical_rad(index, back_index));
+  std::vector<double> margins;
+  for (const geometry::Vec3& direction : square_directions(part)) {
+    const geometry::Vec2 plan = direction.head<2>();
+    const auto add = [&](const geometry::Vec2& turned) {
+      margins.push_back(turned.dot(across) + direction.z() * along - critical);
+    };
+    add(plan);
+    if (part.array.arrangement == geometry::Arrangement::triangular) add(-plan);
+    if (part.array.arrangement == geometry::Arrangement::checker) add({-plan.y(), plan.x()});
+  }
+  return margins;
 }
 
 }  // namespace retrace::studies

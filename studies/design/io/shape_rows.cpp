@@ -123,8 +123,9 @@ constexpr Row kPartRows[] = {
      "An STL file, binary or ASCII, in mm of the part frame, in place of elements; at most 10 million triangles.",
      kMeshOnly},
     {"allow_open", Flag{}, false,
-     "Whether a mesh is traced that is not closed, or crosses itself. Openings are closed by flat pieces; a warning "
-     "says how many, and results are those of the part with them.",
+     "Whether to trace a mesh with defects. Openings are closed by flat pieces, bodies that intersect are united, and "
+     "a mesh that touches itself along edges is traced unchanged. A warning reports each defect; results are those of "
+     "the repaired mesh.",
      kWithMesh},
     {"plate_mm", Numbers{2, kSaneSize, "lengths, along x and y"}, kNone,
      "Lengths along x and y of a plate whose flat back on z = 0 is its one retro facet, in place of elements."},
