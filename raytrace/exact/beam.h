@@ -155,6 +155,9 @@ struct ScatterSite {
   double share = 0.0;           ///< of the entrance's cross-section
   double scattered = 0.0;       ///< power, as a share of the incident
   bool inside = true;
+  /// Displacements in x and y from this site to all sites at which an identical beam meets an identical facet,
+  /// including the displacement 0 to this site. The pointer is null if there is only this site.
+  std::shared_ptr<const BeamPlaces> places;
 };
 
 /// A beam as it is at another place of an array, and there alone. \param to_source as of the light that came in, of

@@ -86,9 +86,11 @@ void BeamWalk::book_scattered(const Beam& beam, const Plane& plane, double power
     book(Account::truncated, power);
     return;
   }
-  // Of an endless part it is all the same at which of a beam's places its light goes on.
+  // In an infinite part, a beam represents all its periodic copies, and these copies scatter light in the same way. One
+  // scattering site with the total power of the copies is therefore sufficient.
   sites_->push_back({beam.corners, beam.direction, beam.light, beam.path_length, plane.normal,
-                     place_count_ * beam.share, place_count_ * power, beam.inside});
+                     place_count_ * beam.share, place_count_ * power, beam.inside,
+                     setup_.infinite() ? nullptr : beam.places});
 }
 
 /// \param beam before it is sent on
@@ -204,6 +206,10 @@ void BeamWalk::observe_front() const {
   front.stokes = setup_.entry.front;
   front.efficiency = front.stokes.i;
   front.cone = setup_.entry.front_cone;
+  front.jones = setup_.entry.front_jones;
+  front.transmission = 1.0;
+  front.centre_mm = centre_mm_;
+  if (!setup_.infinite()) front.left_mm = part_.outline;
   observer_(front);
 }
 

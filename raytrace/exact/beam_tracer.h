@@ -39,8 +39,9 @@ struct BeamPolicy {
   /// Least power of a beam that is followed, of beams at equal elements of a finite part together. Without one it
   /// starts at 1e-6 and falls until less than `truncated_goal` is left behind.
   std::optional<double> cutoff;
-  /// Of beams below it. \pre `cutoff` is set, facets are smooth and plane, and `keeps_phases` is not; for
-  /// BeamTracer::trace() alone
+  /// Resampling of the beams whose power is below `cutoff`. Without resampling, tracing stops at these beams, and their
+  /// power is booked as `truncated`. Only BeamTracer::trace() supports resampling.
+  /// \pre `cutoff` is set and all facets are plane; rough facets require `keeps_phases`
   std::optional<WeakBeams> weak;
   double truncated_goal = kFinestGoal;
   /// Work of BeamTrace within which beams are followed below the goal, down to `kFinestGoal`: what costs next to
@@ -74,12 +75,15 @@ struct ReturnedBeam {
   double efficiency = 0.0;  ///< its power as a share of what fell on the region where it entered
   std::uint32_t depth = 0;  ///< interfaces inside; 0: never entered
   std::size_t cone = 0;     ///< the narrowest cone that holds it; their number if none does
-  /// Where it entered and where it leaves, convex, counter-clockwise, on the entrance face in the part frame. An
-  /// infinite part's light enters within the central period. Empty if it never entered.
+  /// Convex polygons on the entrance face through which the beam enters and leaves, counter-clockwise, in the part
+  /// frame. In an infinite part, `entered_mm` is located within the central period. If the face reflects the beam from
+  /// outside, `entered_mm` is empty. In this case `left_mm` is the whole face of a finite part, and empty for an
+  /// infinite part.
   geometry::Polygon entered_mm;
   geometry::Polygon left_mm;
-  /// Maps where on the face light leaves to where it entered, relative to the part's centre. Its trace is 2 for the
-  /// light of a mirror, -2 for light that cube corners send back, 0 where only one axis is reversed.
+  /// Maps the exit point of light on the entrance face to its entry point. Both points are relative to the part's
+  /// centre. The trace of the linear part is 2 for a plane mirror, -2 for a cube corner, and 0 for a prism, which
+  /// reverses only one axis.
   Eigen::Affine2d entry_from_exit = Eigen::Affine2d::Identity();
   double index = 1.0;  ///< refractive index of the part
   /// Of the field: along source_axis() and the axis across it, of its own direction, for unit amplitudes along those
@@ -88,11 +92,12 @@ struct ReturnedBeam {
   double transmission = 0.0;  ///< share of the incident power that a matrix of unit gain would bring here
   /// Of WeakBeams: the mean over replicates counts. None of a beam that was followed exactly.
   std::optional<std::uint32_t> replicate;
-  /// Optical path of the wave. The field on the face is exp(2 pi i (phase_mm + direction . p) / wavelength) times that
-  /// of `jones`, where p lies in the plane of the face, relative to the part's centre. The incident wave is exp(-2 pi i
-  /// to_source . p / wavelength).
+  /// Optical path length that gives the phase of the returned wave at the centre of the entrance face. Let p be a point
+  /// of the face relative to the centre and `to_source` the unit vector towards the source. The incident wave at p is
+  /// exp(-2 pi i to_source . p / wavelength). The returned wave at p is `jones` times
+  /// exp(2 pi i (phase_mm + direction . p) / wavelength).
   double phase_mm = 0.0;
-  geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< that centre
+  geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< centre of the entrance face, in the part frame
   CellTrail trail;
   /// Offsets of the beams like it that this one stands for, itself included; null: for itself alone. Powers are those
   /// of one.
@@ -117,9 +122,9 @@ using BeamObserver = std::function<void(const ReturnedBeam&)>;
 class BeamTracer {
  public:
   enum class Elements { each_by_itself, equal_at_once };
-  /// \param elements `equal_at_once`: beams of elements that are alike are followed once, until a border tells them
-  /// apart, and told of once (ReturnedBeam::places), but by StochasticBeams not in finite parts with rough facets \pre
-  /// `part` outlives the tracer
+  /// \param elements The value `equal_at_once` traces identical beams in identical elements as one beam, until their
+  ///        paths differ near a border of the array. The observer receives one beam with ReturnedBeam::places.
+  /// \pre `part` outlives the tracer
   explicit BeamTracer(const geometry::Part& part, Elements elements = Elements::each_by_itself);
 
   /// Of beams above the cut-off, and of weak ones where BeamPolicy::weak asks for them, which the mean over replicates

@@ -148,10 +148,10 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
   std::uint32_t choices = 0;
   surface_models::RandomStream random(key_, replicate_, number, choices++);
   const double x = random.next();
-  Vec3 position = point_of(site.corners, {x, random.next()});
+  const Vec3 home = point_of(site.corners, {x, random.next()});
   Ray met{site.direction, site.light, site.inside, false};
   met.light.scale(power / site.scattered * site.share *
-                  std::exp(-optics.absorption_per_mm * site.path_length.at(position)));
+                  std::exp(-optics.absorption_per_mm * site.path_length.at(home)));
   const TexturedReturn back = meet_textured_facet(optics, site.normal, met, 0.0, random);
   double scattered = 0.0;
   for (std::size_t k = 0; k < back.count; ++k)
@@ -169,6 +169,11 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
   }
   Ray ray = back.rays[chosen];
   ray.light.scale(scattered / ray.light.power());
+  Vec3 position = home;
+  if (site.places) {
+    const auto place = static_cast<std::size_t>(random.next() * static_cast<double>(site.places->size()));
+    position.head<2>() += (*site.places)[place];
+  }
   const auto off_facet = [&](bool inside) {
     Vec3 at = position + (inside ? -kClearance : kClearance) * setup_.depth_mm * site.normal;
     if (setup_.infinite())

@@ -35,9 +35,6 @@ constexpr double kLastRayPower = 1e-10;
 constexpr double kShareOfTarget = 0.7;
 // What a straight piece of a ray takes, in looks.
 constexpr std::uint64_t kLooksPerSegment = 25;
-// The 97.5 % point of Student's distribution of kReplicates - 1 degrees of freedom, over that of the normal one.
-constexpr double kStudent = 2.1314 / 1.9600;
-static_assert(StochasticBeams::kReplicates == 16, "kStudent is that of 16 replicates");
 
 }  // namespace
 
@@ -64,8 +61,7 @@ StochasticBeams::StochasticBeams(const BeamTracer& tracer, const ScatteredLight*
       sampling_(sampling),
       cancel_(cancel),
       strong_(std::make_unique<BeamWalk>(tracer.part_, tracer.centre_mm_, tracer.cells_, setup_, policy_,
-                                         std::move(observer),
-                                         scattered == nullptr || setup_.infinite() ? tracer.equal_places() : nullptr)),
+                                         std::move(observer), tracer.equal_places())),
       threshold_(kFirstThreshold),
       ray_power_(std::min(kFirstRayPower, kReplicates * sampling.target_error)) {
   if (scattered_ != nullptr) strong_->collect(strong_sites_);
@@ -112,9 +108,10 @@ bool StochasticBeams::advance() {
   result_.rays = 0;
   const double unseen_beam = first.counts() ? std::min(kThinning * threshold_, first.power()) / kReplicates : 0.0;
   const double unseen = std::max(unseen_beam, std::min(ray_power_, rays[0].ledger(0).total()) / kReplicates);
-  beam_error_ = std::max(unseen_beam, kStudent * largest_error(result_of(beams, 1, cones_deg_)));
-  ray_error_ = kStudent * largest_error(result_of(rays, 1, cones_deg_));
-  for (ConeResult& cone : result_.cones) cone.std_error = std::max(kStudent * cone.std_error, unseen);
+  const double widened = student_factor(kReplicates);
+  beam_error_ = std::max(unseen_beam, widened * largest_error(result_of(beams, 1, cones_deg_)));
+  ray_error_ = widened * largest_error(result_of(rays, 1, cones_deg_));
+  for (ConeResult& cone : result_.cones) cone.std_error = std::max(widened * cone.std_error, unseen);
   result_.reached_target = largest_error(result_) <= sampling_.target_error;
   ++round_;
   return result_.reached_target || threshold_ <= kLastThreshold || ray_power_ <= kLastRayPower ||

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/direction.h"
+
 namespace retrace::raytrace {
 
 using materials::StackSide;
@@ -144,9 +146,7 @@ Stokes Tally::retroreflected(std::size_t cone) const {
 }
 
 Vec3 direction_to_source(const Illumination& illumination) {
-  const double t = illumination.incidence.rad();
-  const double p = illumination.azimuth.rad();
-  return Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).normalized();
+  return geometry::direction_at(illumination.incidence, illumination.azimuth);
 }
 
 LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const Optics& how,
@@ -191,7 +191,10 @@ LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
   entered.light = light;
   if (optics.lossless_entrance) return entered;
   const CoherentLight reflected = light.reflected(f);
-  entered.front = seen_from_above(reflected, entered.front_direction);
+  CoherentLight seen = reflected;
+  seen.turn_to_axis(entered.front_direction, source_axis(entered.front_direction));
+  entered.front = seen.stokes;
+  entered.front_jones = seen.jones;
   entered.light = light.transmitted(f);
   entered.absorbed = absorbed_at_entrance(optics, light, reflected, entered.light);
   return entered;

@@ -48,10 +48,13 @@ struct LightSetup {
   struct Entry {
     Vec3 direction = -Vec3::UnitZ();  ///< of what enters
     CoherentLight light;
-    Vec3 front_direction = Vec3::UnitZ();  ///< of what is reflected
-    std::size_t front_cone = 0;            ///< that holds it
-    Stokes front;                          ///< of it, along source_axis()
-    double absorbed = 0.0;                 ///< power that the layers of the face take
+    Vec3 front_direction = Vec3::UnitZ();  ///< direction of the light that the face reflects from outside
+    std::size_t front_cone = 0;            ///< narrowest cone that contains `front_direction`, see cone_of()
+    Stokes front;  ///< Stokes parameters of the reflected light, with source_axis(front_direction) as first axis
+    /// Jones matrix of the reflection. The first axis is source_axis(to_source) before and
+    /// source_axis(front_direction) after the reflection.
+    JonesMatrix front_jones = JonesMatrix::Zero();
+    double absorbed = 0.0;  ///< power that the layers on the entrance face absorb
   };
   Entry entry;
 

@@ -12,6 +12,7 @@
 #include "raytrace/paths/path_tracer.h"
 #include "raytrace/sampling/entrance_sampler.h"
 #include "raytrace/sampling/flush_denormals.h"
+#include "raytrace/sampling/replicate_means.h"
 #include "raytrace/sampling/replicates.h"
 #include "raytrace/sampling/sobol.h"
 
@@ -139,9 +140,14 @@ class RunningMean {
       sum_[k] = 0.0;
     }
   }
-  PixelValues values() const {
+  /// Returns, for each pixel, the mean power over the replicates and the standard error of this mean.
+  /// \param rays total number of rays in all replicates
+  /// \param largest maximum power that one ray can contribute to a pixel
+  PixelValues values(std::uint64_t rays, double largest) const {
     PixelValues values{mean_, squares_};
-    for (double& s : values.std_error) s = std::sqrt(s / (count_ - 1.0) / count_);
+    for (double& s : values.std_error)
+      s = with_unseen(student_factor(kDetectorReplicates) * std::sqrt(s / (count_ - 1.0) / count_),
+                      static_cast<double>(rays), largest);
     return values;
   }
 
@@ -235,9 +241,11 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
     rre.close(share);
     if (progress != nullptr) progress->at((replicate + 1.0) / kDetectorReplicates);
   }
-  maps.leaving = leaving.values();
-  maps.entering = entering.values();
-  maps.per_sr = angles.values();
+  maps.rays = std::uint64_t{per_replicate} * kDetectorReplicates;
+  const double irradiance_of_ray = part.entrance_area_mm2 / setting.face.pixel_area_mm2();
+  maps.leaving = leaving.values(maps.rays, irradiance_of_ray);
+  maps.entering = entering.values(maps.rays, irradiance_of_ray);
+  maps.per_sr = angles.values(maps.rays, 1.0);
   maps.outside = maps.per_sr.value.back();
   maps.per_sr.value.pop_back();
   maps.per_sr.std_error.pop_back();
@@ -245,9 +253,9 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
     maps.per_sr.value[bin] /= setting.angles.solid_angle_sr(bin);
     maps.per_sr.std_error[bin] /= setting.angles.solid_angle_sr(bin);
   }
-  maps.rre = rre.values().value[0];
-  maps.std_error = rre.values().std_error[0];
-  maps.rays = std::uint64_t{per_replicate} * kDetectorReplicates;
+  const PixelValues total = rre.values(maps.rays, 1.0);
+  maps.rre = total.value[0];
+  maps.std_error = total.std_error[0];
   return maps;
 }
 

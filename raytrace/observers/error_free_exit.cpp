@@ -9,21 +9,28 @@ namespace {
 
 using Eigen::Matrix3d, geometry::Vec2;
 
-// Largest departure of M^T M from the identity that rounding can cause. Refraction at the back causes more.
+// Maximum norm of M^T M - 1 for a path that consists only of reflections, where M is product_of_reflections(). The norm
+// exceeds 0 by rounding errors. It is larger than this limit if light is also refracted at the back surface.
 constexpr double kIsometryTolerance = 1e-7;
-// Largest angle between a path's isometry and the nearest involution, in radians: errors of angle are smaller.
+// Maximum angle between M and the nearest involution, which is a matrix that is its own inverse. Errors of angle cause
+// smaller angles. The constant is also the minimum z component of the direction in which light leaves.
 constexpr double kLargestError_rad = 0.1;
-// Smallest determinant of the map from exit to entry, below which light grazes the face.
+// Minimum absolute determinant of the linear part of ReturnedBeam::entry_from_exit. Below this limit, light leaves
+// almost parallel to the face, and no error-free exit is computed.
 constexpr double kLeastDeterminant = 1e-6;
 
-/// Direction inside the part of light with the cosines `in_air`.
+/// Returns the unit direction inside the part of a ray that is refracted at the entrance face.
+/// \param in_air x and y components of the unit direction of the ray in air
 Vec3 inside(const Vec2& in_air, double index, double sign_of_z) {
   const Vec2 across = in_air / index;
   return {across.x(), across.y(), sign_of_z * std::sqrt(std::max(0.0, 1.0 - across.squaredNorm()))};
 }
 
-/// Product of the reflections of a path, from where light enters and leaves the face: along horizontal vectors e the
-/// exit moves by `exit_from_entry` e, within the face, and M e differs from that along the direction of exit only.
+/// Returns the product M of the reflections of a path as a matrix. M maps `entering` to `leaving`. For each vector e in
+/// the entrance face, M e and `exit_from_entry` e differ only by a multiple of `leaving`.
+///
+/// \param exit_from_entry linear map from displacements of the entry point to displacements of the exit point
+/// \param entering, leaving unit directions inside the part in which light enters and leaves
 Matrix3d product_of_reflections(const Eigen::Matrix2d& exit_from_entry, const Vec3& entering, const Vec3& leaving) {
   Matrix3d m;
   for (const Eigen::Index k : {0, 1}) {
@@ -34,12 +41,14 @@ Matrix3d product_of_reflections(const Eigen::Matrix2d& exit_from_entry, const Ve
   return m;
 }
 
-/// The symmetric orthogonal matrix nearest to an orthogonal one.
+/// Orthogonal matrix that is its own inverse. Such a matrix is symmetric and has the eigenvalues 1 and -1.
 struct Involution {
   Matrix3d matrix = Matrix3d::Identity();
-  Eigen::Matrix<double, 3, Eigen::Dynamic> reversed;  ///< orthonormal axes that it reverses
+  Eigen::Matrix<double, 3, Eigen::Dynamic> reversed;  ///< orthonormal eigenvectors with the eigenvalue -1
 };
 
+/// Returns the involution nearest to an orthogonal matrix. Returns nothing if the angle between the two matrices
+/// exceeds kLargestError_rad.
 std::optional<Involution> nearest_involution(const Matrix3d& m) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(0.5 * (m + m.transpose()));
   Involution nearest;
@@ -56,7 +65,8 @@ std::optional<Involution> nearest_involution(const Matrix3d& m) {
   return nearest;
 }
 
-/// Moves a point along a direction onto the entrance face, z = 0 here.
+/// Returns the intersection of the entrance face with the line through `point` along `direction`. In the coordinates
+/// used here, the face is the plane z = 0.
 Vec2 onto_face(const Vec3& point, const Vec3& direction) {
   return (point - point.z() / direction.z() * direction).head<2>();
 }
@@ -75,11 +85,13 @@ std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec
   const Vec3 leaving_ideal = ideal->matrix * entering;
   if (ideal->reversed.cols() == 0 || leaving_ideal.z() < kLargestError_rad) return std::nullopt;
 
-  // x -> M x + t from the incident ray to the outgoing one: both have the same optical path there.
+  // Without reflections, light would reach the point P at distance `length_mm` straight beyond the entry point. The
+  // isometry x -> M x + t maps P to the exit point. The exit point considered here is the origin.
   const Vec2& entered = entry_from_exit.translation();
   const double length_mm = (beam.phase_mm + to_source.head<2>().dot(entered)) / beam.index;
   const Vec3 t = -length_mm * leaving - m.leftCols<2>() * entered;
-  // Its fixed point is the apex. Along axes that are not reversed, the position of the cell is used instead.
+  // The apex is the fixed point of the isometry. Its coordinates along the reversed axes follow from M and t. Its other
+  // coordinates are undetermined, and the coordinates of the cell are used instead.
   const auto& axes = ideal->reversed;
   const Eigen::MatrixXd system = axes.transpose() * (Matrix3d::Identity() - m) * axes;
   const Vec3 reversed_part = axes * system.partialPivLu().solve(axes.transpose() * t);

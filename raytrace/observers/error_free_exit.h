@@ -1,6 +1,6 @@
 #pragma once
 
-// Where light of a returned beam would leave the entrance face if the facets on its path had no errors of angle.
+// Computes where a returned beam would leave the entrance face if the facets had no errors of angle.
 
 #include <Eigen/Geometry>
 #include <optional>
@@ -10,21 +10,27 @@
 
 namespace retrace::raytrace {
 
-/// Exit of a beam with the sideways shift removed that errors of angle cause between the cell and the entrance face.
+/// Position and phase with which a beam would leave the entrance face without errors of angle. These errors shift the
+/// beam sideways on its path from the cell to the face.
 ///
-/// The reflections of a path multiply to an isometry. Without errors it is an involution: inversion at the apex of a
-/// cube corner, half a turn about the roof edge of a prism. The nearest involution maps the entry polygons of all paths
-/// of a cell in the same way, so that they remain disjoint and their fields conserve power (docs/theory/photometry.md,
-/// "Diffraction").
+/// The reflections of a path form an isometry. Without errors of angle, the isometry is an involution, that is, its own
+/// inverse. It is the point reflection at the apex of a cube corner or the rotation by 180 degrees about the roof edge
+/// of a prism. With errors, the nearest involution is used. All paths of a cell have the same involution. Their exit
+/// polygons therefore do not overlap, and their fields conserve power (docs/theory/photometry.md, "Diffraction").
 struct ErrorFreeExit {
-  Eigen::Affine2d from_exit = Eigen::Affine2d::Identity();  ///< of places on the face, relative to the part's centre
-  double phase_change_mm = 0.0;  ///< to add to ReturnedBeam::phase_mm: the wave keeps its phase at the apex
+  /// Maps the true exit point of light to its exit point without errors of angle. Both are points of the entrance face,
+  /// relative to the part's centre.
+  Eigen::Affine2d from_exit = Eigen::Affine2d::Identity();
+  /// Correction that the caller adds to ReturnedBeam::phase_mm when the exit point is moved. The correction keeps the
+  /// phase of the wave at the apex.
+  double phase_change_mm = 0.0;
 };
 
-/// Computes the error-free exit of a beam.
-/// \param to_source direction to the source, of length 1
+/// Returns the exit that a beam would have without errors of angle.
+/// \param to_source unit vector towards the source
 /// \param cell_mm position of the cell, relative to the part's centre
-/// \return nothing if the path is not a sequence of reflections, or its isometry is not near an involution
+/// \return the exit. None if light is refracted at the back surface, if it leaves almost parallel to the entrance face,
+///         or if no involution that reverses an axis is near the isometry of the path.
 std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec3& to_source,
                                              const geometry::Vec2& cell_mm);
 

@@ -110,7 +110,11 @@ double FarField::scattered_per_sr(const Vec3& direction) const {
 }
 
 double FarField::scattered_per_sr(const Vec3& direction, const ApertureKernel& kernel) const {
-  return direction.z() * scattered_.lobes_per_cosines(direction.head<2>(), axes_of(frame_about(direction)), kernel);
+  return lobes_by_replicate(direction, kernel).sum();
+}
+
+Eigen::ArrayXd FarField::lobes_by_replicate(const Vec3& direction, const ApertureKernel& kernel) const {
+  return direction.z() * scattered_.lobes_by_replicate(direction.head<2>(), axes_of(frame_about(direction)), kernel);
 }
 
 double FarField::scattered_within(const ReturnFrame& frame, double half_angle_rad) const {
@@ -123,7 +127,7 @@ FarFieldIntensity FarField::intensity(const Vec3& direction, const ApertureKerne
   for (const FarFieldRay& ray : rays_)
     sums[ray.replicate ? 1 + *ray.replicate : 0] +=
         ray.power * kernel.per_sr(small_angle_between(ray.direction, direction));
-  sums[0] += scattered_per_sr(direction, kernel);
+  sums += lobes_by_replicate(direction, kernel);
   if (groups_.empty()) return mean_of_replicates(sums);
   const ReturnFrame frame = frame_about(direction);
   const std::vector<ApertureKernel::Node> nodes = kernel.nodes(detail_rad());

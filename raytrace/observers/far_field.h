@@ -105,6 +105,7 @@ class FarField {
   friend class FarFieldCollector;
 
   Eigen::ArrayXXd by_replicate(const std::vector<geometry::Vec2>& cosines, const ApertureField& field) const;
+  Eigen::ArrayXd lobes_by_replicate(const Vec3& direction, const ApertureKernel& kernel) const;
   std::vector<double> per_cosines(const std::vector<geometry::Vec2>& cosines, const ApertureField& field) const;
   double tail(const ReturnFrame& frame, double half_angle_rad) const;
 

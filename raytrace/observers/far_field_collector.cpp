@@ -129,7 +129,7 @@ void FarFieldCollector::add_scattering_ray(const FarFieldRay& ray, double phase_
 void FarFieldCollector::add(const ReturnedBeam& beam) {
   const double power = beam.stokes.i / replicates_of(beam);
   field_.total_power_ += beam.place_count() * power;
-  const bool is_diffracted = policy_.diffraction && beam.trail.first && beam.left_mm.size() >= 3 && power > kFaint &&
+  const bool is_diffracted = policy_.diffraction && beam.left_mm.size() >= 3 && power > kFaint &&
                              small_angle_between(beam.direction, to_source_) <= policy_.window_rad;
   if (!is_diffracted) {
     double phase_variance = 0.0;
@@ -157,9 +157,12 @@ void FarFieldCollector::put(Piece piece, const ReturnedBeam& beam) {
   }
 }
 
-/// A wave that met several cells may be told in pieces, as its entrance is divided.
+/// Returns the key of the coherent sum to which the field of a beam is added. All beams that met only one cell have the
+/// key of this cell. Beams that met several cells have equal keys if they are fragments of one wave. The tracer creates
+/// such fragments when it subdivides the entrance face. Every resampled beam has a unique key. Every beam that met no
+/// cell, such as the reflection at the entrance face, also has a unique key.
 FarFieldCollector::Place FarFieldCollector::place_of(const ReturnedBeam& beam, const Piece& piece) {
-  if (beam.replicate) return {0, 0, 0, ++alone_};
+  if (beam.replicate || !beam.trail.first) return {0, 0, 0, ++alone_};
   Place place{beam.trail.first->id, 0, 0, 0};
   if (!is_infinite_) {
     place.x = step_of(beam.trail.first->offset_mm.x(), kLengthStep * size_mm_);
@@ -178,11 +181,11 @@ double FarFieldCollector::replicates_of(const ReturnedBeam& beam) const {
   return beam.replicate ? static_cast<double>(policy_.replicates) : 1.0;
 }
 
-/// Moves a beam to the cell's first copy, and its outline to where it would leave without errors of angle. The part
-/// without errors repeats, and its fields with it: moved by T they are those of light that comes in with the phase that
-/// it has at T.
+/// Returns the beam moved from its cell to the first copy of the cell. The outline is the one without errors of angle.
+/// Over the distance between the two cells, the incident and the returned wave gain phase. The function removes this
+/// phase, which is the only difference between the fields of the two cells.
 FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam) const {
-  const Vec2 by = beam.trail.first->offset_mm;
+  const Vec2 by = beam.trail.first ? beam.trail.first->offset_mm : Vec2::Zero();
   const ErrorFreeExit exit = error_free_exit(beam, to_source_, by).value_or(ErrorFreeExit{});
   const Eigen::Affine2d home_from_exit = Eigen::Translation2d(-by) * exit.from_exit;
   Piece piece;
@@ -372,7 +375,8 @@ void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
   for (const CoherentGroup& group : groups)
     for (const FieldPolygon& p : group.polygons)
       how_finely.strongest = std::max(how_finely.strongest, group.copies * p.power);
-  field_.scattered_ = ScatteredField(field_.wavelength_mm_, field_.coherency_, std::sin(policy_.window_rad), groups);
+  field_.scattered_ = ScatteredField(field_.wavelength_mm_, field_.coherency_, std::sin(policy_.window_rad), groups,
+                                     policy_.replicates);
   for (CoherentGroup& group : groups) {
     if (is_cancelled(policy_.cancel)) return;
     const bool is_strong = left > least;

@@ -179,8 +179,8 @@ ScatteredField::Moves::Moves(const Shared& shared)
 }
 
 ScatteredField::ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coherency, double reach_cosine,
-                               const std::vector<CoherentGroup>& groups)
-    : wave_number_(2.0 * pi / wavelength_mm), coherency_(coherency) {
+                               const std::vector<CoherentGroup>& groups, std::uint32_t replicates)
+    : wave_number_(2.0 * pi / wavelength_mm), coherency_(coherency), replicate_weights_(0, replicates) {
   double greatest_variance = 0.0;
   double extent_mm = 0.0;
   for (const CoherentGroup& group : groups)
@@ -219,6 +219,7 @@ ScatteredField::ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coh
       const double angle = pi * (static_cast<double>(k) + 0.5) / static_cast<double>(ring.angles);
       distances_.push_back({ring.radius_mm * Vec2(std::cos(angle), std::sin(angle)), 0.0});
     }
+  replicate_weights_.setZero(std::ssize(distances_), replicates);
 }
 
 void ScatteredField::add(const CoherentGroup& group, bool with_fringes) {
@@ -231,13 +232,13 @@ void ScatteredField::add(const CoherentGroup& group, bool with_fringes) {
         // One of a pair stands for both orders: the other adds its conjugate.
         const double copies = (i == j ? 1.0 : 2.0) * group.copies;
         if (shared.is_in_place(tolerance_mm))
-          add_lobe(shared, copies);
-        else if (with_fringes)
+          add_lobe(shared, group, copies);
+        else if (with_fringes && !group.replicate)
           add_fringes(shared, copies);
       }
 }
 
-void ScatteredField::add_lobe(const Shared& shared, double copies) {
+void ScatteredField::add_lobe(const Shared& shared, const CoherentGroup& group, double copies) {
   const PolygonTransform& here = shared.here->transform;
   const PolygonTransform& there = shared.there->transform;
   const bool is_one = shared.here == shared.there;
@@ -275,6 +276,7 @@ void ScatteredField::add_lobe(const Shared& shared, double copies) {
         sum += sign > 0.0 ? one : std::conj(one);
       }
       distances_[at].weight += step * sum;
+      if (group.replicate) replicate_weights_(static_cast<Eigen::Index>(at), *group.replicate) += step * sum;
     }
   }
 }
@@ -328,15 +330,18 @@ double ScatteredField::lobes_per_cosines(const Vec2& cosines) const {
   return sum;
 }
 
-double ScatteredField::lobes_per_cosines(const Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
-                                         const ApertureKernel& kernel) const {
-  double sum = 0.0;
-  for (const Distance& d : distances_) {
-    const Vec2 kappa = wave_number_ * d.mm;
-    sum +=
-        (d.weight * phasor(kappa.dot(cosines))).real() * kernel.transform((cosines_per_rad.transpose() * kappa).norm());
+Eigen::ArrayXd ScatteredField::lobes_by_replicate(const Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
+                                                  const ApertureKernel& kernel) const {
+  const Eigen::Index replicates = replicate_weights_.cols();
+  Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(1 + replicates);
+  for (std::size_t k = 0; k < distances_.size(); ++k) {
+    const Vec2 kappa = wave_number_ * distances_[k].mm;
+    const Amplitude wave = phasor(kappa.dot(cosines)) * kernel.transform((cosines_per_rad.transpose() * kappa).norm());
+    sums[0] += (distances_[k].weight * wave).real();
+    sums.tail(replicates) += (replicate_weights_.row(static_cast<Eigen::Index>(k)).transpose() * wave).real();
   }
-  return sum;
+  sums[0] -= sums.tail(replicates).sum();
+  return sums;
 }
 
 double ScatteredField::lobes_within(const Vec2& middle, const Eigen::Matrix2d& axes) const {

@@ -24,18 +24,24 @@ class ScatteredField {
   ScatteredField() = default;
   /// \param coherency matrix of the incident light
   /// \param reach_cosine distance from the specular directions, in cosines, up to which lobes are computed
-  /// \param groups all that will be added
+  /// \param groups all groups that will be passed to add()
+  /// \param replicates number of replicates of resampled beams; 0 if there are none
   ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coherency, double reach_cosine,
-                 const std::vector<CoherentGroup>& groups);
+                 const std::vector<CoherentGroup>& groups, std::uint32_t replicates);
 
-  /// \param with_fringes else they are left out, as discs of source and receiver hide those of wide cells
+  /// Adds the lobes and fringes of a group. A resampled beam interferes only with itself and has no fringes.
+  /// \param with_fringes false to omit the fringes; the fringes of wide cells are negligible because they are finer
+  ///        than the discs of source and receiver
   void add(const CoherentGroup& group, bool with_fringes);
 
   /// Power of the lobes, by the cosines of directions.
   double lobes_per_cosines(const geometry::Vec2& cosines) const;
-  /// The same, as the kernel averages it. \param cosines_per_rad of angles across the direction
-  double lobes_per_cosines(const geometry::Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
-                           const ApertureKernel& kernel) const;
+  /// Returns the power of the lobes per unit area of direction cosines, averaged with the kernel. Element 0 is the
+  /// contribution of beams without a replicate. Element 1 + k is the contribution of replicate k, divided by the number
+  /// of replicates.
+  /// \param cosines_per_rad derivatives of the direction cosines by two rotation angles of the direction
+  Eigen::ArrayXd lobes_by_replicate(const geometry::Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
+                                    const ApertureKernel& kernel) const;
   /// Power of the lobes within an ellipse of cosines: the image of the unit disc.
   double lobes_within(const geometry::Vec2& middle, const Eigen::Matrix2d& axes) const;
   /// Power of the fringes by the cosines of directions: below 0 between them. Over all directions it adds up to
@@ -70,7 +76,7 @@ class ScatteredField {
   struct Shared;
   struct Moves;
 
-  void add_lobe(const Shared& shared, double copies);
+  void add_lobe(const Shared& shared, const CoherentGroup& group, double copies);
   void add_fringes(const Shared& shared, double copies);
 
   double wave_number_ = 0.0;  ///< rad per mm
@@ -78,6 +84,7 @@ class ScatteredField {
   double shortest_mm_ = 0.0, longest_mm_ = 0.0;  ///< correlation lengths; 0: nothing scatters
   std::vector<Ring> rings_, coarse_rings_;
   std::vector<Distance> distances_;
+  Eigen::ArrayXXcd replicate_weights_;  ///< weights of distances_ (rows) by replicate (columns)
   std::vector<Fringes> fringes_;
   double power_ = 0.0;
 };

@@ -11,6 +11,7 @@
 #include "raytrace/paths/path_tracer.h"
 #include "raytrace/sampling/entrance_sampler.h"
 #include "raytrace/sampling/flush_denormals.h"
+#include "raytrace/sampling/replicate_means.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -19,6 +20,9 @@ namespace {
 constexpr std::uint32_t kRayChoiceStream = 17;
 // Rays that one task traces: small enough to share out, large enough to hide the cost of a task.
 constexpr std::size_t kRaysTogether = 1024;
+// Maximum standard deviation of a random number between 0 and 1. It is reached if 0 and 1 are equally probable and
+// other values do not occur.
+constexpr double kMaxErrorOfFraction = 0.5;
 
 }  // namespace
 
@@ -39,7 +43,9 @@ void RayLedger::add(const RayLedger& more) {
 double RayLedger::std_error() const {
   if (!(incident > 0.0)) return 0.0;
   const double share = ledger[Account::retroreflected] / incident;
-  return std::sqrt(std::max(0.0, squares_back2 - 2.0 * share * squares_back + share * share * squares)) / incident;
+  const double spread =
+      std::sqrt(std::max(0.0, squares_back2 - 2.0 * share * squares_back + share * share * squares)) / incident;
+  return std::min(kMaxErrorOfFraction, with_unseen(spread, incident * incident / squares));
 }
 
 struct RayTracer::Scene {

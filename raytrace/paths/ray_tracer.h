@@ -53,8 +53,8 @@ struct RayLedger {
   double squares_back2 = 0.0;
 
   void add(const RayLedger& more);
-  /// Standard error of the share of power that is retroreflected, as that of a mean of independent rays weighed by
-  /// their power.
+  /// Returns the standard error of the retroreflected fraction of the power. The fraction is a mean over independent
+  /// rays, weighted by power. The error includes an allowance for paths that no ray has taken, see with_unseen().
   double std_error() const;
 };
 

@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace retrace::raytrace {
+namespace {
+
+// Minimum ratio of the area of an outline to the area of its bounding box for the outline to be treated as an
+// axis-aligned rectangle.
+constexpr double kAllOfBox = 1.0 - 1e-12;
+
+}  // namespace
 
 EntranceSampler::EntranceSampler(const geometry::Part& part) {
   if (part.period_mm) {
@@ -15,11 +22,11 @@ EntranceSampler::EntranceSampler(const geometry::Part& part) {
   }
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   centre_mm_ = box.middle();
-  is_rectangle_ = part.outline.size() == 4;
   lower_ = box.lower - centre_mm_;
   size_ = box.size();
   for (const Vec2& p : part.outline) outline_.push_back(p - centre_mm_);
   const double whole = geometry::area(outline_);
+  is_rectangle_ = whole >= kAllOfBox * size_.prod();
   double sum = 0.0;
   for (std::size_t k = 1; k + 1 < outline_.size(); ++k) {
     sum += geometry::area({outline_[0], outline_[k], outline_[k + 1]});

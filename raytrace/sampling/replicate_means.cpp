@@ -6,6 +6,9 @@
 namespace retrace::raytrace {
 namespace {
 
+/// Half-width, in standard deviations, of the central 95 % interval of the normal distribution.
+constexpr double kNormal95 = 1.959964;
+
 ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double half_angle_deg, std::size_t cone) {
   const auto count = static_cast<double>(replicates.size());
   ConeResult result;
@@ -20,9 +23,10 @@ ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double
   result.rre = result.ledger[Account::retroreflected];
   double squares = 0.0;
   for (const double r : rre) squares += (r - result.rre) * (r - result.rre);
-  result.std_error = std::sqrt(squares / (count - 1.0) / count);
-  // Replicates that agree to rounding say the same.
-  if (result.std_error < 1e-15) result.std_error = 0.0;
+  result.spread = std::sqrt(squares / (count - 1.0) / count);
+  // Spreads below this limit are rounding errors.
+  if (result.spread < 1e-15) result.spread = 0.0;
+  result.std_error = result.spread;
   return result;
 }
 
@@ -59,9 +63,14 @@ MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t r
   return result;
 }
 
+double with_unseen(double spread, double rays, double largest) {
+  constexpr double kRuleOfThree = 3.0;
+  return std::hypot(spread, kRuleOfThree / kNormal95 * largest / rays);
+}
+
 double student_factor(std::size_t replicates) {
   // Abramowitz and Stegun, 26.7.5; over z.
-  constexpr double z2 = 1.959964 * 1.959964;
+  constexpr double z2 = kNormal95 * kNormal95;
   const double nu = static_cast<double>(replicates - 1);
   const double first = (z2 + 1.0) / 4.0;
   const double second = ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0;

@@ -35,6 +35,14 @@ void check_lost(const MonteCarloResult& result) {
                       result.misses, result.rays, cone.ledger[Account::lost]));
 }
 
+/// Returns the standard error of the RRE of one cone. The error combines the spread of the replicates with an allowance
+/// for paths that no ray has taken, see with_unseen().
+/// \param spread standard deviation of the mean over replicates, see ConeResult::spread
+/// \param rays total number of rays in all replicates
+double std_error_of(double spread, double rays) {
+  return with_unseen(student_factor(kReplicates) * spread, rays);
+}
+
 }  // namespace
 
 /// Of the scrambles of a replicate's entry points.
@@ -88,15 +96,21 @@ bool Rounds::advance() {
   done_ = end;
   result_ = result_of(replicates_, done_, cones_deg_);
   check_lost(result_);
+  for (ConeResult& cone : result_.cones) cone.std_error = std_error_of(cone.spread, static_cast<double>(result_.rays));
   result_.reached_target = sampling_.rays || largest_error(result_) <= sampling_.target_error;
   return done_ >= goal_ || (!sampling_.rays && result_.reached_target);
 }
 
 double Rounds::expected_segments() const {
-  const double miss = largest_error(result_) / sampling_.target_error;
-  const auto segments = static_cast<double>(result_.segments);
-  if (sampling_.rays || miss <= 1.0) return segments;
-  return segments * std::exp2(std::ceil(std::log2(miss) / kConvergence));
+  double factor = 1.0;
+  if (!sampling_.rays) {
+    double spread = 0.0;
+    for (const ConeResult& cone : result_.cones) spread = std::max(spread, cone.spread);
+    const auto rays = static_cast<double>(result_.rays);
+    while (std_error_of(spread * std::pow(factor, -kConvergence), factor * rays) > sampling_.target_error)
+      factor *= 2.0;
+  }
+  return factor * static_cast<double>(result_.segments);
 }
 
 }  // namespace retrace::raytrace

@@ -18,15 +18,13 @@ using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
 
 // Share of a direction's power by which the budget of polygons may fall short.
 constexpr double kMostBeyondBudget = 1e-4;
+// Half-width, in standard errors, of a 95 % interval. The upper bound for missing light is divided by this number and
+// then added in quadrature to the standard error.
+constexpr double kErrorsOfABound = 1.96;
+
 Angle deg(double value) {
   return Angle::from_deg(value);
 }
-
-/// Wavelengths to trace, and the share of the flux that each stands for - without the dye.
-struct WeighedLight {
-  std::vector<double> wavelengths_nm;
-  std::vector<double> weights;
-};
 
 /// What a design's body takes of the light, wavelength by wavelength; empty where it is one number or the material's.
 materials::SpectralCurve absorption_per_mm(const Design& design) {
@@ -37,29 +35,6 @@ materials::SpectralCurve absorption_per_mm(const Design& design) {
       curve.values.push_back(at.per_mm);
     }
   return curve;
-}
-
-/// Where a body takes most of the light, wavelengths are best placed where some is left: by the flux that is left on a
-/// way through the part and back, which the weights take out again. \param response to the lamp's light
-WeighedLight lamp_light(materials::SpectralCurve power, const materials::SpectralCurve& response,
-                        const materials::SpectralCurve& body, double way_mm, std::size_t parts) {
-  const auto transmittance = [&](double w) { return body.values.empty() ? 1.0 : std::exp(-body.at(w) * way_mm); };
-  double before = 0.0;
-  double behind = 0.0;
-  for (std::size_t k = 0; k < power.values.size(); ++k) {
-    const double w = power.wavelengths_nm[k];
-    const double flux = power.values[k] * response.at(w);
-    power.values[k] *= transmittance(w);
-    before += flux;
-    behind += flux * transmittance(w);
-  }
-  const materials::Spectrum traced = materials::traced_spectrum(materials::resolved_spectrum(power, &response), parts);
-  WeighedLight light;
-  for (std::size_t k = 0; k < traced.size(); ++k) {
-    light.wavelengths_nm.push_back(traced.wavelengths_nm[k]);
-    light.weights.push_back(traced.weights[k] * behind / before / transmittance(traced.wavelengths_nm[k]));
-  }
-  return light;
 }
 
 /// Length of the way through a design and back, for the dye.
@@ -93,7 +68,7 @@ double cell_width_mm(const Design& design) {
 }
 
 /// The design in the light of the photometer.
-Design lit(Design design, const PhotometryRequest& request, const WeighedLight& light) {
+Design lit(Design design, const PhotometryRequest& request, const materials::Spectrum& light) {
   LightSpectrum spectrum;
   spectrum.kind = LightSpectrum::Kind::lines;
   spectrum.photopic = false;
@@ -186,9 +161,9 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     model_ = model_of(design_, library);
     for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
   } else {
-    const WeighedLight light =
-        lamp_light(lamp_power(request.light), materials::shipped_colour_matching()[static_cast<std::size_t>(response)],
-                   absorption_per_mm(design_), way_through_mm(design_), parts);
+    lamp_ = Lamp{lamp_power(request.light), materials::shipped_colour_matching()[static_cast<std::size_t>(response)],
+                 absorption_per_mm(design_), way_through_mm(design_), parts};
+    const materials::Spectrum light = lamp_->light({});
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
@@ -294,14 +269,16 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
     double per_sr = 0.0;
     double squares = 0.0;
+    double missing = 0.0;  // sum of the bounds of all wavelengths, whose errors are not independent
     for (std::size_t w = 0; w < pieces.size(); ++w) {
       per_sr += weights_[w] * pieces[w].per_sr[k];
+      if (!pieces[w].missing_per_sr.empty()) missing += weights_[w] * pieces[w].missing_per_sr[k];
       squares += std::pow(weights_[w] * pieces[w].error_per_sr[k], 2.0);
     }
     const PhotometricGeometry geometry = geometry_of(setting, setting.observation_deg[k]);
     reading.r_a.push_back(raytrace::coefficient_of_retroreflection(per_sr, source.incidence));
     reading.r_l.push_back(raytrace::coefficient_of_luminance(reading.r_a.back(), raytrace::viewing_angle(geometry)));
-    reading.r_a_error.push_back(cos_beta * std::sqrt(squares));
+    reading.r_a_error.push_back(cos_beta * std::hypot(std::sqrt(squares), missing / kErrorsOfABound));
   }
   if (map.empty()) return reading;
   const double step_rad = 2.0 * deg(request_.window_deg).rad() / static_cast<double>(setting.map_columns);
@@ -326,9 +303,8 @@ std::vector<LitAlike> Photometer::settings_lit_alike(const std::vector<Photomete
   return lit_alike(to_source, settings.size() > 1 ? mirrors() : std::array<bool, 2>{});
 }
 
-std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vector<PhotometerSetting>& settings,
-                                                                  Progress* progress,
-                                                                  const Cancellation* cancel) const {
+std::optional<std::vector<PhotometerReading>> Photometer::measure_in_one_light(
+    const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel) const {
   const std::size_t wavelengths = model_.spectral.size();
   std::vector<std::vector<Piece>> pieces(settings.size(), std::vector<Piece>(wavelengths));
   if (is_exact_) {

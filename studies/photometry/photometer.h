@@ -3,6 +3,7 @@
 // A goniophotometer in software: R_A and R_L of a design for given directions of light and observation.
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -99,10 +100,25 @@ class Photometer {
   void leave_out_mirror_image() { has_mirror_image_ = false; }
 
  private:
+  /// A lamp and the other data from which the traced wavelengths are chosen.
+  struct Lamp {
+    materials::SpectralCurve power;
+    materials::SpectralCurve response;           ///< response of the receiver
+    materials::SpectralCurve absorption_per_mm;  ///< absorption coefficient of the body
+    double path_length_mm = 0.0;                 ///< path length of returned light inside the part
+    std::size_t parts = 1;                       ///< number of spans of the spectrum, each with two wavelengths
+
+    /// Returns the wavelengths to trace and their weights. The weights exclude the absorption in the body.
+    /// \param knees_nm knees, in ascending order: wavelengths at which total reflection begins or ends at a facet
+    materials::Spectrum light(const std::vector<double>& knees_nm) const;
+  };
   /// What one wavelength adds.
   struct Piece {
     std::vector<double> per_sr;
     std::vector<double> error_per_sr;
+    /// Upper bound of the intensity that is missing in `per_sr`, for each observation angle. Missing light is light in
+    /// truncated beams and scattered light of unknown direction. If the vector is empty, the bound is 0.
+    std::vector<double> missing_per_sr;
     std::vector<double> map_per_sr;
     double rre = 0.0;
     double std_error = 0.0;
@@ -130,6 +146,11 @@ class Photometer {
   std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
                                      std::size_t wavelength, const raytrace::BeamTracer& tracer,
                                      const Cancellation* cancel) const;
+  /// Returns true if all light is traced, including light scattered by rough facets. Otherwise only the mean field is
+  /// traced, and readings are lower bounds.
+  bool traces_all_light() const { return model_.optics.is_smooth() || keeps_phases_; }
+  void bound_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike, const Traced& traced,
+                     std::vector<Piece>& pieces) const;
   void look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
             std::size_t wavelength, Piece& piece) const;
   /// \param tracer null for balls, which have their own
@@ -138,6 +159,16 @@ class Photometer {
   /// All of them. \param pieces by setting and wavelength; filled. False if it was cancelled
   bool measure_by_rays(const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel,
                        std::vector<std::vector<Piece>>& pieces) const;
+  /// Returns the indices of the settings, grouped by knees. The knees of a setting are the wavelengths at which total
+  /// reflection begins or ends at a facet for light from its source.
+  std::map<std::vector<double>, std::vector<std::size_t>> settings_by_knees(
+      const std::vector<PhotometerSetting>& settings) const;
+  /// Returns a copy of this photometer that chooses wavelengths by Lamp::light() for the given knees.
+  Photometer with_knees(const std::vector<double>& knees_nm) const;
+  /// Measures all settings at the wavelengths of `model_`, whatever the knees of the settings are.
+  std::optional<std::vector<PhotometerReading>> measure_in_one_light(const std::vector<PhotometerSetting>& settings,
+                                                                     Progress* progress,
+                                                                     const Cancellation* cancel) const;
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
   std::size_t middle_wavelength() const;
   std::uint32_t seed_of(std::size_t wavelength) const;
@@ -148,6 +179,7 @@ class Photometer {
   Design design_;
   PhotometryRequest request_;
   OpticalModel model_;
+  std::optional<Lamp> lamp_;     ///< empty if the light of the design is used
   std::vector<double> weights_;  ///< of the wavelengths: of flux without the dye, which the tracer applies
   raytrace::ApertureKernel kernel_;
   bool is_exact_ = true;

@@ -1,7 +1,9 @@
 // What one wavelength adds to a reading: the members of Photometer that trace it exactly.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "raytrace/observers/small_angle.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
@@ -23,10 +25,58 @@ constexpr std::uint32_t kReplicatesOfGuide = 4;
 constexpr double kCutoffOfGuide = 3.0;
 // Beams of a direction and wavelength beyond which the choice is Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
-// Smallest trace of ReturnedBeam::entry_from_exit for the light of a mirror.
+// Minimum trace of the linear part of ReturnedBeam::entry_from_exit for beams of the mirror image of the light. The
+// trace is 2 for a plane mirror and at most 0 for retroreflection.
 constexpr double kLeastMirrorTrace = 1.0;
 // Lattice points of the window, beyond which its power is not integrated.
 constexpr double kMostLatticePoints = 300'000.0;
+
+// Maximum fraction of missing light that is neglected. Above it, Piece::missing_per_sr is computed.
+constexpr double kLeastTruncated = 1e-9;
+// Maximum number of directions in which brightest_per_sr() evaluates the far field.
+constexpr std::size_t kMaxSpots = 2;
+
+/// Returns the frame of a setting in the coordinates of the traced light. Settings whose directions are mirror images
+/// of each other use the same traced light. The frame is therefore mirrored for some of them.
+ReturnFrame shared_frame(const PhotometerSetting& setting, const SharedDirection& shared) {
+  ReturnFrame frame = frame_of(setting);
+  for (geometry::Vec3* axis : {&frame.to_source, &frame.right, &frame.up}) *axis = shared.mirrored(*axis);
+  return frame;
+}
+
+geometry::Vec3 receiver_in(const ReturnFrame& frame, double observation_deg) {
+  return frame.direction({0.0, Angle::from_deg(observation_deg).rad()});
+}
+
+/// Returns the maximum intensity of the far field in the directions of the strongest beams.
+/// \param window_rad Maximum angle between an undiffracted beam and the direction towards the source. Undiffracted
+///        beams outside it are ignored.
+double brightest_per_sr(const raytrace::FarField& field, const geometry::Vec3& to_source, double window_rad,
+                        const raytrace::ApertureKernel& kernel) {
+  std::vector<std::pair<double, geometry::Vec3>> beams;
+  for (const raytrace::CoherentGroup& group : field.groups())
+    for (const raytrace::FieldPolygon& p : group.polygons) {
+      const double height = std::sqrt(std::max(0.0, 1.0 - p.cosines.squaredNorm()));
+      beams.emplace_back(group.copies * p.power, geometry::Vec3(p.cosines.x(), p.cosines.y(), height));
+    }
+  for (const raytrace::FarFieldRay& ray : field.rays())
+    if (raytrace::small_angle_between(ray.direction, to_source) <= window_rad)
+      beams.emplace_back(ray.power, ray.direction);
+  std::stable_sort(beams.begin(), beams.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<geometry::Vec3> spots;
+  double brightest = 0.0;
+  for (const auto& beam : beams) {
+    if (spots.size() >= kMaxSpots) break;
+    const geometry::Vec3& direction = beam.second;
+    const bool is_known = std::ranges::any_of(spots, [&](const geometry::Vec3& spot) {
+      return raytrace::small_angle_between(spot, direction) < 0.1 * kernel.reach_rad();
+    });
+    if (is_known) continue;
+    spots.push_back(direction);
+    brightest = std::max(brightest, field.intensity(direction, kernel).per_sr);
+  }
+  return brightest;
+}
 
 /// Of a beam that keeps its phases.
 double scattered_power(const raytrace::ReturnedBeam& beam) {
@@ -37,9 +87,10 @@ double scattered_power(const raytrace::ReturnedBeam& beam) {
 
 }  // namespace
 
-/// Where the exact engine was asked for, or facets scatter or bend light, weak beams are given up.
+/// Returns true if the engine is chosen automatically, all facets are plane and all light is traced. If only the mean
+/// field of rough facets is traced, readings are lower bounds, and weak beams may be dropped.
 bool Photometer::resamples_weak() const {
-  return is_exact_ && request_.engine == Engine::automatic && model_.optics.is_smooth() && !has_form_;
+  return is_exact_ && request_.engine == Engine::automatic && traces_all_light() && !has_form_;
 }
 
 /// As a share of all light.
@@ -89,13 +140,14 @@ std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_so
   raytrace::FarFieldCollector collector(model_.part, illumination, far_field_policy(light, cancel));
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
   Traced traced;
-  traced.beams = tracer.trace(light.optics, illumination, cones, beam_policy(wavelength), cancel,
-                              [&](const raytrace::ReturnedBeam& beam) {
-                                const double trace = beam.entry_from_exit.linear().trace();
-                                if (trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
-                                if (beam.cone < cones.size())
-                                  traced.scattered_from_cone += beam.place_count() * scattered_power(beam);
-                              });
+  traced.beams = tracer.trace(
+      light.optics, illumination, cones, beam_policy(wavelength), cancel, [&](const raytrace::ReturnedBeam& beam) {
+        const double trace = beam.entry_from_exit.linear().trace();
+        if (trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
+        if (beam.cone < cones.size())
+          traced.scattered_from_cone +=
+              beam.place_count() * scattered_power(beam) / (beam.replicate ? replicates() : 1.0);
+      });
   if (!traced.beams.complete) return std::nullopt;
   traced.field = collector.finish();
   return traced;
@@ -135,18 +187,44 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
   std::vector<Piece> pieces(alike.size(), common);
   for (std::size_t k = 0; k < alike.size() && !is_cancelled(cancel); ++k)
     look(settings[alike[k].index], alike[k], field, wavelength, pieces[k]);
+  if (traces_all_light()) bound_missing(settings, alike, *traced, pieces);
   for (Piece& piece : pieces) piece.complete = !is_cancelled(cancel);
   return pieces;
+}
+
+/// Sets Piece::missing_per_sr. Truncated beams are assumed to leave in the same directions as the traced beams. Their
+/// intensity is then at most their power times the maximum intensity per unit of incident power. Scattered light of
+/// unknown direction is assumed to have the angular distribution of the other scattered light.
+void Photometer::bound_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
+                               const Traced& traced, std::vector<Piece>& pieces) const {
+  const raytrace::FarField& field = traced.field;
+  const double truncated = traced.beams.ledgers.back()[raytrace::Account::truncated];
+  const double unplaced = field.scattered_power() > 0.0 ? field.unplaced_power() / field.scattered_power() : 0.0;
+  if (truncated <= kLeastTruncated && unplaced <= kLeastTruncated) return;
+  const geometry::Vec3 to_source = frame_of(settings[alike.front().index]).to_source;
+  const double window_rad = 1.5 * Angle::from_deg(request_.window_deg).rad();
+  double from_beams = 0.0;
+  if (truncated > kLeastTruncated) {
+    double brightest = brightest_per_sr(field, to_source, window_rad, kernel_);
+    for (const Piece& piece : pieces)
+      for (const double per_sr : piece.per_sr) brightest = std::max(brightest, per_sr);
+    from_beams = truncated * brightest;
+  }
+  for (std::size_t k = 0; k < alike.size(); ++k) {
+    const PhotometerSetting& setting = settings[alike[k].index];
+    const ReturnFrame frame = shared_frame(setting, alike[k]);
+    for (const double observation_deg : setting.observation_deg)
+      pieces[k].missing_per_sr.push_back(
+          from_beams + unplaced * field.scattered_per_sr(receiver_in(frame, observation_deg), kernel_));
+  }
 }
 
 /// What a setting sees of a far field that it shares.
 void Photometer::look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
                       std::size_t wavelength, Piece& piece) const {
-  ReturnFrame frame = frame_of(setting);
-  for (geometry::Vec3* axis : {&frame.to_source, &frame.right, &frame.up}) *axis = shared.mirrored(*axis);
+  const ReturnFrame frame = shared_frame(setting, shared);
   for (const double observation_deg : setting.observation_deg) {
-    const raytrace::FarFieldIntensity seen =
-        field.intensity(frame.direction({0.0, Angle::from_deg(observation_deg).rad()}), kernel_);
+    const raytrace::FarFieldIntensity seen = field.intensity(receiver_in(frame, observation_deg), kernel_);
     piece.per_sr.push_back(seen.per_sr);
     piece.error_per_sr.push_back(seen.error_per_sr);
   }

@@ -35,9 +35,11 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
   piece.truncated = traced.cones.back().ledger[raytrace::Account::truncated];
   piece.per_sr.assign(traced.score.begin(), traced.score.begin() + receivers);
   piece.error_per_sr.assign(traced.score_error.begin(), traced.score_error.begin() + receivers);
-  // Replicates that all saw nothing agree, but know no better than to the light of one ray.
-  const double one_ray_per_sr = kernel_.per_sr(0.0) / static_cast<double>(sampling.rays.value());
-  for (double& error : piece.error_per_sr) error = std::max(error, one_ray_per_sr);
+  // The differences between replicates cannot show the light of paths that no ray has taken. with_unseen() adds an
+  // allowance for this light. A ray contributes at most its power times the peak of the receiver's kernel.
+  for (double& error : piece.error_per_sr)
+    error = raytrace::with_unseen(raytrace::student_factor(raytrace::MonteCarlo::kReplicates) * error,
+                                  static_cast<double>(traced.rays), kernel_.per_sr(0.0));
   if (score.grid)
     for (std::size_t bin = 0; bin < score.grid->size(); ++bin)
       piece.map_per_sr.push_back(traced.score[score.receivers.size() + bin] / score.grid->solid_angle_sr(bin));

@@ -22,7 +22,10 @@ namespace {
 constexpr double kLeastWindowDeg = 0.05;
 constexpr double kMostWindowDeg = 10.0;
 constexpr double kMostAreaCm2 = 1e6;
-constexpr double kMostApertureDeg = 5.0;
+constexpr double kMostApertureArcmin = 300.0;
+/// Minimum diameter of the source or of the receiver, whichever is larger. If both were points, intensities would be
+/// infinite or 0.
+constexpr double kLeastApertureArcmin = 0.006;
 // A value nearer to its limit than this many standard errors says nothing.
 constexpr double kErrorsOfAMargin = 2.0;
 // Wavelengths for figures, and for pictures.
@@ -36,21 +39,28 @@ constexpr std::size_t kMostRotations = 720;
 
 void check_number(double value, double low, double high, const std::string& option) {
   if (!(value >= low && value <= high))
-    throw InputError({"", 0, option},
-                     fmt::format("must be a number from {} to {}, got {}", shortest(low), shortest(high), value));
+    throw InputError({"", 0, option}, fmt::format("must be a number from {} to {}, got {}", shortest(low),
+                                                  shortest(high), shortest(value)));
+}
+
+void check_discs(const raytrace::PhotometricApertures& apertures) {
+  const double source = arcmin_of(apertures.source), receiver = arcmin_of(apertures.receiver);
+  check_number(source, 0.0, kMostApertureArcmin, "--source-arcmin");
+  check_number(receiver, 0.0, kMostApertureArcmin, "--receiver-arcmin");
+  if (std::max(source, receiver) < kLeastApertureArcmin)
+    throw InputError({"", 0, "--source-arcmin"},
+                     fmt::format("must be at least {0} unless --receiver-arcmin is at least {0}: with a point source "
+                                 "and a point receiver, intensities are infinite or 0; got {1} and --receiver-arcmin "
+                                 "{2}",
+                                 shortest(kLeastApertureArcmin), shortest(source), shortest(receiver)));
 }
 
 void check(const PhotometryRequest& request) {
   if (!(request.area_cm2 > 0.0 && request.area_cm2 <= kMostAreaCm2))
-    throw InputError({"", 0, "--area-cm2"},
-                     fmt::format("must be a number above 0, to {}, got {}", shortest(kMostAreaCm2), request.area_cm2));
+    throw InputError({"", 0, "--area-cm2"}, fmt::format("must be greater than 0 and at most {}, got {}",
+                                                        shortest(kMostAreaCm2), shortest(request.area_cm2)));
   check_number(request.window_deg, kLeastWindowDeg, kMostWindowDeg, "--window-deg");
-  check_number(request.apertures.source.deg(), 0.0, kMostApertureDeg, "--source-arcmin");
-  check_number(request.apertures.receiver.deg(), 0.0, kMostApertureDeg, "--receiver-arcmin");
-  if (!(std::max(request.apertures.source.deg(), request.apertures.receiver.deg()) > 1e-4))
-    throw InputError(
-        {"", 0, "--source-arcmin"},
-        "must be above 0 unless --receiver-arcmin is: two points see an infinite intensity or none, got 0");
+  check_discs(request.apertures);
   if (request.engine == Engine::cell || request.engine == Engine::stochastic)
     throw InputError({"", 0, "--engine"},
                      fmt::format("must be auto, exact, montecarlo or embree, got {}", engine_name(request.engine)));
@@ -255,6 +265,10 @@ class TablesOfChanges {
 };
 
 }  // namespace
+
+double arcmin_of(Angle diameter) {
+  return std::round(60.0e12 * diameter.deg()) / 1e12;
+}
 
 std::string_view light_name(PhotometricLight light) {
   switch (light) {

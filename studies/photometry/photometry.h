@@ -52,6 +52,9 @@ struct PhotometryRequest {
   bool colour = false;        ///< the chromaticity of the returned light; none of the design's own light
 };
 
+/// Returns a diameter in arcminutes. The rounding errors of the conversion to radians and back are removed.
+double arcmin_of(Angle diameter);
+
 /// From best to worst: the worst of several decides.
 enum class Verdict { pass, unconfirmed, undetermined, fail };
 std::string_view verdict_name(Verdict verdict);

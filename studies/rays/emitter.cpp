@@ -75,18 +75,24 @@ bool EmitterSource::read(std::size_t most, std::vector<SetRay>& rays) {
   return count > 0;
 }
 
+/// Returns the point at which a ray starts, in the frame of the source.
+/// \param u, v independent random numbers, uniform in [0, 1)
+Vec3 EmitterSource::place(double u, double v) const {
+  if (emitter_.period_mm) return (u - 0.5) * (*emitter_.period_mm)[0] + (v - 0.5) * (*emitter_.period_mm)[1];
+  const double radius = emitter_.kind == EmitterKind::gaussian ? gaussian_radius(u) : std::sqrt(u);
+  const geometry::Vec2 on_disc = polar(0.5 * emitter_.disc_mm * radius, v);
+  return {on_disc.x(), on_disc.y(), 0.0};
+}
+
 SetRay EmitterSource::ray(std::uint64_t number) const {
   const auto low = static_cast<std::uint32_t>(number);
   const auto high = static_cast<std::uint32_t>(number >> 32);
   const auto words = philox({emitter_.seed, kEmitterStream}, low, high);
-  const double u = unit_interval(words[0]);
-  const double radius = emitter_.kind == EmitterKind::gaussian ? gaussian_radius(u) : std::sqrt(u);
-  const geometry::Vec2 place = polar(0.5 * emitter_.disc_mm * radius, unit_interval(words[1]));
   const double angle =
       polar_angle_rad(emitter_.kind, Angle::from_deg(emitter_.half_angle_deg).rad(), unit_interval(words[2]));
   const geometry::Vec2 across = polar(std::sin(angle), unit_interval(words[3]));
   SetRay ray;
-  ray.position_mm = {place.x(), place.y(), 0.0};
+  ray.position_mm = place(unit_interval(words[0]), unit_interval(words[1]));
   ray.direction = Vec3(across.x(), across.y(), std::cos(angle)).normalized();
   const double power = emitter_.power / static_cast<double>(emitter_.rays);
   (emitter_.is_luminous ? ray.luminous_lm : ray.radiant_w) = power;

@@ -23,7 +23,10 @@ inline constexpr std::array<std::string_view, 3> kEmitterNames = {"lambertian", 
 /// A disc round the origin that faces +z.
 struct Emitter {
   EmitterKind kind = EmitterKind::lambertian;
-  double disc_mm = 0.0;          ///< diameter; 0: a point
+  double disc_mm = 0.0;  ///< diameter of the disc; 0 for a point source
+  /// The two sides, in the frame of the source, of a parallelogram centred at the origin. If the sides are given, the
+  /// parallelogram emits evenly in place of the disc.
+  std::optional<std::array<Vec3, 2>> period_mm = {};
   double half_angle_deg = 90.0;  ///< 0 to 90
   std::uint64_t rays = 1'000'000;
   double power = 1.0;        ///< of all rays together
@@ -37,7 +40,9 @@ EmitterKind emitter_from_name(std::string_view name);
 /// What is asked of one.
 struct EmitterRequest {
   EmitterKind kind = EmitterKind::lambertian;
-  std::optional<double> disc_mm;         ///< none: a point, but of collimated light what covers the part
+  /// Diameter of the disc. By default, a collimated emitter covers the entrance face, or one period of an infinite
+  /// part. Other emitters are points by default.
+  std::optional<double> disc_mm;
   std::optional<double> half_angle_deg;  ///< none: 90, but of other light than lambertian 0
   std::uint64_t rays = 1'000'000;
   double power = 1.0;
@@ -53,6 +58,7 @@ class EmitterSource : public RaySource {
   double share_read() const override;
 
  private:
+  Vec3 place(double u, double v) const;
   SetRay ray(std::uint64_t number) const;
 
   Emitter emitter_;

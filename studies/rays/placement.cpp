@@ -45,6 +45,7 @@ Vec3 middle_of_face(const geometry::Part& part) {
 RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Part& part) {
   RayPlacement placement;
   std::optional<Vec3> aim;
+  std::optional<Vec3> way;  ///< vector from the source to the aim point
   if (request.is_by_angles()) {
     require(!request.at_mm, "--at-mm", "not together with --incidence, --azimuth and --distance-mm");
     const double incidence = request.incidence_deg.value_or(0.0);
@@ -56,14 +57,15 @@ RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Pa
     require(distance > 0.0 && std::isfinite(distance), "--distance-mm", fmt::format("must be > 0, got {}", distance));
     aim = middle_of_face(part);
     const raytrace::Illumination light{Angle::from_deg(incidence), Angle::from_deg(azimuth), raytrace::kUnpolarised};
-    placement.at_mm = *aim + distance * raytrace::direction_to_source(light);
+    way = -distance * raytrace::direction_to_source(light);
+    placement.at_mm = *aim - *way;
   }
   if (request.at_mm) placement.at_mm = place_of(*request.at_mm, "--at-mm");
   if (request.aim_mm) aim = place_of(*request.aim_mm, "--aim-mm");
   if (!aim) return placement;
-  const Vec3 way = *aim - placement.at_mm;
-  require(way.norm() > 0.0, "--aim-mm", "must be another place than that of the source");
-  placement.part_from_source = aimed(way.normalized());
+  if (!way || request.aim_mm) way = *aim - placement.at_mm;
+  require(way->norm() > 0.0, "--aim-mm", "must differ from the position of the source");
+  placement.part_from_source = aimed(way->normalized());
   return placement;
 }
 

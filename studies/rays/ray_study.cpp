@@ -54,13 +54,24 @@ void settle_polarisation(const raytrace::Light& light, AccountedRay& ray) {
   ray.axis = (std::cos(turn) * light.s_axis + std::sin(turn) * ray.direction.cross(light.s_axis)).normalized();
 }
 
-/// Of a circle round the entrance face, or round a period of it.
+/// Returns the radius of the smallest circle about the centre of the entrance face that contains the face.
+/// \pre the part is finite
 double radius_of_face(const geometry::Part& part) {
-  if (part.period_mm) return 0.5 * part.period_mm->norm();
   const geometry::Vec2 middle = middle_of_face(part).head<2>();
   double reach2 = 0.0;
   for (const geometry::Vec2& corner : part.outline) reach2 = std::max(reach2, (corner - middle).squaredNorm());
   return std::sqrt(reach2);
+}
+
+/// Sets the size of the emitter to that of the entrance face. For an infinite part, the emitter is a copy of one
+/// period, parallel to the face. Parallel rays of any direction then cover one period of the face evenly.
+void cover_face(const geometry::Part& part, const RayPlacement& placement, Emitter& emitter) {
+  if (!part.period_mm) {
+    emitter.disc_mm = 2.0 * radius_of_face(part);
+    return;
+  }
+  const Eigen::Matrix3d source_from_part = placement.part_from_source.transpose();
+  emitter.period_mm = {part.period_mm->x() * source_from_part.col(0), part.period_mm->y() * source_from_part.col(1)};
 }
 
 }  // namespace
@@ -105,8 +116,9 @@ Emitter RayStudy::emitter_of(const EmitterRequest& request) const {
   const LightSpectrum* const spectrum = hidden_->design.light.spectrum();
   Emitter emitter;
   emitter.kind = request.kind;
-  emitter.disc_mm = request.disc_mm.value_or(
-      request.kind == EmitterKind::collimated ? 2.0 * radius_of_face(hidden_->model.part) : 0.0);
+  emitter.disc_mm = request.disc_mm.value_or(0.0);
+  if (request.kind == EmitterKind::collimated && !request.disc_mm)
+    cover_face(hidden_->model.part, hidden_->placement, emitter);
   emitter.half_angle_deg = request.half_angle_deg.value_or(request.kind == EmitterKind::lambertian ? 90.0 : 0.0);
   emitter.rays = request.rays;
   emitter.power = request.power;

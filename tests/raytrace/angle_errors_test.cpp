@@ -102,7 +102,7 @@ TEST(RandomTilts, EnginesAgree) {
     const MonteCarloResult sampled = MonteCarlo(part).trace(pmma(), from(2.0, 10.0), cones_deg, rays(1U << 17), {});
     for (std::size_t k = 0; k < cones_deg.size(); ++k) {
       const double rre = exact.ledgers[k][Account::retroreflected];
-      EXPECT_NEAR(rre, sampled.cones[k].rre, 4.0 * sampled.cones[k].std_error + 2e-4);
+      EXPECT_NEAR(rre, sampled.cones[k].rre, 4.0 * sampled.cones[k].spread + 2e-4);
       EXPECT_NEAR(exact.ledgers[k].total(), 1.0, 1e-9);
       if (k > 0) {
         EXPECT_GT(rre, exact.ledgers[k - 1][Account::retroreflected]);

@@ -212,14 +212,14 @@ TEST(Balls, ThirdOrderOverstatesTheShareOfIndexTwo) {
 TEST(Balls, SumsOverHeightsAgreeAtNormalIncidence) {
   for (const double index : {1.5, 1.9, 2.0}) {
     const MonteCarloResult result = traced(single(), glass(index), at(0.0));
-    EXPECT_NEAR(result.cones[0].rre, rre_by_angles(index, 0.0, 0.5), 5.0 * result.cones[0].std_error + 1e-5) << index;
+    EXPECT_NEAR(result.cones[0].rre, rre_by_angles(index, 0.0, 0.5), 5.0 * result.cones[0].spread + 1e-5) << index;
   }
 }
 
 TEST(Balls, SumsOverHeightsAndTurnsAgreeAtOtherAngles) {
   for (const double incidence_deg : {20.0, 45.0, 70.0}) {
     const MonteCarloResult result = traced(single(), glass(1.92), at(incidence_deg, 33.0), 1.0);
-    EXPECT_NEAR(result.cones[0].rre, rre_by_angles(1.92, incidence_deg, 1.0), 5.0 * result.cones[0].std_error + 2e-4)
+    EXPECT_NEAR(result.cones[0].rre, rre_by_angles(1.92, incidence_deg, 1.0), 5.0 * result.cones[0].spread + 2e-4)
         << incidence_deg;
   }
 }
@@ -305,15 +305,14 @@ TEST(Balls, PackedSendBackTheirShareOfThePlan) {
   EXPECT_NEAR(packing_share(packed()), 0.9068996821171089, 1e-15);
   const MonteCarloResult result = traced(packed(), ideal(1.95), at(0.0), 1.0);
   EXPECT_NEAR(result.cones[0].rre, packing_share(packed()) * share_within(pi / 180.0, 1.95, 1.0, 1.0),
-              5.0 * result.cones[0].std_error + 1e-6);
+              5.0 * result.cones[0].spread + 1e-6);
 }
 
 TEST(Balls, LayersHaveSixfoldSymmetry) {
   const MonteCarloResult one = traced(packed(), glass(1.9), at(55.0, 8.0));
   for (const double azimuth_deg : {68.0, 128.0, 188.0, -8.0}) {
     const MonteCarloResult other = traced(packed(), glass(1.9), at(55.0, azimuth_deg));
-    EXPECT_NEAR(other.cones[0].rre, one.cones[0].rre,
-                5.0 * std::hypot(one.cones[0].std_error, other.cones[0].std_error))
+    EXPECT_NEAR(other.cones[0].rre, one.cones[0].rre, 5.0 * std::hypot(one.cones[0].spread, other.cones[0].spread))
         << azimuth_deg;
   }
 }

@@ -202,7 +202,7 @@ TEST(BeamTracer, AgreesWithMonteCarlo) {
       const ConeResult traced =
           MonteCarlo(part, engine).trace(c.optics, c.illumination, {2.0}, rays(count), {}).cones[0];
       return std::abs(exact[Account::retroreflected] - traced.rre) <=
-             t95 * traced.std_error + exact[Account::truncated] + 1e-9;
+             t95 * traced.spread + exact[Account::truncated] + 1e-9;
     };
     within += agrees(MonteCarlo::Engine::embree, 1U << 14) ? 1 : 0;
     if (!MonteCarlo::cell_serves(part)) continue;

@@ -147,7 +147,7 @@ TEST_P(CellEngine, AgreesWithTheExactEngineAndWithEmbree) {
   const double z = student_bound(2 * cases().size() * cones.size());
   for (std::size_t k = 0; k < cones.size(); ++k) {
     const double left_behind = exact.ledgers[k][Account::truncated] + 1e-9;
-    EXPECT_NEAR(cell.cones[k].rre, exact.ledgers[k][Account::retroreflected], z * cell.cones[k].std_error + left_behind)
+    EXPECT_NEAR(cell.cones[k].rre, exact.ledgers[k][Account::retroreflected], z * cell.cones[k].spread + left_behind)
         << c.name;
     EXPECT_NEAR(cell.cones[k].ledger.total(), 1.0, 1e-9) << c.name;
     for (std::size_t a = 0; a < kAccountCount; ++a) {
@@ -230,8 +230,7 @@ TEST_P(CellEngineOfRough, AgreesWithEmbree) {
   EXPECT_GT(cell.cones[1].ledger[Account::scattered_out], 0.01) << c.name;
   const double z = student_bound(rough_cases().size() * cones.size());
   for (std::size_t k = 0; k < cones.size(); ++k) {
-    EXPECT_NEAR(cell.cones[k].rre, embree.cones[k].rre,
-                z * std::hypot(cell.cones[k].std_error, embree.cones[k].std_error))
+    EXPECT_NEAR(cell.cones[k].rre, embree.cones[k].rre, z * std::hypot(cell.cones[k].spread, embree.cones[k].spread))
         << c.name;
     EXPECT_NEAR(cell.cones[k].ledger.total(), 1.0, 1e-9) << c.name;
     for (std::size_t a = 0; a < kAccountCount; ++a)

@@ -18,11 +18,12 @@ namespace {
 using namespace geometry;
 using namespace raytrace;
 
-/// |difference| <= z std_error + truncated + 1e-9.
+/// Expects |RRE - expected| <= z * spread + truncated + 1e-9. The spread is the standard deviation of the mean of the
+/// replicates, and `truncated` is the truncated power.
 void expect_within(const ConeResult& result, double expected, double z, const std::string& what) {
-  const double bound = z * result.std_error + result.ledger[Account::truncated] + 1e-9;
+  const double bound = z * result.spread + result.ledger[Account::truncated] + 1e-9;
   EXPECT_LE(std::abs(result.rre - expected), bound)
-      << what << ": got " << result.rre << " +- " << result.std_error << ", expected " << expected;
+      << what << ": got " << result.rre << " +- " << result.spread << ", expected " << expected;
 }
 
 // Hamilton et al. 2017, Table 1: printed to 0.01 %; and the closed form f + (1-f) 2R/(1+R) for full elements' share f.
@@ -63,7 +64,7 @@ TEST(ClosedForms, SinglePrismIsEvenInTheAngle) {
     // Different seeds: the two sides are independent estimates.
     const ConeResult right = tracer.trace(pmma(), from(t), {0.5}, rays(1U << 17, 1), {}).cones[0];
     const ConeResult left = tracer.trace(pmma(), from(-t), {0.5}, rays(1U << 17, 2), {}).cones[0];
-    EXPECT_LE(std::abs(right.rre - left.rre), z * std::hypot(right.std_error, left.std_error) + 1e-9) << t;
+    EXPECT_LE(std::abs(right.rre - left.rre), z * std::hypot(right.spread, left.spread) + 1e-9) << t;
     EXPECT_GT(right.rre, 0.0);
   }
 }

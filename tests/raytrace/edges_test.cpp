@@ -161,12 +161,12 @@ TEST(Edges, EffectGrowsFromNothing) {
     const Ledger exact = BeamTracer(build_part(sharp[k])).trace(pmma(), from(0.0), {0.5}, policy).ledgers[0];
     double before = exact[Account::retroreflected];
     const ConeResult faint = rre(all_kinds({1e-6, 0.0, 1e-6, 0.0, 8})[k]);
-    EXPECT_NEAR(faint.rre, before, 4.0 * faint.std_error + exact[Account::truncated] + 5e-5) << k;
+    EXPECT_NEAR(faint.rre, before, 4.0 * faint.spread + exact[Account::truncated] + 5e-5) << k;
     if (before < 0.5) continue;  // angles so wrong that edges do no harm
     for (const double radius : {0.01, 0.03}) {
       const ConeResult worn = rre(all_kinds({radius, 0.0, radius, 0.0, 8})[k]);
-      EXPECT_LT(worn.rre + 4.0 * worn.std_error, before) << k << ": " << radius;
-      before = worn.rre - 4.0 * worn.std_error;
+      EXPECT_LT(worn.rre + 4.0 * worn.spread, before) << k << ": " << radius;
+      before = worn.rre - 4.0 * worn.spread;
     }
   }
 }

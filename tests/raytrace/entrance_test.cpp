@@ -439,7 +439,7 @@ TEST(Entrance, SurfaceAndItsMeshAgreeOverPrisms) {
     const MonteCarloResult by_mesh = traced(part, &mesh, pmma(), from(incidence, 15.0), 1U << 13, policy, 20.0);
     EXPECT_EQ(by_mesh.misses, 0U);
     // Both are estimates; of the facets of the mesh 1e-3 is left.
-    const double bound = 4.0 * std::hypot(exact.cones[0].std_error, by_mesh.cones[0].std_error) + 1e-3;
+    const double bound = 4.0 * std::hypot(exact.cones[0].spread, by_mesh.cones[0].spread) + 1e-3;
     EXPECT_LT(bound, 0.02);
     for (std::size_t k = 0; k < kAccountCount; ++k)
       EXPECT_NEAR(exact.cones[0].ledger.power[k], by_mesh.cones[0].ledger.power[k], bound) << kAccountNames[k];
@@ -454,7 +454,7 @@ TEST(Entrance, SymmetricFrontsGiveSymmetricAnswers) {
   for (const double azimuth : {90.0, 180.0, 270.0}) {
     const MonteCarloResult turned = traced(plate, &front, mirrored_pmma(), from(25.0, azimuth), 1U << 15, {}, 10.0);
     EXPECT_NEAR(turned.cones[0].rre, first.cones[0].rre,
-                5.0 * std::hypot(first.cones[0].std_error, turned.cones[0].std_error));
+                5.0 * std::hypot(first.cones[0].spread, turned.cones[0].spread));
     EXPECT_NEAR(turned.cones[0].ledger.total(), 1.0, 1e-9);
   }
 }

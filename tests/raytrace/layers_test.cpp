@@ -42,7 +42,7 @@ TEST(Layers, CoatedEntranceBeforeMirrors) {
     EXPECT_NEAR(exact[Account::absorbed], 1.0 - expected, 1e-9);
     EXPECT_NEAR(exact.total(), 1.0, 1e-12);
     const ConeResult sampled = MonteCarlo(part).trace(optics, {}, {0.5}, rays(1U << 14), {}).cones[0];
-    EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
+    EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.spread + 1e-6);
     EXPECT_NEAR(sampled.ledger.total(), 1.0, 1e-9);
   }
 }
@@ -71,7 +71,7 @@ TEST(Layers, CoatedFacetsOfAPrism) {
       // What passes a thick film is so little that no ray may take that way.
       const double passed = 0.5 * (std::norm(f.t_s) + std::norm(f.t_p));
       const double unseen = passed < 1e-5 ? 2.0 * passed : 0.0;
-      EXPECT_NEAR(sampled.rre, returned, 4.0 * sampled.std_error + 1e-6 + unseen);
+      EXPECT_NEAR(sampled.rre, returned, 4.0 * sampled.spread + 1e-6 + unseen);
     }
 }
 

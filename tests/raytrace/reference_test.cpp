@@ -106,7 +106,7 @@ TEST(BackIndex, PrismInWater) {
   const double expected = 0.5 * (std::pow(std::norm(f.r_s), 2) + std::pow(std::norm(f.r_p), 2));
   EXPECT_NEAR(BeamTracer(part).trace(optics, {}, {0.5}, {}).ledgers[0][Account::retroreflected], expected, 1e-9);
   const ConeResult sampled = MonteCarlo(part).trace(optics, {}, {0.5}, rays(1U << 14), {}).cones[0];
-  EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
+  EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.spread + 1e-6);
 }
 
 // Two reflections by metal instead: the same in any surroundings, and the rest is absorbed.
@@ -126,7 +126,7 @@ TEST(FacetCoating, AluminisedPrism) {
   EXPECT_NEAR(exact[Account::retroreflected], expected, 1e-9);
   EXPECT_NEAR(exact[Account::absorbed], 1.0 - expected, 1e-9);
   const ConeResult sampled = MonteCarlo(part).trace(optics, {}, {0.5}, rays(1U << 14), {}).cones[0];
-  EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
+  EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.spread + 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, AgainstReference, ::testing::Range(std::size_t{0}, cases().size()));

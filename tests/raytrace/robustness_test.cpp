@@ -68,7 +68,7 @@ TEST(Robustness, FarFromTheOrigin) {
     const Part far = build_part(kind.finite_spec, Vec2(100.0, -100.0));
     const ConeResult at_origin = MonteCarlo(near).trace(pmma(), from(10.0, 20.0), {0.5}, rays(1U << 18), {}).cones[0];
     const ConeResult away = MonteCarlo(far).trace(pmma(), from(10.0, 20.0), {0.5}, rays(1U << 18), {}).cones[0];
-    EXPECT_NEAR(at_origin.rre, away.rre, student_bound(3) * at_origin.std_error + 1e-9) << kind.name;
+    EXPECT_NEAR(at_origin.rre, away.rre, student_bound(3) * at_origin.spread + 1e-9) << kind.name;
   }
 }
 
@@ -84,7 +84,7 @@ TEST(Robustness, ElementsFarFromTheMiddleOfALargeArray) {
     const ConeResult a = MonteCarlo(large).trace(ideal(), from(10.0, 20.0), {0.5}, rays(1U << 17), {}).cones[0];
     const ConeResult b = MonteCarlo(endless).trace(ideal(), from(10.0, 20.0), {0.5}, rays(1U << 17), {}).cones[0];
     const double border = 4.0 * 2.0 / 200.0 * 0.8;
-    EXPECT_NEAR(a.rre, b.rre, border + 5.0 * a.std_error);
+    EXPECT_NEAR(a.rre, b.rre, border + 5.0 * a.spread);
     EXPECT_EQ(a.ledger[Account::lost], 0.0);
   }
 }

@@ -40,7 +40,7 @@ TEST(RoughFacets, SpecularSharesOfTwoFacetsMultiply) {
       }
       const ConeResult result =
           MonteCarlo(part).trace(rough(smooth, sq_nm), from(t_deg), {0.001}, rays(1U << 17), {}).cones[0];
-      EXPECT_NEAR(result.rre, all * std::exp(-phase2), student_bound(6) * result.std_error + 1e-4) << sq_nm;
+      EXPECT_NEAR(result.rre, all * std::exp(-phase2), student_bound(6) * result.spread + 1e-4) << sq_nm;
       EXPECT_NEAR(result.ledger.total(), 1.0, 1e-9);
       EXPECT_LT(result.ledger[Account::lost], 1e-12);
       EXPECT_GT(result.ledger[Account::scattered_out], 0.0);
@@ -81,7 +81,7 @@ TEST(MeanField, IsNowhereMoreThanRaysBring) {
     const Ledger ledger = BeamTracer(part).trace(optics, from(8.0, 20.0), {1e-4}, policy).ledgers[0];
     const double mean = ledger[Account::retroreflected];
     const ConeResult traced = MonteCarlo(part).trace(optics, from(8.0, 20.0), {1e-4}, rays(1U << 17), {}).cones[0];
-    const double bound = student_bound(4) * traced.std_error + 1e-4;
+    const double bound = student_bound(4) * traced.spread + 1e-4;
     EXPECT_LE(mean, traced.rre + bound);
     if (&model == &models.front()) {
       EXPECT_NEAR(mean, traced.rre, bound);
@@ -101,7 +101,7 @@ TEST(RoughFacets, EffectGrowsFromNothing) {
     double before = smooth.rre;
     for (const double sq_nm : {0.001, 5.0, 15.0, 40.0}) {
       const ConeResult result = tracer.trace(rough(pmma(), sq_nm), from(3.0, 0.0), {0.5}, rays(1U << 16), {}).cones[0];
-      const double error = 4.0 * std::hypot(result.std_error, smooth.std_error);
+      const double error = 4.0 * std::hypot(result.spread, smooth.spread);
       if (sq_nm < 1.0) {
         EXPECT_NEAR(result.rre, smooth.rre, error);
       }

@@ -271,6 +271,28 @@ TEST(StochasticBeams, EqualElementsTakeHalfTheWork) {
   EXPECT_LT(beams(Elements::equal_at_once), 0.75 * beams(Elements::each_by_itself));
 }
 
+/// Equal rough elements of a finite array are followed together. The ledger must agree with a ledger from rays.
+TEST(StochasticBeams, EqualRoughElementsOfAFinitePartAreFollowedOnce) {
+  const Part part = build_part(finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 8.0, 8.0, 1.0));
+  const Optics optics = rough(5.0, 2.0);
+  const Illumination light = from(10.0);
+  const BackSurface surface(part, BeamTracer(part).centre_mm());
+  const auto beams = [&](Elements elements) {
+    const BeamTracer tracer(part, elements);
+    const ScatteredLightByRays scattered(tracer, surface, optics, light, {0.5});
+    StochasticBeams traced(tracer, &scattered, optics, light, {0.5}, until(1e-3));
+    traced.advance();
+    return static_cast<double>(traced.beams());
+  };
+  EXPECT_LT(beams(Elements::equal_at_once), 0.5 * beams(Elements::each_by_itself));
+  const ConeResult shared =
+      traced(BeamTracer(part, Elements::equal_at_once), optics, light, {0.5}, until(1e-3), &surface).cones[0];
+  const ConeResult sampled = MonteCarlo(part).trace(optics, light, {0.5}, rays(1U << 16), {}).cones[0];
+  EXPECT_NEAR(shared.rre, sampled.rre, normal_bound(1) * std::hypot(shared.std_error, sampled.std_error));
+  for (const Account account : {Account::scattered_out, Account::side_exit, Account::transmitted})
+    EXPECT_NEAR(shared.ledger[account], sampled.ledger[account], 5e-3) << static_cast<int>(account);
+}
+
 TEST(StochasticBeams, StopWhenCancelled) {
   const Question question = questions()[1];
   const BeamTracer tracer(question.part);

@@ -12,6 +12,8 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/form_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/layers_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/flat_polygon_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/level_beams_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/mirror_symmetry_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/overlay_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/polarisation_test.cpp
@@ -26,6 +28,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scratches_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/stochastic_beams_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/unseen_paths_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/weak_beams_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/wet_back_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/soiled_entrance_test.cpp

@@ -1,8 +1,10 @@
 // Another medium behind some elements: which elements those are, and that each returns what its own back lets it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "geometry/part/chosen_elements.h"
 #include "tests/support/designs.h"
@@ -115,14 +117,20 @@ TEST(ChosenElements, ASharesCountIsThatOfIndependentChances) {
   }
 }
 
+bool is_wall(const PatchFacet& facet) {
+  return facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
+}
+
 // An element is wet as a whole: facets, and the outer walls at its end.
 TEST(ChosenElements, FacetsOfAnElementAreChosenTogether) {
   const Part part = build_part(prisms(Arrangement::offset));
   const ChosenElements chosen(part, RandomShare{0.5, 3});
   for (std::uint32_t p = 0; p < part.placements.size(); ++p)
     for (const PatchCell& cell : part.patches[part.placements[p].patch].cells)
-      for (std::uint32_t f = 1; f < cell.facet_count; ++f)
+      for (std::uint32_t f = 1; f < cell.facet_count; ++f) {
+        if (is_wall(part.patches[part.placements[p].patch].facets[cell.first_facet + f])) continue;
         EXPECT_EQ(chosen.has(p, cell.first_facet), chosen.has(p, cell.first_facet + f));
+      }
   std::int64_t wet = 0;
   for (int k = 0; k < 16; ++k) {  // along y = 0, row 1
     const bool is_wet = chosen.has_wall_at({0.5 * k + 0.1, 0.0});
@@ -131,6 +139,58 @@ TEST(ChosenElements, FacetsOfAnElementAreChosenTogether) {
   }
   EXPECT_GT(wet, 2);
   EXPECT_LT(wet, 14);
+}
+
+/// Returns the projection of a facet onto the xy plane, in the part frame.
+Polygon plan_of(const Part& part, std::uint32_t placement, const PatchFacet& facet) {
+  const SurfacePatch& patch = part.patches[part.placements[placement].patch];
+  Polygon plan;
+  for (std::uint32_t c = 0; c < facet.corner_count; ++c)
+    plan.push_back(patch.vertices[patch.corners[facet.first_corner + c]].head<2>() +
+                   part.placements[placement].offset_mm);
+  return plan;
+}
+
+/// Returns true if the element above a point of the xy plane is wet, and false if the element is dry. Returns an empty
+/// value for a point below land, because land may be wet at some points and dry at others.
+std::optional<bool> is_wet_below(const Part& part, const ChosenElements& chosen, const Vec2& place_mm) {
+  for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
+    const SurfacePatch& patch = part.patches[part.placements[p].patch];
+    for (std::uint32_t f = 0; f < patch.facets.size(); ++f) {
+      if (is_wall(patch.facets[f])) continue;
+      Polygon plan = plan_of(part, p, patch.facets[f]);
+      if (area(plan) < 0.0) std::reverse(plan.begin(), plan.end());
+      if (!contains(plan, place_mm)) continue;
+      return patch.facets[f].role == FacetRole::retro_facet ? std::optional(chosen.has(p, f)) : std::nullopt;
+    }
+  }
+  ADD_FAILURE() << "no facet at " << place_mm.transpose();
+  return std::nullopt;
+}
+
+// The space behind a wall lies below a facet of the neighbouring element, and has the medium of that element.
+TEST(ChosenElements, WallsHaveTheMediumOfTheirNeighbour) {
+  int unlike = 0;
+  for (const PartSpec& spec : arrays()) {
+    const Part part = build_part(spec);
+    const ChosenElements chosen(part, RandomShare{0.5, 3});
+    for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
+      const SurfacePatch& patch = part.patches[part.placements[p].patch];
+      for (const PatchCell& cell : patch.cells)
+        for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
+          if (!is_wall(patch.facets[f])) continue;
+          Vec2 middle = Vec2::Zero();
+          const Polygon plan = plan_of(part, p, patch.facets[f]);
+          for (const Vec2& corner : plan) middle += corner / static_cast<double>(plan.size());
+          const std::optional<bool> is_wet =
+              is_wet_below(part, chosen, middle + 1e-4 * patch.facets[f].normal.head<2>());
+          if (!is_wet) continue;
+          EXPECT_EQ(chosen.has(p, f), *is_wet);
+          if (chosen.has(p, f) != chosen.has(p, cell.first_facet)) ++unlike;
+        }
+    }
+  }
+  EXPECT_GT(unlike, 10);
 }
 
 // Another index behind every element one by one, and behind none, are the index of the whole back, to the last bit.
@@ -187,7 +247,7 @@ TEST(WetBack, WetRowsAmongDryOnes) {
       constexpr std::uint64_t kRays = 1 << 16;
       const ConeResult all_wet = traced(part, wet, at, kRays), dry = traced(part, pmma(), at, kRays);
       const ConeResult mixed = traced(part, wet_behind(pmma(), part, rows, index), at, kRays);
-      const double error = std::hypot(mixed.std_error, 0.5 * std::hypot(all_wet.std_error, dry.std_error));
+      const double error = std::hypot(mixed.spread, 0.5 * std::hypot(all_wet.spread, dry.spread));
       EXPECT_GT(dry.rre - all_wet.rre, 20.0 * error) << incidence_deg;
       EXPECT_NEAR(mixed.rre, 0.5 * (all_wet.rre + dry.rre), 4.0 * error + 1e-9) << index << " " << incidence_deg;
       for (std::size_t k = 0; k < kAccountCount; ++k)

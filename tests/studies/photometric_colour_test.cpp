@@ -111,6 +111,46 @@ TEST(PhotometricColour, WithDispersionAndDiffractionIsThatOfItsSpectrum) {
   EXPECT_FALSE(is_colourless) << "diffraction colours what it sends aside";
 }
 
+// Total reflection in prisms of N-BK7 ends at an angle of incidence that depends on the wavelength, from 5.6 to 6
+// degrees. At such angles, readings agree with those of a spectrum that has a line every 2 nm.
+TEST(PhotometricColour, IsExactWhereTotalReflectionEnds) {
+  const materials::SpectralCurve lamp = lamp_power(PhotometricLight::illuminant_a);
+  const materials::ColourMatching functions = materials::shipped_colour_matching();
+  Design design = design_of(infinite(geometry::RtpElement{3.0, 3.0, 90.0}, geometry::Arrangement::aligned, 2.0));
+  design.substance.refractive_index.reset();
+  design.substance.material = "N-BK7";
+  const PhotometryRequest request = colour_request();
+  for (const double h_deg : {5.7, 5.9}) {
+    const auto r_a = [&](const Design& lit, PhotometricLight light, std::size_t response) {
+      PhotometryRequest of_light = request;
+      of_light.engine = Engine::exact;
+      of_light.light = light;
+      return Photometer(lit, of_light, 4, static_cast<PhotometricResponse>(response))
+          .measure({{0.0, h_deg, 0.0, {0.05}, 0, false}}, nullptr, nullptr)
+          ->front()
+          .r_a[0];
+    };
+    materials::Tristimulus found{}, expected{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      LightSpectrum lines;
+      lines.kind = LightSpectrum::Kind::lines;
+      lines.photopic = false;
+      double sent = 0.0;
+      for (double w = 400.0; w <= 720.0; w += 2.0) {
+        lines.lines.push_back({w, lamp.at(w) * functions[k].at(w)});
+        sent += lines.lines.back().power;
+      }
+      Design of_lines = design;
+      of_lines.light.colour = lines;
+      expected[k] = sent * r_a(of_lines, PhotometricLight::of_design, k);
+      found[k] = sent * r_a(design, PhotometricLight::illuminant_a, k);
+      EXPECT_NEAR(found[k], expected[k], 3e-4 * expected[k]) << k << " at " << h_deg;
+    }
+    EXPECT_NEAR(materials::chromaticity(found).x, materials::chromaticity(expected).x, 1e-4) << h_deg;
+    EXPECT_NEAR(materials::chromaticity(found).y, materials::chromaticity(expected).y, 1e-4) << h_deg;
+  }
+}
+
 TEST(PhotometricColour, HasTheErrorOfItsRays) {
   PhotometryRequest request = colour_request();
   request.dye_absorption_per_mm = materials::read_spectral_absorption(kData + "dye_amber.csv");

@@ -106,7 +106,7 @@ TEST(PhotometryVerdict, RoughPartsPassAndFailByTheirDiffractedValue) {
     const PhotometryResult result = run(part, request);
     EXPECT_EQ(result.verdict, verdict);
     EXPECT_TRUE(result.has_diffraction);
-    EXPECT_EQ(result.engine, "exact");
+    EXPECT_EQ(result.engine, "stochastic");
     EXPECT_EQ(result.reason, "");
     for (const PhotometricPoint& point : result.points) EXPECT_FALSE(point.is_lower_bound || point.lacks_diffraction);
   }

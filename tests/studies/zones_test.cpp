@@ -88,7 +88,7 @@ TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
         "d.toml:13: zone[2].set: array.x_length_mm: not allowed for arrangement = \"single\", whose extent is the "
         "element's aperture, got 20"},
        {half + half + "set = [\"element.aperture_mm=11\"]\n",
-        "d.toml:11: zone[2]: has a region of 10 x 10 mm, too small for one element of 11 x 9.526279441628827 mm"},
+        "d.toml:11: zone[2]: has a region of 10 x 10 mm, too small for one element of 11 x 9.526279441628825 mm"},
        {"[[zone]]\npolygon_mm = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]]\n",
         "d.toml:10: zone[1].polygon_mm: must have each corner once, got [0, 0] twice"},
        {"[[zone]]\npolygon_mm = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0], [20, 0], [20, 10], [0, 10]]\n",

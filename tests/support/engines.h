@@ -26,7 +26,7 @@ inline void expect_engines_agree(const geometry::PartSpec& spec, double most_tru
   const raytrace::Ledger exact = raytrace::BeamTracer(part).trace(pmma(), from(3.0), {0.5}, policy).ledgers[0];
   const raytrace::ConeResult sampled =
       raytrace::MonteCarlo(part).trace(pmma(), from(3.0), {0.5}, rays(1U << 16), {}).cones[0];
-  EXPECT_NEAR(exact[Account::retroreflected], sampled.rre, 4.0 * sampled.std_error + exact[Account::truncated] + 1e-6);
+  EXPECT_NEAR(exact[Account::retroreflected], sampled.rre, 4.0 * sampled.spread + exact[Account::truncated] + 1e-6);
   EXPECT_LT(exact[Account::truncated], most_truncated);
   EXPECT_NEAR(exact.total(), 1.0, 1e-9);
   raytrace::Sampling sampling;

@@ -1,7 +1,7 @@
 #pragma once
 
-// A cube corner under normal light, pixel by pixel: rays and field vectors in space through three plane facets. It
-// shares only the formulas of Fresnel with the engine.
+// Reference model of a cube corner at normal incidence. For each pixel of the aperture, a ray and its field vectors are
+// followed through three reflections. The model shares no code with the engine.
 
 #include <array>
 #include <cmath>
@@ -17,25 +17,29 @@
 
 namespace retrace::testing {
 
-/// What the pixels of a cube corner are made of.
+/// Parameters of the pixel model.
 struct PixelCubeSpec {
   double aperture_mm = 0.5;  ///< diameter of the circle around the hexagonal aperture
   double wavelength_mm = 550e-6;
-  bool mirrors = true;  ///< otherwise facets reflect totally
-  int pixels = 400;     ///< across the aperture
-  /// Normals of the facets into the body, all through the apex; those of a perfect cube by default.
+  bool mirrors = true;  ///< perfect mirrors; otherwise total reflection
+  int pixels = 400;     ///< number of pixels across the aperture
+  /// Inward normals of the facets, whose planes meet at the apex. The default is the normals of a perfect cube
+  /// corner.
   std::optional<std::array<geometry::Vec3, 3>> normals = {};
-  /// Height of a facet's surface in mm over a place (horizontal, down the facet) relative to its center; null: plane.
+  /// Height of the surface over the plane of a facet, positive out of the body, in mm. The two arguments are
+  /// coordinates from the center of the facet, in mm: horizontally along the facet, and down the facet. The function is
+  /// null for plane facets.
   std::function<double(double, double)> height = {};
 };
 
-/// The far field of one cube corner as a sum over pixels of its entrance. A pixel contributes the plane wave of its ray
-/// from the place opposite to it, with the phase that this wave has at the apex.
+/// Far field of one cube corner as a sum over the pixels of its aperture. Each pixel contributes a plane wave in the
+/// direction of its outgoing ray, with the phase that this wave has at the apex. As without errors of angle, the wave
+/// leaves at the pixel that is point-symmetric to the entry pixel with respect to the apex.
 class PixelCube {
  public:
   using Vec2 = geometry::Vec2;
   using Vec3 = geometry::Vec3;
-  using Field = Eigen::Matrix<std::complex<double>, 3, 2>;  ///< of unit fields along x and y
+  using Field = Eigen::Matrix<std::complex<double>, 3, 2>;  ///< columns: fields for unit incident fields along x and y
 
   explicit PixelCube(const PixelCubeSpec& spec) : spec_(spec), edge_(spec.aperture_mm / (2.0 * std::sqrt(2.0 / 3.0))) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -51,7 +55,8 @@ class PixelCube {
       }
   }
 
-  /// Intensity per steradian over the peak of a perfect mirror cube, toward the direction with the cosines q.
+  /// Returns the intensity per steradian in the direction with the cosines q along x and y, divided by the peak of a
+  /// perfect cube corner with mirrors.
   double at(const Vec2& q) const {
     Field sum = Field::Zero();
     for (const Pixel& pixel : pixels_)
@@ -82,7 +87,7 @@ class PixelCube {
     field(0, 0) = field(1, 1) = 1.0;
     Vec3 p(place.x(), place.y(), 10.0);
     Vec3 d = -Vec3::UnitZ();
-    double path_mm = 0.0;  // in the material
+    double path_mm = 0.0;  // geometric, in the material
     std::array<bool, 3> met{};
     for (int bounce = 0; bounce < 3; ++bounce) {
       double nearest = 1e9;
@@ -102,7 +107,7 @@ class PixelCube {
       if (spec_.height) path_mm += 2.0 * c * height_at(p, facet);
       reflect(normals_[facet], c, d, field);
     }
-    // The wave continued from the last facet to the apex, which is the origin.
+    // Compute the phase that the wave has at the apex, which is the origin.
     const double at_apex_mm = kPmma * (path_mm - d.dot(p));
     pixels_.push_back({-place, kPmma * d.head<2>(), std::polar(1.0, wave_number() * at_apex_mm) * field});
   }
@@ -119,7 +124,8 @@ class PixelCube {
     std::complex<double> rs = -1.0;
     std::complex<double> rp = 1.0;
     if (!spec_.mirrors) {
-      // Born and Wolf, 1.5.2 (20), with the root of total reflection for exp(-i w t).
+      // Fresnel's formulae: Born and Wolf, 1.5.2 (20). In total reflection, the sign of the imaginary root is that
+      // for the time dependence exp(-i w t).
       const double m = 1.0 / (kPmma * kPmma);
       const std::complex<double> root = std::sqrt(std::complex<double>(m - (1.0 - c * c)));
       rs = (c - root) / (c + root);

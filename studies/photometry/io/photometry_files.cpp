@@ -125,10 +125,10 @@ std::string rows_of(const std::vector<PhotometricPoint>& points) {
   std::string table = fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n", "alpha", "V", "H",
                                   "rotation", "mcd/lx", "limit", "margin_%", "R_A", "verdict");
   for (const PhotometricPoint& p : points)
-    table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n", fixed(p.asked.observation_deg, 2),
-                         shortest(p.asked.v_deg), shortest(p.asked.h_deg), shortest(p.rotation_deg),
-                         fixed(p.r_i_mcd_per_lx, 2), fixed(p.limit_mcd_per_lx, 2), fixed(100.0 * p.margin(), 1),
-                         fixed(p.r_a, 1), point_text(p));
+    table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n",
+                         fixed_visible(p.asked.observation_deg, 2), shortest(p.asked.v_deg), shortest(p.asked.h_deg),
+                         shortest(p.rotation_deg), fixed(p.r_i_mcd_per_lx, 2), fixed(p.limit_mcd_per_lx, 2),
+                         fixed(100.0 * p.margin(), 1), fixed(p.r_a, 1), point_text(p));
   return table;
 }
 
@@ -149,8 +149,8 @@ std::string colour_text(const PhotometricColour& colour) {
     text += *verdict == Verdict::fail ? "FAIL - " : fmt::format("{} - ", verdict_name(*verdict));
   if (!colour.chromaticity) return text + "no light comes back\n";
   text += fmt::format("x {}, y {} at {} degrees, V {}, H {}", fixed(colour.chromaticity->x, 4),
-                      fixed(colour.chromaticity->y, 4), fixed(colour.observation_deg, 2), shortest(colour.v_deg),
-                      shortest(colour.h_deg));
+                      fixed(colour.chromaticity->y, 4), fixed_visible(colour.observation_deg, 2),
+                      shortest(colour.v_deg), shortest(colour.h_deg));
   if (colour.boundaries.empty()) return text + "; the standard's boundaries are not known\n";
   for (const ColourPoint& point : colour.boundaries)
     if (point.margin < 0.0) text += fmt::format("; not {}", point.asked.text);

@@ -22,9 +22,12 @@ Json source_json(const RayResult& result) {
   Json json;
   if (result.emitter) {
     const Emitter& emitter = *result.emitter;
-    json = {{"emitter", kEmitterNames[static_cast<std::size_t>(emitter.kind)]},
-            {"disc_mm", emitter.disc_mm},
-            {"half_angle_deg", emitter.half_angle_deg}};
+    json = {{"emitter", kEmitterNames[static_cast<std::size_t>(emitter.kind)]}};
+    if (emitter.period_mm)
+      json["period_mm"] = {(*emitter.period_mm)[0].norm(), (*emitter.period_mm)[1].norm()};
+    else
+      json["disc_mm"] = emitter.disc_mm;
+    json["half_angle_deg"] = emitter.half_angle_deg;
   } else if (!result.source_name.empty()) {
     json = {{"file", result.source_name}, {"spectral_identifier", static_cast<int>(result.source.spectrum)}};
   }

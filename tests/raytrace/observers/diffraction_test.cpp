@@ -197,6 +197,52 @@ TEST(Diffraction, WindowAndOutsideAddUpToThePower) {
     }
 }
 
+/// Returns the far field of the light that the entrance face reflects, without the light that facets reflect.
+FarField front_of(const Part& part, const Optics& optics, const Illumination& light) {
+  FarFieldPolicy policy;
+  policy.wavelength_nm = 550.0;
+  policy.window_rad = 0.5;
+  FarFieldCollector collector(part, light, policy);
+  BeamPolicy beams;
+  beams.cutoff = 1e-2;
+  BeamTracer(part).trace(optics, light, {0.5}, beams, nullptr, [&](const ReturnedBeam& beam) {
+    if (beam.depth == 0) collector.add(beam);
+  });
+  return collector.finish();
+}
+
+// The entrance face of a finite part diffracts like an aperture. For unit incident power, the intensity in the
+// direction of the reflection is R A cos(theta) / w^2, with the reflectance R, the area A, the angle of incidence
+// theta and the wavelength w. For a rectangle, the intensity falls like sinc^2 in a plane parallel to a side. The
+// total power of the pattern is R.
+TEST(Diffraction, EntranceFaceOfAFinitePartIsAnAperture) {
+  constexpr double kWave = 550e-6;
+  const double base = 0.3;
+  const PartSpec prism = single(RtpElement{base, 0.2, 90.0}, 0.5);
+  for (const PartSpec& spec : {prism, single(HexagonalCube{0.4}, 0.5), single(TriangularCube{0.5}, 0.5),
+                               finite(RtpElement{0.1, 0.1, 90.0}, Arrangement::aligned, 0.3, 0.2, 0.5)})
+    for (const double incidence_deg : {0.0, 2.0}) {
+      const Part part = build_part(spec);
+      const Illumination light = from(incidence_deg, 30.0);
+      const FarField field = front_of(part, pmma(), light);
+      Vec3 reflected = direction_to_source(light);
+      reflected.head<2>() *= -1.0;
+      const double power = field.total_power();
+      EXPECT_NEAR(power, std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0), 1e-5);
+      const double peak = power * part.entrance_area_mm2 * reflected.z() / (kWave * kWave);
+      EXPECT_NEAR(field.diffracted_per_sr(reflected), peak, 1e-9 * peak);
+      const FarField::Split split = field.split(ReturnFrame{}, 0.2);
+      EXPECT_NEAR(split.inside + split.outside, power, 1e-3 * power);
+    }
+  const FarField field = front_of(build_part(prism), pmma(), from(0.0));
+  const double peak = field.diffracted_per_sr(Vec3::UnitZ());
+  for (const double phase : {0.4, 1.0, 1.5, 2.0}) {
+    const double x = phase * kWave / base;
+    const double sinc = std::sin(pi * phase) / (pi * phase);
+    EXPECT_NEAR(field.diffracted_per_sr(tilted(x)) / tilted(x).z(), peak * sinc * sinc, 1e-9 * peak) << phase;
+  }
+}
+
 // The six sub-beams of a full cube corner, for mirrors and for total reflection, whose phases split the pattern.
 TEST(Diffraction, SixSectorsOfACubeCornerAgreeWithAPixelModel) {
   constexpr double kAperture = 0.5;
@@ -214,7 +260,7 @@ TEST(Diffraction, SixSectorsOfACubeCornerAgreeWithAPixelModel) {
     BeamTracer(part).trace(optics, {}, {0.5}, beams, nullptr, [&](const ReturnedBeam& b) { collector.add(b); });
     const FarField field = collector.finish();
     ASSERT_EQ(field.groups().size(), 1U);
-    // Mirrors make all six alike, and neighbours are joined.
+    // With mirrors all six beams have the same field. The polygons of neighbouring beams are therefore joined.
     if (mirrors) {
       EXPECT_LT(field.groups()[0].polygons.size(), 6U);
     } else {

@@ -1,5 +1,5 @@
-// Far fields of cells with errors of angle: independent of the plate's thickness, conserving power, and as a model of
-// pixels has them.
+// Tests of the far fields of cells with errors of angle. The far fields must be independent of the thickness of the
+// plate, conserve power and agree with a pixel model.
 #include "raytrace/observers/error_free_exit.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ PartSpec with(PartSpec spec, const AngleErrors& errors) {
   return spec;
 }
 
-/// Uniform in -1 to 1.
+/// Returns the random number `which` of the set `set`, uniformly distributed from -1 to 1.
 double draw(std::uint32_t set, std::uint32_t which) {
   return 2.0 * unit_interval(philox({77, which}, set, 0)[0]) - 1.0;
 }
@@ -67,7 +67,7 @@ AngleErrors random_errors(std::uint32_t set, double most_arcmin, bool is_prism) 
 
 struct Case {
   std::string name;
-  PartSpec spec;  ///< of a plate of 0.5 mm
+  PartSpec spec;  ///< part with a plate of 0.5 mm
   bool is_prism = false;
 };
 
@@ -78,8 +78,8 @@ std::vector<Case> cases() {
           {"triangles", infinite(TriangularCube{0.8}, Arrangement::triangular, 0.5)}};
 }
 
-// Diffraction within the plate is a matter of phases only, so that the far field of one pass does not depend on how
-// thick the plate is.
+// Within the plate, diffraction changes only the phases of the field's angular spectrum. The far field of light that
+// has passed through one cell therefore does not depend on the thickness of the plate.
 TEST(ErrorFreeExit, ThicknessChangesNoReading) {
   const ApertureKernel kernel({Angle::from_deg(1.0 / 6.0), Angle::from_deg(1.0 / 6.0)});
   for (const Case& one : cases())
@@ -110,7 +110,7 @@ TEST(ErrorFreeExit, ThicknessChangesNoReading) {
     }
 }
 
-// Polygons that do not overlap conserve power by Parseval's theorem, whatever waves they carry.
+// If polygons do not overlap, their fields conserve power for any waves on the polygons (Parseval's theorem).
 TEST(ErrorFreeExit, WindowAndOutsideAddUpToTheGeometricPower) {
   const std::vector<Case> all = cases();
   for (std::uint32_t set = 0; set < 50; ++set) {
@@ -137,7 +137,8 @@ std::array<Vec3, 3> normals_of(const PartSpec& spec) {
   return normals;
 }
 
-// Mirrors and total reflection, errors of either sign, unlike ones and tilts.
+// Cases are dihedral errors of either sign, and unequal dihedral errors together with facet tilts. Each case is tested
+// with mirrors and with total reflection.
 TEST(ErrorFreeExit, CubeCornersWithErrorsAgreeWithAPixelModel) {
   const std::vector<AngleErrors> lists = {
       {{-5.0, -5.0, -5.0}, {}}, {{5.0, 5.0, 5.0}, {}}, {{2.0, -7.0, 9.0}, {1.0, 3.0, -4.0}}};

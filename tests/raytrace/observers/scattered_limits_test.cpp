@@ -38,7 +38,7 @@ TEST(DiffractionWithRoughness, TendsToRaysInWideCones) {
         const double beyond = 1.0 - smooth.split({}, radius).inside;
         EXPECT_LT(beyond, 0.02);
         EXPECT_NEAR(field.split({}, radius).inside / cone.rre, 1.0,
-                    0.01 + beyond + student_bound(20) * cone.std_error / cone.rre)
+                    0.01 + beyond + student_bound(20) * cone.spread / cone.rre)
             << element.name << ", Sq " << sq_nm << " nm, " << cone.half_angle_deg << " degrees: " << cone.rre
             << ", beyond " << beyond;
       }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "core/threads.h"
@@ -296,6 +297,69 @@ TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
   }
 }
 
+Design endless_triangles() {
+  return parse_design(
+      "[element]\nkind = \"triangular_icc\"\naperture_mm = 1\n[array]\narrangement = \"triangular\"\nextent = "
+      "\"infinite\"\n"
+      "[body]\nthickness_mm = 1\nrefractive_index = 1.5\n",
+      "triangles.toml");
+}
+
+// The points of incidence on the entrance face are evenly distributed over a period: each spatial harmonic of the
+// period has the mean 0 over these points.
+TEST(RayStudy, AnEmitterBeforeAnInfinitePartCoversAPeriodEvenly) {
+  constexpr std::uint64_t kRays = 40000;
+  for (const double half_angle_deg : {0.0, 5.0}) {
+    RayRequest request;
+    request.placement.incidence_deg = 50.0;
+    request.placement.azimuth_deg = 20.0;
+    const RayStudy study(endless_triangles(), request);
+    EmitterRequest asked;
+    asked.kind = EmitterKind::collimated;
+    asked.rays = kRays;
+    asked.half_angle_deg = half_angle_deg;
+    EmitterSource source(study.emitter_of(asked));
+    const RayPlacement placement = placement_of(request.placement, study.part());
+    std::vector<SetRay> rays;
+    ASSERT_TRUE(source.read(kRays, rays));
+    for (const auto& [i, j] : {std::pair{1, 0}, {0, 1}, {1, 1}, {2, -1}, {0, 3}}) {
+      std::complex<double> sum;
+      for (SetRay ray : rays) {
+        placement.apply(ray);
+        const double t = (study.part().thickness_mm - ray.position_mm.z()) / ray.direction.z();
+        const geometry::Vec2 at =
+            (ray.position_mm + t * ray.direction).head<2>().cwiseQuotient(*study.part().period_mm);
+        sum += std::polar(1.0, 2.0 * std::numbers::pi * (i * at.x() + j * at.y()));
+      }
+      EXPECT_LT(std::abs(sum) / kRays, 4.0 / std::sqrt(kRays)) << half_angle_deg << ": " << i << ", " << j;
+    }
+  }
+}
+
+TEST(RayStudy, AnEmitterBeforeAnInfinitePartIsTheBeamOfRre) {
+  RayRequest request;
+  request.placement.incidence_deg = 15.0;
+  request.placement.azimuth_deg = 10.0;
+  const RayStudy study(endless_triangles(), request);
+  EmitterRequest asked;
+  asked.kind = EmitterKind::collimated;
+  asked.rays = 100000;
+  EmitterSource source(study.emitter_of(asked));
+  const RayResult result = study.run(source, nullptr, nullptr, nullptr);
+  studies::RreRequest beam;
+  beam.incidence_deg = {15.0};
+  beam.azimuth_deg = {10.0};
+  const RrePoint known = RreStudy({endless_triangles()}, beam).run(nullptr, nullptr).points.at(0);
+  EXPECT_EQ(result.ledger.rays_missed, 0U);
+  for (std::size_t k = 0; k < raytrace::kAccountCount; ++k) {
+    // A ray adds between 0 and the whole power of the ray to an account. The variance of the account is therefore at
+    // most that of a binomial distribution.
+    const double share = std::max(known.ledger.power[k], 0.0);  // rounding may make an account negative
+    EXPECT_NEAR(result.ledger.ledger.power[k], share, 4.0 * std::sqrt(share * (1.0 - share) / 100000.0) + 1e-6)
+        << raytrace::kAccountNames[k];
+  }
+}
+
 TEST(RayStudy, SourcesAreMovedAndTurned) {
   RayRequest request;
   request.placement.at_mm = {{1.0, 2.0, 12.0}};
@@ -340,7 +404,7 @@ TEST(RayStudy, WhatMakesNoSenseIsRefused) {
               r.placement.at_mm = {{0, 0, 9}};
               r.placement.aim_mm = {{0, 0, 9}};
             }),
-            "--aim-mm: must be another place than that of the source");
+            "--aim-mm: must differ from the position of the source");
   const auto emitter = [](const auto& change) {
     return refusal_of([&] {
       EmitterRequest request;

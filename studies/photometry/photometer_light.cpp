@@ -1,0 +1,186 @@
+// Members of Photometer that choose the wavelengths to trace for each direction of light. The choice depends on the
+// knees: wavelengths at which total reflection begins or ends at a facet.
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "materials/io/material_library.h"
+#include "materials/knee_rule.h"
+#include "studies/design/total_reflection.h"
+#include "studies/photometry/photometer.h"
+
+namespace retrace::studies {
+namespace {
+
+/// Minimum number of spans of the spectrum for which knees are searched. Pictures, searches and estimates use fewer
+/// spans and ignore knees.
+constexpr std::size_t kLeastPartsOfValues = 4;
+/// Maximum wavelength step of the table of refractive indices. The error of linear interpolation is then at most 5e-6.
+constexpr double kIndexStepNm = 10.0;
+/// Fraction of the flux at each end of the spectrum in which knees are ignored.
+constexpr double kLeastShare = 2e-3;
+/// Minimum distance between knees. Knees that are closer are merged.
+constexpr double kLeastDistanceNm = 4.0;
+constexpr std::size_t kMostKnees = 4;
+/// Rounding step of knees. Settings with equal rounded knees are traced together.
+constexpr double kRoundingNm = 0.01;
+
+struct IndexAt {
+  double wavelength_nm = 0.0;
+  double index = 1.0;
+  double back_index = 1.0;
+};
+
+/// Returns the refractive indices at wavelengths in steps of at most kIndexStepNm. The ends of the spectrum, defined by
+/// kLeastShare, are left out. Wavelengths for which the material has no data are omitted.
+///
+/// \param flux spectrum whose weights add up to 1
+std::vector<IndexAt> index_table(const Design& design, const materials::Spectrum& flux) {
+  double low_nm = flux.wavelengths_nm.front(), high_nm = flux.wavelengths_nm.back();
+  double sum = 0.0;
+  for (std::size_t k = 0; k < flux.size(); ++k) {
+    if (sum < kLeastShare) low_nm = flux.wavelengths_nm[k];
+    if (sum < 1.0 - kLeastShare) high_nm = flux.wavelengths_nm[k];
+    sum += flux.weights[k];
+  }
+  const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
+  std::vector<std::string> told_before;
+  const OpticsOfDesign optics(design, library, told_before);
+  const auto steps = static_cast<int>(std::ceil((high_nm - low_nm) / kIndexStepNm));
+  std::vector<IndexAt> table;
+  for (int k = 0; k <= steps; ++k) try {
+      const double w = std::lerp(low_nm, high_nm, static_cast<double>(k) / std::max(1, steps));
+      const raytrace::Optics at = optics.at(w);
+      table.push_back({w, at.index, at.back_index});
+    } catch (const InputError&) {
+      continue;
+    }
+  return table;
+}
+
+/// Merges knees that are closer than kLeastDistanceNm. This distance is doubled until at most kMostKnees remain.
+std::vector<double> joined(std::vector<double> knees_nm) {
+  std::sort(knees_nm.begin(), knees_nm.end());
+  for (double distance_nm = kLeastDistanceNm;; distance_nm *= 2.0) {
+    std::vector<double> joined;
+    for (std::size_t first = 0; first < knees_nm.size();) {
+      std::size_t last = first;
+      double sum = 0.0;
+      for (; last < knees_nm.size() && knees_nm[last] - knees_nm[first] < distance_nm; ++last) sum += knees_nm[last];
+      joined.push_back(kRoundingNm * std::round(sum / static_cast<double>(last - first) / kRoundingNm));
+      first = last;
+    }
+    if (joined.size() <= kMostKnees) return joined;
+  }
+}
+
+/// Returns the knees of a part for light from one direction, in ascending order.
+std::vector<double> knees_of(const geometry::PartSpec& part, const geometry::Vec3& to_source,
+                             const std::vector<IndexAt>& table) {
+  std::vector<double> knees_nm;
+  std::vector<double> before;
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    std::vector<double> margins = total_reflection_margins(part, to_source, table[k].index, table[k].back_index);
+    for (std::size_t m = 0; k > 0 && m < margins.size(); ++m)
+      if ((before[m] < 0.0) != (margins[m] < 0.0))
+        knees_nm.push_back(
+            std::lerp(table[k - 1].wavelength_nm, table[k].wavelength_nm, before[m] / (before[m] - margins[m])));
+    before = std::move(margins);
+  }
+  return joined(std::move(knees_nm));
+}
+
+/// Reports the progress of one part of the work as progress of the whole work. The values 0 and 1 of the part are
+/// reported as `from` and `to`.
+class PartOfProgress : public Progress {
+ public:
+  PartOfProgress(Progress* whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
+  void at(double share) override {
+    if (whole_ != nullptr) whole_->at(std::lerp(from_, to_, share));
+  }
+
+ private:
+  Progress* whole_;
+  double from_, to_;
+};
+
+}  // namespace
+
+/// Chooses wavelengths by the flux that remains after absorption in the body. A dyed body may absorb most of the light
+/// of the lamp. The weights exclude this absorption because the tracer applies it.
+materials::Spectrum Photometer::Lamp::light(const std::vector<double>& knees_nm) const {
+  const auto transmittance = [&](double w) {
+    return absorption_per_mm.values.empty() ? 1.0 : std::exp(-absorption_per_mm.at(w) * path_length_mm);
+  };
+  materials::SpectralCurve left = power;
+  double before = 0.0;
+  double behind = 0.0;
+  for (std::size_t k = 0; k < left.values.size(); ++k) {
+    const double w = left.wavelengths_nm[k];
+    const double flux = left.values[k] * response.at(w);
+    left.values[k] *= transmittance(w);
+    before += flux;
+    behind += flux * transmittance(w);
+  }
+  materials::Spectrum light = knees_nm.empty()
+                                  ? materials::traced_spectrum(materials::resolved_spectrum(left, &response), parts)
+                                  : materials::knee_rule(left, response, parts, knees_nm);
+  for (std::size_t k = 0; k < light.size(); ++k)
+    light.weights[k] *= behind / before / transmittance(light.wavelengths_nm[k]);
+  return light;
+}
+
+std::map<std::vector<double>, std::vector<std::size_t>> Photometer::settings_by_knees(
+    const std::vector<PhotometerSetting>& settings) const {
+  std::map<std::vector<double>, std::vector<std::size_t>> groups;
+  const bool may_have_knees = lamp_ && lamp_->parts >= kLeastPartsOfValues && !is_guide_ && design_.elements() &&
+                              !design_.part().substrate && !design_.entrance && !design_.substance.refractive_index &&
+                              design_.needs_total_reflection();
+  std::vector<IndexAt> table;
+  if (may_have_knees) table = index_table(design_, materials::resolved_spectrum(lamp_->power, &lamp_->response));
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    std::vector<double> knees_nm;
+    if (!table.empty()) knees_nm = knees_of(design_.part(), frame_of(settings[k]).to_source, table);
+    groups[std::move(knees_nm)].push_back(k);
+  }
+  return groups;
+}
+
+Photometer Photometer::with_knees(const std::vector<double>& knees_nm) const try {
+  Photometer changed = *this;
+  const materials::Spectrum light = lamp_->light(knees_nm);
+  const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
+  std::vector<std::string> told_before;
+  const OpticsOfDesign optics(design_, library, told_before);
+  changed.weights_ = light.weights;
+  changed.model_.spectral.clear();
+  for (std::size_t k = 0; k < light.size(); ++k)
+    changed.model_.spectral.push_back(
+        {light.wavelengths_nm[k], light.weights[k], optics.at(light.wavelengths_nm[k], model_.wet_elements)});
+  return changed;
+} catch (const InputError&) {
+  return *this;  // the material has no data at one of the new wavelengths
+}
+
+std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vector<PhotometerSetting>& settings,
+                                                                  Progress* progress,
+                                                                  const Cancellation* cancel) const {
+  std::vector<PhotometerReading> readings(settings.size());
+  std::size_t done = 0;
+  for (const auto& [knees_nm, indices] : settings_by_knees(settings)) {
+    std::vector<PhotometerSetting> own;
+    for (const std::size_t index : indices) own.push_back(settings[index]);
+    const auto share = [&](std::size_t count) {
+      return static_cast<double>(count) / static_cast<double>(settings.size());
+    };
+    PartOfProgress part(progress, share(done), share(done + own.size()));
+    auto measured = knees_nm.empty() ? measure_in_one_light(own, &part, cancel)
+                                     : with_knees(knees_nm).measure_in_one_light(own, &part, cancel);
+    if (!measured) return std::nullopt;
+    for (std::size_t k = 0; k < indices.size(); ++k) readings[indices[k]] = std::move((*measured)[k]);
+    done += own.size();
+  }
+  return readings;
+}
+
+}  // namespace retrace::studies
