@@ -1,4 +1,4 @@
-// Tests of the centroids of polygons: closed forms, additivity and independence of additional corners.
+// Tests of the centroids of polygons: closed forms, additivity, and invariance when corners are inserted on sides.
 #include "geometry/centroid.h"
 
 #include <gtest/gtest.h>

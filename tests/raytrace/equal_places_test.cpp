@@ -11,6 +11,7 @@
 #include "raytrace/exact/equal_places.h"
 #include "raytrace/observers/far_field.h"
 #include "tests/support/designs.h"
+#include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::equal_places_test {
@@ -126,10 +127,7 @@ Seen seen(const Part& part, const Illumination& light, BeamPolicy beams, Element
 }
 
 std::vector<Vec3> receivers(const Illumination& light) {
-  ReturnFrame frame;
-  frame.to_source = direction_to_source(light);
-  frame.right = source_axis(frame.to_source);
-  frame.up = frame.to_source.cross(frame.right);
+  const ReturnFrame frame = frame_at(light);
   std::vector<Vec3> directions;
   for (const Vec2& at_deg : {Vec2(0.0, 0.0), Vec2(0.0, 0.2), Vec2(0.25, -0.2)})
     directions.push_back(frame.direction(EIGEN_PI / 180.0 * at_deg));

@@ -8,6 +8,7 @@
 #include "raytrace/faces/mirror_symmetry.h"
 #include "raytrace/observers/far_field.h"
 #include "tests/support/designs.h"
+#include "tests/support/return_frames.h"
 
 namespace retrace::testing::mirror_symmetry_test {
 namespace {
@@ -91,10 +92,7 @@ TEST(MirrorSymmetry, MirroredLightHasTheMirroredFarField) {
     const FarField own = field_of(part, light);
     const FarField mirrored = field_of(part, from(20.0, -14.0));
     const ApertureKernel kernel({Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)});
-    ReturnFrame frame;
-    frame.to_source = direction_to_source(light);
-    frame.right = source_axis(frame.to_source);
-    frame.up = frame.to_source.cross(frame.right);
+    const ReturnFrame frame = frame_at(light);
     for (const Vec2& at_deg : {Vec2(0.0, 0.0), Vec2(0.0, 0.33), Vec2(0.2, -0.3), Vec2(-0.5, 0.1)}) {
       const Vec3 direction = frame.direction(EIGEN_PI / 180.0 * at_deg);
       const double expected = own.intensity(direction, kernel).per_sr;

@@ -14,6 +14,7 @@
 #include "raytrace/sampling/replicates.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
+#include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::weak_beams_test {
@@ -178,10 +179,7 @@ Seen seen(const Question& question, const BeamPolicy& beams, FarFieldPolicy poli
 
 /// Towards receivers round the light.
 std::vector<Vec3> receivers(const Illumination& light) {
-  ReturnFrame frame;
-  frame.to_source = direction_to_source(light);
-  frame.right = source_axis(frame.to_source);
-  frame.up = frame.to_source.cross(frame.right);
+  const ReturnFrame frame = frame_at(light);
   std::vector<Vec3> directions;
   for (const double angle_deg : {0.0, 0.2, 0.5})
     for (const double turn_deg : {20.0, 110.0, 250.0})
@@ -264,10 +262,7 @@ TEST(WeakBeams, SumsOverDirectionsHoldAllReplicates) {
   geometric.diffraction = false;
   const Seen rays = seen(question, beams, geometric);
   const Seen own = seen(question, beams, {});
-  ReturnFrame frame;
-  frame.to_source = direction_to_source(question.light);
-  frame.right = source_axis(frame.to_source);
-  frame.up = frame.to_source.cross(frame.right);
+  const ReturnFrame frame = frame_at(question.light);
   const std::vector<double> bins = rays.field.binned(frame, {DirectionGrid::Layout::square, 0.03, 30, 30});
   double sum = 0.0;
   for (const double bin : bins) sum += bin;

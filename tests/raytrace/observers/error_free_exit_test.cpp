@@ -14,6 +14,7 @@
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 #include "tests/support/pixel_cube.h"
+#include "tests/support/return_frames.h"
 
 namespace retrace::testing::error_free_exit_test {
 namespace {
@@ -23,14 +24,6 @@ using namespace raytrace;
 
 constexpr double kWaveNm = 550.0;
 constexpr double kWindow_rad = 0.035;
-
-ReturnFrame frame_at(const Illumination& light) {
-  ReturnFrame frame;
-  frame.to_source = direction_to_source(light);
-  frame.right = source_axis(frame.to_source);
-  frame.up = frame.to_source.cross(frame.right);
-  return frame;
-}
 
 FarField field_of(const PartSpec& spec, const Optics& optics, const Illumination& light = {}) {
   const Part part = build_part(spec);

@@ -16,6 +16,7 @@
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 #include "tests/support/pixel_cube.h"
+#include "tests/support/return_frames.h"
 
 namespace retrace::testing::formed_aperture_test {
 namespace {
@@ -141,14 +142,6 @@ TEST(FormedAperture, SlopeIsTheTiltOfFacets) {
       most_change = std::max(most_change, std::abs(formed.diffracted_per_sr(at) - plane.diffracted_per_sr(at)) / peak);
     }
   EXPECT_GT(most_change, 0.05);
-}
-
-ReturnFrame frame_at(const Illumination& light) {
-  ReturnFrame frame;
-  frame.to_source = direction_to_source(light);
-  frame.right = source_axis(frame.to_source);
-  frame.up = frame.to_source.cross(frame.right);
-  return frame;
 }
 
 TEST(FormedAperture, PowerStaysAndNoHeightChangesNothing) {

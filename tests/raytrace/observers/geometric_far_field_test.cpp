@@ -11,6 +11,7 @@
 #include "raytrace/sampling/sobol.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
+#include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::geometric_far_field_test {
@@ -45,11 +46,7 @@ FarFieldPolicy geometric() {
 }
 
 ReturnFrame frame_at(double incidence_deg, double azimuth_deg) {
-  ReturnFrame frame;
-  frame.to_source = direction_to_source({Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg)});
-  frame.right = source_axis(frame.to_source);
-  frame.up = frame.to_source.cross(frame.right);
-  return frame;
+  return testing::frame_at({Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg)});
 }
 
 double sum_of(const std::vector<double>& values) {

@@ -10,6 +10,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/mesh_variants.h"
 #include "tests/support/part_specs.h"
+#include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::mesh_far_field_test {
@@ -29,10 +30,7 @@ FarField far_field_of(const Part& part, const Optics& optics, const Illumination
 
 /// Returns the intensities on a grid of directions around the direction to the source.
 std::vector<double> pattern_of(const FarField& field, const Illumination& light) {
-  ReturnFrame frame;
-  frame.to_source = direction_to_source(light);
-  frame.right = source_axis(frame.to_source);
-  frame.up = frame.to_source.cross(frame.right);
+  const ReturnFrame frame = frame_at(light);
   std::vector<Vec3> directions;
   for (int i = -3; i <= 3; ++i)
     for (int j = -3; j <= 3; ++j)

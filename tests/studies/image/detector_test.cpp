@@ -11,6 +11,7 @@
 #include "studies/image/detector_study.h"
 #include "studies/rre/rre.h"
 #include "tests/support/designs.h"
+#include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::detector_test {
@@ -23,10 +24,7 @@ constexpr double kTruncated = 1e-4;
 
 DetectorSetting setting_of(const Part& part, std::size_t columns, std::size_t rows, const Illumination& light = {}) {
   const Rectangle bounds = part.period_mm ? Rectangle{Vec2::Zero(), *part.period_mm} : bounding_box(part.outline);
-  ReturnFrame frame;
-  frame.to_source = direction_to_source(light);
-  frame.right = source_axis(frame.to_source);
-  frame.up = frame.to_source.cross(frame.right);
+  const ReturnFrame frame = frame_at(light);
   return {{bounds, columns, rows}, {DirectionGrid::Layout::square, 0.02, 21, 21}, frame, 0.5};
 }
 
