@@ -15,10 +15,8 @@ namespace retrace {
 
 CsvReader::CsvReader(std::string_view text, std::string file, std::size_t most_bytes,
                      std::span<const std::string_view> columns)
-    : rest_(text), file_(std::move(file)) {
+    : rest_(without_byte_order_mark(text)), file_(std::move(file)) {
   require_short_text(text, file_, most_bytes);
-  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-  if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
   const std::string wanted =
       columns.empty() ? "a line of column names" : fmt::format("the header {}", fmt::join(columns, ","));
   if (!next_line()) fail("must have " + wanted);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Small operations on text: trimming, splitting, numbers independent of the locale, endings of file names, and the
-// length of UTF-8 characters.
+// Small operations on text: trimming, splitting, lower case, numbers independent of the locale, endings of file names,
+// and the length of UTF-8 characters.
 
 #include <cstddef>
 #include <filesystem>
@@ -14,6 +14,12 @@ namespace retrace {
 
 /// `text` without blanks, tabs and carriage returns at its ends.
 std::string_view trimmed(std::string_view text);
+
+/// `text` without the byte order mark of UTF-8 that some programs write at the beginning of a file.
+std::string_view without_byte_order_mark(std::string_view text);
+
+/// `text` with the letters A to Z in lower case.
+std::string lower_case(std::string_view text);
 
 /// What stands between separators, trimmed; at least one part.
 std::vector<std::string_view> split(std::string_view text, char separator);

@@ -147,6 +147,22 @@ double absorption_per_mm(const Material& material, double wavelength_nm) {
                     material.absorption_per_mm);
 }
 
+std::string doubt_of_nd(const Material& material, double stated_nd) {
+  constexpr double d_line_nm = 587.5618;
+  constexpr double max_difference = 1e-3;
+  if (!(stated_nd > 1.0) || !is_valid_at(material, d_line_nm)) return {};
+  std::string computed;
+  try {
+    const double n = refractive_index(material.dispersion, d_line_nm);
+    if (std::abs(n - stated_nd) <= max_difference) return {};
+    computed = fixed(n, 6);
+  } catch (const InputError&) {
+    computed = "no index";
+  }
+  return fmt::format("n_d must be within 0.001 of the formula's index at 587.56 nm, {}, got {}; check the coefficients",
+                     computed, shortest(stated_nd));
+}
+
 bool is_valid_at(const Material& material, double wavelength_nm) {
   return wavelength_nm >= material.valid_from_nm && wavelength_nm <= material.valid_to_nm;
 }

@@ -63,8 +63,8 @@ struct GasRefractivity {
   std::vector<Term> terms;
 };
 
-/// A formula of the refractiveindex.info database by its number, 1 to 9, w in um; coefficients that are not there are
-/// 0: 1 n^2 - 1 = c1 + sum of c w^2 / (w^2 - c'^2), 2 the same with c' for c'^2, 3 n^2 = c1 + sum of c w^c', 4 n^2 = c1
+/// A formula of the refractiveindex.info database by its number, 1 to 9, w in um; terms that are not there are 0: 1 n^2
+/// - 1 = c1 + sum of c w^2 / (w^2 - c'^2), 2 the same with c' for c'^2, 3 n^2 = c1 + sum of c w^c', 4 n^2 = c1
 /// + c2 w^c3 / (w^2 - c4^c5) + c6 w^c7 / (w^2 - c8^c9) + sum of c w^c', 5 n = c1 + sum of c w^c', 6 n - 1 = c1 + sum of
 /// c / (c' - w^-2), 7 n = c1 + c2 L + c3 L^2 + c4 w^2 + c5 w^4 + c6 w^6, L = 1 / (w^2 - 0.028), 8 (n^2 - 1) / (n^2 + 2)
 /// = c1 + c2 w^2 / (w^2 - c3) + c4 w^2, 9 n^2 = c1 + c2 / (w^2 - c3) + c4 (w - c5) / ((w - c5)^2 + c6). M. N.
@@ -113,6 +113,7 @@ struct Material {
   std::optional<ThermoOptic> thermo_optic;
   std::variant<double, SpectralCurve> absorption_per_mm = 0.0;  ///< Napierian, for power
   std::string source;
+  std::vector<std::string> warnings = {};  ///< Doubts about the data, each with its file and line.
 };
 
 /// Index of `material` relative to `air`, at the same vacuum wavelength, at the temperature that its data are for.
@@ -125,6 +126,11 @@ double index_relative_to_air(const Material& material, const Material& air, doub
 
 /// What is lost per mm at a wavelength: of a curve linear between its wavelengths, beyond them as at its ends.
 double absorption_per_mm(const Material& material, double wavelength_nm);
+
+/// Compares the index at the d line of helium with `stated_nd`, the value that a data file states next to its formula.
+/// Returns what is wrong. Returns an empty text if the two agree within 1e-3, if `stated_nd` is a placeholder (1 or
+/// less), or if the data do not reach the d line.
+std::string doubt_of_nd(const Material& material, double stated_nd);
 
 /// True if `wavelength_nm` lies within the data behind the formula.
 bool is_valid_at(const Material& material, double wavelength_nm);

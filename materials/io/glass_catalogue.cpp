@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -15,12 +14,15 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/text.h"
+#include "materials/io/absorption_data.h"
 
 namespace retrace::materials {
 namespace {
 
 constexpr std::size_t kMostCatalogueBytes = std::size_t{16} << 20;
 constexpr std::size_t kMostCoefficients = 10;
+/// Largest amount by which noise of a measurement may raise a transmittance above 1.
+constexpr double kNoiseOfTransmittance = 0.01;
 
 /// Exponents of w in n^2, in the order of the coefficients.
 constexpr std::array kSchott = {0, 2, -2, -4, -6, -8};
@@ -28,10 +30,11 @@ constexpr std::array kExtended = {0, 2, -2, -4, -6, -8, -10, -12};
 constexpr std::array kExtended2 = {0, 2, -2, -4, -6, -8, 4, 6};
 constexpr std::array kExtended3 = {0, 2, 4, -2, -4, -6, -8, -10, -12};
 
-/// UTF-16 with its byte order mark as bytes, whose characters beyond ASCII are question marks; other text as it is.
+/// Returns UTF-16 with a byte order mark as bytes, whose characters beyond ASCII are question marks, and other text
+/// without its byte order mark.
 std::string narrow(std::string_view text) {
   const bool is_little = text.starts_with("\xff\xfe");
-  if (!is_little && !text.starts_with("\xfe\xff")) return std::string(text);
+  if (!is_little && !text.starts_with("\xfe\xff")) return std::string(without_byte_order_mark(text));
   std::string narrowed;
   for (std::size_t k = 2; k + 1 < text.size(); k += 2) {
     const char low = is_little ? text[k] : text[k + 1];
@@ -41,8 +44,9 @@ std::string narrow(std::string_view text) {
   return narrowed;
 }
 
-bool same_letters(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::toupper(x) == std::toupper(y); });
+/// True for the code of a record: two capital letters.
+bool is_code(std::string_view word) {
+  return word.size() == 2 && std::ranges::all_of(word, [](char c) { return c >= 'A' && c <= 'Z'; });
 }
 
 PowerSeries series(std::span<const double> coefficients, std::span<const int> exponents) {
@@ -63,48 +67,87 @@ Sellmeier sellmeier(std::span<const double> pairs, PowerSeries rest = {}) {
 
 GlassCatalogue::GlassCatalogue(std::string_view text, std::string file) : file_(std::move(file)) {
   const std::string lines = narrow(text);
+  std::vector<Record> before_glasses;
+  std::vector<Record>* records = &before_glasses;
   int number = 0;
   for (const std::string_view line : split(lines, '\n')) {
     ++number;
-    const std::vector<std::string_view> fields = words_in(line);
-    Line read{number, {fields.begin(), fields.end()}};
-    if (read.fields.empty()) continue;
-    if (read.fields.front() == "NM") {
-      if (read.fields.size() < 2) fail(read, "NM: must have a name");
-      names_.push_back(read.fields[1]);
-      glasses_.emplace_back();
-    }
-    if (!glasses_.empty()) glasses_.back().push_back(std::move(read));
+    const std::vector<std::string_view> words = words_in(line);
+    if (words.empty()) continue;
+    if (words.front() == "NM") records = &glasses_.emplace_back();
+    if (is_code(words.front())) records->emplace_back();
+    if (records->empty()) continue;  // text before the first record
+    for (const std::string_view word : words) records->back().push_back({std::string(word), number});
   }
   if (glasses_.empty()) throw InputError({file_, 0, ""}, "holds no glass: no line begins with NM");
+  for (const std::vector<Record>& glass : glasses_) {
+    const Record& name = glass.front();
+    if (name.size() < 2) fail(name.front().line, "NM", "must have a name");
+    names_.push_back(name[1].text);
+  }
 }
 
 GlassCatalogue GlassCatalogue::read(const std::filesystem::path& file) {
   return {read_file(file, kMostCatalogueBytes), file.string()};
 }
 
-void GlassCatalogue::fail(const Line& line, std::string_view text) const {
-  throw InputError({file_, line.number, ""}, text);
+void GlassCatalogue::fail(int line, std::string_view key, std::string_view text) const {
+  throw InputError({file_, line, std::string(key)}, text);
 }
 
-/// The fields from `first` on; those that are not there count as 0. \throw InputError if there are fewer than `least`
-std::vector<double> GlassCatalogue::numbers(const Line& line, std::size_t first, std::size_t least,
+/// Returns the fields from `first` on; those that are not there count as 0. \throw InputError if there are fewer than
+/// `least`
+std::vector<double> GlassCatalogue::numbers(const Record& record, std::size_t first, std::size_t least,
                                             std::size_t most) const {
+  const std::string& code = record.front().text;
   std::vector<double> values;
-  for (std::size_t k = first; k < line.fields.size() && values.size() < most; ++k) {
-    const std::optional<double> value = number_in(line.fields[k]);
-    if (!value)
-      fail(line, fmt::format("{}: must be finite numbers, got {}", line.fields.front(), in_quotes(line.fields[k])));
+  for (std::size_t k = first; k < record.size() && values.size() < most; ++k) {
+    const std::optional<double> value = number_in(record[k].text);
+    if (!value) fail(record[k].line, code, "must be finite numbers, got " + in_quotes(record[k].text));
     values.push_back(*value);
   }
   if (values.size() < least)
-    fail(line, fmt::format("{}: must have at least {} numbers, got {}", line.fields.front(), least, values.size()));
+    fail(record.front().line, code, fmt::format("must have at least {} numbers, got {}", least, values.size()));
   values.resize(most, 0.0);
   return values;
 }
 
+/// Refuses a record that a line without a code makes longer than the format allows: this line belongs elsewhere.
+void GlassCatalogue::require_no_more(const Record& record, std::size_t most) const {
+  if (record.size() <= most + 1 || record.back().line == record.front().line) return;
+  fail(record.back().line, record.front().text,
+       fmt::format(
+           "must have at most {} numbers in its joined lines, got {}; a line without a code continues the record "
+           "before it",
+           most, record.size() - 1));
+}
+
+/// Refuses a strength without its resonance. \param first number of the coefficient that is the first strength, from 1
+/// \param end number of the coefficient after the last resonance
+void GlassCatalogue::require_whole_pairs(const Record& record, std::size_t first, std::size_t end) const {
+  if (record.size() <= first || record.size() >= end || (record.size() - first) % 2 == 0) return;
+  if (number_in(record.back().text) == 0.0) return;
+  fail(record.back().line, "CD",
+       fmt::format("coefficients {} to {} must be whole pairs, got {} numbers in all", first, end - 1,
+                   record.size() - 1));
+}
+
+/// Returns the record with this code, null if there is none. \throw InputError if there are two that differ
+const GlassCatalogue::Record* GlassCatalogue::find(const std::vector<Record>& records, std::string_view code) const {
+  const Record* found = nullptr;
+  for (const Record& record : records) {
+    if (record.front().text != code) continue;
+    if (found != nullptr && *found != record)
+      fail(record.front().line, code,
+           fmt::format("a glass must have one such record, got another one in line {}", found->front().line));
+    found = &record;
+  }
+  return found;
+}
+
 /// The formulas by their numbers, after the manual of OpticStudio, "The Glass Dispersion Formulas".
-Dispersion GlassCatalogue::dispersion(const Line& name, const Line& coefficients) const {
+Dispersion GlassCatalogue::dispersion(const Record& name, const Record& coefficients) const {
+  require_no_more(coefficients, kMostCoefficients);
   const std::vector<double> c = numbers(coefficients, 1, 1, kMostCoefficients);
   const std::span<const double> all = c;
   const double formula = numbers(name, 2, 1, 1).front();
@@ -119,6 +162,11 @@ Dispersion GlassCatalogue::dispersion(const Line& name, const Line& coefficients
     into.terms.push_back({strength / resonance_um2, resonance_um2});
     into.rest.terms.push_back({-strength / resonance_um2, 0});
   };
+  // Where the pairs of strength and resonance begin, and where they end.
+  static constexpr std::array<std::array<std::size_t, 3>, 7> pairs = {
+      {{2, 1, 7}, {4, 2, 6}, {6, 1, 9}, {7, 2, 4}, {8, 2, 4}, {9, 2, 6}, {11, 1, 11}}};
+  for (const auto& [number, first, end] : pairs)
+    if (formula == static_cast<double>(number)) require_whole_pairs(coefficients, first, end);
   if (formula == 1.0) return series(all, kSchott);
   if (formula == 2.0) return sellmeier(all.first(6));
   if (formula == 3.0) return Herzberger{c[0], c[1], c[2], c[3], c[4], c[5]};
@@ -143,13 +191,14 @@ Dispersion GlassCatalogue::dispersion(const Line& name, const Line& coefficients
   if (formula == 11.0) return sellmeier(all.first(10));  // Sellmeier 5
   if (formula == 12.0) return series(all, kExtended2);
   if (formula == 13.0) return series(all, kExtended3);
-  fail(name, fmt::format("NM: the dispersion formula must be 1 to 13, got {}", printable(name.fields[2])));
+  fail(name[2].line, "NM", "the dispersion formula must be 1 to 13, got " + printable(name[2].text));
 }
 
-void GlassCatalogue::add_thermo_optic(const Line& line, Material& glass) const {
-  if (line.fields.size() == 1) return;
-  const std::vector<double> t = numbers(line, 1, 6, 7);
-  if (line.fields.size() > 7) glass.temperature_c = t[6];
+void GlassCatalogue::add_thermo_optic(const Record& record, Material& glass) const {
+  if (record.size() == 1) return;
+  require_no_more(record, 7);
+  const std::vector<double> t = numbers(record, 1, 6, 7);
+  if (record.size() > 7) glass.temperature_c = t[6];
   if (std::ranges::all_of(std::span(t).first(5), [](double value) { return value == 0.0; })) return;  // none are known
   glass.thermo_optic = ThermoOptic{.d0_per_k = t[0],
                                    .d1_per_k2 = t[1],
@@ -160,66 +209,92 @@ void GlassCatalogue::add_thermo_optic(const Line& line, Material& glass) const {
                                    .source = file_};
 }
 
-void GlassCatalogue::add_range(const Line& line, Material& glass) const {
-  const std::vector<double> range_um = numbers(line, 1, 2, 2);
+void GlassCatalogue::add_range(const Record& record, Material& glass) const {
+  require_no_more(record, 2);
+  const std::vector<double> range_um = numbers(record, 1, 2, 2);
   if (!(range_um[0] > 0.0 && range_um[1] > range_um[0]))
-    fail(line, fmt::format("LD: must be wavelengths that ascend from above 0, got {} and {}", shortest(range_um[0]),
-                           shortest(range_um[1])));
+    fail(record.front().line, "LD",
+         fmt::format("must be wavelengths that ascend from above 0, got {} and {}", shortest(range_um[0]),
+                     shortest(range_um[1])));
   glass.valid_from_nm = 1e3 * range_um[0];
   glass.valid_to_nm = 1e3 * range_um[1];
 }
 
-/// From internal transmittances: -ln(T) / thickness. Of a wavelength that stands there twice the thicker sample counts;
-/// what lets nothing pass, or has no thickness, tells none.
-SpectralCurve GlassCatalogue::absorption(const std::vector<Line>& lines) const {
+/// Adds the absorption from internal transmittances: -ln(T) / thickness. Of samples at the same wavelength the thickest
+/// counts. Samples that transmit nothing, or have no thickness, contain no absorption.
+void GlassCatalogue::add_absorption(const std::vector<Record>& records, Material& glass) const {
+  AbsorptionData data(file_, "IT");
   struct Sample {
+    int line = 0;
+    double wavelength_nm = 0.0;
+    double transmittance = 0.0;
     double thickness_mm = 0.0;
-    double per_mm = 0.0;
   };
-  std::map<double, Sample> samples;
-  for (const Line& line : lines) {
-    if (line.fields.front() != "IT" || line.fields.size() < 4) continue;
-    const std::vector<double> it = numbers(line, 1, 3, 3);
-    if (!(it[0] > 0.0)) fail(line, fmt::format("IT: the wavelength must be > 0, got {}", shortest(it[0])));
-    if (!(it[1] >= 0.0 && it[1] <= 1.0))
-      fail(line, fmt::format("IT: the transmittance must be >= 0 and <= 1, got {}", shortest(it[1])));
-    if (!(it[2] >= 0.0)) fail(line, fmt::format("IT: the thickness must be >= 0, got {}", shortest(it[2])));
-    if (it[1] == 0.0 || it[2] == 0.0) continue;
-    Sample& sample = samples[1e3 * it[0]];
-    if (it[2] > sample.thickness_mm) sample = {it[2], std::max(0.0, -std::log(it[1])) / it[2]};
+  std::vector<Sample> samples;
+  std::map<double, double> thickest_mm;  // by wavelength in nm
+  for (const Record& record : records) {
+    if (record.front().text != "IT" || record.size() < 4) continue;
+    const int line = record.front().line;
+    try {
+      require_no_more(record, 3);
+      const std::vector<double> it = numbers(record, 1, 3, 3);
+      if (!(it[0] > 0.0)) {
+        data.leave_out(line, fmt::format("the wavelength must be > 0, got {}", shortest(it[0])));
+      } else if (!(it[1] >= 0.0 && it[1] <= 1.0 + kNoiseOfTransmittance)) {
+        data.leave_out(line, fmt::format("the transmittance must be >= 0 and <= 1, got {}", shortest(it[1])));
+      } else if (!(it[2] >= 0.0)) {
+        data.leave_out(line, fmt::format("the thickness must be >= 0, got {}", shortest(it[2])));
+      } else if (it[1] > 0.0 && it[2] > 0.0) {
+        samples.push_back({line, 1e3 * it[0], it[1], it[2]});
+        double& thickest = thickest_mm[samples.back().wavelength_nm];
+        thickest = std::max(thickest, it[2]);
+      }
+    } catch (const InputError& error) {
+      data.leave_out(error.where().line, error.text());
+    }
   }
-  SpectralCurve curve;
-  for (const auto& [wavelength_nm, sample] : samples) {
-    curve.wavelengths_nm.push_back(wavelength_nm);
-    curve.values.push_back(sample.per_mm);
+  for (const Sample& sample : samples) {
+    if (sample.thickness_mm < thickest_mm.at(sample.wavelength_nm)) continue;
+    if (sample.transmittance <= 1.0)
+      data.add(sample.line, sample.wavelength_nm, std::max(0.0, -std::log(sample.transmittance)) / sample.thickness_mm);
+    else
+      data.add_zero(sample.line, sample.wavelength_nm,
+                    fmt::format("the transmittance must be <= 1, got {}", shortest(sample.transmittance)));
   }
-  return curve;
+  data.finish(glass);
 }
 
-Material GlassCatalogue::glass_of(const std::vector<Line>& lines) const {
-  const Line& name = lines.front();
+/// Warns if the n_d of the record NM is not that of the formula.
+void GlassCatalogue::check_nd(const Record& name, Material& glass) const {
+  constexpr std::size_t at = 4;  // after code, name, number of the formula and glass code
+  if (name.size() <= at) return;
+  const std::optional<double> stated = number_in(name[at].text);
+  const std::string doubt =
+      stated ? doubt_of_nd(glass, *stated) : fmt::format("n_d must be a number, got {}", in_quotes(name[at].text));
+  if (!doubt.empty()) glass.warnings.emplace_back(InputError({file_, name[at].line, "NM"}, doubt).what());
+}
+
+Material GlassCatalogue::glass_of(const std::vector<Record>& records) const {
+  const Record& name = records.front();
+  const int line = name.front().line;
   Material glass;
-  glass.name = printable(name.fields[1]);
+  glass.name = printable(name[1].text);
   glass.source = file_;
-  const Line* coefficients = nullptr;
-  for (const Line& line : lines) {
-    if (line.fields.front() == "CD") coefficients = &line;
-    if (line.fields.front() == "TD") add_thermo_optic(line, glass);
-    if (line.fields.front() == "LD") add_range(line, glass);
-  }
-  if (coefficients == nullptr) fail(name, fmt::format("{}: has no line CD of coefficients", glass.name));
-  if (!(glass.valid_to_nm > 0.0))
-    fail(name, fmt::format("{}: has no line LD of the wavelengths that its formula is for", glass.name));
+  const Record* const coefficients = find(records, "CD");
+  if (coefficients == nullptr) fail(line, glass.name, "has no line CD of coefficients");
+  if (const Record* const thermo_optic = find(records, "TD")) add_thermo_optic(*thermo_optic, glass);
+  const Record* const range = find(records, "LD");
+  if (range == nullptr) fail(line, glass.name, "has no line LD of the wavelengths that its formula is for");
+  add_range(*range, glass);
   glass.dispersion = dispersion(name, *coefficients);
-  if (SpectralCurve curve = absorption(lines); curve.values.size() == 1)
-    glass.absorption_per_mm = curve.values.front();
-  else if (!curve.values.empty())
-    glass.absorption_per_mm = std::move(curve);
+  check_nd(name, glass);
+  add_absorption(records, glass);
   return glass;
 }
 
 void GlassCatalogue::require(std::string_view name, const InputLocation& where) const {
-  if (std::ranges::any_of(names_, [&](const std::string& other) { return same_letters(other, name); })) return;
+  if (std::ranges::any_of(names_, [&](const std::string& other) { return lower_case(other) == lower_case(name); }))
+    return;
   const std::vector<std::string_view> known(names_.begin(), names_.end());
   const std::string_view meant = closest(name, known);
   throw InputError(
@@ -228,7 +303,8 @@ void GlassCatalogue::require(std::string_view name, const InputLocation& where) 
 }
 
 Material GlassCatalogue::glass(std::string_view name) const {
-  const auto found = std::ranges::find_if(names_, [&](const std::string& other) { return same_letters(other, name); });
+  const auto found =
+      std::ranges::find_if(names_, [&](const std::string& other) { return lower_case(other) == lower_case(name); });
   return glass_of(glasses_[static_cast<std::size_t>(found - names_.begin())]);
 }
 

@@ -14,10 +14,11 @@ namespace retrace::materials {
 
 /// A catalogue as its text: glasses are understood one by one, so that one that is not does not spoil the others.
 ///
-/// Lines begin with two letters: NM (name, number of the formula), CD (its coefficients), TD (thermo-optic ones and the
-/// temperature of the data), LD (range in um) and IT (wavelength in um, internal transmittance, thickness in mm) are
-/// read; others mean nothing here. Text may be ASCII, any superset of it, or UTF-16 with a byte order mark. Indices are
-/// relative to air.
+/// Records begin with a code of two capital letters. NM (name, number of the formula, glass code, n_d), CD
+/// (coefficients of the formula), TD (thermo-optic coefficients and the temperature of the data), LD (range in um) and
+/// IT (wavelength in um, internal transmittance, thickness in mm) are read; other records have no effect. A line
+/// without a code continues the record before it. Text may be ASCII, any superset of it, or UTF-16 with a byte order
+/// mark. Indices are relative to air.
 class GlassCatalogue {
  public:
   /// \param file its name, for messages \throw InputError if the text holds no glass
@@ -28,27 +29,35 @@ class GlassCatalogue {
   const std::vector<std::string>& names() const { return names_; }
   /// Names are the same whatever the case of their letters. \throw InputError at `where` if there is no such glass
   void require(std::string_view name, const InputLocation& where) const;
+  /// Its warnings name samples of the transmittance that cannot be used, and an n_d that is not that of the formula.
   /// \pre there is such a glass \throw InputError naming the file and its line if it has a formula that is not known,
-  /// or lines that cannot be understood
+  /// or records of its index that cannot be understood or contradict each other
   Material glass(std::string_view name) const;
 
  private:
-  struct Line {
-    int number = 0;
-    std::vector<std::string> fields;  ///< the two letters first
-  };
+  struct Field {
+    std::string text;
+    int line = 0;
 
-  [[noreturn]] void fail(const Line& line, std::string_view text) const;
-  std::vector<double> numbers(const Line& line, std::size_t first, std::size_t least, std::size_t most) const;
-  Dispersion dispersion(const Line& name, const Line& coefficients) const;
-  void add_thermo_optic(const Line& line, Material& glass) const;
-  void add_range(const Line& line, Material& glass) const;
-  SpectralCurve absorption(const std::vector<Line>& lines) const;
-  Material glass_of(const std::vector<Line>& lines) const;
+    bool operator==(const Field& other) const { return text == other.text; }
+  };
+  using Record = std::vector<Field>;  ///< the code first
+
+  [[noreturn]] void fail(int line, std::string_view key, std::string_view text) const;
+  std::vector<double> numbers(const Record& record, std::size_t first, std::size_t least, std::size_t most) const;
+  void require_no_more(const Record& record, std::size_t most) const;
+  void require_whole_pairs(const Record& record, std::size_t first, std::size_t end) const;
+  const Record* find(const std::vector<Record>& records, std::string_view code) const;
+  Dispersion dispersion(const Record& name, const Record& coefficients) const;
+  void add_thermo_optic(const Record& record, Material& glass) const;
+  void add_range(const Record& record, Material& glass) const;
+  void add_absorption(const std::vector<Record>& records, Material& glass) const;
+  void check_nd(const Record& name, Material& glass) const;
+  Material glass_of(const std::vector<Record>& records) const;
 
   std::string file_;
   std::vector<std::string> names_;
-  std::vector<std::vector<Line>> glasses_;  ///< the lines of each, from its NM on
+  std::vector<std::vector<Record>> glasses_;  ///< the records of each, from its NM on
 };
 
 }  // namespace retrace::materials

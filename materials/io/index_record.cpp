@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -14,15 +15,42 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/text.h"
+#include "materials/io/absorption_data.h"
 
 namespace retrace::materials {
 namespace {
 
 constexpr std::size_t kMostRecordBytes = std::size_t{4} << 20;
 constexpr std::size_t kMostOfFormula = 64;
+/// Largest k that noise of a measurement may show below 0.
+constexpr double kNoiseOfExtinction = 1e-6;
 constexpr double kZeroCelsiusK = 273.15;
 /// Records round the temperature of 20 degrees C to 293 K.
 constexpr double kSameTemperatureK = 0.2;
+
+/// The coefficients of formulas 1 to 9, for messages.
+constexpr std::string_view kPairs = "1 coefficient and whole pairs";
+constexpr std::array<std::string_view, 9> kTerms = {kPairs,
+                                                    kPairs,
+                                                    kPairs,
+                                                    "1, 5, 9 coefficients or 9 and whole pairs",
+                                                    kPairs,
+                                                    kPairs,
+                                                    "1 to 6 coefficients",
+                                                    "1, 3 or 4 coefficients",
+                                                    "1, 3 or 6 coefficients"};
+
+/// True if every term of the formula has all its coefficients.
+bool has_whole_terms(const RecordFormula& formula) {
+  const std::size_t count = formula.c.size();
+  switch (formula.number) {
+    case 4: return count == 1 || count == 5 || (count >= 9 && count % 2 == 1);
+    case 7: return count <= 6;
+    case 8: return count == 1 || count == 3 || count == 4;
+    case 9: return count == 1 || count == 3 || count == 6;
+    default: return count % 2 == 1;
+  }
+}
 
 class Record {
  public:
@@ -39,6 +67,7 @@ class Record {
     if (!has_index_) throw InputError({file_, line(root["DATA"]), "DATA"}, "has neither a formula nor a table of n");
     add_conditions(root, material);
     add_thermo_optic(root["PROPERTIES"], material);
+    check_nd(root, material);
     return material;
   }
 
@@ -85,13 +114,13 @@ class Record {
       add_formula(entry, type, material);
     } else if (type == "tabulated n") {
       begin_index(entry, type);
-      set_table(curve(entry, 2, 1, 1e3), material);
+      set_table(index_table(entry, 2), material);
     } else if (type == "tabulated nk") {
       begin_index(entry, type);
-      set_table(curve(entry, 3, 1, 1e3), material);
-      set_extinction(entry, curve(entry, 3, 2, 1e3), material);
+      set_table(index_table(entry, 3), material);
+      add_extinction(entry, 3, material);
     } else if (type == "tabulated k") {
-      set_extinction(entry, curve(entry, 2, 1, 1e3), material);
+      add_extinction(entry, 2, material);
     } else {
       fail(entry["type"], "type",
            fmt::format("must be formula 1 to formula 9, tabulated n, tabulated k or tabulated nk, got {}",
@@ -116,29 +145,75 @@ class Record {
                        shortest(range_um[1])));
     material.valid_from_nm = 1e3 * range_um[0];
     material.valid_to_nm = 1e3 * range_um[1];
-    material.dispersion =
-        RecordFormula{static_cast<int>(*number), numbers_in(entry, "coefficients", 1, kMostOfFormula)};
+    RecordFormula formula{static_cast<int>(*number), numbers_in(entry, "coefficients", 1, kMostOfFormula)};
+    if (!has_whole_terms(formula))
+      fail(entry["coefficients"], "coefficients",
+           fmt::format("must be {} of {}, got {} numbers", kTerms[static_cast<std::size_t>(formula.number - 1)], type,
+                       formula.c.size()));
+    material.dispersion = std::move(formula);
   }
 
-  /// A column of a table over its first, the wavelength in um.
-  SpectralCurve curve(const YAML::Node& entry, std::size_t columns, std::size_t column, double nm_per_um) const {
-    const std::vector<double> all = numbers_in(entry, "data", columns, kMostRecordBytes);
-    if (all.size() % columns != 0)
-      fail(entry["data"], "data", fmt::format("must have {} numbers a line, got {} in all", columns, all.size()));
-    std::vector<std::array<double, 2>> rows;
-    for (std::size_t k = 0; k < all.size(); k += columns) rows.push_back({nm_per_um * all[k], all[k + column]});
-    std::ranges::stable_sort(rows, {}, [](const auto& row) { return row[0]; });
+  /// A row of a table: the words of its numbers, the wavelength in um first.
+  struct Row {
+    int line = 0;
+    std::vector<std::string> words;
+  };
+
+  /// Returns the rows of `data`. Each line has one or more rows of `columns` words. A line with another number of words
+  /// is returned as one row.
+  std::vector<Row> rows_of(const YAML::Node& entry, std::size_t columns) const {
+    const std::string text = text_of(entry, "data");
+    const std::vector<std::string_view> lines = split(text, '\n');
+    // The text of a block begins in the line after its indicator. Other text has no ends of lines.
+    int at = line(entry["data"]) + (lines.size() > 1 ? 1 : 0);
+    std::vector<Row> rows;
+    for (const std::string_view one : lines) {
+      const std::vector<std::string_view> words = words_in(one);
+      const std::size_t in_row = words.size() % columns == 0 ? columns : words.size();
+      for (std::size_t k = 0; k < words.size(); ++k) {
+        if (k % in_row == 0) rows.push_back({at, {}});
+        rows.back().words.emplace_back(words[k]);
+      }
+      ++at;
+    }
+    if (rows.empty()) fail(entry["data"], "data", "must have a row or more, got none");
+    return rows;
+  }
+
+  [[noreturn]] void fail(const Row& row, std::string_view text) const {
+    throw InputError({file_, row.line, "data"}, text);
+  }
+
+  double number_in_row(const Row& row, std::size_t column) const {
+    const std::optional<double> value = number_in(row.words[column]);
+    if (!value) fail(row, "must be finite numbers, got " + in_quotes(row.words[column]));
+    return *value;
+  }
+
+  /// Returns the wavelength of a row in um. \throw InputError if it is none, or if the row has another number of words
+  double wavelength_um_of(const Row& row, std::size_t columns) const {
+    if (row.words.size() != columns)
+      fail(row, fmt::format("must have {} numbers a line, got {}", columns, row.words.size()));
+    const double um = number_in_row(row, 0);
+    if (!(um > 0.0)) fail(row, fmt::format("wavelengths must be > 0, got {} um", shortest(um)));
+    return um;
+  }
+
+  /// Returns the table of n, whose equal rows count one time.
+  SpectralCurve index_table(const YAML::Node& entry, std::size_t columns) const {
+    std::map<double, double> n_at_um;
+    for (const Row& row : rows_of(entry, columns)) {
+      const double um = wavelength_um_of(row, columns);
+      const double n = number_in_row(row, 1);
+      if (!(n >= 0.0)) fail(row, fmt::format("n must be >= 0, got {}", shortest(n)));
+      if (const auto [at, is_new] = n_at_um.emplace(um, n); !is_new && at->second != n)
+        fail(row, fmt::format("must have each wavelength once, got {} um with {} and {}", shortest(um),
+                              shortest(at->second), shortest(n)));
+    }
     SpectralCurve curve;
-    for (const auto& [wavelength_nm, value] : rows) {
-      if (!(wavelength_nm > 0.0))
-        fail(entry["data"], "data",
-             fmt::format("wavelengths must be > 0, got {} um", shortest(wavelength_nm / nm_per_um)));
-      if (!curve.wavelengths_nm.empty() && wavelength_nm == curve.wavelengths_nm.back())
-        fail(entry["data"], "data",
-             fmt::format("must have each wavelength once, got {} um twice", shortest(wavelength_nm / nm_per_um)));
-      if (!(value >= 0.0)) fail(entry["data"], "data", fmt::format("n and k must be >= 0, got {}", shortest(value)));
-      curve.wavelengths_nm.push_back(wavelength_nm);
-      curve.values.push_back(value);
+    for (const auto& [um, n] : n_at_um) {
+      curve.wavelengths_nm.push_back(1e3 * um);
+      curve.values.push_back(n);
     }
     return curve;
   }
@@ -149,15 +224,33 @@ class Record {
     material.dispersion = TabulatedIndex{std::move(table)};
   }
 
-  void set_extinction(const YAML::Node& entry, SpectralCurve k, Material& material) {
-    if (std::exchange(has_extinction_, true)) fail(entry["type"], "type", "tells k a second time");
-    constexpr double kNmPerMm = 1e6;
-    for (std::size_t at = 0; at < k.values.size(); ++at)
-      k.values[at] *= 4.0 * std::numbers::pi * kNmPerMm / k.wavelengths_nm[at];
-    if (k.values.size() == 1)
-      material.absorption_per_mm = k.values.front();
-    else
-      material.absorption_per_mm = std::move(k);
+  /// Adds the absorption from the last column of a table, k. Nothing in it refuses the record, whose index is usable.
+  void add_extinction(const YAML::Node& entry, std::size_t columns, Material& material) {
+    AbsorptionData data(file_, "data");
+    try {
+      if (std::exchange(has_extinction_, true)) fail(entry["type"], "type", "gives k a second time");
+      for (const Row& row : rows_of(entry, columns)) add_extinction(row, columns, data);
+    } catch (const InputError& error) {
+      material.warnings.emplace_back(InputError(error.where(), error.text() + "; this table of k is left out").what());
+      return;
+    }
+    data.finish(material);
+  }
+
+  void add_extinction(const Row& row, std::size_t columns, AbsorptionData& data) const {
+    try {
+      const double wavelength_nm = 1e3 * wavelength_um_of(row, columns);
+      const double k = number_in_row(row, columns - 1);
+      constexpr double kNmPerMm = 1e6;
+      if (k >= 0.0)
+        data.add(row.line, wavelength_nm, 4.0 * std::numbers::pi * kNmPerMm * k / wavelength_nm);
+      else if (k >= -kNoiseOfExtinction)
+        data.add_zero(row.line, wavelength_nm, fmt::format("k must be >= 0, got {}", shortest(k)));
+      else
+        data.leave_out(row.line, fmt::format("k must be >= 0, got {}", shortest(k)));
+    } catch (const InputError& error) {
+      data.leave_out(row.line, error.text());
+    }
   }
 
   void add_conditions(const YAML::Node& root, Material& material) const {
@@ -192,6 +285,18 @@ class Record {
                                           .e1_um2_per_k2 = t[4],
                                           .resonance_um = t[5],
                                           .source = file_};
+    }
+  }
+
+  /// Warns if the n_d that the record states is not that of its data.
+  void check_nd(const YAML::Node& root, Material& material) const {
+    for (const char* const table : {"PROPERTIES", "SPECS"}) {
+      const YAML::Node properties = root[table];
+      if (!properties || !properties.IsMap() || !properties["nd"] || !properties["nd"].IsScalar()) continue;
+      const std::optional<double> stated = number_in(trimmed(properties["nd"].Scalar()));
+      const std::string doubt = stated ? doubt_of_nd(material, *stated) : std::string();
+      if (!doubt.empty())
+        material.warnings.emplace_back(InputError({file_, line(properties["nd"]), "nd"}, doubt).what());
     }
   }
 

@@ -398,6 +398,7 @@ struct OpticsOfDesign::Hidden {
 OpticsOfDesign::OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library,
                                std::vector<std::string>& warnings) {
   materials::Material material = material_of(design, library);
+  warnings.insert(warnings.end(), material.warnings.begin(), material.warnings.end());
   if (!design.substance.refractive_index) require_temperature(design, material);
   std::optional<surface_models::HeightMap> map = facet_map(design, warnings);
   hidden_ = std::make_unique<const Hidden>(

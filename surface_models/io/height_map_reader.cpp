@@ -111,7 +111,7 @@ HeightMapFile parse_height_map(std::string_view content, const std::string& name
   if (options.lateral_unit && !nm_per(*options.lateral_unit))
     throw InputError({"", 0, "--lateral-unit"},
                      fmt::format("must be {}, got {}", kUnits, in_quotes(*options.lateral_unit)));
-  const Source source{content, name, options};
+  const Source source{without_byte_order_mark(content), name, options};
   return finish(source, parse_known(source));
 }
 

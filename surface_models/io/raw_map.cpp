@@ -22,13 +22,6 @@ std::optional<double> nm_per(std::string_view unit) {
   return std::nullopt;
 }
 
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
 void check_size(const Source& source, int line, double columns, double rows) {
   const bool is_whole = columns == std::floor(columns) && rows == std::floor(rows);
   if (!is_whole || columns < 1.0 || rows < 1.0 || columns * rows > static_cast<double>(kMostPoints))

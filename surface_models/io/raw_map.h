@@ -43,8 +43,6 @@ std::optional<double> nm_per(std::string_view unit);
 /// The units as messages name them.
 inline constexpr std::string_view kUnits = "m, mm, um, nm or pm";
 
-std::string lower_case(std::string_view text);
-
 /// Refuses sizes that no map has. \param line where they are given, 0 if unknown
 void check_size(const Source& source, int line, double columns, double rows);
 

@@ -1,6 +1,7 @@
 // Heights as text: a matrix, one row a line, or a list of points. Header lines "key = value", "key: value" or "key
 // value" may stand before, with or without a # in front, among them those of Gwyddion's text export ("# Width: 1.0 mm")
-// and of ASCII grids of maps (ncols, nrows, cellsize, NODATA_value). docs/commands.md lists them.
+// and of ESRI ASCII grids (ncols, nrows, cellsize, xllcorner, NODATA_value), whose first row has the largest y.
+// docs/commands.md lists them.
 
 #include <fmt/format.h>
 
@@ -24,6 +25,7 @@ struct Header {
   std::optional<double> height_unit_nm, lateral_unit_nm;
   std::optional<double> columns, rows, no_data;
   Columns layout = Columns::matrix;
+  bool is_esri = false;  ///< True if a key of ESRI ASCII grids is given, whose first row has the largest y.
 };
 
 bool is_missing_word(std::string_view word) {
@@ -65,7 +67,6 @@ class TextReader {
     if (lower_case(source_.name).ends_with(".xyz")) header_.layout = Columns::xyz;
     while (auto line = lines_.next()) {
       std::string_view text = trimmed(*line);
-      if (lines_.number() == 1 && text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
       if (text.empty()) continue;
       if (text.starts_with('#') || text.starts_with('%')) {
         while (text.starts_with('#') || text.starts_with('%')) text.remove_prefix(1);
@@ -113,6 +114,7 @@ class TextReader {
       header_.y_pixel_um = positive(key, value);
     } else if (key == "cellsize") {
       header_.cell_size = positive(key, value);
+      header_.is_esri = true;
     } else if (key == "width") {
       header_.width_um = length_um(key, value);
     } else if (key == "height") {
@@ -123,15 +125,19 @@ class TextReader {
       header_.lateral_unit_nm = unit(key, value);
     } else if (key == "ncols") {
       header_.columns = positive(key, value);
+      header_.is_esri = true;
     } else if (key == "nrows") {
       header_.rows = positive(key, value);
+      header_.is_esri = true;
     } else if (key == "nodata_value") {
       header_.no_data = number(key, value);
     } else if (key == "columns") {
       header_.layout = layout(value);
     } else {
-      // The place of a map's corner does not matter here.
-      return key == "xllcorner" || key == "yllcorner" || key == "xllcenter" || key == "yllcenter";
+      // The position of the map's corner has no effect.
+      const bool is_corner = key == "xllcorner" || key == "yllcorner" || key == "xllcenter" || key == "yllcenter";
+      header_.is_esri |= is_corner;
+      return is_corner;
     }
     return true;
   }
@@ -217,7 +223,13 @@ class TextReader {
     raw.y_pixel_um = spacing(header_.y_pixel_um, header_.height_um, rows_);
     raw.nm_per_unit = header_.height_unit_nm;
     raw.heights = std::move(values_);
+    if (header_.is_esri) reverse_rows(raw);
     return raw;
+  }
+
+  static void reverse_rows(RawMap& raw) {
+    const auto row = [&](std::size_t k) { return raw.heights.begin() + static_cast<std::ptrdiff_t>(k * raw.columns); };
+    for (std::size_t k = 0; k < raw.rows / 2; ++k) std::swap_ranges(row(k), row(k + 1), row(raw.rows - 1 - k));
   }
 
   std::optional<double> spacing(const std::optional<double>& pixel_um, const std::optional<double>& size_um,

@@ -5,7 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "core/atomic_file.h"
+#include "core/text.h"
 #include "materials/io/material_library.h"
 #include "tests/support/refusals.h"
 
@@ -142,10 +149,193 @@ TEST(GlassCatalogue, BadFilesAreRefusedWithTheirLine) {
        {"NM x 1\nCD 1\nLD 0 0.4\n", "x.agf:3: LD: must be wavelengths that ascend from above 0, got 0 and 0.4"},
        {good + "TD 1 2 3\n", "x.agf:4: TD: must have at least 6 numbers, got 3"},
        {good + "TD 1 2 3 4 5 - 20\n", "x.agf:4: TD: must be finite numbers, got \"-\""},
-       {good + "IT 0.5 1.1 10\n", "x.agf:4: IT: the transmittance must be >= 0 and <= 1, got 1.1"},
-       {good + "IT 0 0.5 10\n", "x.agf:4: IT: the wavelength must be > 0, got 0"},
-       {good + "IT 0.5 0.5 -1\n", "x.agf:4: IT: the thickness must be >= 0, got -1"},
-       {good + "IT 0.5 clear 1\n", "x.agf:4: IT: must be finite numbers, got \"clear\""}});
+       {good + "TD 0 0 0 0 0\n0 20\n7\n",
+        "x.agf:6: TD: must have at most 7 numbers in its joined lines, got 8; a line without a code continues the "
+        "record "
+        "before it"},
+       {good + "0.02\n",
+        "x.agf:4: LD: must have at most 2 numbers in its joined lines, got 3; a line without a code continues the "
+        "record "
+        "before it"},
+       {good + "ED 1\nCD 1 0.02\n", "x.agf:5: CD: a glass must have one such record, got another one in line 2"},
+       {"NM x 2 0 1 1\nCD 1\nLD 0.4 0.7\n",
+        "x.agf:2: CD: coefficients 1 to 6 must be whole pairs, got 1 numbers in all"},
+       {"NM x 4 0 1 1\nCD 1 1\nLD 0.4 0.7\n",
+        "x.agf:2: CD: coefficients 2 to 5 must be whole pairs, got 2 numbers in all"}});
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string text_of(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+/// The glasses of tests/data/glasses.agf with samples of the transmittance, line by line.
+std::vector<std::string> catalogue_lines() {
+  std::vector<std::string> lines = lines_of(read_file(kFile));
+  for (const char* const sample : {"IT 0.6 0.99 10", "IT 0.4 0.9 25", "IT 0.5 0.95 25"}) lines.push_back(sample);
+  return lines;
+}
+
+const std::vector<std::string> kNames = {"N-BK7", "POLYCARB", "F_SILICA", "BASF5", "CAF2"};
+
+void expect_same_glass(const Material& a, const Material& b) {
+  EXPECT_EQ(a.warnings, b.warnings);
+  EXPECT_EQ(a.valid_from_nm, b.valid_from_nm);
+  EXPECT_EQ(a.valid_to_nm, b.valid_to_nm);
+  EXPECT_EQ(a.temperature_c, b.temperature_c);
+  EXPECT_EQ(a.thermo_optic.has_value(), b.thermo_optic.has_value());
+  for (const double wavelength_nm : {400.0, 550.0, 587.56, 700.0}) {
+    EXPECT_EQ(refractive_index(a.dispersion, wavelength_nm), refractive_index(b.dispersion, wavelength_nm));
+    EXPECT_EQ(absorption_per_mm(a, wavelength_nm), absorption_per_mm(b, wavelength_nm));
+  }
+}
+
+// A line that is broken between any two of its fields means the same as the whole line.
+TEST(GlassCatalogue, BrokenLinesAreJoined) {
+  const std::vector<std::string> whole = catalogue_lines();
+  const GlassCatalogue expected(text_of(whole), "x.agf");
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    for (std::size_t blank = whole[at].find(' '); blank != std::string::npos; blank = whole[at].find(' ', blank + 1)) {
+      std::vector<std::string> broken = whole;
+      broken[at][blank] = '\n';
+      SCOPED_TRACE(broken[at]);
+      const GlassCatalogue read(text_of(broken), "x.agf");
+      ASSERT_EQ(read.names(), expected.names());
+      for (const std::string& name : kNames) expect_same_glass(read.glass(name), expected.glass(name));
+    }
+  }
+}
+
+// A record that has lost its code never gives another index: the glass is refused, or what it says stays.
+TEST(GlassCatalogue, LostCodesNeverChangeAnIndex) {
+  const std::vector<std::string> whole = catalogue_lines();
+  const GlassCatalogue expected(text_of(whole), "x.agf");
+  int refused = 0;
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::vector<std::string> without = whole;
+    without[at] = whole[at].substr(2);
+    SCOPED_TRACE(whole[at]);
+    const GlassCatalogue read(text_of(without), "x.agf");
+    for (const std::string& name : read.names()) {
+      try {
+        const Material glass = read.glass(name);
+        EXPECT_EQ(refractive_index(glass.dispersion, 550.0), refractive_index(expected.glass(name).dispersion, 550.0));
+        EXPECT_EQ(glass.valid_from_nm, expected.glass(name).valid_from_nm);
+      } catch (const InputError& error) {
+        ++refused;
+        EXPECT_GT(error.where().line, 0);
+      }
+    }
+  }
+  EXPECT_GT(refused, 10);
+}
+
+// A mutation of the coefficients that moves n(d) is noticed by n_d of the record NM.
+TEST(GlassCatalogue, SwappedCoefficientsAreWarnedOf) {
+  const std::vector<std::string> whole = catalogue_lines();
+  const GlassCatalogue right(text_of(whole), "x.agf");
+  const std::map<std::string, double> n_d = {
+      {"N-BK7", 1.5168}, {"POLYCARB", 1.58547}, {"F_SILICA", 1.458464}, {"BASF5", 1.603233}, {"CAF2", 1.433849}};
+  int moved = 0;
+  std::string name;
+  int line_of_name = 0;
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    const std::vector<std::string_view> fields = words_in(whole[at]);
+    if (fields.front() == "NM") {
+      name = fields[1];
+      line_of_name = static_cast<int>(at) + 1;
+      EXPECT_TRUE(right.glass(name).warnings.empty()) << name;
+    }
+    if (fields.front() != "CD") continue;
+    for (std::size_t a = 1; a < 7; ++a)
+      for (std::size_t b = a + 1; b < 7; ++b) {
+        std::vector<std::string> swapped(fields.begin(), fields.end());
+        std::swap(swapped[a], swapped[b]);
+        std::vector<std::string> lines = whole;
+        lines[at].clear();
+        for (const std::string& field : swapped) lines[at] += field + " ";
+        SCOPED_TRACE(name + ": " + lines[at]);
+        const Material glass = GlassCatalogue(text_of(lines), "x.agf").glass(name);
+        double n = 0.0;
+        try {
+          n = refractive_index(glass.dispersion, 587.5618);
+        } catch (const InputError&) {  // no real index
+        }
+        const bool is_off = !(std::abs(n - n_d.at(name)) <= 1e-3);
+        moved += is_off ? 1 : 0;
+        ASSERT_EQ(glass.warnings.size(), is_off ? 1U : 0U) << n;
+        if (!is_off) continue;
+        EXPECT_EQ(glass.warnings.front().find("x.agf:" + std::to_string(line_of_name) + ": NM: "), 0U)
+            << glass.warnings.front();
+      }
+  }
+  EXPECT_GT(moved, 30);
+}
+
+TEST(GlassCatalogue, PlaceholdersOfNdAreNoDoubt) {
+  const auto warnings = [](const std::string& nd, const std::string& range) {
+    return GlassCatalogue("NM x 5 0 " + nd + " 60\nCD 1.5\nLD " + range + "\n", "x.agf").glass("x").warnings.size();
+  };
+  EXPECT_EQ(warnings("1.5", "0.4 0.7"), 0U);
+  EXPECT_EQ(warnings("1.5009", "0.4 0.7"), 0U);
+  EXPECT_EQ(warnings("1.5011", "0.4 0.7"), 1U);
+  EXPECT_EQ(warnings("1.4989", "0.4 0.7"), 1U);
+  EXPECT_EQ(warnings("-", "0.4 0.7"), 1U);
+  EXPECT_EQ(warnings("0", "0.4 0.7"), 0U);
+  EXPECT_EQ(warnings("1", "0.4 0.7"), 0U);
+  EXPECT_EQ(warnings("1.7", "2 12"), 0U) << "the data of infrared glasses do not reach the d line";
+}
+
+// Whatever one sample of the transmittance has wrong, the index and all other samples are usable.
+TEST(GlassCatalogue, BlemishesOfTheTransmittanceAreWarnedOf) {
+  const std::vector<std::string> good = {"NM x 5 0 1.5 60", "CD 1.5", "LD 0.4 0.7", "IT 0.4 0.9 25", "IT 0.6 0.95 25"};
+  const Material right = GlassCatalogue(text_of(good), "x.agf").glass("x");
+  ASSERT_TRUE(right.warnings.empty());
+  for (const std::string bad :
+       {"IT 0.5 -8e-10 25", "IT 0.5 -999 25", "IT 0.5 12 25", "IT 0.5 99.5 25", "IT 0.5 nan 25", "IT 0.5 0.9 -1",
+        "IT 0 0.9 25", "IT -0.5 0.9 25", "IT 0.5 clear 25", "IT 0.5 0.9 25\n0.55 0.9 25"}) {
+    for (std::size_t at = 3; at <= good.size(); ++at) {
+      std::vector<std::string> lines = good;
+      lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), bad);
+      SCOPED_TRACE(text_of(lines));
+      const Material glass = GlassCatalogue(text_of(lines), "x.agf").glass("x");
+      EXPECT_EQ(refractive_index(glass.dispersion, 500.0), 1.5);
+      for (const double wavelength_nm : {400.0, 500.0, 600.0})
+        EXPECT_EQ(absorption_per_mm(glass, wavelength_nm), absorption_per_mm(right, wavelength_nm));
+      ASSERT_EQ(glass.warnings.size(), 1U);
+      const std::string& warning = glass.warnings.front();
+      const bool is_joined = bad.find('\n') != std::string::npos;
+      EXPECT_EQ(warning.find("x.agf:" + std::to_string(at + (is_joined ? 2 : 1)) + ": IT: "), 0U) << warning;
+      EXPECT_EQ(warning.find('\n'), std::string::npos);
+    }
+  }
+  const auto with = [&](const std::string& more) { return GlassCatalogue(text_of(good) + more, "x.agf").glass("x"); };
+  const Material equal = with("IT 0.4 0.9 25\nIT 0.6 0.95 25\n");
+  EXPECT_TRUE(equal.warnings.empty()) << equal.warnings.front();
+  EXPECT_EQ(absorption_per_mm(equal, 450.0), absorption_per_mm(right, 450.0));
+  const Material two_values = with("IT 0.6 0.90 25\n");
+  EXPECT_EQ(two_values.warnings.size(), 1U);
+  EXPECT_EQ(absorption_per_mm(two_values, 600.0), absorption_per_mm(right, 400.0));
+  const Material noisy = with("IT 0.5 1.0004 25\n");
+  EXPECT_EQ(noisy.warnings.size(), 1U);
+  EXPECT_EQ(absorption_per_mm(noisy, 500.0), 0.0);
+  const Material nothing =
+      GlassCatalogue("NM x 5\nCD 1.5\nLD 0.4 0.7\nIT 0.5 12 25\nIT 0.6 12 25\n", "x.agf").glass("x");
+  EXPECT_EQ(nothing.warnings.size(), 2U) << "one for both samples, one that no absorption is left";
+  EXPECT_EQ(absorption_per_mm(nothing, 500.0), 0.0);
+}
+
+TEST(GlassCatalogue, ByteOrderMarkOfUtf8IsNoText) {
+  const std::string text = "NM x 5 0 1.5 60\nCD 1.5\nLD 0.4 0.7\n";
+  EXPECT_EQ(GlassCatalogue("\xef\xbb\xbf" + text, "x.agf").names(), std::vector<std::string>{"x"});
 }
 
 // What one glass has wrong is no matter of the others.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "materials/io/index_record.h"
 #include "materials/io/material_library.h"
@@ -39,6 +40,7 @@ TEST(IndexRecord, IsTheGlassThatIsShipped) {
   EXPECT_EQ(read.valid_to_nm, 2500.0);
   EXPECT_EQ(read.temperature_c, 20.0);
   EXPECT_FALSE(read.relative_to_vacuum);
+  EXPECT_TRUE(read.warnings.empty());
   // As the record itself says.
   const double n_d = index_at(read, 0.58756);
   EXPECT_NEAR(n_d, 1.5168, 1e-5);
@@ -113,10 +115,130 @@ TEST(IndexRecord, WhatIsWrongIsToldWithItsLine) {
   const auto table = [&](const std::string& data) {
     return complaint("DATA:\n  - type: tabulated n\n    data: |\n      " + data + "\n");
   };
-  EXPECT_EQ(table("0.4 1.5 0.5"), "glass.yml:3: data: must have 2 numbers a line, got 3 in all");
-  EXPECT_EQ(table("0.4 1.5 0.4 1.6"), "glass.yml:3: data: must have each wavelength once, got 0.4 um twice");
-  EXPECT_EQ(table("-0.4 1.5"), "glass.yml:3: data: wavelengths must be > 0, got -0.4 um");
-  EXPECT_EQ(table("0.4 nan"), "glass.yml:3: data: must be finite numbers, got \"nan\"");
+  EXPECT_EQ(table("0.4 1.5 0.5"), "glass.yml:4: data: must have 2 numbers a line, got 3");
+  EXPECT_EQ(table("0.4 1.5\n      0.5\n      1.5 0.6\n      1.5"),
+            "glass.yml:5: data: must have 2 numbers a line, got 1");
+  EXPECT_EQ(table("0.4 1.5 0.4 1.6"), "glass.yml:4: data: must have each wavelength once, got 0.4 um with 1.5 and 1.6");
+  EXPECT_EQ(table("-0.4 1.5"), "glass.yml:4: data: wavelengths must be > 0, got -0.4 um");
+  EXPECT_EQ(table("0.5 1.5\n      0.4 nan"), "glass.yml:5: data: must be finite numbers, got \"nan\"");
+  EXPECT_EQ(table("0.4 -1.5"), "glass.yml:4: data: n must be >= 0, got -1.5");
+  EXPECT_EQ(table(""), "glass.yml:3: data: must have a row or more, got none");
+  EXPECT_EQ(table("0.4 1.5\n      0.4 1.5\n      0.6 1.4"), "") << "equal rows count one time";
+}
+
+// Numbers of coefficients that make whole terms, by the formulas of the database; all others cut a term.
+TEST(IndexRecord, CutTermsAreRefused) {
+  const auto is_whole = [](int number, int count) {
+    switch (number) {
+      case 4: return count == 1 || count == 5 || (count >= 9 && count % 2 == 1);
+      case 7: return count <= 6;
+      case 8: return count == 1 || count == 3 || count == 4;
+      case 9: return count == 1 || count == 3 || count == 6;
+      default: return count % 2 == 1;
+    }
+  };
+  for (int number = 1; number <= 9; ++number) {
+    std::string coefficients;
+    for (int count = 1; count <= 17; ++count) {
+      coefficients += (count > 1 ? " " : "") + std::to_string(0.01 * count);
+      SCOPED_TRACE("formula " + std::to_string(number) + ": " + coefficients);
+      const std::string message = refusal_of([&] { formula(number, coefficients); });
+      if (is_whole(number, count))
+        EXPECT_EQ(message, "");
+      else
+        EXPECT_EQ(message.find("glass.yml:4: coefficients: must be "), 0U) << message;
+    }
+  }
+}
+
+const std::string kHead = "DATA:\n  - type: formula 5\n    wavelength_range: 0.3 1\n    coefficients: 1.5\n";
+
+/// A record of n = 1.5 and these rows of k, the first of which is line 7.
+Material with_k(const std::vector<std::string>& rows) {
+  std::string text = kHead + "  - type: tabulated k\n    data: |\n";
+  for (const std::string& row : rows) text += "        " + row + "\n";
+  return parse_index_record(text, "glass.yml");
+}
+
+// Whatever one row of k has wrong, the index and all other rows are usable.
+TEST(IndexRecord, BlemishesOfTheExtinctionAreWarnedOf) {
+  const std::vector<std::string> good = {"0.40 1e-8", "0.60 3e-8", "0.70 1e-8"};
+  const Material right = with_k(good);
+  ASSERT_TRUE(right.warnings.empty());
+  for (const std::string bad :
+       {"0.50 -999", "0.50 -1e-3", "0.50 nan", "0.50 -", "0.50", "-0.50 1e-8", "0 1e-8", "0.40 2e-8 0.45", "x 1e-8"}) {
+    for (std::size_t at = 0; at <= good.size(); ++at) {
+      std::vector<std::string> rows = good;
+      rows.insert(rows.begin() + static_cast<std::ptrdiff_t>(at), bad);
+      SCOPED_TRACE(bad + " as row " + std::to_string(at));
+      const Material material = with_k(rows);
+      EXPECT_EQ(index_at(material, 0.5), 1.5);
+      ASSERT_GE(material.warnings.size(), 1U);
+      EXPECT_EQ(material.warnings.front().find("glass.yml:" + std::to_string(7 + at) + ": data: "), 0U)
+          << material.warnings.front();
+      for (const double wavelength_nm : {500.0, 600.0, 700.0})
+        EXPECT_EQ(absorption_per_mm(material, wavelength_nm), absorption_per_mm(right, wavelength_nm));
+    }
+  }
+  for (const std::string& row : good) {  // a row twice, anywhere
+    for (std::size_t at = 0; at <= good.size(); ++at) {
+      std::vector<std::string> rows = good;
+      rows.insert(rows.begin() + static_cast<std::ptrdiff_t>(at), row);
+      const Material material = with_k(rows);
+      EXPECT_TRUE(material.warnings.empty());
+      for (const double wavelength_nm : {400.0, 500.0, 650.0})
+        EXPECT_EQ(absorption_per_mm(material, wavelength_nm), absorption_per_mm(right, wavelength_nm));
+    }
+  }
+}
+
+TEST(IndexRecord, NoiseBelowZeroCountsAsZero) {
+  const Material material = with_k({"0.40 1e-8", "0.50 -8e-10", "0.70 1e-8"});
+  EXPECT_EQ(index_at(material, 0.5), 1.5);
+  EXPECT_EQ(absorption_per_mm(material, 500.0), 0.0);
+  EXPECT_NEAR(absorption_per_mm(material, 400.0), 4.0 * std::numbers::pi * 1e-8 / 400e-6, 1e-15);
+  ASSERT_EQ(material.warnings.size(), 1U);
+  EXPECT_EQ(material.warnings.front(), "glass.yml:8: data: k must be >= 0, got -8e-10; this sample counts as 0");
+  const Material two = with_k({"0.40 -1e-9", "0.50 -8e-10", "0.70 1e-8"});
+  ASSERT_EQ(two.warnings.size(), 1U);
+  EXPECT_EQ(two.warnings.front().find("glass.yml:7: data: "), 0U) << two.warnings.front();
+}
+
+TEST(IndexRecord, ContradictoryRowsOfTheExtinctionAreLeftOut) {
+  const Material material = with_k({"0.40 1e-8", "0.50 2e-8", "0.50 7e-8", "0.70 1e-8"});
+  ASSERT_EQ(material.warnings.size(), 1U);
+  EXPECT_EQ(material.warnings.front().find("glass.yml:8: data: "), 0U) << material.warnings.front();
+  EXPECT_EQ(absorption_per_mm(material, 500.0), absorption_per_mm(with_k({"0.40 1e-8", "0.70 1e-8"}), 500.0));
+}
+
+// The index of a table of n and k is that of its rows whatever k is, and tables of k that cannot be read are left out.
+TEST(IndexRecord, ExtinctionNeverRefusesTheIndex) {
+  const Material nk = record("  - type: tabulated nk\n    data: |\n      0.4 1.5 1e-8\n      0.6 1.4 -999\n");
+  EXPECT_NEAR(index_at(nk, 0.5), 1.45, 1e-15);
+  EXPECT_EQ(nk.warnings.size(), 1U);
+  for (const std::string table : {"    rows: 0.5 1e-8\n", "    data: [0.5, 1e-8]\n", "    data: ''\n"}) {
+    const Material material = parse_index_record(kHead + "  - type: tabulated k\n" + table, "glass.yml");
+    EXPECT_EQ(index_at(material, 0.5), 1.5);
+    EXPECT_EQ(material.warnings.size(), 1U) << table;
+    EXPECT_EQ(absorption_per_mm(material, 500.0), 0.0);
+  }
+  const std::string k = "  - type: tabulated k\n    data: 0.5 1e-8\n";
+  const Material twice = parse_index_record(kHead + k + k, "glass.yml");
+  ASSERT_EQ(twice.warnings.size(), 1U);
+  EXPECT_EQ(twice.warnings.front().find("glass.yml:7: type: "), 0U) << twice.warnings.front();
+  const Material nothing = with_k({"0.5 -999"});
+  EXPECT_EQ(nothing.warnings.size(), 2U) << "one for the sample, one that no absorption is left";
+}
+
+TEST(IndexRecord, StatedNdIsChecked) {
+  for (const std::string table : {"PROPERTIES", "SPECS"}) {
+    const auto warnings = [&](const std::string& nd) {
+      return parse_index_record(kHead + table + ":\n  nd: " + nd + "\n", "glass.yml").warnings;
+    };
+    EXPECT_TRUE(warnings("1.5009").empty());
+    ASSERT_EQ(warnings("1.5168").size(), 1U);
+    EXPECT_EQ(warnings("1.5168").front().find("glass.yml:6: nd: "), 0U) << warnings("1.5168").front();
+  }
 }
 
 }  // namespace

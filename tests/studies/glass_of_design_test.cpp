@@ -87,6 +87,39 @@ TEST(GlassOfDesign, MayBeOfARecord) {
   EXPECT_EQ(again.substance.material, "N-BK7");
 }
 
+// What is doubtful in a catalogue or a record is a warning of the design, whose index is that of the data.
+TEST(GlassOfDesign, DoubtsAreWarnings) {
+  const fs::path folder = fs::temp_directory_path() / "retrace_doubtful_glass";
+  fs::create_directories(folder);
+  const auto read = [&](const std::string& name, const std::string& text, const Overrides& more) {
+    std::ofstream(folder / name) << text;
+    Overrides overrides = more;
+    overrides.push_back("body.catalogue=" + (folder / name).string());
+    return inspected(overrides);
+  };
+  const std::string record =
+      "DATA:\n  - type: formula 2\n    wavelength_range: 0.3 2.5\n    coefficients: 0 1.03961212 0.00600069867 "
+      "0.231792344 0.0200179144 1.01046945 103.560653\n  - type: tabulated k\n    data: |\n        0.40 1e-8\n        "
+      "0.50 -8e-10\n        0.70 1e-8\n";
+  for (const Overrides& more : {Overrides{}, Overrides{"body.absorption_per_mm=0"}}) {
+    const Inspection noisy = read("noisy.yml", record, more);
+    EXPECT_NEAR(noisy.refractive_index, 1.5168, 1e-5);
+    ASSERT_EQ(noisy.warnings.size(), 1U);
+    EXPECT_EQ(noisy.warnings.front().find((folder / "noisy.yml").string() + ":8: data: "), 0U)
+        << noisy.warnings.front();
+  }
+  const Inspection joined = read("joined.agf",
+                                 "NM TESTK7 2 517642 1.516800 64.17 0 1\nCD 1.03961212E+00 6.00069867E-03 "
+                                 "2.31792344E-01\n2.00179144E-02 1.01046945E+00 1.03560653E+02 0 0 0 0\nLD 0.3 2.5\n",
+                                 {"body.material=TESTK7"});
+  EXPECT_NEAR(joined.refractive_index, 1.5168, 1e-5);
+  EXPECT_TRUE(joined.warnings.empty());
+  const Inspection swapped = read("swapped.agf", "NM x 5 0 1.6 60\nCD 1.5\nLD 0.3 2.5\n", {"body.material=x"});
+  ASSERT_EQ(swapped.warnings.size(), 1U);
+  EXPECT_EQ(swapped.warnings.front().find((folder / "swapped.agf").string() + ":1: NM: "), 0U);
+  fs::remove_all(folder);
+}
+
 // A name is taken from the folder of the design.
 TEST(GlassOfDesign, LiesBesideTheDesign) {
   const fs::path folder = fs::temp_directory_path() / "retrace_glass_of_design";

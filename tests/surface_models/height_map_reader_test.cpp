@@ -4,7 +4,10 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdlib>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "tests/support/refusals.h"
@@ -53,7 +56,7 @@ TEST(TextGrid, TakesEverySeparatorAndMissingWord) {
         "0.009 0.01 0.011 *** 0.013 0.014 0.015 0.016\n",
         "ncols 8\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0.5\nlateral_unit um\nheight_unit nm\nNODATA_value "
         "-9999\n"
-        "1 2 3 4 5 6 7 8\n9 10 11 -9999 13 14 15 16\n",
+        "9 10 11 -9999 13 14 15 16\n1 2 3 4 5 6 7 8\n",
         "# Channel: Height\n# Width: 4.0 \xc2\xb5m\n# Height: 1.0 \xc2\xb5m\n# Value units: m\n"
         "1e-9 2e-9 3e-9 4e-9 5e-9 6e-9 7e-9 8e-9\n9e-9 10e-9 11e-9 NaN 13e-9 14e-9 15e-9 16e-9\n"}) {
     SCOPED_TRACE(text);
@@ -138,6 +141,121 @@ TEST(Gsf, IsRead) {
       EXPECT_TRUE(std::isnan(file.map.heights_nm[i]));
     } else {
       EXPECT_NEAR(file.map.heights_nm[i], static_cast<double>(i + 1), 1e-5);
+    }
+  }
+}
+
+/// A height in nm at a position in um.
+struct Point {
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+};
+
+constexpr int kColumns = 9;
+constexpr int kRows = 5;
+constexpr double kStepX = 2.0;
+constexpr double kStepY = 2.0;
+
+/// Heights without any symmetry: no two are equal, and neither mirrored nor transposed maps agree.
+double height_at(int column, int row) {
+  return 100.0 * row + 3.0 * column + 0.5 * column * row * row;
+}
+
+std::string words(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += std::to_string(value) + " ";
+  return text + "\n";
+}
+
+/// Lines of a matrix. \param first_row the row that is written first: 0 or the last one
+std::string matrix(int first_row, double unit) {
+  std::string text;
+  for (int k = 0; k < kRows; ++k) {
+    std::vector<double> row;
+    for (int i = 0; i < kColumns; ++i) row.push_back(unit * height_at(i, std::abs(first_row - k)));
+    text += words(row);
+  }
+  return text;
+}
+
+/// Reads the numbers of all lines that hold nothing else.
+std::vector<std::vector<double>> numbers_of(const std::string& text) {
+  std::vector<std::vector<double>> rows;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream stream(line);
+    std::vector<double> row;
+    for (double value = 0.0; stream >> value;) row.push_back(value);
+    if (stream.eof() && !row.empty()) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// A file, and an independent reading of it by the rules of its format.
+struct Written {
+  std::string name;
+  std::string content;
+  std::vector<Point> points;
+};
+
+std::vector<Point> points_of(const std::string& text, bool first_row_has_largest_y) {
+  const std::vector<std::vector<double>> rows = numbers_of(text);
+  std::vector<Point> points;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (std::size_t i = 0; i < rows[k].size(); ++i)
+      points.push_back({kStepX * static_cast<double>(i),
+                        kStepY * static_cast<double>(first_row_has_largest_y ? rows.size() - 1 - k : k), rows[k][i]});
+  return points;
+}
+
+/// The same heights in every format.
+std::vector<Written> every_format() {
+  std::vector<Written> files;
+  const std::string grid = matrix(0, 1.0);
+  files.push_back({"m.txt", "pixel_um 2\nheight_unit nm\n" + grid, points_of(grid, false)});
+  // ESRI: "the first row of the data is at the top of the raster" (ArcGIS, Esri ASCII raster format).
+  const std::string esri = matrix(kRows - 1, 1.0);
+  for (const std::string head :
+       {"ncols 9\nnrows 5\nxllcorner 7\nyllcorner 3\ncellsize 2\nNODATA_value -9999\n",
+        "NCOLS 9\nNROWS 5\nXLLCENTER 0\nYLLCENTER 0\nCELLSIZE 2\n", "cellsize 2\n", "ncols 9\nnrows 5\npixel_um 2\n"})
+    files.push_back({"m.asc", head + "lateral_unit um\nheight_unit nm\n" + esri, points_of(esri, true)});
+  std::string list;
+  std::vector<Point> points;
+  for (int row = kRows - 1; row >= 0; --row)
+    for (int column = 0; column < kColumns; ++column) {
+      points.push_back({kStepX * column, kStepY * row, height_at(column, row)});
+      list += words({points.back().x, points.back().y, points.back().z});
+    }
+  files.push_back({"m.xyz", "lateral_unit um\nheight_unit nm\n" + list, points});
+  // ISO 25178-71: profiles follow each other along y.
+  files.push_back(
+      {"m.sdf",
+       "aISO-1.0\nNumPoints = 9\nNumProfiles = 5\nXscale = 2e-6\nYscale = 2e-6\nZscale = 1e-9\n*\n" + grid + "*\n",
+       points_of(grid, false)});
+  // Gwyddion: rows follow each other along y.
+  std::string simple =
+      "Gwyddion Simple Field 1.0\nXRes = 9\nYRes = 5\nXReal = 18e-6\nYReal = 10e-6\nXYUnits = m\n"
+      "ZUnits = m\n";
+  simple += std::string(4 - simple.size() % 4, '\0');
+  for (const Point& point : points_of(grid, false))
+    simple += little_endian(std::bit_cast<std::uint32_t>(static_cast<float>(1e-9 * point.z)));
+  files.push_back({"m.gsf", simple, points_of(grid, false)});
+  return files;
+}
+
+TEST(HeightMapFormats, PlaceAnAsymmetricMapAlike) {
+  for (const Written& file : every_format()) {
+    SCOPED_TRACE(file.name + "\n" + file.content.substr(0, 60));
+    const HeightMap map = parse_height_map(file.content, file.name, {}).map;
+    ASSERT_EQ(map.columns, static_cast<std::size_t>(kColumns));
+    ASSERT_EQ(map.rows, static_cast<std::size_t>(kRows));
+    ASSERT_EQ(file.points.size(), map.heights_nm.size());
+    for (const Point& point : file.points) {
+      const auto column = static_cast<std::size_t>(std::lround(point.x / map.x_pixel_um));
+      const auto row = static_cast<std::size_t>(std::lround(point.y / map.y_pixel_um));
+      EXPECT_NEAR(map.at(column, row), point.z, 1e-4);
+      EXPECT_NEAR(map.at(column, row), height_at(static_cast<int>(column), static_cast<int>(row)), 1e-4);
     }
   }
 }

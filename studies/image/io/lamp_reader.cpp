@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -24,7 +25,8 @@ constexpr double kFullTurnDeg = 360.0;
 /// A text line by line, which knows where it is.
 class Lines {
  public:
-  Lines(std::string_view text, const std::string& file) : file_(file), lines_(split(text, '\n')) {}
+  Lines(std::string_view text, const std::string& file)
+      : file_(file), lines_(split(without_byte_order_mark(text), '\n')) {}
 
   bool at_end() const { return next_ == lines_.size(); }
   std::string_view next(std::string_view what) {
@@ -168,16 +170,60 @@ void complete_ies(Lines& lines, Table& table, LuminousIntensity::Planes kind) {
   }
 }
 
-/// Of an IES file a keyword's text, such as "[LUMINAIRE] Headlamp".
+/// Year in which the first edition of LM-63 appeared. Files of this edition have no header line.
+constexpr int kFirstEdition = 1986;
+/// Year of the last edition in which the factor after the ballast factor multiplies the intensities. Later editions
+/// reserve this number, or give there how the file was made.
+constexpr int kLastWithLampFactor = 1991;
+
+/// Removes `word` and the separators after it from the start of a line in lower case, if the line starts with it.
+bool skip(std::string_view& line, std::string_view word) {
+  if (!line.starts_with(word)) return false;
+  line.remove_prefix(word.size());
+  line.remove_prefix(std::min(line.find_first_not_of(" \t:;,_/.-"), line.size()));
+  return true;
+}
+
+/// Returns the year of the edition that a header line names, such as "IESNA91", "IESNA:LM-63-2002" or
+/// "ANSI/IES LM-63-19", in upper or lower case. Returns 0 for other lines, such as the labels of files of 1986.
+/// \throw InputError if the line names LM-63 of the IES without a year
+int edition_in(const Lines& lines, std::string_view line) {
+  const std::string lower = lower_case(line);
+  std::string_view rest = lower;
+  skip(rest, "");
+  skip(rest, "ansi");
+  const bool is_ies = skip(rest, "iesna") || skip(rest, "ies");
+  const bool is_standard = skip(rest, "lm") && skip(rest, "63");
+  if (!is_ies && !is_standard) return 0;
+  const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
+  const bool ends = digits == rest.size() || !(rest[digits] >= 'a' && rest[digits] <= 'z');
+  const double number = digits == 2 || digits == 4 ? number_in(rest.substr(0, digits)).value_or(0.0) : 0.0;
+  const int year = static_cast<int>(number) + (digits != 2 ? 0 : number >= kFirstEdition % 100 ? 1900 : 2000);
+  constexpr std::array editions = {kFirstEdition, kLastWithLampFactor, 1995, 2002, 2019};
+  if (ends && (is_standard ? year >= kFirstEdition : std::ranges::count(editions, year) > 0)) return year;
+  if (is_ies && is_standard)
+    lines.fail("header", "must name the year of LM-63, as IESNA:LM-63-2002 does, got " + in_quotes(line));
+  return 0;
+}
+
+/// Returns the text after a keyword at the start of a line, such as "[LUMINAIRE] Headlamp", in upper or lower case.
 std::string text_behind(std::string_view line, std::string_view keyword) {
-  return line.starts_with(keyword) ? printable(trimmed(line.substr(keyword.size()))) : std::string();
+  const bool is_there = lower_case(line.substr(0, keyword.size())) == lower_case(keyword);
+  return is_there ? printable(trimmed(line.substr(keyword.size()))) : std::string();
+}
+
+/// Returns the value of a line "TILT=VALUE".
+std::string tilt_in(std::string_view line) {
+  const std::string rest = text_behind(line, "TILT");
+  return rest.starts_with('=') ? std::string(trimmed(std::string_view(rest).substr(1))) : std::string();
 }
 
 /// Factors for other positions of burning, which are left out.
 void pass_tilt(Lines& lines, const std::string& tilt) {
-  if (tilt != "NONE" && tilt != "INCLUDE")
+  const std::string word = lower_case(tilt);
+  if (word != "none" && word != "include")
     lines.fail("TILT", fmt::format("must be NONE or INCLUDE, got {}", in_quotes(tilt)));
-  if (tilt == "NONE") return;
+  if (word == "none") return;
   lines.word("tilt", 1, 3);
   lines.leave_line();
   const std::size_t pairs = lines.count_word("tilt", 1, kMostAngles);
@@ -218,10 +264,12 @@ PhotometricLamp parse_ies(std::string_view text, const std::string& file) {
   Lines lines(text, file);
   std::string title;
   std::string tilt;
+  int edition = 0;
   while (tilt.empty()) {
     const std::string_view line = lines.next("a line TILT=");
+    if (edition == 0) edition = edition_in(lines, line);
     if (std::string found = text_behind(line, "[LUMINAIRE]"); !found.empty()) title = std::move(found);
-    tilt = text_behind(line, "TILT=");
+    tilt = tilt_in(line);
   }
   pass_tilt(lines, tilt);
   const double lamps = lines.word("number of lamps", 1, 1e6);
@@ -233,10 +281,8 @@ PhotometricLamp parse_ies(std::string_view text, const std::string& file) {
   lines.word("units", 1, 2);
   for (const char* const size : {"width", "length", "height"}) lines.word(size, -kMost, kMost);
   const double ballast = lines.word("ballast factor", 1e-12, kMost);
-  // Of LM-63-86, whose files begin without their standard's name (IESNA91, IESNA:LM-63-2002, IES:LM-63-2019); later it
-  // means nothing, or how the file was made.
-  const double of_1986 = lines.word("ballast-lamp factor", 0, kMost);
-  const double with_lamp = text.starts_with("IES") ? 1.0 : of_1986;
+  const double lamp_factor = lines.word("ballast-lamp factor", 0, kMost);
+  const double with_lamp = edition <= kLastWithLampFactor ? lamp_factor : 1.0;
   lines.word("input watts", 0, kMost);
   using enum LuminousIntensity::Planes;
   const auto kind = type == 1 ? c : type == 2 ? b : a;

@@ -7,9 +7,11 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/number_format.h"
+#include "core/text.h"
 #include "studies/image/io/lamp_reader.h"
 #include "studies/image/road_study.h"
 #include "tests/support/refusals.h"
@@ -198,6 +200,59 @@ TEST(Lamp, FactorsCountAsTheFilesEditionSays) {
   std::string tilted = ies(1, {0}, {0, 90}, kPlain);
   tilted.replace(tilted.find("TILT=NONE"), 9, "TILT=INCLUDE\n1\n2\n0 90\n1 0.8");
   EXPECT_EQ(parse_ies(tilted, "a.ies").intensity.largest_cd(), 100.0);
+}
+
+std::string upper_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return text;
+}
+
+// The ballast-lamp photometric factor multiplies in LM-63-86 and LM-63-91. Later editions have another number there
+// (I. Ashdown, Parsing the IESNA LM-63 photometric data file, 1998; ANSI/IES LM-63-19).
+TEST(Lamp, EditionIsThatOfItsHeader) {
+  constexpr double kFactor = 1.1;
+  const std::vector<std::pair<std::string, double>> headers = {{"", kFactor},
+                                                               {"A label", kFactor},
+                                                               {"IES indoor report", kFactor},
+                                                               {"IES 40 W luminaire", kFactor},
+                                                               {"Tested as IESNA:LM-63-2002 asks", kFactor},
+                                                               {"IESNA86", kFactor},
+                                                               {"IESNA:LM-63-1986", kFactor},
+                                                               {"IES LM-63-86", kFactor},
+                                                               {"IESNA91", kFactor},
+                                                               {"IESNA:LM-63-1991", kFactor},
+                                                               {"IESNA1991", kFactor},
+                                                               {"IESNA95", 1.0},
+                                                               {"IESNA:LM-63-1995", 1.0},
+                                                               {"IESNA: LM-63-1995", 1.0},
+                                                               {"IESNA LM63-95", 1.0},
+                                                               {"IESNA:LM-63-2002", 1.0},
+                                                               {"ANSI/IESNA LM-63-02", 1.0},
+                                                               {"LM-63-2002", 1.0},
+                                                               {"IES:LM-63-2019", 1.0},
+                                                               {"IES LM 63-19", 1.0},
+                                                               {"ANSI/IES LM-63-19", 1.0}};
+  const std::string rest = ies(1, {0}, {0, 90}, kPlain, "", "0.9 1.1 60");
+  for (const auto& [header, factor] : headers)
+    for (const std::string& written : {header, lower_case(header), upper_case(header)})
+      for (const std::string before : {"", "\xef\xbb\xbf", "\n", "\xef\xbb\xbf\r\n  \r\n", "[TEST] 1\n", "  \t"})
+        for (const bool is_small : {false, true}) {
+          const std::string text = before + written + " \r\n" + (is_small ? lower_case(rest) : rest);
+          SCOPED_TRACE(text);
+          const PhotometricLamp lamp = parse_ies(text, "a.ies");
+          EXPECT_NEAR(lamp.intensity.largest_cd(), 90.0 * factor, 1e-9);
+          EXPECT_EQ(lower_case(lamp.title), "a lamp");
+        }
+  for (const std::string header : {"IESNA:LM-63", "IES:LM-63-YEAR", "IESNA:LM-63-20022"})
+    EXPECT_EQ(refusal_of([&] { parse_ies("\n" + header + "\n" + rest, "a.ies"); }).find("a.ies:2: header: "), 0U);
+  for (const std::string tilt : {"tilt=none", "TILT = NONE", "  Tilt=None  "})
+    EXPECT_NEAR(parse_ies(with_replaced(rest, "TILT=NONE", tilt), "a.ies").intensity.largest_cd(), 99.0, 1e-9);
+}
+
+TEST(Lamp, ByteOrderMarkOfEulumdatIsNoText) {
+  const std::string text = ldt(1, 30, {0, 90}, kPlain, {0});
+  expect_same(parse_ldt(text, "a.ldt").intensity, parse_ldt("\xef\xbb\xbf" + text, "a.ldt").intensity);
 }
 
 TEST(Lamp, CutOffIsSeenOnTheRoad) {

@@ -1,0 +1,69 @@
+#include "materials/io/absorption_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "core/error.h"
+#include "core/number_format.h"
+
+namespace retrace::materials {
+
+void AbsorptionData::Blemishes::add(int at_line, std::string_view why) {
+  if (count++ > 0) return;
+  line = at_line;
+  reason = why;
+}
+
+void AbsorptionData::add_zero(int line, double wavelength_nm, std::string_view reason) {
+  zeros_.add(line, reason);
+  add(line, wavelength_nm, 0.0);
+}
+
+void AbsorptionData::leave_out(int line, std::string_view reason) {
+  left_out_.add(line, reason);
+}
+
+void AbsorptionData::warn(const Blemishes& blemishes, std::string_view one, std::string_view several,
+                          Material& material) const {
+  if (blemishes.count == 0) return;
+  const std::string effect = blemishes.count == 1
+                                 ? fmt::format("this sample {}", one)
+                                 : fmt::format("this sample and {} more {}", blemishes.count - 1, several);
+  material.warnings.emplace_back(
+      InputError({file_, blemishes.line, key_}, fmt::format("{}; {}", blemishes.reason, effect)).what());
+}
+
+void AbsorptionData::finish(Material& material) {
+  std::ranges::stable_sort(samples_, {}, &Sample::wavelength_nm);
+  SpectralCurve curve;
+  for (std::size_t k = 0; k < samples_.size();) {
+    const Sample& first = samples_[k];
+    const std::size_t begin = k;
+    bool is_one = true;
+    for (; k < samples_.size() && samples_[k].wavelength_nm == first.wavelength_nm; ++k)
+      is_one &= samples_[k].per_mm == first.per_mm;
+    if (is_one) {
+      curve.wavelengths_nm.push_back(first.wavelength_nm);
+      curve.values.push_back(first.per_mm);
+      continue;
+    }
+    for (std::size_t j = begin; j < k; ++j)
+      leave_out(samples_[j].line, fmt::format("must have one value for a wavelength, got several at {} nm",
+                                              shortest(first.wavelength_nm)));
+  }
+  warn(zeros_, "counts as 0", "count as 0", material);
+  warn(left_out_, "is left out", "are left out", material);
+  if (curve.values.empty() && left_out_.count > 0)
+    material.warnings.emplace_back(
+        InputError({file_, 0, key_}, "has no usable absorption, which counts as 0; give body.absorption_per_mm")
+            .what());
+  if (curve.values.size() == 1)
+    material.absorption_per_mm = curve.values.front();
+  else if (!curve.values.empty())
+    material.absorption_per_mm = std::move(curve);
+}
+
+}  // namespace retrace::materials
