@@ -30,3 +30,33 @@ def make_page(program, source, folder):
     run(program, "verify", job, program_text, "-o", results, "--quiet", codes=(0, 1))
     run(program, "report", results, "--title", "Study of a prism", "--quiet")
     return results / "report.html"
+
+
+LONG_TITLE = "A_title_of_a_prism_without_a_blank_that_is_longer_than_a_narrow_screen_is_wide_and_longer_than_a_card"
+PRISM = """title = "{}"
+[element]
+kind = "rtp"
+base_mm = 0.45
+width_mm = 0.45
+[array]
+arrangement = "single"
+[body]
+thickness_mm = 0.5
+"""
+
+
+def make_sheet_and_study(program, source, folder):
+    """A set-up sheet, and report.html of results of many kinds: of two designs, one of which has a long title."""
+    folder = pathlib.Path(folder)
+    make_page(program, source, folder)
+    study = folder / "study"
+    designs = [pathlib.Path(source) / "examples" / "rtp_single_0p45mm.toml", folder / "long.toml"]
+    designs[1].write_text(PRISM.format(LONG_TITLE))
+    run(program, "rre", *designs, "--engine", "exact", "--incidence=0,20", "--footprint", "--far-field", "-o",
+        study / "both", "--quiet")
+    run(program, "image", designs[1], "--detector", "--pixels", "40", "-o", study / "maps", "--quiet")
+    run(program, "photometry", designs[1], "--standard", "r150", "--class", "IA", "--colour", "white", "--area-cm2", "30",
+        "--no-advice", "-o", study / "test_points", "--quiet", codes=(0, 1))
+    run(program, "forces", folder / "job.toml", "-o", study / "forces", "--quiet")
+    run(program, "report", study, "--quiet")
+    return study / "setup.html", study / "report.html"

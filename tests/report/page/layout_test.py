@@ -1,0 +1,115 @@
+"""The blocks of pages that retrace writes do not overlap, on wide and narrow screens: report, set-up sheet and live page.
+
+    python3 layout_test.py RETRACE SOURCE
+    python3 layout_test.py --site FOLDER    every page of the site that tools/site has built in FOLDER
+"""
+
+import pathlib
+import sys
+import unittest
+
+from browser import BrowserCase
+from layout import WIDTHS, leaks, overlaps
+from page_results import make_sheet_and_study, run
+
+PROGRAM = SOURCE = SITE = None
+HEIGHT = 1000
+BLOCKS = """<!DOCTYPE html><meta charset="utf-8">
+<style>p {{ margin: 0; height: 2rem }} img {{ height: 4rem; width: 9rem }} figure {{ margin: 0 }} #box {{ position: relative }} {} </style>
+<div id="box"><p>first</p><p id="second">second</p></div>
+<figure><img alt="picture" src="data:image/svg+xml,<svg xmlns='http://www.w3.org/2000/svg'/>"></figure><p>third</p>"""
+
+
+class LayoutCase(BrowserCase):
+    def load(self, page, ready="document.readyState === 'complete'"):
+        self.driver.get("about:blank")
+        self.driver.get(page.as_uri())
+        self.wait(lambda d: d.execute_script(f"return {ready}"))
+        self.driver.execute_async_script("document.fonts.ready.then(arguments[0])")
+
+    def settle(self):
+        """Until what follows the size of the window has been drawn."""
+        self.driver.execute_async_script("setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(arguments[0])), 300)")
+
+    def check(self, name, least_items):
+        self.driver.execute_script("for (const e of document.querySelectorAll('details')) e.open = true")
+        for width in WIDTHS:
+            with self.subTest(page=name, width=width):
+                self.resize(width, HEIGHT)
+                self.settle()
+                items, faults = overlaps(self.driver)
+                self.assertGreaterEqual(items, least_items)
+                self.assertEqual(faults, [])
+                self.assertLessEqual(self.driver.execute_script("return document.documentElement.scrollWidth"), width)
+
+
+class Measure(LayoutCase):
+    def faults(self, style):
+        page = pathlib.Path(self.folder.name) / "blocks.html"
+        page.write_text(BLOCKS.format(style))
+        self.load(page)
+        return overlaps(self.driver)[1]
+
+    def test_blocks_that_overlap_are_found(self):
+        self.assertEqual(self.faults(""), [])
+        for style in ("#second { margin-top: -1rem }", "figure { height: 1rem }", "p { height: .3rem }",
+                      "#second { transform: translateY(-1rem) }", "#box { height: 2rem }",
+                      "#second { position: absolute; top: 60px }"):
+            self.assertNotEqual(self.faults(style), [], style)
+
+    def test_what_is_hidden_or_a_layer_of_its_container_is_none(self):
+        for style in ("#second { position: absolute; top: 0 }", "#second { margin-top: -1rem; visibility: hidden }",
+                      "#second { margin-top: -1rem; opacity: 0 }", "figure { height: 1rem; overflow: hidden }"):
+            self.assertEqual(self.faults(style), [], style)
+
+
+class Pages(LayoutCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.sheet, cls.report = make_sheet_and_study(PROGRAM, SOURCE, cls.folder.name)
+        cls.live = pathlib.Path(cls.folder.name) / "live.html"
+        run(PROGRAM, "explore", "-o", cls.live, "--quiet")
+
+    def load_report(self):
+        self.load(self.report, "document.documentElement.dataset.ready === 'yes' && "
+                               "document.getElementById('live').dataset.ready === 'yes'")
+
+    def test_report(self):
+        self.load_report()
+        self.check("report", 1000)
+
+    def test_set_up_sheet(self):
+        self.load(self.sheet)
+        self.check("set-up sheet", 500)
+
+    def test_live_page(self):
+        for tab in ("form", "text"):
+            self.load(self.live, "document.getElementById('live').dataset.ready === 'yes'")
+            self.driver.execute_script("const s = document.querySelector('.programme select'); s.value = 'r150'; "
+                                       "s.dispatchEvent(new Event('change'))")
+            self.wait(lambda d: self.all(".test tbody tr"))
+            next(b for b in self.all("button") if b.text == "Pin").click()
+            self.driver.execute_script(f"document.getElementById('live-tab-{tab}').click()")
+            self.check(f"live page, {tab}", 300)
+
+    def test_styles_of_the_live_section_reach_nothing_else_of_a_report(self):
+        self.load_report()
+        self.assertEqual(leaks(self.driver, (SOURCE / "data/report_page/page.css").read_text()), [])
+
+
+class Site(LayoutCase):
+    def test_pages(self):
+        pages = sorted(page for page in SITE.rglob("*.html") if page.name != "404.html")
+        self.assertGreater(len(pages), 20)
+        for page in pages:
+            self.load(page)
+            self.check(str(page.relative_to(SITE)), 5)
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "--site":
+        SITE = pathlib.Path(sys.argv[2]).resolve()
+    else:
+        PROGRAM, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+    unittest.main(argv=[sys.argv[0], *(("Measure", "Pages") if SITE is None else ("Site",))])
