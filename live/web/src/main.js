@@ -132,7 +132,7 @@ class LivePage {
       direction,
       spot,
       range_deg: curve.half_range_deg,
-      programme: this.photometry.programme(),
+      programme: this.photometry.state(),
       pins: rest.pins.map(({ toml, source, title }) => ({ toml, source, title })),
     };
   }

@@ -260,12 +260,53 @@ class PageWorks(LiveCase):
         self.all(".pins .ghost button[aria-label]")[0].click()
         self.assertEqual(len(self.all(".pins .ghost")), 3)
 
+    def choose(self, label, value):
+        self.script("const s = [...document.querySelectorAll('.programme select')].find((e) => e.ariaLabel === arguments[0]); "
+                    "s.value = arguments[1]; s.dispatchEvent(new Event('change'))", label, value)
+
+    def colour(self):
+        return self.script("return document.querySelector('.programme select[aria-label=Colour]').value")
+
+    def judged(self):
+        self.wait(lambda d: self.all(".test tbody tr") and self.all(".verdict .chip") and not self.all(".test.stale"))
+        return self.texts(".test tbody .chip")
+
     def test_judges_test_points(self):
-        self.script("const s = document.querySelector('.programme select'); s.value = 'r150'; s.dispatchEvent(new Event('change'))")
-        self.wait(lambda d: self.all(".test tbody tr"))
-        verdicts = set(self.texts(".test tbody .chip"))
-        self.assertLessEqual(verdicts, {"pass", "fail", "unconfirmed", "undetermined"})
-        self.assertTrue(verdicts)
+        self.choose("Standard", "r150")
+        order = ["fail", "undetermined", "unconfirmed", "pass"]
+        seen = set()
+        for area_cm2 in (0.1, 3, 1000):
+            area = self.one(".programme input")
+            self.script("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('change'))", area, area_cm2)
+            verdicts = self.judged()
+            self.assertEqual(verdicts, sorted(verdicts, key=order.index), "what fails comes first")
+            seen.update(verdicts)
+        self.assertGreater(len(seen), 1)
+
+    def test_the_colour_follows_the_body(self):
+        def body(dye):
+            lines = (line for line in (SOURCE / f"data/dye_{dye}.csv").read_text().splitlines() if line[:1].isdigit())
+            return f"absorption_per_mm = [{', '.join(f'[{line}]' for line in lines)}]"
+
+        bodies = {"white": ("absorption_per_mm = 0.01", "absorption_per_mm = [[380, 0.2], [780, 0.2]]"),
+                  "amber": (body("amber"), ), "red": (body("red"), )}
+        standards = [name for name in self.script("return [...document.querySelectorAll('.programme select option')].map((o) => o.value)")
+                     if name in ("r150", "j594", "bicycle")]
+        self.assertEqual(len(standards), 3)
+        for standard in standards:
+            self.choose("Standard", standard)
+            for colour, texts in bodies.items():
+                for text in texts:
+                    self.open(ODD + text + "\n")
+                    self.wait(lambda d, colour=colour: self.colour() == colour)
+        self.choose("Colour", "white")  # by hand
+        self.open(ODD + body("amber") + "\n")
+        self.rest()
+        self.assertEqual(self.colour(), "white")
+        self.wait(lambda d: len(self.script("return location.hash")) > 40)
+        time.sleep(0.2)
+        self.load(self.script("return location.href"))
+        self.assertEqual(self.colour(), "white")
 
     def test_says_what_it_cannot_and_what_does(self):
         self.open(ODD.replace("[body]", "[surface]\nroughness_sq_nm = 20\ncorrelation_length_um = 2\n[body]"))
@@ -358,7 +399,7 @@ class PageIsQuick(LiveCase):
 
 
 if __name__ == "__main__":
-    PROGRAM, SOURCE = sys.argv[1:3]
+    PROGRAM, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
     BrowserCase.keep = "--keep" in sys.argv
     names = [argument for argument in sys.argv[3:] if not argument.startswith("--")]
     unittest.main(argv=[sys.argv[0], *names])

@@ -1,13 +1,17 @@
 // Test points of a standard: the coefficient of retroreflection at each, its limit, and the verdict.
+import { coloursOf } from "../body_colour.js";
 import { h } from "../dom.js";
 import { panel } from "../frame.js";
 import { short, words } from "../units.js";
 
-const VERDICTS = { pass: "good", fail: "bad", unconfirmed: "open", undetermined: "open" };
+// In the order of the rows: what fails comes first.
+const VERDICTS = { fail: "bad", undetermined: "open", unconfirmed: "open", pass: "good" };
+const rankOf = ({ verdict }) => Object.keys(VERDICTS).indexOf(verdict);
 
 export class PhotometryPanel {
   constructor(session) {
     this.session = session;
+    this.isColourChosen = false; // by hand; otherwise the colour is that of the body
     const choice = (label) => h("select", { "aria-label": label, onchange: () => this.choose(label) });
     this.standard = choice("Standard");
     this.part_class = choice("Class");
@@ -29,6 +33,7 @@ export class PhotometryPanel {
     this.standards = standards;
     this.standard.append(h("option", { value: "" }, "choose a standard"), ...standards.map(({ name, description }) => h("option", { value: name }, `${name} – ${description}`)));
     this.fillChoices();
+    this.session.on("design", () => this.followBody());
     this.session.on("judging", () => (this.verdict.textContent = "working it out …"));
     this.session.on("judged", (answer) => this.show(answer));
     this.session.on("moving", (moving) => this.node.classList.toggle("stale", moving && Boolean(this.standard.value)));
@@ -43,11 +48,26 @@ export class PhotometryPanel {
       const before = select.value;
       select.replaceChildren(...list.map((name) => h("option", { value: name }, name)));
       if (list.includes(before)) select.value = before;
+      else if (select === this.colour) this.isColourChosen = false;
       select.hidden = list.length < 2;
     }
+    this.pickColour();
   }
 
-  /** What is asked for, as the address keeps it; nothing where no standard is chosen. */
+  /** Picks the colour of the body where the standard has it. Returns whether the colour is another one than before. */
+  pickColour() {
+    const before = this.colour.value;
+    const list = [...this.colour.options].map(({ value }) => value);
+    const colour = coloursOf(this.session.base).find((name) => list.includes(name));
+    if (!this.isColourChosen && colour) this.colour.value = colour;
+    return this.colour.value !== before;
+  }
+
+  followBody() {
+    if (this.pickColour()) this.ask();
+  }
+
+  /** What is asked for; nothing where no standard is chosen. */
   programme() {
     if (!this.standard.value) return null;
     const programme = { standard: this.standard.value, area_cm2: Number(this.area.value) };
@@ -56,18 +76,32 @@ export class PhotometryPanel {
     return programme;
   }
 
+  /** The same as the address keeps it: a colour that follows the body is left out. */
+  state() {
+    const programme = this.programme();
+    if (programme && !this.isColourChosen) delete programme.colour;
+    return programme;
+  }
+
   restore(programme) {
     if (!programme) return;
     this.standard.value = programme.standard;
+    this.isColourChosen = false;
     this.fillChoices();
     if (programme.class) this.part_class.value = programme.class;
     if (programme.colour) this.colour.value = programme.colour;
+    this.isColourChosen = Boolean(programme.colour);
     this.area.value = programme.area_cm2;
     this.session.rest.choose(this.programme());
   }
 
   choose(label) {
+    if (label === "Colour") this.isColourChosen = true;
     if (label === "Standard") this.fillChoices();
+    this.ask();
+  }
+
+  ask() {
     this.clear();
     this.session.rest.choose(this.programme());
     this.session.tell("state");
@@ -89,7 +123,7 @@ export class PhotometryPanel {
     const chip = (verdict) => h("span", { class: `chip ${VERDICTS[verdict] || ""}` }, verdict);
     this.verdict.replaceChildren(chip(answer.verdict), answer.reason ? ` ${answer.reason}` : "");
     this.rows.replaceChildren(
-      ...answer.points.map((point) =>
+      ...[...answer.points].sort((a, b) => rankOf(a) - rankOf(b)).map((point) =>
         h(
           "tr",
           {},
