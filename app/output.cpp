@@ -53,6 +53,10 @@ void check_can_write(const std::string& json, const std::string& out) {
 
 }  // namespace
 
+std::string wrote_line(const fs::path& file) {
+  return fmt::format("wrote {}\n", printable(file.string(), std::string::npos));
+}
+
 void print(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw OutputError("standard output: cannot be written");
@@ -129,37 +133,30 @@ void ResultFiles::write_outputs(std::string_view json, std::string_view text) co
   for (const auto& [path, content] : contents) {
     if (content.empty()) continue;
     write_file_atomically(path, content);
-    remarks += fmt::format("wrote {}\n", path.string());
+    remarks += wrote_line(path);
   }
   if (options_.json == "-") {
     print(json);
     return;
   }
   if (!options_.json.empty()) write_file_atomically(options_.json, json);
-  if (!options_.quiet) print(std::string(text) + remarks);
+  if (!options_.quiet) print(printable_lines(text) + remarks);
 }
 
-namespace {
-
-/// Of a text, which goes to standard output if it goes to no file.
-CommonOptions options_of_text(const CommonOptions& common) {
-  CommonOptions options = without_folder(common);
-  options.quiet = common.quiet && !common.out.empty();
-  return options;
-}
-
-}  // namespace
-
-TextFiles::TextFiles(const CommonOptions& common)
-    : has_file_(!common.out.empty()), warns_(!common.quiet), files_(options_of_text(common), {}) {
+TextFiles::TextFiles(const CommonOptions& common, std::vector<std::string> inputs)
+    : has_file_(!common.out.empty()),
+      prints_(!has_file_ && common.json != "-"),
+      files_(without_folder(common), std::move(inputs)) {
   files_.add_named("--out", common.out, [text = text_] { return *text; });
   files_.prepare();
 }
 
 ExitCode TextFiles::write(std::string_view json, const std::string& text, const std::vector<std::string>& warnings,
-                          const Ending& ending) {
+                          const Ending& ending, std::string_view summary) {
   *text_ = text;
-  return files_.write(json, has_file_ ? "" : text, warns_ ? warnings : std::vector<std::string>{}, ending);
+  const ExitCode code = files_.write(json, has_file_ ? summary : "", warnings, ending);
+  if (prints_) print(text);
+  return code;
 }
 
 ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohmann::ordered_json content,

@@ -20,6 +20,9 @@ namespace retrace::app {
 /// Writes to standard output. \throw OutputError if that fails
 void print(std::string_view text);
 
+/// Returns a line of output which says that a file was written.
+std::string wrote_line(const std::filesystem::path& file);
+
 /// The files that designs come from, with those that they name.
 std::vector<std::string> files_read(const std::vector<studies::Design>& designs);
 
@@ -58,8 +61,8 @@ class ResultFiles {
   /// written. \throw InputError, OutputError
   void prepare() const;
   /// Writes the JSON document and the files where the options want them, and the text, with what was written, to
-  /// standard output if neither `--quiet` nor `--json -` forbids it; then says the warnings, and that work was
-  /// interrupted. \return the exit code \throw OutputError
+  /// standard output if neither `--quiet` nor `--json -` forbids it, free of control characters; then says the
+  /// warnings, and that work was interrupted. \return the exit code \throw OutputError
   ExitCode write(std::string_view json, std::string_view text, const std::vector<std::string>& warnings = {},
                  const Ending& ending = {}) const;
 
@@ -89,20 +92,21 @@ void ResultFiles::add_drawing(const std::string& name, Plot plot) {
   add(name + ".png", [once] { return render_png(once()); });
 }
 
-/// The files of a result that is itself a text, which goes to the file of --out, else to standard output; --quiet does
-/// not take it away.
+/// The files of a result that is itself the content of a file: it goes to the file of --out, else byte for byte to
+/// standard output; --quiet does not take it away.
 class TextFiles {
  public:
-  /// Checks them, as ResultFiles::prepare(). \throw InputError, OutputError
-  explicit TextFiles(const CommonOptions& common);
+  /// Checks them, as ResultFiles::prepare(). \param inputs every file that the command reads
+  /// \throw InputError, OutputError
+  explicit TextFiles(const CommonOptions& common, std::vector<std::string> inputs = {});
 
-  /// As ResultFiles::write().
+  /// As ResultFiles::write(). \param summary for standard output if the text goes to a file
   ExitCode write(std::string_view json, const std::string& text, const std::vector<std::string>& warnings = {},
-                 const Ending& ending = {});
+                 const Ending& ending = {}, std::string_view summary = {});
 
  private:
   bool has_file_;
-  bool warns_;
+  bool prints_;
   std::shared_ptr<std::string> text_ = std::make_shared<std::string>();
   ResultFiles files_;
 };

@@ -12,17 +12,6 @@
 namespace retrace {
 namespace {
 
-/// Length in bytes of the printable UTF-8 character that `text` starts with; 0 if it starts with anything else.
-std::size_t printable_character(std::string_view text) {
-  const std::size_t length = utf8_length(text);
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const bool is_control =
-      length == 1 ? byte(0) < 0x20 || byte(0) == 0x7f : length == 2 && byte(0) == 0xc2 && byte(1) < 0xa0;
-  const bool is_line_separator =
-      length == 3 && byte(0) == 0xe2 && byte(1) == 0x80 && (byte(2) == 0xa8 || byte(2) == 0xa9);
-  return is_control || is_line_separator ? 0 : length;
-}
-
 std::string escaped(char c) {
   if (c == '\n') return "\\n";
   if (c == '\r') return "\\r";
@@ -50,14 +39,37 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::size_t printable_length(std::string_view text) {
+  const std::size_t length = utf8_length(text);
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const bool is_control =
+      length == 1 ? byte(0) < 0x20 || byte(0) == 0x7f : length == 2 && byte(0) == 0xc2 && byte(1) < 0xa0;
+  const bool is_line_separator =
+      length == 3 && byte(0) == 0xe2 && byte(1) == 0x80 && (byte(2) == 0xa8 || byte(2) == 0xa9);
+  // U+FFFE and U+FFFF, which no XML document may contain.
+  const bool is_noncharacter = length == 3 && byte(0) == 0xef && byte(1) == 0xbf && byte(2) >= 0xbe;
+  return is_control || is_line_separator || is_noncharacter ? 0 : length;
+}
+
 std::string printable(std::string_view text, std::size_t max_bytes) {
   std::string result;
   while (!text.empty()) {
-    const std::size_t length = printable_character(text);
+    const std::size_t length = printable_length(text);
     const std::string piece = length > 0 ? std::string(text.substr(0, length)) : escaped(text.front());
     if (result.size() + piece.size() > max_bytes) return result + "...";
     result += piece;
     text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return result;
+}
+
+std::string printable_lines(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of("\n\t"), text.size());
+    result += printable(text.substr(0, end), std::string::npos);
+    if (end < text.size()) result += text[end];
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
   return result;
 }

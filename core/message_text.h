@@ -10,9 +10,16 @@
 
 namespace retrace {
 
-/// `text` for use in a one-line message: control characters and bytes that are not UTF-8 become `\n`, `\x1b` and the
-/// like; what is longer than `max_bytes` ends in "...".
+/// Returns the length in bytes of the printable UTF-8 character that `text` begins with; 0 if it begins with anything
+/// else.
+std::size_t printable_length(std::string_view text);
+
+/// `text` for use in a one-line message: control characters, noncharacters and bytes that are not UTF-8 become `\n`,
+/// `\x1b` and the like; what is longer than `max_bytes` ends in "...".
 std::string printable(std::string_view text, std::size_t max_bytes = 80);
+
+/// `text` of several lines for a terminal: as printable(), but ends of lines and tabs are kept.
+std::string printable_lines(std::string_view text);
 
 /// printable(text) between double quotes.
 std::string in_quotes(std::string_view text);

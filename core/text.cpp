@@ -60,6 +60,22 @@ std::string ending_of(const std::filesystem::path& file) {
   return lower_case(file.extension().string());
 }
 
+std::string markup_text(std::string_view text) {
+  std::string markup;
+  markup.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&': markup += "&amp;"; break;
+      case '<': markup += "&lt;"; break;
+      case '>': markup += "&gt;"; break;
+      case '"': markup += "&quot;"; break;
+      case '\'': markup += "&#39;"; break;
+      default: markup += c;
+    }
+  }
+  return markup;
+}
+
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);

@@ -1,7 +1,7 @@
 #pragma once
 
 // Small operations on text: trimming, splitting, lower case, numbers independent of the locale, endings of file names,
-// and the length of UTF-8 characters.
+// texts in XML and HTML, and the length of UTF-8 characters.
 
 #include <cstddef>
 #include <filesystem>
@@ -32,6 +32,9 @@ std::optional<double> number_in(std::string_view text);
 
 /// The ending of a file's name in small letters, with its dot; empty if it has none.
 std::string ending_of(const std::filesystem::path& file);
+
+/// `text` in an XML or HTML document: the characters that have a meaning there are replaced.
+std::string markup_text(std::string_view text);
 
 /// Bytes of the UTF-8 character that `text` begins with; 0 if they are none (overlong and surrogate forms included).
 /// \pre text is not empty

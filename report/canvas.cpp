@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/message_text.h"
 #include "core/text.h"
 
 #if defined(__has_feature)  // clang, with which the sanitizers are built
@@ -99,7 +100,7 @@ std::string printable(std::string_view text) {
     const std::size_t length = utf8_length(text);
     if (length == 0) {
       result += "\ufffd";
-    } else if (length == 1 && (static_cast<unsigned char>(text[0]) < 0x20 || text[0] == 0x7f)) {
+    } else if (printable_length(text) == 0) {
       result += ' ';
     } else {
       result += text.substr(0, length);

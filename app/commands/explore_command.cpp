@@ -7,6 +7,7 @@
 #include "app/output.h"
 #include "app/shared_arguments.h"
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/schema/writer.h"
 #include "report/page/live_page.h"
 #include "studies/design/io/design_format.h"
@@ -48,17 +49,11 @@ ExitCode run(const ExploreOptions& options, const CommonOptions& common) {
   } else if (!common.overrides.empty()) {
     throw InputError({"", 0, "--set"}, "needs a design");
   }
-  // The page is the result itself: without --out it goes to standard output.
-  CommonOptions output = without_folder(common);
-  output.quiet = common.quiet && !common.out.empty();
-  ResultFiles files(output, inputs);
-  std::string html;
-  files.add_named("--out", common.out, [&] { return html; });
-  files.prepare();
-  html = report::live_html(start, title, report::shipped_live_assets());
+  TextFiles files(common, inputs);
+  const std::string html = report::live_html(start, title, report::shipped_live_assets());
   const nlohmann::ordered_json json = {{"file", common.out}, {"title", title}, {"bytes", html.size()}};
-  return files.write(result_text("retrace.explore/1", json, {}),
-                     common.out.empty() ? html : fmt::format("{}: {} KiB\n", title, html.size() / 1024));
+  return files.write(result_text("retrace.explore/1", json, {}), html, {}, {},
+                     fmt::format("{}: {} KiB\n", printable(title), html.size() / 1024));
 }
 
 }  // namespace

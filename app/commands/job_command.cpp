@@ -76,15 +76,8 @@ ExitCode run(const JobOptions& options, const CommonOptions& common) {
   if (!options.reachable.empty()) return write_reachable(options, common, design);
   studies::MadeJob made = studies::make_job(design, job_request(options, *options.tool_width_mm));
   const std::string text = job_text_at(made, common.out);
-  CommonOptions outputs = without_folder(common);
-  // Without --out the job is the result itself, which --quiet does not take away.
-  outputs.quiet = common.quiet && !common.out.empty();
-  ResultFiles files(outputs, inputs_of(options, design));
-  files.add_named("--out", common.out, [&] { return text; });
-  files.prepare();
-  files.write(studies::job_json(made), common.out.empty() ? text : studies::job_table(made));
-  print_warnings(common, made.warnings);
-  return ExitCode::done;
+  TextFiles files(common, inputs_of(options, design));
+  return files.write(studies::job_json(made), text, made.warnings, {}, studies::job_table(made));
 }
 
 }  // namespace

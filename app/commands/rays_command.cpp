@@ -122,7 +122,7 @@ ExitCode run(const RaysOptions& options, const CommonOptions& common) {
   result.source_name = options.source.value_or("");
   result.emitter = emitter;
   result.out_name = common.out;
-  const std::string wrote = common.out.empty() ? "" : fmt::format("wrote {}\n", common.out);
+  const std::string wrote = common.out.empty() ? "" : wrote_line(common.out);
   return files.write(studies::rays_json(result), studies::rays_table(result) + wrote, result.warnings,
                      {.complete = result.complete, .interrupted = "the rays that were traced are written"});
 }

@@ -7,6 +7,7 @@
 #include "app/output.h"
 #include "core/atomic_file.h"
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "report/page/scene_view.h"
 #include "report/page/sections.h"
 
@@ -69,8 +70,8 @@ ExitCode run(const ReportOptions& options, const CommonOptions& common) {
   files.prepare();
   if (!common.out.empty() && file != fs::path(common.out)) make_output_folder(common.out);
   return files.write(report_json(page, folder, file, html.size(), warnings),
-                     fmt::format("{}: {} documents, {} sections, {} KiB\n", page.title, folder.documents.size(),
-                                 page.sections.size(), html.size() / 1024),
+                     fmt::format("{}: {} documents, {} sections, {} KiB\n", printable(page.title),
+                                 folder.documents.size(), page.sections.size(), html.size() / 1024),
                      warnings);
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.h"
+
 namespace retrace::report {
 namespace {
 
@@ -41,23 +43,6 @@ std::string coordinate(double value) {
 
 std::string pair(Point p) {
   return coordinate(p.x) + "," + coordinate(p.y);
-}
-
-std::string escaped(std::string_view raw) {
-  std::string text;
-  for (const char c : printable(raw)) {
-    if (c == '&')
-      text += "&amp;";
-    else if (c == '<')
-      text += "&lt;";
-    else if (c == '>')
-      text += "&gt;";
-    else if (c == '"')
-      text += "&quot;";
-    else
-      text += c;
-  }
-  return text;
 }
 
 }  // namespace
@@ -118,7 +103,7 @@ void SvgGroup::text(std::string_view style, Point baseline, std::string_view tex
   const std::string turn =
       upwards ? fmt::format(" transform=\"rotate(-90 {} {})\"", coordinate(baseline.x), coordinate(baseline.y)) : "";
   markup_ += fmt::format("<text class=\"{}\" x=\"{}\" y=\"{}\" text-anchor=\"{}\"{}>{}</text>\n", style,
-                         coordinate(baseline.x), coordinate(baseline.y), anchor, turn, escaped(text));
+                         coordinate(baseline.x), coordinate(baseline.y), anchor, turn, markup_text(printable(text)));
   box_.take(baseline);
 }
 
@@ -140,7 +125,7 @@ std::string SvgSheet::finish(Size size, std::string_view title, std::string_view
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" role=\"img\">\n"
       "<title>{2}</title>\n<desc>{3}</desc>\n<style>{4}</style>\n"
       "<rect class=\"paper\" width=\"{0}\" height=\"{1}\"/>\n{5}</svg>\n",
-      width, height, escaped(title), escaped(description), kStyle, markup_);
+      width, height, markup_text(printable(title)), markup_text(printable(description)), kStyle, markup_);
 }
 
 double sheet_text_width(std::string_view text, double font_size) {

@@ -40,8 +40,12 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
                 "limit_mcd_per_lx", "margin", "limit_status", "verdict", "lower_bound", "r_a_cd_per_lx_m2"},
                "Test points", csv_name(document, "points"));
   for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (table.columns[c] == "verdict")
+    if (table.columns[c] == "verdict") {
       for (auto& row : table.rows) row[c].style = verdict_style(row[c].text);
+      // What fails comes first.
+      const auto rank = [&](const auto& row) { return row[c].style == "bad" ? 0 : row[c].style == "open" ? 1 : 2; };
+      std::ranges::stable_sort(table.rows, {}, rank);
+    }
   section.tables.push_back(std::move(table));
   return section;
 }

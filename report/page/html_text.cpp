@@ -2,22 +2,27 @@
 
 #include <fmt/format.h>
 
-namespace retrace::report {
+#include "core/text.h"
+#include "core/version.h"
 
-std::string html_text(std::string_view text) {
-  std::string html;
-  html.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&': html += "&amp;"; break;
-      case '<': html += "&lt;"; break;
-      case '>': html += "&gt;"; break;
-      case '"': html += "&quot;"; break;
-      case '\'': html += "&#39;"; break;
-      default: html += c;
-    }
-  }
-  return html;
+namespace retrace::report {
+namespace {
+
+/// Scripts, styles and the worker are the page's own; nothing is fetched.
+constexpr std::string_view kPolicy =
+    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src "
+    "'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'";
+
+}  // namespace
+
+std::string html_head(std::string_view title, std::string_view style) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"generator\" content=\"retrace {}\">\n<title>{}</title>\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<style>{}</style>\n</head>\n",
+      kPolicy, kVersion, markup_text(title), style);
 }
 
 std::string json_string(std::string_view text) {

@@ -1,16 +1,17 @@
 #pragma once
 
-// Texts in HTML documents: whatever they hold, they are shown as texts and end nothing that they stand in.
+// What all pages begin with, and texts in their data: whatever a text contains, it ends no element of the page.
 
 #include <string>
 #include <string_view>
 
 namespace retrace::report {
 
-/// `text` with what HTML gives a meaning replaced.
-std::string html_text(std::string_view text);
+/// Returns an HTML document up to its body. Its policy allows scripts and styles of the page itself and no request to a
+/// network.
+std::string html_head(std::string_view title, std::string_view style);
 
-/// A text in JSON that stands in an HTML document, with its quotes.
+/// Returns a JSON text for use in an HTML document, with its quotes.
 std::string json_string(std::string_view text);
 
 }  // namespace retrace::report

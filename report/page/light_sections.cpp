@@ -7,17 +7,18 @@
 #include <set>
 
 #include "core/number_format.h"
+#include "core/text.h"
+#include "report/page/design_names.h"
 #include "report/page/document_sections.h"
 #include "report/page/document_view.h"
-#include "report/page/sections.h"
 
 namespace retrace::report::document {
 
 namespace {
 
 /// Curves over the incidence, one for each design, azimuth and acceptance angle; the azimuth where that varies alone.
-PageChart rre_chart(const Json& json) {
-  const Json& points = list(json, "points");
+PageChart rre_chart(const ResultDocument& document, const DesignNames& names) {
+  const Json& points = list(document.json, "points");
   const auto several = [&](const char* key) {
     std::set<double> values;
     for (const Json& p : points) values.insert(number(p, key));
@@ -27,17 +28,15 @@ PageChart rre_chart(const Json& json) {
   const char* const along = over_azimuth ? "azimuth_deg" : "incidence_deg";
   const bool tell_azimuth = !over_azimuth && several("azimuth_deg");
   const bool tell_cone = several("acceptance_half_angle_deg");
-  const Json& designs = list(json, "designs");
+  const bool tell_design = several("design");
   PageChart chart;
   chart.title =
       "Retroreflective efficiency against the " + std::string(over_azimuth ? "azimuth" : "angle of incidence");
   chart.x_label = over_azimuth ? "azimuth (deg)" : "angle of incidence (deg)";
   chart.y_label = "RRE (%)";
   for (const Json& p : points) {
-    const double d = number(p, "design");
     std::vector<std::string> words;
-    if (designs.size() > 1 && d >= 0.0 && d < static_cast<double>(designs.size()))
-      words.push_back(name_of_design(designs[static_cast<std::size_t>(d)]));
+    if (tell_design) words.push_back(names.of(document, number(p, "design")));
     if (tell_azimuth) words.push_back(fmt::format("azimuth {} deg", shown(number(p, "azimuth_deg"))));
     if (tell_cone) words.push_back(fmt::format("within {} deg", shown(number(p, "acceptance_half_angle_deg"))));
     const std::string label = words.empty() ? "RRE (%)" : fmt::format("{}", fmt::join(words, ", "));
@@ -47,7 +46,7 @@ PageChart rre_chart(const Json& json) {
 }
 
 /// Points with their accounts side by side, in percent of the incident power.
-PageTable ledger_table(const ResultDocument& document) {
+PageTable ledger_table(const ResultDocument& document, const DesignNames& names) {
   const Json& points = list(document.json, "points");
   PageTable table;
   table.caption = "Where the light goes, in percent of the incident power";
@@ -62,9 +61,13 @@ PageTable ledger_table(const ResultDocument& document) {
       table.left_out = points.size() - kMostRows;
       break;
     }
-    std::vector<PageCell> row = {number(p, "design"),      number(p, "incidence_deg"),
-                                 number(p, "azimuth_deg"), number(p, "acceptance_half_angle_deg"),
-                                 100.0 * number(p, "rre"), 100.0 * number(p, "std_error")};
+    const double design = number(p, "design");
+    std::vector<PageCell> row = {names.are_several() ? PageCell(names.of(document, design)) : PageCell(design),
+                                 number(p, "incidence_deg"),
+                                 number(p, "azimuth_deg"),
+                                 number(p, "acceptance_half_angle_deg"),
+                                 100.0 * number(p, "rre"),
+                                 100.0 * number(p, "std_error")};
     for (const std::string& account : accounts) row.emplace_back(100.0 * number(member(p, "ledger"), account.c_str()));
     table.rows.push_back(std::move(row));
   }
@@ -73,15 +76,16 @@ PageTable ledger_table(const ResultDocument& document) {
 
 }  // namespace
 
-PageSection rre_section(const ResultDocument& document, const ResultFolder&) {
+PageSection rre_section(const ResultDocument& document, const ResultFolder& folder) {
+  const DesignNames names(folder);
   PageSection section = titled(
       "Efficiency",
       "RRE is the power that comes back into the acceptance cone over the incident power. The standard error covers "
       "sampling alone; the exact engine has none.");
-  const PageChart chart = rre_chart(document.json);
+  const PageChart chart = rre_chart(document, names);
   if (std::any_of(chart.series.begin(), chart.series.end(), [](const ChartSeries& s) { return s.x.size() > 1; }))
     section.charts.push_back(chart);
-  section.tables.push_back(ledger_table(document));
+  section.tables.push_back(ledger_table(document, names));
   return section;
 }
 
@@ -125,6 +129,11 @@ bool is_of(const Json& feature, const Json& region) {
   return true;
 }
 
+/// Returns what a caption begins with: the name of a design where there are several.
+std::string prefix_of(const DesignNames& names, const ResultDocument& document, double design) {
+  return names.are_several() ? names.of(document, design) + ". " : std::string();
+}
+
 /// A scale bar of 1, 2 or 5 times a power of ten, about a quarter as long as the drawing is wide.
 std::string scale_bar(const Extent& extent) {
   const double about = 0.25 * (extent.high_x - extent.low_x);
@@ -156,11 +165,12 @@ std::vector<const Json*> spread(const Json& entries) {
   return chosen;
 }
 
-/// Of the entrance face, as far as the design tells; and of all regions.
-Extent face_extent(const Json& json, const Json* design) {
+/// Returns the extent of a design's entrance face, where the design gives it, and of all its active regions.
+Extent face_extent(const Json& json, double number_of_design, const Json* design) {
   Extent extent;
   for (const Json& feature : list(json, "features"))
-    for (const auto& [x, y] : ring_of(feature)) extent.include(x, -y);
+    if (number(member(feature, "properties"), "design") == number_of_design)
+      for (const auto& [x, y] : ring_of(feature)) extent.include(x, -y);
   if (design != nullptr) {
     const Json& array = member(*design, "array");
     const Json& element = member(*design, "element");
@@ -176,7 +186,8 @@ Extent face_extent(const Json& json, const Json* design) {
 }
 
 /// One direction's active regions, darker where more comes back. y of the drawing points down.
-PageFigure footprint_panel(const Json& json, const Json& region, const Extent& extent) {
+/// \param of_design name of the design, for its caption; empty: not told
+PageFigure footprint_panel(const Json& json, const Json& region, const Extent& extent, const std::string& of_design) {
   std::string shapes;
   std::size_t drawn = 0;
   for (const Json& feature : list(json, "features")) {
@@ -190,8 +201,8 @@ PageFigure footprint_panel(const Json& json, const Json& region, const Extent& e
     shapes += fmt::format("\"><title>{} comes back</title></polygon>", percent(efficiency));
   }
   PageFigure figure;
-  figure.caption = fmt::format("Incidence {} deg, azimuth {} deg: {} of the face is active and returns {}.",
-                               shown(number(region, "incidence_deg")), shown(number(region, "azimuth_deg")),
+  figure.caption = fmt::format("{}Incidence {} deg, azimuth {} deg: {} of the face is active and returns {}.",
+                               of_design, shown(number(region, "incidence_deg")), shown(number(region, "azimuth_deg")),
                                percent(number(region, "active_share")), percent(number(region, "rre_shown")));
   if (drawn > kMostRegions) figure.caption += fmt::format(" {} of {} regions are drawn.", kMostRegions, drawn);
   const double margin = 0.04 * extent.size();
@@ -199,7 +210,7 @@ PageFigure footprint_panel(const Json& json, const Json& region, const Extent& e
       "<svg role=\"img\" aria-label=\"{0}\" viewBox=\"{1:.6g} {2:.6g} {3:.6g} {4:.6g}\">"
       "<rect class=\"face\" x=\"{5:.6g}\" y=\"{6:.6g}\" width=\"{7:.6g}\" height=\"{8:.6g}\" stroke-width=\"{9:.3g}\"/>"
       "{10}{11}</svg>",
-      html_text(figure.caption), extent.low_x - margin, extent.low_y - margin,
+      markup_text(figure.caption), extent.low_x - margin, extent.low_y - margin,
       extent.high_x - extent.low_x + 2.0 * margin, extent.high_y - extent.low_y + 3.0 * margin, extent.low_x,
       extent.low_y, extent.high_x - extent.low_x, extent.high_y - extent.low_y, 0.004 * extent.size(), shapes,
       scale_bar(extent));
@@ -214,9 +225,17 @@ PageSection footprint_section(const ResultDocument& document, const ResultFolder
       "Where light must fall on the entrance face to come back into the acceptance cone; what is left blank is dead. "
       "Darker regions return more of it.");
   const Json& regions = list(document.json, "regions");
-  const Extent extent = face_extent(document.json, first_design(folder));
-  for (const Json* region : spread(regions)) section.figures.push_back(footprint_panel(document.json, *region, extent));
-  section.tables.push_back(table_of(regions,
+  const DesignNames names(folder);
+  for (const Json* region : spread(regions)) {
+    const double design = number(*region, "design");
+    const Extent extent = face_extent(document.json, design, design_of(folder, document, design));
+    section.figures.push_back(footprint_panel(document.json, *region, extent, prefix_of(names, document, design)));
+  }
+  Json rows = regions;
+  if (names.are_several())
+    for (Json& row : rows)
+      if (row.is_object()) row["design"] = names.of(document, number(row, "design"));
+  section.tables.push_back(table_of(rows,
                                     {"design", "incidence_deg", "azimuth_deg", "entrance_area_mm2", "active_area_mm2",
                                      "active_share", "rre_shown", "rre"},
                                     "Active area of the entrance face", csv_name(document, "regions")));
@@ -226,7 +245,8 @@ PageSection footprint_section(const ResultDocument& document, const ResultFolder
 namespace {
 
 /// Spots by how far and towards where they miss the way back to the source; their area is as their power.
-PageFigure far_field_panel(const Json& direction) {
+/// \param of_design name of the design, for its caption; empty: not told
+PageFigure far_field_panel(const Json& direction, const std::string& of_design) {
   const Json& spots = list(direction, "spots");
   double reach = 1.0;
   double other_reach = 0.0;
@@ -258,36 +278,39 @@ PageFigure far_field_panel(const Json& direction) {
         -95.0 * r / reach * std::sin(angle), size, r, percent(power));
   }
   PageFigure figure;
-  figure.caption = fmt::format("Incidence {} deg, azimuth {} deg. {} of the light leaves more than {:.0f} arcmin off.",
-                               shown(number(direction, "incidence_deg")), shown(number(direction, "azimuth_deg")),
-                               percent(other_reach), kWindowArcmin);
+  figure.caption =
+      fmt::format("{}Incidence {} deg, azimuth {} deg. {} of the light leaves more than {:.0f} arcmin off.", of_design,
+                  shown(number(direction, "incidence_deg")), shown(number(direction, "azimuth_deg")),
+                  percent(other_reach), kWindowArcmin);
   figure.svg = fmt::format("<svg role=\"img\" aria-label=\"{}\" viewBox=\"-100 -100 200 200\">{}</svg>",
-                           html_text(figure.caption), shapes);
+                           markup_text(figure.caption), shapes);
   return figure;
 }
 
 }  // namespace
 
-PageSection far_field_section(const ResultDocument& document, const ResultFolder&) {
+PageSection far_field_section(const ResultDocument& document, const ResultFolder& folder) {
   PageSection section = titled(
       "Far field",
       "The directions in which light leaves the entrance face, seen from the source: the centre is the way back. The "
       "area of a spot is as its power.");
+  const DesignNames names(folder);
   Json rows = Json::array();
   for (const Json* direction : spread(list(document.json, "directions")))
-    section.figures.push_back(far_field_panel(*direction));
+    section.figures.push_back(far_field_panel(*direction, prefix_of(names, document, number(*direction, "design"))));
   for (const Json& direction : list(document.json, "directions")) {
     for (const Json& spot : list(direction, "spots")) {
       if (!spot.is_object()) continue;
       Json row = {{"incidence_deg", member(direction, "incidence_deg")},
                   {"azimuth_deg", member(direction, "azimuth_deg")}};
+      if (names.are_several()) row["design"] = names.of(document, number(direction, "design"));
       row.update(spot);
       if (rows.size() <= kMostRows) rows.push_back(std::move(row));
     }
   }
   section.tables.push_back(table_of(rows,
-                                    {"incidence_deg", "azimuth_deg", "deviation_arcmin", "deviation_azimuth_deg",
-                                     "power", "s1", "s2", "s3", "depth_min"},
+                                    {"design", "incidence_deg", "azimuth_deg", "deviation_arcmin",
+                                     "deviation_azimuth_deg", "power", "s1", "s2", "s3", "depth_min"},
                                     "Spots, by falling power (share of the incident power)",
                                     csv_name(document, "spots")));
   return section;

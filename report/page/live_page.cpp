@@ -3,18 +3,11 @@
 #include <fmt/format.h>
 
 #include "core/base64.h"
+#include "core/text.h"
 #include "core/version.h"
 #include "report/page/html_text.h"
 
 namespace retrace::report {
-namespace {
-
-/// Scripts, styles and the worker are the page's own; nothing is fetched.
-constexpr std::string_view kPolicy =
-    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src "
-    "'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'";
-
-}  // namespace
 
 std::string live_elements(const LiveStart& start, const PageAssets& assets, bool is_embedded) {
   std::string json = fmt::format(R"({{"version":{},"embedded":{})", json_string(kVersion), is_embedded);
@@ -28,15 +21,12 @@ std::string live_elements(const LiveStart& start, const PageAssets& assets, bool
 }
 
 std::string live_html(const LiveStart& start, const std::string& title, const PageAssets& assets) {
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"generator\" content=\"retrace {}\">\n<title>{}</title>\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<style>{}</style>\n</head>\n<body>\n{}<footer>\n<details><summary>Licences of the code in this "
-      "page</summary><pre>{}</pre></details>\n</footer>\n{}<script>{}</script>\n</body>\n</html>\n",
-      kPolicy, kVersion, html_text(title), assets.style, assets.markup, html_text(assets.licences),
-      live_elements(start, assets, false), assets.script);
+  return html_head(title, assets.style) + fmt::format(
+                                              "<body>\n{}<footer>\n<details><summary>Licences of the code in this "
+                                              "page</summary><pre>{}</pre></details>\n"
+                                              "</footer>\n{}<script>{}</script>\n</body>\n</html>\n",
+                                              assets.markup, markup_text(assets.licences),
+                                              live_elements(start, assets, false), assets.script);
 }
 
 }  // namespace retrace::report

@@ -8,7 +8,7 @@
 
 #include "core/base64.h"
 #include "core/number_format.h"
-#include "core/version.h"
+#include "core/text.h"
 #include "report/page/html_text.h"
 
 namespace retrace::report {
@@ -81,11 +81,7 @@ class HtmlWriter {
   explicit HtmlWriter(const Page& page) : page_(page) {}
 
   std::string write(const PageAssets& assets) {
-    add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<meta name=\"generator\" content=\"retrace {}\">\n<title>{}</title>\n<link rel=\"icon\" href=\"data:,\">\n"
-        "<style>{}</style>\n</head>\n<body>\n",
-        kVersion, html_text(page_.title), assets.style);
+    html_ = html_head(page_.title, assets.style) + "<body>\n";
     write_header();
     add("<main id=\"main\">\n");
     for (const PageSection& section : page_.sections) write_section(section);
@@ -104,7 +100,7 @@ class HtmlWriter {
   void write_scripts(const PageAssets& assets) {
     add("<footer>\n<details><summary>Licences of the code in this page</summary><pre>{}</pre></details>\n"
         "</footer>\n",
-        html_text(assets.licences));
+        markup_text(assets.licences));
     add("<script type=\"application/json\" id=\"page-data\">{{\"charts\":[{}],\"paths\":[{}],\"scene\":{}}}</script>\n",
         charts_, paths_, page_.scene ? json_of(*page_.scene) : "null");
     if (page_.live) html_ += live_elements(*page_.live, assets, true);
@@ -114,17 +110,17 @@ class HtmlWriter {
   void write_header() {
     add("<a class=\"skip\" href=\"#main\">Skip to the results</a>\n<header>\n<h1>{}</h1>\n"
         "<button type=\"button\" id=\"theme\" hidden></button>\n<p>{}</p>\n</header>\n",
-        html_text(page_.title), html_text(page_.subtitle));
+        markup_text(page_.title), markup_text(page_.subtitle));
     add("<nav aria-label=\"Sections\"><ul>\n");
     for (const PageSection& section : page_.sections)
-      add("<li><a href=\"#{}\">{}</a></li>\n", section.id, html_text(section.title));
+      add("<li><a href=\"#{}\">{}</a></li>\n", section.id, markup_text(section.title));
     add("</ul></nav>\n");
   }
 
   void write_section(const PageSection& section) {
     add("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n", section.id,
-        html_text(section.title));
-    for (const std::string& text : section.paragraphs) add("<p>{}</p>\n", html_text(text));
+        markup_text(section.title));
+    for (const std::string& text : section.paragraphs) add("<p>{}</p>\n", markup_text(text));
     write_facts(section.facts);
     write_steps(section.steps);
     if (section.has_scene && page_.scene) write_scene();
@@ -134,7 +130,7 @@ class HtmlWriter {
     write_figures(section.figures);
     for (const PageTable& table : section.tables) write_table(table);
     for (const auto& [title, content] : section.details)
-      add("<details><summary>{}</summary><pre>{}</pre></details>\n", html_text(title), html_text(content));
+      add("<details><summary>{}</summary><pre>{}</pre></details>\n", markup_text(title), markup_text(content));
     add("</section>\n");
   }
 
@@ -143,15 +139,15 @@ class HtmlWriter {
     constexpr std::size_t long_text = 24;
     add("<dl class=\"facts\">\n");
     for (const PageFact& fact : facts)
-      add("<div><dt>{}</dt><dd class=\"{}{}\">{}</dd></div>\n", html_text(fact.name), fact.style,
-          fact.value.size() > long_text ? " long" : "", html_text(fact.value));
+      add("<div><dt>{}</dt><dd class=\"{}{}\">{}</dd></div>\n", markup_text(fact.name), fact.style,
+          fact.value.size() > long_text ? " long" : "", markup_text(fact.value));
     add("</dl>\n");
   }
 
   void write_steps(const std::vector<std::string>& steps) {
     if (steps.empty()) return;
     add("<ol class=\"steps\">\n");
-    for (const std::string& step : steps) add("<li>{}</li>\n", html_text(step));
+    for (const std::string& step : steps) add("<li>{}</li>\n", markup_text(step));
     add("</ol>\n");
   }
 
@@ -161,7 +157,7 @@ class HtmlWriter {
         "away. The paths are listed in words beside it.\"></div>\n"
         "<div><fieldset id=\"scene-paths\"><legend>Light paths</legend></fieldset>\n"
         "<ol id=\"scene-steps\" aria-live=\"polite\"></ol>\n<noscript><ul>\n");
-    for (const ScenePathView& path : page_.scene->paths) add("<li>{}</li>\n", html_text(path.label));
+    for (const ScenePathView& path : page_.scene->paths) add("<li>{}</li>\n", markup_text(path.label));
     add("</ul></noscript></div>\n</div>\n");
   }
 
@@ -170,7 +166,7 @@ class HtmlWriter {
     charts_ += json_of(chart);
     add("<figure data-chart=\"{}\"><div class=\"plot\"></div><figcaption>{}. Drag to zoom, double click for all; with "
         "the keyboard: arrows, +, - and 0.</figcaption></figure>\n",
-        chart_count_++, html_text(chart.title));
+        chart_count_++, markup_text(chart.title));
   }
 
   void write_path(const PagePath& path) {
@@ -178,7 +174,7 @@ class HtmlWriter {
     paths_ += json_of(path);
     add("<figure data-path=\"{}\"><div class=\"path\"></div><figcaption>{}. Wheel with the control key, or + and -, to "
         "zoom; drag or arrows to move; 0 or double click for all.</figcaption></figure>\n",
-        path_count_++, html_text(path.title));
+        path_count_++, markup_text(path.title));
   }
 
   void write_figures(const std::vector<PageFigure>& figures) {
@@ -188,9 +184,9 @@ class HtmlWriter {
       if (!figure.svg.empty())
         add("<figure class=\"drawing\">{}", figure.svg);
       else
-        add("<figure class=\"picture\"><img alt=\"{}\" src=\"data:{};base64,{}\">", html_text(figure.alternative_text),
-            figure.media_type, base64(figure.bytes));
-      add("<figcaption>{}</figcaption></figure>\n", html_text(figure.caption));
+        add("<figure class=\"picture\"><img alt=\"{}\" src=\"data:{};base64,{}\">",
+            markup_text(figure.alternative_text), figure.media_type, base64(figure.bytes));
+      add("<figcaption>{}</figcaption></figure>\n", markup_text(figure.caption));
     }
     add("</div>\n");
   }
@@ -198,19 +194,19 @@ class HtmlWriter {
   void write_table(const PageTable& table) {
     add("<div class=\"table-box\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table data-csv=\"{1}\">"
         "<caption>{0}</caption>\n<thead><tr>",
-        html_text(table.caption), html_text(table.csv_name));
+        markup_text(table.caption), markup_text(table.csv_name));
     std::vector<const char*> style;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       style.push_back(is_numeric(table, c) ? "n" : "");
-      add("<th scope=\"col\" class=\"{}\">{}</th>", style[c], html_text(table.columns[c]));
+      add("<th scope=\"col\" class=\"{}\">{}</th>", style[c], markup_text(table.columns[c]));
     }
     add("</tr></thead>\n<tbody>\n");
     for (const auto& row : table.rows) {
       add("<tr>");
       for (std::size_t c = 0; c < row.size(); ++c) {
         add("<td class=\"{} {}\"", style[c], row[c].style);
-        if (!row[c].full.empty()) add(" data-v=\"{}\"", html_text(row[c].full));
-        add(">{}</td>", html_text(row[c].text));
+        if (!row[c].full.empty()) add(" data-v=\"{}\"", markup_text(row[c].full));
+        add(">{}</td>", markup_text(row[c].text));
       }
       add("</tr>\n");
     }

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/schema/json.h"
+#include "report/page/design_names.h"
 #include "report/page/sections.h"
 #include "studies/design/io/design_format.h"
 #include "studies/design/io/design_reader.h"
@@ -73,6 +74,7 @@ void add_live(Page& page, const ResultFolder& folder) {
         titled("Live",
                "The design with the engine in this page: change a value or turn the light, and see what "
                "becomes of it. The results of the other sections stay what they are.");
+    if (const DesignNames names(folder); names.are_several()) section.paragraphs.push_back(names.of(*json) + ".");
     section.id = "live-section";
     section.has_live = true;
     page.live = LiveStart{toml, "design.toml"};

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "core/number_format.h"
 #include "core/version.h"
+#include "report/page/design_names.h"
 #include "report/page/document_sections.h"
 #include "report/page/document_view.h"
 
@@ -78,39 +80,80 @@ void add_pictures(PageSection& section, const ResultDocument& document, const Re
             {caption_of(wanted), "", picture.media_type, picture.bytes, caption_of(wanted) + ", a drawing"});
 }
 
-void add_summary_facts(const ResultDocument& document, std::vector<PageFact>& facts) {
+/// Efficiencies of one of the designs of a document.
+void add_efficiencies(const Json& points, double design, const std::string& whose, std::vector<PageFact>& facts) {
+  const Json* best = nullptr;
+  const Json* normal = nullptr;
+  for (const Json& p : points) {
+    if (number(p, "design") != design) continue;
+    if (best == nullptr || number(p, "rre") > number(*best, "rre")) best = &p;
+    if (normal == nullptr && number(p, "incidence_deg") == 0.0) normal = &p;
+  }
+  if (normal != nullptr) facts.push_back({"RRE at normal incidence" + whose, percent(number(*normal, "rre")), ""});
+  if (best != nullptr && best != normal)
+    facts.push_back({fmt::format("Greatest RRE, at {} deg{}", shown(number(*best, "incidence_deg")), whose),
+                     percent(number(*best, "rre")), ""});
+}
+
+/// What the name of a card ends in: the design of its figure, or the job, where a page has several of them.
+class Subjects {
+ public:
+  explicit Subjects(const ResultFolder& folder) : names_(folder) {
+    std::set<std::string> jobs;
+    for (const ResultDocument& document : folder.documents) jobs.insert(job_of(document));
+    jobs.erase("");
+    are_several_ = names_.are_several() || jobs.size() > 1;
+  }
+
+  std::string of(const ResultDocument& document, double design = 0.0) const {
+    if (!are_several_) return {};
+    const std::string job = job_of(document);
+    return ": " + (job.empty() ? names_.of(document, design) : job);
+  }
+
+ private:
+  /// The job or part of a document about machining.
+  static std::string job_of(const ResultDocument& document) {
+    for (const char* key : {"job", "part"})
+      if (const std::string file = text(document.json, key); !file.empty())
+        return std::filesystem::path(file).filename().string();
+    return {};
+  }
+
+  DesignNames names_;
+  bool are_several_;
+};
+
+void add_summary_facts(const ResultDocument& document, const Subjects& subjects, std::vector<PageFact>& facts) {
   const Json& json = document.json;
   if (document.kind == "rre") {
-    const Json* best = nullptr;
-    const Json* normal = nullptr;
-    for (const Json& p : list(json, "points")) {
-      if (best == nullptr || number(p, "rre") > number(*best, "rre")) best = &p;
-      if (normal == nullptr && number(p, "incidence_deg") == 0.0) normal = &p;
-    }
-    if (normal != nullptr) facts.push_back({"RRE at normal incidence", percent(number(*normal, "rre")), ""});
-    if (best != nullptr && best != normal)
-      facts.push_back({fmt::format("Greatest RRE, at {} deg", shown(number(*best, "incidence_deg"))),
-                       percent(number(*best, "rre")), ""});
+    std::set<double> designs;
+    for (const Json& p : list(json, "points"))
+      if (std::isfinite(number(p, "design"))) designs.insert(number(p, "design"));
+    for (const double design : designs)
+      add_efficiencies(list(json, "points"), design, subjects.of(document, design), facts);
   }
+  const std::string whose = subjects.of(document);
   if (document.kind == "inspect") {
     if (const double n = number(json, "elements_full"); std::isfinite(n))
-      facts.push_back({"Whole elements", fmt::format("{:.0f}", n), ""});
+      facts.push_back({"Whole elements" + whose, fmt::format("{:.0f}", n), ""});
     if (const double limit = number(json, "tir_limit_deg"); std::isfinite(limit))
-      facts.push_back({"Total reflection up to", fixed_visible(limit, 2) + " deg", ""});
+      facts.push_back({"Total reflection up to" + whose, fixed_visible(limit, 2) + " deg", ""});
   }
   if (document.kind == "photometry")
-    facts.push_back({"Photometry", text(json, "verdict"), verdict_style(text(json, "verdict"))});
+    facts.push_back({"Photometry" + whose, text(json, "verdict"), verdict_style(text(json, "verdict"))});
   if (document.kind == "fabrication")
-    facts.push_back({"Machining time", measured(number(json, "time_s") / 3600.0, 2, " h"), ""});
+    facts.push_back({"Machining time" + whose, measured(number(json, "time_s") / 3600.0, 2, " h"), ""});
   if (document.kind == "verification")
-    facts.push_back({"Verification", text(json, "verdict"), verdict_style(text(json, "verdict"))});
+    facts.push_back({"Verification" + whose, text(json, "verdict"), verdict_style(text(json, "verdict"))});
 }
 
 PageSection summary_section(const ResultFolder& folder) {
   PageSection section = titled("Summary");
+  const Subjects subjects(folder);
   for (const auto& [kind, make] : makers())
     for (const ResultDocument& document : folder.documents)
-      if (document.kind == kind) add_summary_facts(document, section.facts);
+      if (document.kind == kind) add_summary_facts(document, subjects, section.facts);
   std::size_t warnings = 0;
   bool is_complete = true;
   for (const ResultDocument& document : folder.documents) {
@@ -137,6 +180,7 @@ PageSection provenance_section(const ResultFolder& folder) {
   warnings.caption = "Warnings";
   warnings.csv_name = "warnings.csv";
   warnings.columns = {"file", "warning"};
+  const DesignNames names(folder);
   std::set<std::string> designs;
   for (const ResultDocument& document : folder.documents) {
     const Json& json = document.json;
@@ -147,7 +191,7 @@ PageSection provenance_section(const ResultFolder& folder) {
     const auto add_design = [&](const Json& design) {
       const std::string content = design.dump(2);
       if (designs.size() < 8 && designs.insert(content).second)
-        section.details.emplace_back("Design: " + name_of_design(design), content);
+        section.details.emplace_back("Design: " + names.of(design), content);
     };
     if (member(json, "design").is_object()) add_design(member(json, "design"));
     for (const Json& design : list(json, "designs"))
@@ -198,6 +242,8 @@ Page study_page(const ResultFolder& folder, const std::string& title) {
   Page page;
   page.title = title;
   const Json* const design = first_design(folder);
+  const DesignNames names(folder);
+  if (page.title.empty() && names.are_several()) page.title = fmt::format("Study of {} designs", names.count());
   if (page.title.empty()) page.title = design != nullptr ? name_of_design(*design) : "Study";
   page.subtitle = fmt::format("Study of a retroreflector, by retrace {}", kVersion);
   std::vector<std::string> files = {"", ""};
@@ -206,12 +252,15 @@ Page study_page(const ResultFolder& folder, const std::string& title) {
     PageSection view;
     view.title = "In three dimensions";
     view.has_scene = true;
+    if (names.are_several()) view.paragraphs.push_back(names.of(*design) + ".");
     page.sections.push_back(std::move(view));
   } else {
     files.pop_back();
   }
   const auto add = [&](const ResultDocument& document, MakeSection make) {
     PageSection section = make(document, folder);
+    if (const Json& own = member(document.json, "design"); names.are_several() && own.is_object())
+      section.paragraphs.insert(section.paragraphs.begin(), "Design: " + names.of(own) + ".");
     add_pictures(section, document, folder);
     page.sections.push_back(std::move(section));
     files.push_back(document.name);

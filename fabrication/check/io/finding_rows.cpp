@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/message_text.h"
+
 namespace retrace::fabrication {
 namespace {
 
@@ -12,7 +14,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kShownFindings = 20;
 
 std::string place_of(const Finding& finding) {
-  std::string place = finding.program;
+  std::string place = printable(finding.program, std::string::npos);
   if (finding.line > 0) place += fmt::format(":{}", finding.line);
   return place.empty() ? place : place + ": ";
 }
@@ -38,7 +40,7 @@ std::string findings_table(const std::vector<Finding>& findings) {
   std::string text;
   for (std::size_t i = 0; i < findings.size() && i < kShownFindings; ++i) {
     const Finding& f = findings[i];
-    text += fmt::format("{}{}: {}{}\n", place_of(f), f.kind, f.message,
+    text += fmt::format("{}{}: {}{}\n", place_of(f), f.kind, printable(f.message, std::string::npos),
                         f.count > 1 ? fmt::format(" ({} times)", f.count) : std::string());
   }
   if (findings.size() > kShownFindings) text += fmt::format("and {} more findings\n", findings.size() - kShownFindings);

@@ -4,6 +4,8 @@
 
 #include <span>
 
+#include "core/text.h"
+
 namespace retrace::studies {
 namespace {
 
@@ -26,18 +28,6 @@ void write_branch(std::span<const Leaf> leaves, int level, std::string& text) {
     }
     text += level > 1 ? "\n}" : "}";
   }
-}
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text)
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else
-      safe += c;
-  return safe;
 }
 
 }  // namespace
@@ -68,7 +58,7 @@ std::string radiance_text(const TensorTree& tree, const std::string& name) {
 <ScatteringDataType>BRDF</ScatteringDataType>
 <ScatteringData>
 )",
-                                 escaped(name));
+                                 markup_text(name));
   write_branch(tree.leaves, tree.level, text);
   return text + R"(
 </ScatteringData>

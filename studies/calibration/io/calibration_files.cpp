@@ -8,6 +8,7 @@
 
 #include "core/csv.h"
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 
 namespace retrace::studies {
@@ -115,8 +116,8 @@ std::string calibration_json(const Calibration& result) {
 }
 
 std::string calibration_table(const Calibration& result) {
-  return fmt::format("{} on machine {}: {} measurements\n", result.parts.file, result.machine.name,
-                     result.parts.measurements.size()) +
+  return fmt::format("{} on machine {}: {} measurements\n", printable(result.parts.file, std::string::npos),
+                     printable(result.machine.name), result.parts.measurements.size()) +
          rows_of(result);
 }
 
@@ -145,11 +146,12 @@ std::string correction_json(const Correction& result) {
 
 std::string correction_table(const Correction& result) {
   const Calibration& found = result.calibration;
-  std::string text =
-      fmt::format("{} on machine {}: {} maps\n", found.parts.file, found.machine.name, result.maps.size());
+  std::string text = fmt::format("{} on machine {}: {} maps\n", printable(found.parts.file, std::string::npos),
+                                 printable(found.machine.name), result.maps.size());
   for (std::size_t k = 0; k < result.maps.size(); ++k) {
     const RegisteredMap& map = result.registered[k];
-    text += fmt::format("  {:<24} middle at X {} Y {} mm, {} facets{}, {} nm rms off the design\n", result.maps[k].file,
+    text += fmt::format("  {:<24} middle at X {} Y {} mm, {} facets{}, {} nm rms off the design\n",
+                        printable(result.maps[k].file, std::string::npos),
                         fixed(map.part_from_map.translation_mm.x(), 4), fixed(map.part_from_map.translation_mm.y(), 4),
                         map.figures.size() / 3, map.face ? " and the face" : "", fixed(map.rms_nm, 1));
   }
@@ -210,7 +212,7 @@ std::string test_cuts_json(const TestCuts& cuts) {
 
 std::string test_cuts_table(const TestCuts& cuts) {
   std::string text = fmt::format("Test cuts for machine {}: {} figures to be measured\n",
-                                 cuts.parts.plans.front().machine.name, cuts.parts.measurements.size());
+                                 printable(cuts.parts.plans.front().machine.name), cuts.parts.measurements.size());
   for (std::size_t k = 0; k < cuts.jobs.size(); ++k)
     text += fmt::format("  {:<24} {} prisms, {} s\n", cuts.parts.jobs[k], cuts.jobs[k].elements,
                         fixed(cuts.parts.plans[k].plan.time.total_s(), 0));

@@ -240,8 +240,8 @@ std::string time_calibration_json(const TimeCalibration& result) {
 }
 
 std::string time_calibration_table(const TimeCalibration& result) {
-  std::string text = fmt::format("{} on machine {}: {} times\n", result.programs.file, result.machine.name,
-                                 result.programs.rows.size());
+  std::string text = fmt::format("{} on machine {}: {} times\n", printable(result.programs.file, std::string::npos),
+                                 printable(result.machine.name), result.programs.rows.size());
   for (std::size_t k = 0; k < kTimeQuantities; ++k) {
     const CalibratedTime& found = result.quantities[k];
     text += fmt::format("  {:<50} {}\n", kTimeQuantityWords[k].words,

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "fabrication/check/io/finding_rows.h"
 
@@ -71,7 +72,8 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
 
 std::string verification_table(const VerificationRun& run) {
   const Verification& r = run.result;
-  std::string text = fmt::format("{} on machine {}: {}\n", run.request.job, run.machine.name, r.verdict());
+  std::string text = fmt::format("{} on machine {}: {}\n", printable(run.request.job, std::string::npos),
+                                 printable(run.machine.name), r.verdict());
   const auto row = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<28} {}\n", name, value);
   };

@@ -116,7 +116,7 @@ std::string zone_design_text(const Study& study, const std::vector<Zone>& zones,
   const Candidate candidate = make_candidate(study, zones[zone].cell.values);
   std::string comment =
       fmt::format("# Zone {} of {} of {}: {} of the area", zone + 1, zones.size(),
-                  std::filesystem::path(study.source).filename().string(), shortest(zones[zone].share));
+                  printable(std::filesystem::path(study.source).filename().string()), shortest(zones[zone].share));
   if (const double turn_deg = candidate.analysis().rotation_deg; turn_deg != 0.0)
     comment += fmt::format(", turned by {} degrees (--rotation of retrace photometry)", shortest(turn_deg));
   return design_text(candidate.design(), comment + "\n");
@@ -157,7 +157,7 @@ std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones
   if (request.layout == ZoneLayout::blocks) regions = blocks_of(shares, size_mm);
   if (request.layout == ZoneLayout::rows) regions = rows_of(shares, size_mm, element_mm);
   std::string text = design_text(whole, fmt::format("# The {} zones of {} in {}.\n", zones.size(),
-                                                    std::filesystem::path(study.source).filename().string(),
+                                                    printable(std::filesystem::path(study.source).filename().string()),
                                                     kZoneLayouts[static_cast<std::size_t>(request.layout)]));
   for (std::size_t k = 0; k < zones.size(); ++k) {
     const PointValues& values = zones[k].cell.values;

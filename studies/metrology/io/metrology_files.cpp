@@ -9,6 +9,7 @@
 
 #include "core/csv.h"
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 
 namespace retrace::studies {
@@ -94,11 +95,8 @@ double rounded(double value) {
 }
 
 /// A file's name as a comment may hold it.
-std::string plain_name(const std::string& file) {
-  std::string name = std::filesystem::path(file).filename().string();
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c < ' ' || c == 0x7f; }, '?');
-  return name;
+std::string printable_name(const std::string& file) {
+  return printable(std::filesystem::path(file).filename().string(), std::string::npos);
 }
 
 std::string row_of(const char* name, const HeightParameters& p) {
@@ -171,7 +169,7 @@ std::string metrology_json(const MetrologyResult& result) {
 }
 
 std::string surface_toml(const MetrologyResult& result) {
-  std::string text = fmt::format("[surface]  # measured: {}, cut-off {} um\n", plain_name(result.request.file),
+  std::string text = fmt::format("[surface]  # measured: {}, cut-off {} um\n", printable_name(result.request.file),
                                  shortest(result.request.cutoff_um));
   for (const auto& [key, value] : surface_keys(result)) text += fmt::format("{} = {}\n", key, shortest(rounded(value)));
   return text;
@@ -179,7 +177,7 @@ std::string surface_toml(const MetrologyResult& result) {
 
 std::string metrology_text(const MetrologyResult& result) {
   const HeightMap& map = result.surface;
-  std::string text = fmt::format("{}: {}\n", plain_name(result.request.file), result.format);
+  std::string text = fmt::format("{}: {}\n", printable_name(result.request.file), result.format);
   text += map.is_profile() ? fmt::format("  points              {}, {} um apart, {} missing\n", map.columns,
                                          fixed(map.x_pixel_um, 4), result.missing)
                            : fmt::format("  points              {} x {}, {} x {} um apart, {} missing\n", map.columns,

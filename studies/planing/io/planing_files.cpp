@@ -163,8 +163,8 @@ std::string planing_table(const PlaningResult& result) {
   if (!result.part.title.empty()) text += printable(result.part.title) + "\n";
   text += "program                 cuts  frames   hours  s/frame\n";
   for (std::size_t k = 0; k < result.programs.size(); ++k)
-    text += fmt::format("{:<22} {:>5} {:>7} {:>7} {:>8}\n", result.programs[k].name, result.plan.programs[k].cuts,
-                        result.check.frames[k], fixed(result.check.time_s[k] / 3600.0, 2),
+    text += fmt::format("{:<22} {:>5} {:>7} {:>7} {:>8}\n", printable(result.programs[k].name, std::string::npos),
+                        result.plan.programs[k].cuts, result.check.frames[k], fixed(result.check.time_s[k] / 3600.0, 2),
                         fixed(per_frame(result.check.time_s[k], result.check.frames[k]), 2));
   const Totals totals = totals_of(result.check);
   text += fmt::format("in all, {} run{} each: {} frames, {} hours\n", result.plan.runs, result.plan.runs > 1 ? "s" : "",
@@ -178,7 +178,8 @@ std::string planing_table(const PlaningResult& result) {
     text += fmt::format("; {} chords, {} passes", result.plan.chords.size() - 1, result.plan.passes);
   text += fmt::format("\n{}\n", result.check.passes() ? "pass" : "fail");
   for (const Finding& f : result.check.findings)
-    text += fmt::format("  {}{}{}: {} ({}, limit {})\n", f.kind, f.program.empty() ? "" : " " + f.program,
+    text += fmt::format("  {}{}{}: {} ({}, limit {})\n", f.kind,
+                        f.program.empty() ? "" : " " + printable(f.program, std::string::npos),
                         f.line > 0 ? fmt::format(":{}", f.line) : "", f.message, fixed(f.value, 6), shortest(f.limit));
   return text;
 }
@@ -208,7 +209,8 @@ std::string verification_json(const PlaningVerification& run, double elapsed_s) 
 std::string verification_table(const PlaningVerification& run) {
   const PlaningCheck& check = run.check;
   const Totals totals = totals_of(check);
-  std::string text = fmt::format("{}: {}\n", run.part.source, check.passes() ? "pass" : "fail");
+  std::string text =
+      fmt::format("{}: {}\n", printable(run.part.source, std::string::npos), check.passes() ? "pass" : "fail");
   const auto row = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<28} {}\n", name, value);
   };

@@ -94,7 +94,7 @@ std::string solid_json(const Solid& solid, const std::string& file) {
 
 std::string solid_table(const Solid& solid) {
   const auto size = solid.upper_mm - solid.lower_mm;
-  std::string text = fmt::format("{} of {}\n", name_of(solid.what), short_name(solid.design));
+  std::string text = fmt::format("{} of {}\n", name_of(solid.what), printable(short_name(solid.design)));
   if (solid.what == SolidKind::mould) text += fmt::format("  block below the deepest point  {} mm\n", solid.block_mm);
   text += fmt::format("  elements   {} whole, {} cut\n", solid.elements_full, solid.elements_partial);
   text += fmt::format("  size       {} x {} x {} mm\n", fixed(size.x(), 4), fixed(size.y(), 4), fixed(size.z(), 4));

@@ -6,6 +6,7 @@
 
 #include "core/csv.h"
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "fabrication/check/io/finding_rows.h"
 
@@ -142,8 +143,8 @@ std::string turning_cusps_csv(const TurningResult& r) {
 
 std::string turning_table(const TurningResult& r) {
   const turning::TurningTool& tool = r.part.tool;
-  std::string text = fmt::format("{}: {} points in {} s, feed {} um\n", r.file, r.points, fixed(r.time_s, 1),
-                                 fixed(1e3 * r.part.path.feed_mm, 3));
+  std::string text = fmt::format("{}: {} points in {} s, feed {} um\n", printable(r.file, std::string::npos), r.points,
+                                 fixed(r.time_s, 1), fixed(1e3 * r.part.path.feed_mm, 3));
   const auto row = [&](const char* name, double value, int digits, const char* unit) {
     text += fmt::format("  {:<34} {:>10} {}\n", name, fixed(value, digits), unit);
   };
@@ -166,10 +167,12 @@ std::string turning_table(const TurningResult& r) {
     row("moves by cubics", static_cast<double>(r.cubics->path.points.size() - 1), 0, "");
     row("their distance from the spiral", r.cubics->path.error_nm, 3, "nm");
     row("form error of their programs", r.cubics->check.inspection.form_error_nm, 3, "nm");
-    row(("size of " + r.cubics->file + " for straight moves'").c_str(), 100.0 * share, 1, "%");
+    row(("size of " + printable(r.cubics->file, std::string::npos) + " for straight moves'").c_str(), 100.0 * share, 1,
+        "%");
   }
   text += fmt::format("  {:<34} {:>10}\n", "verdict", r.passes_inspection() ? "pass" : "fail");
-  for (const fabrication::Finding& finding : r.findings) text += "  " + text_of(finding) + "\n";
+  for (const fabrication::Finding& finding : r.findings)
+    text += "  " + printable(text_of(finding), std::string::npos) + "\n";
   return text;
 }
 
@@ -199,7 +202,8 @@ std::string verification_json(const TurningVerification& run, double elapsed_s) 
 
 std::string verification_table(const TurningVerification& run) {
   const turning::TurningCheck& check = run.check;
-  std::string text = fmt::format("{}: {}\n", run.request.part, run.passes() ? "pass" : "fail");
+  std::string text =
+      fmt::format("{}: {}\n", printable(run.request.part, std::string::npos), run.passes() ? "pass" : "fail");
   const auto row = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<28} {}\n", name, value);
   };
