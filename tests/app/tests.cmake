@@ -21,6 +21,7 @@ retrace_test(command_tests
     app/roughness_test.cpp
     app/rre_test.cpp
     app/schema_command_test.cpp
+    app/terminal_test.cpp
     app/texture_test.cpp
     app/tools_test.cpp
     app/validate_test.cpp

@@ -15,6 +15,10 @@ TEST(Printable, KeepsValidTextAndReplacesTheRest) {
   EXPECT_EQ(printable("RRE (°) − α 😀"), "RRE (°) − α 😀");
   EXPECT_EQ(printable("a\nb\tc"), "a b c");
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a b");
+  EXPECT_EQ(printable("a\xc2\x9b"
+                      "b\uffff"),
+            "a b ")
+      << "what XML may not contain";
   EXPECT_EQ(printable("\xff"), "\ufffd");
   EXPECT_EQ(printable("cut short \xe2\x88"), "cut short \ufffd\ufffd");
   EXPECT_EQ(printable("\xc0\xaf"), "\ufffd\ufffd") << "overlong";

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/page/sections.h"
+#include "report/page/setup_page.h"
 
 namespace retrace::report::page_test {
 namespace {
@@ -46,6 +47,20 @@ TEST(Page, TextsAreTextsWhateverTheyHold) {
   const auto data = nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
   EXPECT_EQ(data["charts"][0]["title"], nasty);
   EXPECT_EQ(data["scene"]["paths"][0]["events"][0], nasty);
+}
+
+TEST(Page, HasThePolicyOfTheLivePage) {
+  const std::string begin = "<meta http-equiv=\"Content-Security-Policy\" content=\"";
+  const auto policy_of = [&](const std::string& html) {
+    EXPECT_EQ(count(html, begin), 1U);
+    EXPECT_LT(html.find(begin), html.find("<style")) << "it holds for what comes after it";
+    const std::size_t at = html.find(begin) + begin.size();
+    return html.substr(at, html.find('"', at) - at);
+  };
+  const std::string policy = policy_of(live_html({}, "T", kAssets));
+  EXPECT_TRUE(policy.starts_with("default-src 'none';")) << policy;
+  EXPECT_EQ(policy_of(page_html({}, kAssets)), policy);
+  EXPECT_EQ(policy_of(setup_html({})), policy);
 }
 
 TEST(Page, CellsShowSixDigitsAndKeepAll) {
@@ -180,6 +195,106 @@ TEST(StudyPage, VerdictsAndFindingsAreShown) {
   EXPECT_EQ(page.sections[0].facts[0].style, "bad");
   EXPECT_EQ(page.sections[1].title, "Verification");
   EXPECT_EQ(page.sections[1].tables[0].rows[0][2].text, "12");
+}
+
+nlohmann::ordered_json design(const std::string& title, double base_mm, const std::string& source = "d.toml") {
+  return {{"source", source},
+          {"title", title},
+          {"element", {{"kind", "rtp"}, {"base_mm", base_mm}, {"width_mm", 1}}},
+          {"array", {{"arrangement", "single"}}}};
+}
+
+nlohmann::ordered_json efficiencies(const std::vector<nlohmann::ordered_json>& designs) {
+  nlohmann::ordered_json points = nlohmann::ordered_json::array();
+  for (std::size_t d = 0; d < designs.size(); ++d)
+    for (const double incidence : {0.0, 10.0})
+      points.push_back({{"design", d},
+                        {"incidence_deg", incidence},
+                        {"azimuth_deg", 0},
+                        {"rre", 0.1 * (1.0 + static_cast<double>(d)) + 0.01 * incidence}});
+  return {{"designs", designs}, {"points", points}};
+}
+
+std::vector<std::string> card_names(const Page& page) {
+  std::vector<std::string> names;
+  for (const PageFact& fact : page.sections[0].facts)
+    if (fact.name != "Documents") names.push_back(fact.name);
+  return names;
+}
+
+TEST(StudyPage, CardsNameTheirDesign) {
+  using Json = nlohmann::ordered_json;
+  const Json a = design("A", 1);
+  const Json b = design("B", 2);
+  ResultFolder folder{"x", {document("rre", efficiencies({a, b}))}, {}};
+  folder.documents.push_back(document("inspect", {{"design", a}, {"elements_full", 1}}));
+  folder.documents.push_back(document("photometry", {{"design", b}, {"verdict", "pass"}}));
+  folder.documents.push_back(document("fabrication", {{"job", "jobs/cut.toml"}, {"time_s", 3600}}));
+  const Page page = study_page(folder, "");
+  EXPECT_EQ(page.title, "Study of 2 designs");
+  const std::vector<PageFact>& facts = page.sections[0].facts;
+  const auto value_of = [&](const std::string& name) {
+    const auto found =
+        std::find_if(facts.begin(), facts.end(), [&](const PageFact& fact) { return fact.name == name; });
+    return found == facts.end() ? std::string("none") : found->value;
+  };
+  EXPECT_EQ(value_of("RRE at normal incidence: A"), "10.00 %");
+  EXPECT_EQ(value_of("RRE at normal incidence: B"), "20.00 %");
+  EXPECT_EQ(value_of("Greatest RRE, at 10 deg: A"), "20.00 %");
+  EXPECT_EQ(value_of("Greatest RRE, at 10 deg: B"), "30.00 %");
+  EXPECT_EQ(value_of("Whole elements: A"), "1");
+  EXPECT_EQ(value_of("Photometry: B"), "pass");
+  EXPECT_EQ(value_of("Machining time: cut.toml"), "1.00 h");
+}
+
+TEST(StudyPage, ADesignThatIsAloneIsNotNamedAgain) {
+  const auto a = design("A", 1);
+  const Page page =
+      study_page({"x", {document("rre", efficiencies({a})), document("inspect", {{"design", a}})}, {}}, "");
+  EXPECT_EQ(page.title, "A");
+  EXPECT_EQ(card_names(page), (std::vector<std::string>{"RRE at normal incidence", "Greatest RRE, at 10 deg"}));
+}
+
+/// By property: with several designs no two cards, curves or captions have one name, whatever the designs are called.
+TEST(StudyPage, DifferentDesignsHaveDifferentNames) {
+  using Json = nlohmann::ordered_json;
+  const std::vector<Json> designs = {design("A", 1),          design("A", 2), design("A", 3, "other.toml"),
+                                     design("A (d.toml)", 4), design("", 5),  design("", 5.0000001)};
+  ResultFolder folder{"x", {document("rre", efficiencies(designs))}, {}};
+  Json regions = Json::array();
+  Json directions = Json::array();
+  for (std::size_t d = 0; d < designs.size(); ++d) {
+    regions.push_back({{"design", d}, {"incidence_deg", 0}, {"azimuth_deg", 0}});
+    directions.push_back({{"design", d}, {"incidence_deg", 0}, {"azimuth_deg", 0}, {"spots", Json::array()}});
+  }
+  folder.documents.push_back(document("footprint", {{"regions", regions}}));
+  folder.documents.push_back(document("far_field", {{"directions", directions}}));
+  const Page page = study_page(folder, "");
+  const auto all_differ = [](std::vector<std::string> names, std::size_t number) {
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
+    EXPECT_EQ(names.size(), number);
+  };
+  all_differ(card_names(page), 2 * designs.size());
+  for (const PageSection& section : page.sections) {
+    std::vector<std::string> captions;
+    for (const PageFigure& figure : section.figures) captions.push_back(figure.caption);
+    if (section.title == "Footprint" || section.title == "Far field") all_differ(captions, designs.size());
+    if (section.title != "Efficiency") continue;
+    std::vector<std::string> labels;
+    for (const ChartSeries& series : section.charts.at(0).series) labels.push_back(series.label);
+    all_differ(labels, designs.size());
+  }
+}
+
+TEST(StudyPage, TestPointsThatFailComeFirst) {
+  nlohmann::ordered_json points = nlohmann::ordered_json::array();
+  for (const char* verdict : {"pass", "unconfirmed", "fail", "pass", "fail", "undetermined"})
+    points.push_back({{"value_mcd_per_lx", points.size()}, {"verdict", verdict}});
+  const Page page = study_page({"x", {document("photometry", {{"verdict", "fail"}, {"points", points}})}, {}}, "");
+  std::vector<std::string> order;
+  for (const auto& row : page.sections[1].tables[0].rows) order.push_back(row[0].text);
+  EXPECT_EQ(order, (std::vector<std::string>{"2", "4", "1", "5", "0", "3"}));
 }
 
 TEST(StudyPage, LongResultsAreCutAndSaySo) {
