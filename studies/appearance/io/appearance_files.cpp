@@ -115,7 +115,7 @@ AppearanceText glsl(const AppearanceResult& result) {
   AppearanceText text;
   text.error = appearance_error(result.probes, told);
   text.what = fmt::format("{} lobes; off the photometer: {}", lobes.lobes.size(), error_text(*text.error));
-  text.text = glsl_text(lobes, {in_quotes(short_name(result.design)), text.what});
+  text.text = glsl_text(lobes, {printable(short_name(result.design), 60), text.what});
   return text;
 }
 
