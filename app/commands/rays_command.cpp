@@ -48,7 +48,7 @@ std::vector<Argument> arguments(RaysOptions& o) {
       {"--emitter KIND", "in place of a file: a disc that sends out rays", &o.emitter, no_file},
       {"--rays N", fmt::format("emitter: how many [{}]", kUsualRays), &o.rays, of_emitter(whole(1, kMostRays))},
       {"--disc-mm D",
-       "diameter of the emitter [0: a point; collimated: the part, or one period of an infinite part, is covered]",
+       "diameter of the emitter [default: 0, a point; collimated light: the size of the part or of one period]",
        &o.disc_mm, of_emitter()},
       {"--half-angle-deg A",
        "emitter: to which its light spreads; gaussian: at which it falls to exp(-2) [lambertian: 90, others: 0]",

@@ -174,15 +174,15 @@ struct Check {
   /// \param object that of the table; of formats that are read as documents alone: the document
   void (*check)(const void* object, const Refuse& refuse);
 };
-/// A key that takes precedence over other keys, which then have no effect. Each of these keys
-/// causes a warning, which also names the key that takes precedence.
+/// A rule by which one key, the winner, makes other keys of a file have no effect. For each such key that the file
+/// gives, the user gets a warning that names both keys.
 struct Precedence {
-  Condition winner;                        ///< the key that takes precedence, and the state in which it does so
-  std::span<const std::string_view> keys;  ///< paths, relative to the table, of the keys that then have no effect
+  Condition winner;                        ///< key of the winner, and the state of the file in which the rule applies
+  std::span<const std::string_view> keys;  ///< keys that then have no effect, as paths relative to the table
   std::string_view effect;                 ///< text after "has no effect", such as "on the refractive index"
   std::string_view meaning;                ///< the rule in one sentence, for the documentation
-  /// True if files normally give both the winner and the keys that it supersedes. A superseded key then causes a
-  /// warning only if an override gives it after the winner was given by the file or by an earlier override.
+  /// True if a file normally gives both the winner and the keys without effect. The warning is then printed only for a
+  /// key that an override (`--set`) sets after the winner was set.
   bool is_refinement = false;
 };
 using Rule = std::variant<OneOf, Check, Precedence>;

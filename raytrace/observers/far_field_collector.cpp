@@ -181,9 +181,9 @@ double FarFieldCollector::replicates_of(const ReturnedBeam& beam) const {
   return beam.replicate ? static_cast<double>(policy_.replicates) : 1.0;
 }
 
-/// Returns the beam moved from its cell to the first copy of the cell. The outline is the one without errors of angle.
-/// Over the distance between the two cells, the incident and the returned wave gain phase. The function removes this
-/// phase, which is the only difference between the fields of the two cells.
+/// Returns the beam as if it had left the reference cell, the copy of its cell at the origin. The outline of the beam
+/// is that of a part without errors of angle. All copies of a cell have the same field, apart from the phase that the
+/// incident and the returned wave gain from one copy to another. The function removes this phase.
 FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam) const {
   const Vec2 by = beam.trail.first ? beam.trail.first->offset_mm : Vec2::Zero();
   const ErrorFreeExit exit = error_free_exit(beam, to_source_, by).value_or(ErrorFreeExit{});

@@ -1,5 +1,5 @@
-// Members of Photometer that choose the wavelengths to trace for each direction of light. The choice depends on the
-// knees: wavelengths at which total reflection begins or ends at a facet.
+// Members of Photometer that choose the wavelengths to trace for each direction of light. At some wavelengths, total
+// reflection begins or ends at a facet. These wavelengths are called knees here, and the choice depends on them.
 #include <algorithm>
 #include <cmath>
 
@@ -17,12 +17,12 @@ namespace {
 constexpr std::size_t kLeastPartsOfValues = 4;
 /// Maximum wavelength step of the table of refractive indices. The error of linear interpolation is then at most 5e-6.
 constexpr double kIndexStepNm = 10.0;
-/// Fraction of the flux at each end of the spectrum in which knees are ignored.
+/// Knees are ignored in both ends of the spectrum. Each end has this fraction of the flux.
 constexpr double kLeastShare = 2e-3;
 /// Minimum distance between knees. Knees that are closer are merged.
 constexpr double kLeastDistanceNm = 4.0;
 constexpr std::size_t kMostKnees = 4;
-/// Rounding step of knees. Settings with equal rounded knees are traced together.
+/// Knees are rounded to multiples of this step, so that settings with almost equal knees are traced together.
 constexpr double kRoundingNm = 0.01;
 
 struct IndexAt {
@@ -58,7 +58,8 @@ std::vector<IndexAt> index_table(const Design& design, const materials::Spectrum
   return table;
 }
 
-/// Merges knees that are closer than kLeastDistanceNm. This distance is doubled until at most kMostKnees remain.
+/// Merges knees that are closer than kLeastDistanceNm into one at their mean. If more than kMostKnees remain, the
+/// distance is doubled until at most kMostKnees remain.
 std::vector<double> joined(std::vector<double> knees_nm) {
   std::sort(knees_nm.begin(), knees_nm.end());
   for (double distance_nm = kLeastDistanceNm;; distance_nm *= 2.0) {
