@@ -63,12 +63,19 @@ struct GasRefractivity {
   std::vector<Term> terms;
 };
 
-/// A formula of the refractiveindex.info database by its number, 1 to 9, w in um; terms that are not there are 0: 1 n^2
-/// - 1 = c1 + sum of c w^2 / (w^2 - c'^2), 2 the same with c' for c'^2, 3 n^2 = c1 + sum of c w^c', 4 n^2 = c1
-/// + c2 w^c3 / (w^2 - c4^c5) + c6 w^c7 / (w^2 - c8^c9) + sum of c w^c', 5 n = c1 + sum of c w^c', 6 n - 1 = c1 + sum of
-/// c / (c' - w^-2), 7 n = c1 + c2 L + c3 L^2 + c4 w^2 + c5 w^4 + c6 w^6, L = 1 / (w^2 - 0.028), 8 (n^2 - 1) / (n^2 + 2)
-/// = c1 + c2 w^2 / (w^2 - c3) + c4 w^2, 9 n^2 = c1 + c2 / (w^2 - c3) + c4 (w - c5) / ((w - c5)^2 + c6). M. N.
-/// Polyanskiy, Refractiveindex.info database of optical constants, Sci. Data 11, 94 (2024), "Dispersion formulas".
+/// A dispersion formula of the refractiveindex.info database. Each formula has a number; w is the wavelength in um and
+/// L = 1 / (w^2 - 0.028). Sums run over all further pairs of coefficients, c and c'. Missing coefficients are 0.
+/// 1: n^2 - 1 = c1 + sum of c w^2 / (w^2 - c'^2)
+/// 2: n^2 - 1 = c1 + sum of c w^2 / (w^2 - c')
+/// 3: n^2 = c1 + sum of c w^c'
+/// 4: n^2 = c1 + c2 w^c3 / (w^2 - c4^c5) + c6 w^c7 / (w^2 - c8^c9) + sum of c w^c'
+/// 5: n = c1 + sum of c w^c'
+/// 6: n - 1 = c1 + sum of c / (c' - w^-2)
+/// 7: n = c1 + c2 L + c3 L^2 + c4 w^2 + c5 w^4 + c6 w^6
+/// 8: (n^2 - 1) / (n^2 + 2) = c1 + c2 w^2 / (w^2 - c3) + c4 w^2
+/// 9: n^2 = c1 + c2 / (w^2 - c3) + c4 (w - c5) / ((w - c5)^2 + c6)
+/// Source: M. N. Polyanskiy, Refractiveindex.info database of optical constants, Sci. Data 11, 94 (2024), "Dispersion
+/// formulas".
 struct RecordFormula {
   int number = 2;
   std::vector<double> c;  ///< c1 first

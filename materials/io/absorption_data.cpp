@@ -58,7 +58,8 @@ void AbsorptionData::finish(Material& material) {
   warn(left_out_, "is left out", "are left out", material);
   if (curve.values.empty() && left_out_.count > 0)
     material.warnings.emplace_back(
-        InputError({file_, 0, key_}, "has no usable absorption, which counts as 0; give body.absorption_per_mm")
+        InputError({file_, 0, key_},
+                   "has no usable sample of the absorption; 0 is used instead unless body.absorption_per_mm is given")
             .what());
   if (curve.values.size() == 1)
     material.absorption_per_mm = curve.values.front();

@@ -1,7 +1,7 @@
 #pragma once
 
-// Absorption as data files give it. Blemishes of single samples are reported as warnings, because the refractive index
-// in the same file is usable without them.
+// Collects the samples of absorption that a data file contains. Samples that cannot be used cause only warnings,
+// because the refractive index in the same file does not depend on them.
 
 #include <optional>
 #include <string>
@@ -15,18 +15,24 @@ namespace retrace::materials {
 /// Samples of absorption over wavelength that are read from a file one by one.
 class AbsorptionData {
  public:
-  /// \param file its name, for warnings \param key the record or key that holds the samples
+  /// \param file name of the file, for warnings
+  /// \param key name of the record or key that contains the samples, for warnings
   AbsorptionData(std::string file, std::string key) : file_(std::move(file)), key_(std::move(key)) {}
 
-  /// Adds a sample. \param line of the file \param per_mm Napierian, for power, >= 0
+  /// Adds a sample.
+  /// \param line line of the file
+  /// \param per_mm Napierian absorption coefficient of the power, >= 0
   void add(int line, double wavelength_nm, double per_mm) { samples_.push_back({line, wavelength_nm, per_mm}); }
-  /// Adds a sample whose value is noise of the measurement about 0, as 0. \param reason what is allowed and was given
+  /// Adds a sample with the absorption 0. The value in the file is slightly beyond its bound because of measurement
+  /// noise.
+  /// \param reason text for the warning: the allowed values and the given value
   void add_zero(int line, double wavelength_nm, std::string_view reason);
-  /// Leaves a sample out. \param reason what is allowed and was given
+  /// Counts a sample that cannot be used and is left out.
+  /// \param reason text for the warning: the allowed values and the given value
   void leave_out(int line, std::string_view reason);
 
-  /// Sets the absorption of `material` and adds the warnings. Equal samples count one time; samples that differ at the
-  /// same wavelength are left out.
+  /// Sets the absorption of `material` and adds the warnings. Equal samples count as one sample. Samples with different
+  /// values at the same wavelength are left out.
   void finish(Material& material);
 
  private:
@@ -35,7 +41,7 @@ class AbsorptionData {
     double wavelength_nm = 0.0;
     double per_mm = 0.0;
   };
-  /// Samples that are treated in the same way, and where the first of them is.
+  /// Number of samples that cause the same warning, with the line and the reason of the first of these samples.
   struct Blemishes {
     int count = 0;
     int line = 0;

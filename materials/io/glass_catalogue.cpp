@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kMostCatalogueBytes = std::size_t{16} << 20;
 constexpr std::size_t kMostCoefficients = 10;
-/// Largest amount by which noise of a measurement may raise a transmittance above 1.
+/// Maximum amount by which measurement noise may raise a transmittance above 1.
 constexpr double kNoiseOfTransmittance = 0.01;
 
 /// Exponents of w in n^2, in the order of the coefficients.
@@ -30,8 +30,8 @@ constexpr std::array kExtended = {0, 2, -2, -4, -6, -8, -10, -12};
 constexpr std::array kExtended2 = {0, 2, -2, -4, -6, -8, 4, 6};
 constexpr std::array kExtended3 = {0, 2, 4, -2, -4, -6, -8, -10, -12};
 
-/// Returns UTF-16 with a byte order mark as bytes, whose characters beyond ASCII are question marks, and other text
-/// without its byte order mark.
+/// Converts UTF-16 text with a byte order mark to ASCII; characters outside ASCII become question marks. Returns other
+/// text unchanged, but without its byte order mark.
 std::string narrow(std::string_view text) {
   const bool is_little = text.starts_with("\xff\xfe");
   if (!is_little && !text.starts_with("\xfe\xff")) return std::string(without_byte_order_mark(text));
@@ -55,7 +55,8 @@ PowerSeries series(std::span<const double> coefficients, std::span<const int> ex
   return made;
 }
 
-/// Of pairs of strength and resonance; those without strength are left out, so that they have no pole.
+/// Returns the Sellmeier formula with these pairs of strength and resonance. Pairs with the strength 0 are left out,
+/// because they must not cause a pole.
 Sellmeier sellmeier(std::span<const double> pairs, PowerSeries rest = {}) {
   Sellmeier made{.terms = {}, .rest = std::move(rest)};
   for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
@@ -95,8 +96,8 @@ void GlassCatalogue::fail(int line, std::string_view key, std::string_view text)
   throw InputError({file_, line, std::string(key)}, text);
 }
 
-/// Returns the fields from `first` on; those that are not there count as 0. \throw InputError if there are fewer than
-/// `least`
+/// Returns the numbers of a record from field `first` on. Missing numbers up to `most` are 0.
+/// \throw InputError if the record has fewer than `least` numbers
 std::vector<double> GlassCatalogue::numbers(const Record& record, std::size_t first, std::size_t least,
                                             std::size_t most) const {
   const std::string& code = record.front().text;
@@ -112,7 +113,8 @@ std::vector<double> GlassCatalogue::numbers(const Record& record, std::size_t fi
   return values;
 }
 
-/// Refuses a record that a line without a code makes longer than the format allows: this line belongs elsewhere.
+/// Refuses a record that has too many numbers because a line without a code was joined to it. Such a line has probably
+/// lost its code and belongs to another record.
 void GlassCatalogue::require_no_more(const Record& record, std::size_t most) const {
   if (record.size() <= most + 1 || record.back().line == record.front().line) return;
   fail(record.back().line, record.front().text,
@@ -122,24 +124,26 @@ void GlassCatalogue::require_no_more(const Record& record, std::size_t most) con
            most, record.size() - 1));
 }
 
-/// Refuses a strength without its resonance. \param first number of the coefficient that is the first strength, from 1
+/// Refuses a record whose last coefficient is a strength without a resonance, unless this strength is 0.
+/// \param first number of the coefficient that is the first strength, counted from 1
 /// \param end number of the coefficient after the last resonance
 void GlassCatalogue::require_whole_pairs(const Record& record, std::size_t first, std::size_t end) const {
   if (record.size() <= first || record.size() >= end || (record.size() - first) % 2 == 0) return;
   if (number_in(record.back().text) == 0.0) return;
   fail(record.back().line, "CD",
-       fmt::format("coefficients {} to {} must be whole pairs, got {} numbers in all", first, end - 1,
-                   record.size() - 1));
+       fmt::format("coefficients {} to {} must be pairs of strength and resonance, got a total of {} coefficients",
+                   first, end - 1, record.size() - 1));
 }
 
-/// Returns the record with this code, null if there is none. \throw InputError if there are two that differ
+/// Returns the record with this code, or null if there is none.
+/// \throw InputError if two different records have this code
 const GlassCatalogue::Record* GlassCatalogue::find(const std::vector<Record>& records, std::string_view code) const {
   const Record* found = nullptr;
   for (const Record& record : records) {
     if (record.front().text != code) continue;
     if (found != nullptr && *found != record)
       fail(record.front().line, code,
-           fmt::format("a glass must have one such record, got another one in line {}", found->front().line));
+           fmt::format("a glass must have one such record, got a different one in line {}", found->front().line));
     found = &record;
   }
   return found;
@@ -162,7 +166,8 @@ Dispersion GlassCatalogue::dispersion(const Record& name, const Record& coeffici
     into.terms.push_back({strength / resonance_um2, resonance_um2});
     into.rest.terms.push_back({-strength / resonance_um2, 0});
   };
-  // Where the pairs of strength and resonance begin, and where they end.
+  // Formulas with pairs of strength and resonance. Each entry contains the number of the formula, the number of the
+  // coefficient that is the first strength, and the number of the coefficient after the last resonance.
   static constexpr std::array<std::array<std::size_t, 3>, 7> pairs = {
       {{2, 1, 7}, {4, 2, 6}, {6, 1, 9}, {7, 2, 4}, {8, 2, 4}, {9, 2, 6}, {11, 1, 11}}};
   for (const auto& [number, first, end] : pairs)
@@ -214,14 +219,15 @@ void GlassCatalogue::add_range(const Record& record, Material& glass) const {
   const std::vector<double> range_um = numbers(record, 1, 2, 2);
   if (!(range_um[0] > 0.0 && range_um[1] > range_um[0]))
     fail(record.front().line, "LD",
-         fmt::format("must be wavelengths that ascend from above 0, got {} and {}", shortest(range_um[0]),
+         fmt::format("must be two wavelengths above 0 in ascending order, got {} and {}", shortest(range_um[0]),
                      shortest(range_um[1])));
   glass.valid_from_nm = 1e3 * range_um[0];
   glass.valid_to_nm = 1e3 * range_um[1];
 }
 
-/// Adds the absorption from internal transmittances: -ln(T) / thickness. Of samples at the same wavelength the thickest
-/// counts. Samples that transmit nothing, or have no thickness, contain no absorption.
+/// Adds the absorption, -ln(T) / thickness, that follows from the internal transmittances T. If several samples have
+/// the same wavelength, only the thickest is used. Samples with T = 0 or the thickness 0 do not determine the
+/// absorption and are ignored.
 void GlassCatalogue::add_absorption(const std::vector<Record>& records, Material& glass) const {
   AbsorptionData data(file_, "IT");
   struct Sample {
@@ -264,7 +270,7 @@ void GlassCatalogue::add_absorption(const std::vector<Record>& records, Material
   data.finish(glass);
 }
 
-/// Warns if the n_d of the record NM is not that of the formula.
+/// Warns if n_d of the record NM differs from the index of the formula.
 void GlassCatalogue::check_nd(const Record& name, Material& glass) const {
   constexpr std::size_t at = 4;  // after code, name, number of the formula and glass code
   if (name.size() <= at) return;
@@ -281,10 +287,10 @@ Material GlassCatalogue::glass_of(const std::vector<Record>& records) const {
   glass.name = printable(name[1].text);
   glass.source = file_;
   const Record* const coefficients = find(records, "CD");
-  if (coefficients == nullptr) fail(line, glass.name, "has no line CD of coefficients");
+  if (coefficients == nullptr) fail(line, glass.name, "has no line CD, which gives the coefficients of the formula");
   if (const Record* const thermo_optic = find(records, "TD")) add_thermo_optic(*thermo_optic, glass);
   const Record* const range = find(records, "LD");
-  if (range == nullptr) fail(line, glass.name, "has no line LD of the wavelengths that its formula is for");
+  if (range == nullptr) fail(line, glass.name, "has no line LD, which gives the wavelength range of the formula");
   add_range(*range, glass);
   glass.dispersion = dispersion(name, *coefficients);
   check_nd(name, glass);

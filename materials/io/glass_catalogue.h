@@ -12,7 +12,8 @@
 
 namespace retrace::materials {
 
-/// A catalogue as its text: glasses are understood one by one, so that one that is not does not spoil the others.
+/// A catalogue of glasses. Each glass is parsed only when it is requested. An invalid glass therefore does not affect
+/// the others.
 ///
 /// Records begin with a code of two capital letters. NM (name, number of the formula, glass code, n_d), CD
 /// (coefficients of the formula), TD (thermo-optic coefficients and the temperature of the data), LD (range in um) and
@@ -21,17 +22,21 @@ namespace retrace::materials {
 /// mark. Indices are relative to air.
 class GlassCatalogue {
  public:
-  /// \param file its name, for messages \throw InputError if the text holds no glass
+  /// \param file name of the file, for messages
+  /// \throw InputError if the text contains no glass
   GlassCatalogue(std::string_view text, std::string file);
   /// \throw InputError also if the file cannot be read
   static GlassCatalogue read(const std::filesystem::path& file);
 
   const std::vector<std::string>& names() const { return names_; }
-  /// Names are the same whatever the case of their letters. \throw InputError at `where` if there is no such glass
+  /// Checks that a glass with this name exists. Upper and lower case are not distinguished.
+  /// \throw InputError at `where` if there is no such glass
   void require(std::string_view name, const InputLocation& where) const;
-  /// Its warnings name samples of the transmittance that cannot be used, and an n_d that is not that of the formula.
-  /// \pre there is such a glass \throw InputError naming the file and its line if it has a formula that is not known,
-  /// or records of its index that cannot be understood or contradict each other
+  /// Returns the glass with this name. The warnings of the material report samples of the transmittance that cannot be
+  /// used, and a value of n_d that differs from the index of the formula.
+  /// \pre the catalogue contains a glass with this name
+  /// \throw InputError with the file and line, if the formula is unknown, or if the records of the index are invalid or
+  /// contradict each other
   Material glass(std::string_view name) const;
 
  private:
@@ -41,7 +46,7 @@ class GlassCatalogue {
 
     bool operator==(const Field& other) const { return text == other.text; }
   };
-  using Record = std::vector<Field>;  ///< the code first
+  using Record = std::vector<Field>;  ///< fields of a record; the first field is the code
 
   [[noreturn]] void fail(int line, std::string_view key, std::string_view text) const;
   std::vector<double> numbers(const Record& record, std::size_t first, std::size_t least, std::size_t most) const;
@@ -57,7 +62,7 @@ class GlassCatalogue {
 
   std::string file_;
   std::vector<std::string> names_;
-  std::vector<std::vector<Record>> glasses_;  ///< the records of each, from its NM on
+  std::vector<std::vector<Record>> glasses_;  ///< records of each glass, beginning with its record NM
 };
 
 }  // namespace retrace::materials

@@ -22,18 +22,18 @@ namespace {
 
 constexpr std::size_t kMostRecordBytes = std::size_t{4} << 20;
 constexpr std::size_t kMostOfFormula = 64;
-/// Largest k that noise of a measurement may show below 0.
+/// Maximum magnitude of a negative k that counts as measurement noise.
 constexpr double kNoiseOfExtinction = 1e-6;
 constexpr double kZeroCelsiusK = 273.15;
 /// Records round the temperature of 20 degrees C to 293 K.
 constexpr double kSameTemperatureK = 0.2;
 
-/// The coefficients of formulas 1 to 9, for messages.
-constexpr std::string_view kPairs = "1 coefficient and whole pairs";
+/// Allowed numbers of coefficients of the formulas 1 to 9, for messages.
+constexpr std::string_view kPairs = "an odd number of coefficients";
 constexpr std::array<std::string_view, 9> kTerms = {kPairs,
                                                     kPairs,
                                                     kPairs,
-                                                    "1, 5, 9 coefficients or 9 and whole pairs",
+                                                    "1, 5, 9 or a greater odd number of coefficients",
                                                     kPairs,
                                                     kPairs,
                                                     "1 to 6 coefficients",
@@ -129,7 +129,8 @@ class Record {
   }
 
   void begin_index(const YAML::Node& entry, const std::string& type) {
-    if (has_index_) fail(entry["type"], "type", fmt::format("tells the index a second time, got {}", in_quotes(type)));
+    if (has_index_)
+      fail(entry["type"], "type", fmt::format("must give the index only once, got a second entry {}", in_quotes(type)));
     has_index_ = true;
   }
 
@@ -141,30 +142,31 @@ class Record {
     const std::vector<double> range_um = numbers_in(entry, range_key, 2, 2);
     if (!(range_um[0] > 0.0 && range_um[1] > range_um[0]))
       fail(entry[range_key], range_key,
-           fmt::format("must be wavelengths in um that ascend from above 0, got {} and {}", shortest(range_um[0]),
-                       shortest(range_um[1])));
+           fmt::format("must be two wavelengths in um, above 0 in ascending order, got {} and {}",
+                       shortest(range_um[0]), shortest(range_um[1])));
     material.valid_from_nm = 1e3 * range_um[0];
     material.valid_to_nm = 1e3 * range_um[1];
     RecordFormula formula{static_cast<int>(*number), numbers_in(entry, "coefficients", 1, kMostOfFormula)};
     if (!has_whole_terms(formula))
       fail(entry["coefficients"], "coefficients",
-           fmt::format("must be {} of {}, got {} numbers", kTerms[static_cast<std::size_t>(formula.number - 1)], type,
+           fmt::format("must be {} for {}, got {} numbers", kTerms[static_cast<std::size_t>(formula.number - 1)], type,
                        formula.c.size()));
     material.dispersion = std::move(formula);
   }
 
-  /// A row of a table: the words of its numbers, the wavelength in um first.
+  /// A row of a table, as words that are not yet converted to numbers. The first word is the wavelength in um.
   struct Row {
     int line = 0;
     std::vector<std::string> words;
   };
 
-  /// Returns the rows of `data`. Each line has one or more rows of `columns` words. A line with another number of words
-  /// is returned as one row.
+  /// Returns the rows of `data`. A line contains one or more rows of `columns` words. If the number of words in a line
+  /// is not a multiple of `columns`, the whole line is returned as one row.
   std::vector<Row> rows_of(const YAML::Node& entry, std::size_t columns) const {
     const std::string text = text_of(entry, "data");
     const std::vector<std::string_view> lines = split(text, '\n');
-    // The text of a block begins in the line after its indicator. Other text has no ends of lines.
+    // The text of a YAML block begins in the line after the indicator `|`. Text in other forms consists of a single
+    // line.
     int at = line(entry["data"]) + (lines.size() > 1 ? 1 : 0);
     std::vector<Row> rows;
     for (const std::string_view one : lines) {
@@ -176,7 +178,7 @@ class Record {
       }
       ++at;
     }
-    if (rows.empty()) fail(entry["data"], "data", "must have a row or more, got none");
+    if (rows.empty()) fail(entry["data"], "data", "must have at least one row, got none");
     return rows;
   }
 
@@ -190,7 +192,8 @@ class Record {
     return *value;
   }
 
-  /// Returns the wavelength of a row in um. \throw InputError if it is none, or if the row has another number of words
+  /// Returns the wavelength of a row in um.
+  /// \throw InputError if the first word is not a positive number, or if the row does not have `columns` words
   double wavelength_um_of(const Row& row, std::size_t columns) const {
     if (row.words.size() != columns)
       fail(row, fmt::format("must have {} numbers a line, got {}", columns, row.words.size()));
@@ -199,7 +202,7 @@ class Record {
     return um;
   }
 
-  /// Returns the table of n, whose equal rows count one time.
+  /// Returns the table of n. Equal rows count as one row.
   SpectralCurve index_table(const YAML::Node& entry, std::size_t columns) const {
     std::map<double, double> n_at_um;
     for (const Row& row : rows_of(entry, columns)) {
@@ -207,8 +210,8 @@ class Record {
       const double n = number_in_row(row, 1);
       if (!(n >= 0.0)) fail(row, fmt::format("n must be >= 0, got {}", shortest(n)));
       if (const auto [at, is_new] = n_at_um.emplace(um, n); !is_new && at->second != n)
-        fail(row, fmt::format("must have each wavelength once, got {} um with {} and {}", shortest(um),
-                              shortest(at->second), shortest(n)));
+        fail(row, fmt::format("must have one n for each wavelength, got {} and {} at {} um", shortest(at->second),
+                              shortest(n), shortest(um)));
     }
     SpectralCurve curve;
     for (const auto& [um, n] : n_at_um) {
@@ -224,7 +227,8 @@ class Record {
     material.dispersion = TabulatedIndex{std::move(table)};
   }
 
-  /// Adds the absorption from the last column of a table, k. Nothing in it refuses the record, whose index is usable.
+  /// Adds the absorption that follows from k, the last column of a table. Errors in this column cause only warnings,
+  /// because the refractive index does not depend on them.
   void add_extinction(const YAML::Node& entry, std::size_t columns, Material& material) {
     AbsorptionData data(file_, "data");
     try {
@@ -288,7 +292,7 @@ class Record {
     }
   }
 
-  /// Warns if the n_d that the record states is not that of its data.
+  /// Warns if n_d of the record differs from the index of its data.
   void check_nd(const YAML::Node& root, Material& material) const {
     for (const char* const table : {"PROPERTIES", "SPECS"}) {
       const YAML::Node properties = root[table];
@@ -310,7 +314,7 @@ class Record {
 Material parse_index_record(std::string_view text, const std::string& file) {
   try {
     return Record(file).read(text);
-  } catch (const YAML::Exception& error) {  // of nodes that are not what they are taken for
+  } catch (const YAML::Exception& error) {  // a node has an unexpected type
     throw InputError({file, error.mark.is_null() ? 0 : error.mark.line + 1, ""}, printable(error.msg));
   }
 }

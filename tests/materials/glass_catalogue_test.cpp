@@ -99,7 +99,8 @@ TEST(GlassCatalogue, EveryFormulaByHand) {
               std::sqrt(schott + 0.05 / 16 + 0.000005 * 1024 + 0.0000006 * 4096), 1e-15);
 }
 
-// Internal transmittance T of a thickness d is exp(-a d); samples in any order, the thicker of two of one wavelength.
+// The internal transmittance T of a thickness d is exp(-a d). Samples may be in any order. If two samples have the same
+// wavelength, the thicker one is used.
 TEST(GlassCatalogue, TransmittanceIsAbsorption) {
   const Material glass = GlassCatalogue(
                              "NM x 1 0 1 1\nCD 2.25\nLD 0.4 0.7\nIT 0.6 0.5 10\nIT 0.4 0.9 5\nIT 0.4 0.8 25\n"
@@ -140,13 +141,14 @@ TEST(GlassCatalogue, BadFilesAreRefusedWithTheirLine) {
        {"NM x two\nCD 1\nLD 0.4 0.7\n", "x.agf:1: NM: must be finite numbers, got \"two\""},
        {"NM x 14\nCD 1\nLD 0.4 0.7\n", "x.agf:1: NM: the dispersion formula must be 1 to 13, got 14"},
        {"NM x 1.5\nCD 1\nLD 0.4 0.7\n", "x.agf:1: NM: the dispersion formula must be 1 to 13, got 1.5"},
-       {"CC\nNM x 1\nLD 0.4 0.7\n", "x.agf:2: x: has no line CD of coefficients"},
-       {"CC\nNM x 1\nCD 1\n", "x.agf:2: x: has no line LD of the wavelengths that its formula is for"},
+       {"CC\nNM x 1\nLD 0.4 0.7\n", "x.agf:2: x: has no line CD, which gives the coefficients of the formula"},
+       {"CC\nNM x 1\nCD 1\n", "x.agf:2: x: has no line LD, which gives the wavelength range of the formula"},
        {"NM x 1\nCD\nLD 0.4 0.7\n", "x.agf:2: CD: must have at least 1 numbers, got 0"},
        {"NM x 1\nCD 1 nan\nLD 0.4 0.7\n", "x.agf:2: CD: must be finite numbers, got \"nan\""},
        {"NM x 1\nCD 1\nLD 0.7\n", "x.agf:3: LD: must have at least 2 numbers, got 1"},
-       {"NM x 1\nCD 1\nLD 0.7 0.4\n", "x.agf:3: LD: must be wavelengths that ascend from above 0, got 0.7 and 0.4"},
-       {"NM x 1\nCD 1\nLD 0 0.4\n", "x.agf:3: LD: must be wavelengths that ascend from above 0, got 0 and 0.4"},
+       {"NM x 1\nCD 1\nLD 0.7 0.4\n",
+        "x.agf:3: LD: must be two wavelengths above 0 in ascending order, got 0.7 and 0.4"},
+       {"NM x 1\nCD 1\nLD 0 0.4\n", "x.agf:3: LD: must be two wavelengths above 0 in ascending order, got 0 and 0.4"},
        {good + "TD 1 2 3\n", "x.agf:4: TD: must have at least 6 numbers, got 3"},
        {good + "TD 1 2 3 4 5 - 20\n", "x.agf:4: TD: must be finite numbers, got \"-\""},
        {good + "TD 0 0 0 0 0\n0 20\n7\n",
@@ -157,11 +159,11 @@ TEST(GlassCatalogue, BadFilesAreRefusedWithTheirLine) {
         "x.agf:4: LD: must have at most 2 numbers in its joined lines, got 3; a line without a code continues the "
         "record "
         "before it"},
-       {good + "ED 1\nCD 1 0.02\n", "x.agf:5: CD: a glass must have one such record, got another one in line 2"},
+       {good + "ED 1\nCD 1 0.02\n", "x.agf:5: CD: a glass must have one such record, got a different one in line 2"},
        {"NM x 2 0 1 1\nCD 1\nLD 0.4 0.7\n",
-        "x.agf:2: CD: coefficients 1 to 6 must be whole pairs, got 1 numbers in all"},
+        "x.agf:2: CD: coefficients 1 to 6 must be pairs of strength and resonance, got a total of 1 coefficients"},
        {"NM x 4 0 1 1\nCD 1 1\nLD 0.4 0.7\n",
-        "x.agf:2: CD: coefficients 2 to 5 must be whole pairs, got 2 numbers in all"}});
+        "x.agf:2: CD: coefficients 2 to 5 must be pairs of strength and resonance, got a total of 2 coefficients"}});
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -177,7 +179,7 @@ std::string text_of(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// The glasses of tests/data/glasses.agf with samples of the transmittance, line by line.
+/// Returns the lines of tests/data/glasses.agf, with samples of the transmittance added to the last glass.
 std::vector<std::string> catalogue_lines() {
   std::vector<std::string> lines = lines_of(read_file(kFile));
   for (const char* const sample : {"IT 0.6 0.99 10", "IT 0.4 0.9 25", "IT 0.5 0.95 25"}) lines.push_back(sample);
@@ -198,7 +200,7 @@ void expect_same_glass(const Material& a, const Material& b) {
   }
 }
 
-// A line that is broken between any two of its fields means the same as the whole line.
+// A line that is broken between two of its fields gives the same glass as the unbroken line.
 TEST(GlassCatalogue, BrokenLinesAreJoined) {
   const std::vector<std::string> whole = catalogue_lines();
   const GlassCatalogue expected(text_of(whole), "x.agf");
@@ -214,7 +216,7 @@ TEST(GlassCatalogue, BrokenLinesAreJoined) {
   }
 }
 
-// A record that has lost its code never gives another index: the glass is refused, or what it says stays.
+// If a record has lost its code, the glass either is refused or keeps its index and its wavelength range.
 TEST(GlassCatalogue, LostCodesNeverChangeAnIndex) {
   const std::vector<std::string> whole = catalogue_lines();
   const GlassCatalogue expected(text_of(whole), "x.agf");
@@ -238,7 +240,8 @@ TEST(GlassCatalogue, LostCodesNeverChangeAnIndex) {
   EXPECT_GT(refused, 10);
 }
 
-// A mutation of the coefficients that moves n(d) is noticed by n_d of the record NM.
+// If two coefficients are swapped and the index at the d line changes, the value n_d of the record NM reveals the
+// error. A warning is then given.
 TEST(GlassCatalogue, SwappedCoefficientsAreWarnedOf) {
   const std::vector<std::string> whole = catalogue_lines();
   const GlassCatalogue right(text_of(whole), "x.agf");
@@ -294,7 +297,8 @@ TEST(GlassCatalogue, PlaceholdersOfNdAreNoDoubt) {
   EXPECT_EQ(warnings("1.7", "2 12"), 0U) << "the data of infrared glasses do not reach the d line";
 }
 
-// Whatever one sample of the transmittance has wrong, the index and all other samples are usable.
+// A sample of the transmittance that cannot be used affects neither the index nor the other samples. A warning names
+// its line.
 TEST(GlassCatalogue, BlemishesOfTheTransmittanceAreWarnedOf) {
   const std::vector<std::string> good = {"NM x 5 0 1.5 60", "CD 1.5", "LD 0.4 0.7", "IT 0.4 0.9 25", "IT 0.6 0.95 25"};
   const Material right = GlassCatalogue(text_of(good), "x.agf").glass("x");

@@ -74,7 +74,7 @@ TEST(IndexRecord, KnowsTheNineFormulas) {
     EXPECT_NEAR(index_at(formula(9, "2.5 0.015 0.03 0.02 0.3 1.2"), w),
                 std::sqrt(2.5 + 0.015 / (w2 - 0.03) + 0.02 * off / (off * off + 1.2)), 1e-14);
   }
-  // Coefficients that are not there are 0, and a resonance without strength is no pole.
+  // Missing coefficients are 0. A resonance with the strength 0 causes no pole.
   EXPECT_NEAR(index_at(formula(2, "1.25"), 0.5), 1.5, 1e-15);
   EXPECT_NEAR(index_at(formula(4, "2.25"), 0.5), 1.5, 1e-15);
   EXPECT_NEAR(index_at(formula(2, "1.25 0 0.25"), 0.5), 1.5, 1e-15);
@@ -110,7 +110,7 @@ TEST(IndexRecord, WhatIsWrongIsToldWithItsLine) {
   EXPECT_EQ(with("formula 2", "formula 10"), "glass.yml:2: type: must be formula 1 to formula 9, got \"formula 10\"");
   EXPECT_EQ(with("formula 2", "polynomial").substr(0, 55), "glass.yml:2: type: must be formula 1 to formula 9, tabu");
   EXPECT_EQ(with("0.3 1", "1 0.3"),
-            "glass.yml:3: wavelength_range: must be wavelengths in um that ascend from above 0, got 1 and 0.3");
+            "glass.yml:3: wavelength_range: must be two wavelengths in um, above 0 in ascending order, got 1 and 0.3");
   EXPECT_EQ(with("coefficients", "factors"), "glass.yml:2: coefficients: is missing");
   const auto table = [&](const std::string& data) {
     return complaint("DATA:\n  - type: tabulated n\n    data: |\n      " + data + "\n");
@@ -118,15 +118,17 @@ TEST(IndexRecord, WhatIsWrongIsToldWithItsLine) {
   EXPECT_EQ(table("0.4 1.5 0.5"), "glass.yml:4: data: must have 2 numbers a line, got 3");
   EXPECT_EQ(table("0.4 1.5\n      0.5\n      1.5 0.6\n      1.5"),
             "glass.yml:5: data: must have 2 numbers a line, got 1");
-  EXPECT_EQ(table("0.4 1.5 0.4 1.6"), "glass.yml:4: data: must have each wavelength once, got 0.4 um with 1.5 and 1.6");
+  EXPECT_EQ(table("0.4 1.5 0.4 1.6"),
+            "glass.yml:4: data: must have one n for each wavelength, got 1.5 and 1.6 at 0.4 um");
   EXPECT_EQ(table("-0.4 1.5"), "glass.yml:4: data: wavelengths must be > 0, got -0.4 um");
   EXPECT_EQ(table("0.5 1.5\n      0.4 nan"), "glass.yml:5: data: must be finite numbers, got \"nan\"");
   EXPECT_EQ(table("0.4 -1.5"), "glass.yml:4: data: n must be >= 0, got -1.5");
-  EXPECT_EQ(table(""), "glass.yml:3: data: must have a row or more, got none");
+  EXPECT_EQ(table(""), "glass.yml:3: data: must have at least one row, got none");
   EXPECT_EQ(table("0.4 1.5\n      0.4 1.5\n      0.6 1.4"), "") << "equal rows count one time";
 }
 
-// Numbers of coefficients that make whole terms, by the formulas of the database; all others cut a term.
+// For some numbers of coefficients, every term of a formula has all its coefficients. All other numbers of coefficients
+// are refused. The expected numbers are derived from the formulas of the database.
 TEST(IndexRecord, CutTermsAreRefused) {
   const auto is_whole = [](int number, int count) {
     switch (number) {
@@ -153,14 +155,14 @@ TEST(IndexRecord, CutTermsAreRefused) {
 
 const std::string kHead = "DATA:\n  - type: formula 5\n    wavelength_range: 0.3 1\n    coefficients: 1.5\n";
 
-/// A record of n = 1.5 and these rows of k, the first of which is line 7.
+/// Returns a material with n = 1.5 from a record with these rows of k. The first row is in line 7 of the record.
 Material with_k(const std::vector<std::string>& rows) {
   std::string text = kHead + "  - type: tabulated k\n    data: |\n";
   for (const std::string& row : rows) text += "        " + row + "\n";
   return parse_index_record(text, "glass.yml");
 }
 
-// Whatever one row of k has wrong, the index and all other rows are usable.
+// A row of k that cannot be used affects neither the index nor the other rows. A warning names its line.
 TEST(IndexRecord, BlemishesOfTheExtinctionAreWarnedOf) {
   const std::vector<std::string> good = {"0.40 1e-8", "0.60 3e-8", "0.70 1e-8"};
   const Material right = with_k(good);
@@ -211,7 +213,7 @@ TEST(IndexRecord, ContradictoryRowsOfTheExtinctionAreLeftOut) {
   EXPECT_EQ(absorption_per_mm(material, 500.0), absorption_per_mm(with_k({"0.40 1e-8", "0.70 1e-8"}), 500.0));
 }
 
-// The index of a table of n and k is that of its rows whatever k is, and tables of k that cannot be read are left out.
+// In a table of n and k, the index does not depend on the values of k. Tables of k that cannot be read are left out.
 TEST(IndexRecord, ExtinctionNeverRefusesTheIndex) {
   const Material nk = record("  - type: tabulated nk\n    data: |\n      0.4 1.5 1e-8\n      0.6 1.4 -999\n");
   EXPECT_NEAR(index_at(nk, 0.5), 1.45, 1e-15);
