@@ -13,7 +13,8 @@ namespace {
 
 using namespace document;
 
-/// What makes a design another one: not the file that it was read from, and not what was computed from it.
+/// Returns the text by which two designs are compared. It contains all keys of the design except the name of its file
+/// and the computed spectrum.
 std::string content_of(Json design) {
   design.erase("source");
   design.erase("spectrum");

@@ -1,6 +1,6 @@
 #pragma once
 
-// Names that tell the designs of a result folder apart.
+// Distinct names for the designs of a result folder.
 
 #include <map>
 #include <string>
@@ -9,8 +9,9 @@
 
 namespace retrace::report {
 
-/// Returns the design that a number in a document refers to; null if no document of its folder quotes the design.
-/// Footprints and far fields refer to the designs of the efficiency next to them.
+/// Returns the design with the index `number` in the list of designs of a document. Footprints and far fields have no
+/// such list; for them, the list of the efficiency document in the same folder is used. Returns null if the design is
+/// not found.
 const nlohmann::ordered_json* design_of(const ResultFolder& folder, const ResultDocument& document, double number);
 
 /// A name for each design of a folder. Different designs have different names.
@@ -20,14 +21,15 @@ class DesignNames {
 
   bool are_several() const { return names_.size() > 1; }
   std::size_t count() const { return names_.size(); }
-  /// Returns the name of a design that a document of the folder quotes.
+  /// Returns the name of a design that a document of the folder contains.
   std::string of(const nlohmann::ordered_json& design) const;
-  /// Returns the name of the design that a number in a document refers to, or "design 3".
+  /// Returns the name of the design with the index `number`, see design_of(). If the design is not found, returns
+  /// "design" and the number.
   std::string of(const ResultDocument& document, double number) const;
 
  private:
   const ResultFolder& folder_;
-  std::map<std::string, std::string> names_;  ///< of contents
+  std::map<std::string, std::string> names_;  ///< names by the JSON content of the design
 };
 
 }  // namespace retrace::report

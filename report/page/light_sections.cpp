@@ -129,7 +129,8 @@ bool is_of(const Json& feature, const Json& region) {
   return true;
 }
 
-/// Returns what a caption begins with: the name of a design where there are several.
+/// Returns the text with which a caption begins: the name of the design if the folder has several designs, otherwise
+/// nothing.
 std::string prefix_of(const DesignNames& names, const ResultDocument& document, double design) {
   return names.are_several() ? names.of(document, design) + ". " : std::string();
 }
@@ -165,7 +166,8 @@ std::vector<const Json*> spread(const Json& entries) {
   return chosen;
 }
 
-/// Returns the extent of a design's entrance face, where the design gives it, and of all its active regions.
+/// Returns the smallest rectangle that contains all active regions of a design. If `design` gives the size of the
+/// entrance face, the rectangle also contains this face. The y axis of the rectangle points down, as in the drawing.
 Extent face_extent(const Json& json, double number_of_design, const Json* design) {
   Extent extent;
   for (const Json& feature : list(json, "features"))
@@ -185,8 +187,9 @@ Extent face_extent(const Json& json, double number_of_design, const Json* design
   return extent.empty() ? Extent{0.0, 0.0, 1.0, 1.0} : extent;
 }
 
-/// One direction's active regions, darker where more comes back. y of the drawing points down.
-/// \param of_design name of the design, for its caption; empty: not told
+/// Draws the active regions for one direction of the light. Regions that return more light are darker. The y axis of
+/// the drawing points down.
+/// \param of_design beginning of the caption, see prefix_of()
 PageFigure footprint_panel(const Json& json, const Json& region, const Extent& extent, const std::string& of_design) {
   std::string shapes;
   std::size_t drawn = 0;
@@ -244,8 +247,9 @@ PageSection footprint_section(const ResultDocument& document, const ResultFolder
 
 namespace {
 
-/// Spots by how far and towards where they miss the way back to the source; their area is as their power.
-/// \param of_design name of the design, for its caption; empty: not told
+/// Draws the directions of returned light as spots, relative to the direction to the source in the centre. The area of
+/// a spot is proportional to its power.
+/// \param of_design beginning of the caption, see prefix_of()
 PageFigure far_field_panel(const Json& direction, const std::string& of_design) {
   const Json& spots = list(direction, "spots");
   double reach = 1.0;
@@ -278,10 +282,11 @@ PageFigure far_field_panel(const Json& direction, const std::string& of_design) 
         -95.0 * r / reach * std::sin(angle), size, r, percent(power));
   }
   PageFigure figure;
-  figure.caption =
-      fmt::format("{}Incidence {} deg, azimuth {} deg. {} of the light leaves more than {:.0f} arcmin off.", of_design,
-                  shown(number(direction, "incidence_deg")), shown(number(direction, "azimuth_deg")),
-                  percent(other_reach), kWindowArcmin);
+  figure.caption = fmt::format(
+      "{}Incidence {} deg, azimuth {} deg. {} of the light leaves more than {:.0f} arcmin from the direction to the "
+      "source.",
+      of_design, shown(number(direction, "incidence_deg")), shown(number(direction, "azimuth_deg")),
+      percent(other_reach), kWindowArcmin);
   figure.svg = fmt::format("<svg role=\"img\" aria-label=\"{}\" viewBox=\"-100 -100 200 200\">{}</svg>",
                            markup_text(figure.caption), shapes);
   return figure;

@@ -95,7 +95,8 @@ void add_efficiencies(const Json& points, double design, const std::string& whos
                      percent(number(*best, "rre")), ""});
 }
 
-/// What the name of a card ends in: the design of its figure, or the job, where a page has several of them.
+/// Creates the endings of the names of cards. If the page has several designs or several jobs, the name of a card ends
+/// with the name of its design or job.
 class Subjects {
  public:
   explicit Subjects(const ResultFolder& folder) : names_(folder) {
@@ -112,7 +113,7 @@ class Subjects {
   }
 
  private:
-  /// The job or part of a document about machining.
+  /// Returns the file name of the job or part that a document about machining refers to; empty for other documents.
   static std::string job_of(const ResultDocument& document) {
     for (const char* key : {"job", "part"})
       if (const std::string file = text(document.json, key); !file.empty())

@@ -255,7 +255,8 @@ TEST(StudyPage, ADesignThatIsAloneIsNotNamedAgain) {
   EXPECT_EQ(card_names(page), (std::vector<std::string>{"RRE at normal incidence", "Greatest RRE, at 10 deg"}));
 }
 
-/// By property: with several designs no two cards, curves or captions have one name, whatever the designs are called.
+/// On a page with several designs, no two cards, curves or captions have the same name, even if designs have the same
+/// title.
 TEST(StudyPage, DifferentDesignsHaveDifferentNames) {
   using Json = nlohmann::ordered_json;
   const std::vector<Json> designs = {design("A", 1),          design("A", 2), design("A", 3, "other.toml"),
