@@ -60,9 +60,11 @@ class ResultFiles {
   /// The same, and refuses outputs that cannot be written; makes the output folder. To be called before anything is
   /// written. \throw InputError, OutputError
   void prepare() const;
-  /// Writes the JSON document and the files where the options want them, and the text, with what was written, to
-  /// standard output if neither `--quiet` nor `--json -` forbids it, free of control characters; then says the
-  /// warnings, and that work was interrupted. \return the exit code \throw OutputError
+  /// Writes the JSON document and the other files to the paths that the options give. Then prints `text` and the names
+  /// of the written files to standard output, unless `--quiet` or `--json -` is given; control characters are printed
+  /// as escapes. Finally prints the warnings, and a message if the work was interrupted, to standard error.
+  /// \return the exit code
+  /// \throw OutputError if a file or standard output cannot be written
   ExitCode write(std::string_view json, std::string_view text, const std::vector<std::string>& warnings = {},
                  const Ending& ending = {}) const;
 
@@ -92,15 +94,18 @@ void ResultFiles::add_drawing(const std::string& name, Plot plot) {
   add(name + ".png", [once] { return render_png(once()); });
 }
 
-/// The files of a result that is itself the content of a file: it goes to the file of --out, else byte for byte to
-/// standard output; --quiet does not take it away.
+/// Output of a command whose result is a text, such as a job file or a page. The text is written to the file of --out.
+/// Without --out it is printed unchanged to standard output, even if --quiet is given; with `--json -` it is not
+/// printed.
 class TextFiles {
  public:
-  /// Checks them, as ResultFiles::prepare(). \param inputs every file that the command reads
+  /// Checks the output files in the same way as ResultFiles::prepare().
+  /// \param inputs every file that the command reads
   /// \throw InputError, OutputError
   explicit TextFiles(const CommonOptions& common, std::vector<std::string> inputs = {});
 
-  /// As ResultFiles::write(). \param summary for standard output if the text goes to a file
+  /// Writes the result in the same way as ResultFiles::write(), and prints the text if --out is not given.
+  /// \param summary text for standard output if the result is written to a file
   ExitCode write(std::string_view json, const std::string& text, const std::vector<std::string>& warnings = {},
                  const Ending& ending = {}, std::string_view summary = {});
 

@@ -1,7 +1,7 @@
 // Compares the RRE of the exact engine with the RRE of Monte Carlo. Random designs are each lit from one direction.
 //   retrace_error_coverage_benchmark [DESIGNS [FIRST_SEED [TARGET_ERROR]]]
-// The program prints one line for each design whose two values differ by more than 1.96 standard errors. At the end it
-// prints the percentage of designs whose values differ by less.
+// The program prints one line for each design whose two values differ by more than 1.96 standard errors and half of the
+// truncated power. At the end it prints the percentage of designs whose values differ by less.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -32,8 +32,11 @@ std::optional<studies::RrePoint> answer(const studies::Design& design, studies::
 }
 
 struct Trial {
-  double off = 0.0;     ///< RRE of Monte Carlo minus RRE of the exact engine, in standard errors of Monte Carlo
-  bool within = false;  ///< true if |off| is at most 1.96 + half of the truncated power in standard errors
+  /// RRE of Monte Carlo minus the RRE expected from the exact engine, in standard errors of Monte Carlo. The expected
+  /// RRE is the RRE of the exact engine plus half of its truncated power.
+  double off = 0.0;
+  /// True if the difference is at most 1.96 standard errors plus half of the truncated power.
+  bool within = false;
 };
 
 /// Runs both engines on the random design that `seed` generates. Returns nothing if the design is invalid or has rough
@@ -81,7 +84,8 @@ int run(unsigned designs, unsigned seed, double target_error) {
     squares += one->off * one->off;
   }
   fmt::print(
-      "{} designs, target error {}: {:.1f} % differ by less than 1.96 standard errors; root mean square difference "
+      "{} designs, target error {}: {:.1f} % differ by at most 1.96 standard errors and half of the truncated power; "
+      "root mean square difference "
       "{:.2f} standard errors\n",
       count, target_error, 100.0 * within / count, std::sqrt(squares / count));
   return 0;

@@ -14,8 +14,8 @@ namespace retrace {
 /// else.
 std::size_t printable_length(std::string_view text);
 
-/// `text` for use in a one-line message: control characters, noncharacters and bytes that are not UTF-8 become `\n`,
-/// `\x1b` and the like; what is longer than `max_bytes` ends in "...".
+/// Returns `text` for use in a one-line message. Control characters, noncharacters and bytes that are not UTF-8 are
+/// replaced by escapes such as `\n` and `\x1b`. A text longer than `max_bytes` is cut and ends in "...".
 std::string printable(std::string_view text, std::size_t max_bytes = 80);
 
 /// `text` of several lines for a terminal: as printable(), but ends of lines and tabs are kept.

@@ -36,7 +36,8 @@ double sine_of(std::int64_t step) {
 SinCos sin_cos(Angle angle) {
   const double steps = std::remainder(angle.deg(), 360.0) / kStep_deg;
   const double nearest = std::round(steps);
-  // The comparison is false for infinite angles and NaN. The negation passes them to the standard library, too.
+  // The condition is negated because the comparison is false for infinite angles and NaN. These angles are thus also
+  // left to the standard library.
   if (!(std::abs(steps - nearest) * kStep_deg <= kRounding * std::abs(angle.deg())))
     return {std::sin(angle.rad()), std::cos(angle.rad())};
   const std::int64_t step = (static_cast<std::int64_t>(nearest) + kStepsOfTurn) % kStepsOfTurn;

@@ -33,7 +33,7 @@ std::optional<double> number_in(std::string_view text);
 /// The ending of a file's name in small letters, with its dot; empty if it has none.
 std::string ending_of(const std::filesystem::path& file);
 
-/// `text` in an XML or HTML document: the characters that have a meaning there are replaced.
+/// Returns `text` for use in an XML or HTML document. The characters & < > " ' are replaced by character references.
 std::string markup_text(std::string_view text);
 
 /// Bytes of the UTF-8 character that `text` begins with; 0 if they are none (overlong and surrogate forms included).

@@ -466,8 +466,9 @@ std::string superseded_text(const Precedence& rule, const Document& document, co
   const Row* const row = document.row(key);
   if (row == nullptr || !document.has(key) || document.value(key) == default_value(*row)) return {};
   const std::size_t winner_source = document.source_of(winner), source = document.source_of(key);
-  // If the file gives the key and an override gives the winner, the user meant to replace the key. No warning is due.
-  // If the rule is a refinement, a warning is due only if an override gives the key after the winner was given.
+  // No warning is due if the file gives the key and an override gives the winner: the user then intends to replace the
+  // key. For a refinement (Precedence::is_refinement), a warning is due only if an override gives the key after the
+  // winner.
   if (rule.is_refinement ? source <= winner_source : source == 0 && winner_source > 0) return {};
   const InputLocation where = document.where(winner);
   const std::string place = where.line > 0 ? fmt::format(" (line {})", where.line) : std::string();

@@ -177,7 +177,7 @@ struct Check {
 /// A rule by which one key, the winner, makes other keys of a file have no effect. For each such key that the file
 /// gives, the user gets a warning that names both keys.
 struct Precedence {
-  Condition winner;                        ///< key of the winner, and the state of the file in which the rule applies
+  Condition winner;                        ///< condition under which the rule applies; its key is the winner
   std::span<const std::string_view> keys;  ///< keys that then have no effect, as paths relative to the table
   std::string_view effect;                 ///< text after "has no effect", such as "on the refractive index"
   std::string_view meaning;                ///< the rule in one sentence, for the documentation

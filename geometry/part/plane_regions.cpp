@@ -17,8 +17,8 @@ constexpr double kGrowthPerFit = 1.25;
 // Maximum height of a triangle above its longest edge for the triangle's normal to be ignored, in multiples of the
 // maximum error of a vertex. Rounding may have reversed the normal of such a triangle.
 constexpr double kHeightWithNormal = 16.0;
-// Minimum uncertainty of a fitted normal for the plane to be made exactly vertical or horizontal. The deviation of the
-// plane from that direction must be less than the uncertainty and less than kMaxError_rad.
+// Uncertainty of a fitted normal above which the plane may be made exactly vertical or horizontal. This is done if the
+// deviation of the plane from that orientation is less than the uncertainty and less than kMaxError_rad.
 constexpr double kCertain_rad = 1e-4, kMaxError_rad = 0.5;
 constexpr int kMaxRounds = 100;
 // Maximum distance of the vertices from their planes for settle_on_planes() to end, relative to the size of the mesh.

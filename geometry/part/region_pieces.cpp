@@ -19,7 +19,8 @@ constexpr std::uint32_t kNoRegion = UINT32_MAX;
 // Maximum sine of the angle by which a corner may turn inward and still count as convex. Rounding errors cause smaller
 // angles.
 constexpr double kStraight = 1e-13;
-// Maximum ratio of twice the area of a polygon to its squared length for the polygon to count as having no area.
+// Maximum relative area for a polygon to count as having no area. The relative area is twice the area, divided by the
+// squared maximum distance of a corner from the first corner.
 constexpr double kNeedle = 1e-12;
 
 /// Returns twice the area of a triangle. The result is positive if the corners run counter-clockwise about the normal.

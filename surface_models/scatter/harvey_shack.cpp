@@ -385,14 +385,15 @@ std::vector<std::string> HarveyShack::warnings(double index, double wavelength_n
     const double slope = roughness_rms_slope(r, index, wavelength_nm);
     if (slope > kLargestSlope)
       found.push_back("rms slope of the roughness " + fixed_apart(slope, kLargestSlope, 3) + " is above " +
-                      shortest(kLargestSlope) + ": multiple reflection is left out");
+                      shortest(kLargestSlope) +
+                      ": light that is reflected several times on the surface is not modelled");
     if (reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm) > 2.0 * pi)
       found.push_back("roughness " + shortest(std::round(100.0 * r.sq_nm) / 100.0) +
                       " nm is above half a wavelength in the material: microfacet is the model for it");
   }
   if (slopes_.rms_slope() > kLargestSlope)
     found.push_back("rms slope of the waviness " + fixed_apart(slopes_.rms_slope(), kLargestSlope, 3) + " is above " +
-                    shortest(kLargestSlope) + ": multiple reflection is left out");
+                    shortest(kLargestSlope) + ": light that is reflected several times on the surface is not modelled");
   if (r.waviness_sq_nm > 0.0 && r.waviness_length_um < 5.0 * wave_um)
     found.push_back("waviness of period " + shortest(r.waviness_length_um) +
                     " um is shorter than five wavelengths in the material: it is roughness");

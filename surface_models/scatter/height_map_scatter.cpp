@@ -315,7 +315,8 @@ std::vector<std::string> HeightMapScatter::warnings(double index, double wavelen
                     " um apart, more than half a wavelength in the material: finer roughness is not in it");
   if (t.rms_slope > kLargestSlope)
     found.push_back("rms slope of the height map " + fixed_apart(t.rms_slope, kLargestSlope, 3) + " is above " +
-                    shortest(kLargestSlope) + ": masking and multiple reflection are left out");
+                    shortest(kLargestSlope) +
+                    ": masking, and light that is reflected several times on the surface, are not modelled");
   if (t.sq_nm > 0.0 && std::abs(t.kurtosis - 3.0) > 1.0)
     found.push_back("kurtosis of the heights is " + fixed(t.kurtosis, 2) +
                     ", not the 3 of Gaussian heights: the specular share is off where it is small");

@@ -66,7 +66,7 @@ std::vector<std::string> Microfacet::warnings(double index, double wavelength_nm
   std::vector<std::string> found;
   if (slopes_.rms_slope() > kLargestSlope)
     found.push_back("rms slope " + fixed_apart(slopes_.rms_slope(), kLargestSlope, 3) + " is above " +
-                    shortest(kLargestSlope) + ": multiple reflection is left out");
+                    shortest(kLargestSlope) + ": light that is reflected several times on the surface is not modelled");
   const double phase = reflection_phase_rad(waviness_sq_nm_, index, 1.0, wavelength_nm);
   if (waviness_sq_nm_ > 0.0 && phase * phase < kSlopePhase2)
     found.push_back("waviness of " + shortest(waviness_sq_nm_) +

@@ -49,7 +49,8 @@ Vec3 visible_ggx_normal(const Vec3& towards_light, double width, RandomStream& r
 void require_modelled_slope(double rms_slope, const char* what) {
   if (rms_slope > kSlopeOfNoModel)
     throw InputError(std::string("rms slope of the ") + what + " must be at most " + shortest(kSlopeOfNoModel) +
-                     " for any model to hold, got " + fixed_apart(rms_slope, kSlopeOfNoModel, 3));
+                     " because no scatter model is valid for steeper surfaces, got " +
+                     fixed_apart(rms_slope, kSlopeOfNoModel, 3));
 }
 
 double waviness_rms_slope(double waviness_sq_nm, double waviness_length_um) {

@@ -1,4 +1,5 @@
-// Texts of files and names of files on a terminal: whatever they contain, they neither command it nor add lines.
+// Tests that texts and names of files cannot control the terminal or add lines to the output, whatever characters they
+// contain.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@
 namespace retrace::test::terminal_test {
 namespace {
 
-/// Clears the screen, sets its title, and adds a line.
+/// Name with control sequences that clear the screen, set the title of the terminal and add a line.
 const std::string kHostile =
     "a\x1b[2J\x1b]0;t\x07\r\nverdict: pass\x7f\xc2\x9b"
     "1m";
@@ -35,7 +36,8 @@ std::string in_toml(const std::string& text) {
   return toml + "\"";
 }
 
-/// What commands print where titles, machines, files and folders are called `name`.
+/// Runs commands on a design, a machine, files and folders that all have the name `name`, and counts the lines that
+/// each command prints.
 class Session {
  public:
   explicit Session(const std::string& name) : name_(name) {
@@ -89,8 +91,8 @@ class Session {
     run({"rre", "NAME.toml", "-o", "NAME.toml"}, {2, 3});
   }
 
-  std::vector<std::string> printed;  ///< commands
-  std::vector<std::ptrdiff_t> lines;
+  std::vector<std::string> printed;   ///< names of the commands that were run
+  std::vector<std::ptrdiff_t> lines;  ///< number of lines that each command printed
 
  private:
   TemporaryFolder folder_;

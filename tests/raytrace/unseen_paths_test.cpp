@@ -145,8 +145,8 @@ TEST(UnseenPaths, RandomDesignsContainTheExactAnswer) {
   EXPECT_GE(within, 0.95 * count - 2.33 * std::sqrt(0.95 * 0.05 * count));
 }
 
-// If all rays of a file end in the same account, the rule of three gives the standard error for their number. The
-// standard error for a single ray is limited to 0.5.
+// If all rays of a file end in the same account of the ledger, the standard error follows from the number of rays by
+// the rule of three. The standard error for a single ray is limited to 0.5.
 TEST(UnseenPaths, RayLedgersShowTheRuleOfThree) {
   RayLedger ledger;
   ledger.incident = 1000.0;

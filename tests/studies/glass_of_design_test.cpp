@@ -87,7 +87,8 @@ TEST(GlassOfDesign, MayBeOfARecord) {
   EXPECT_EQ(again.substance.material, "N-BK7");
 }
 
-// What is doubtful in a catalogue or a record is a warning of the design, whose index is that of the data.
+// Doubtful data in a catalogue or a record cause warnings of the design. The index of the design is still computed from
+// the data.
 TEST(GlassOfDesign, DoubtsAreWarnings) {
   const fs::path folder = fs::temp_directory_path() / "retrace_doubtful_glass";
   fs::create_directories(folder);

@@ -99,7 +99,7 @@ TEST(Photometry, IsMeasuredBesideTheMirrorImage) {
   EXPECT_EQ(found.points[0].r_a, std::min(up.r_a, down.r_a));
   EXPECT_EQ(found.points[0].v_deg, up.r_a < down.r_a ? 5.0 : -5.0);
   EXPECT_EQ(found.points[0].asked.v_deg, 0.0);
-  EXPECT_NE(photometry_table(found).find("beside the mirror image"), std::string::npos);
+  EXPECT_NE(photometry_table(found).find("away from the mirror image of the lamp"), std::string::npos);
   // A face that reflects nothing has no mirror image.
   const PhotometryResult lossless = run(design_of(spec, true), request_of(beside));
   EXPECT_EQ(lossless.points[0].v_deg, 0.0);

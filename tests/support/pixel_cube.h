@@ -33,8 +33,9 @@ struct PixelCubeSpec {
 };
 
 /// Far field of one cube corner as a sum over the pixels of its aperture. Each pixel contributes a plane wave in the
-/// direction of its outgoing ray, with the phase that this wave has at the apex. As without errors of angle, the wave
-/// leaves at the pixel that is point-symmetric to the entry pixel with respect to the apex.
+/// direction of its outgoing ray, with the phase that this wave has at the apex. The exit pixel of the wave and its
+/// entry pixel are point-symmetric with respect to the apex. The model assumes this even if the facets have errors of
+/// angle.
 class PixelCube {
  public:
   using Vec2 = geometry::Vec2;

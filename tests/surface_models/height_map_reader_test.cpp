@@ -157,7 +157,8 @@ constexpr int kRows = 5;
 constexpr double kStepX = 2.0;
 constexpr double kStepY = 2.0;
 
-/// Heights without any symmetry: no two are equal, and neither mirrored nor transposed maps agree.
+/// Returns heights without any symmetry: no two heights are equal, and a mirrored or transposed map differs from the
+/// map.
 double height_at(int column, int row) {
   return 100.0 * row + 3.0 * column + 0.5 * column * row * row;
 }
@@ -168,7 +169,8 @@ std::string words(const std::vector<double>& values) {
   return text + "\n";
 }
 
-/// Lines of a matrix. \param first_row the row that is written first: 0 or the last one
+/// Returns a matrix of heights as text, with one row per line.
+/// \param first_row row that is written first: 0 for ascending rows, the last row for descending rows
 std::string matrix(int first_row, double unit) {
   std::string text;
   for (int k = 0; k < kRows; ++k) {
@@ -179,7 +181,7 @@ std::string matrix(int first_row, double unit) {
   return text;
 }
 
-/// Reads the numbers of all lines that hold nothing else.
+/// Returns the numbers of each line that contains only numbers. Other lines are skipped.
 std::vector<std::vector<double>> numbers_of(const std::string& text) {
   std::vector<std::vector<double>> rows;
   std::istringstream lines(text);
@@ -209,7 +211,7 @@ std::vector<Point> points_of(const std::string& text, bool first_row_has_largest
   return points;
 }
 
-/// The same heights in every format.
+/// Returns files in every format that contain the same heights.
 std::vector<Written> every_format() {
   std::vector<Written> files;
   const std::string grid = matrix(0, 1.0);

@@ -150,7 +150,7 @@ std::string correction_table(const Correction& result) {
                                  printable(found.machine.name), result.maps.size());
   for (std::size_t k = 0; k < result.maps.size(); ++k) {
     const RegisteredMap& map = result.registered[k];
-    text += fmt::format("  {:<24} middle at X {} Y {} mm, {} facets{}, {} nm rms off the design\n",
+    text += fmt::format("  {:<24} centre at X {} Y {} mm, {} facets{}, rms deviation from the design {} nm\n",
                         printable(result.maps[k].file, std::string::npos),
                         fixed(map.part_from_map.translation_mm.x(), 4), fixed(map.part_from_map.translation_mm.y(), 4),
                         map.figures.size() / 3, map.face ? " and the face" : "", fixed(map.rms_nm, 1));

@@ -172,8 +172,8 @@ void complete_ies(Lines& lines, Table& table, LuminousIntensity::Planes kind) {
 
 /// Year in which the first edition of LM-63 appeared. Files of this edition have no header line.
 constexpr int kFirstEdition = 1986;
-/// Year of the last edition in which the factor after the ballast factor multiplies the intensities. Later editions
-/// reserve this number, or give there how the file was made.
+/// Year of the last edition in which the number after the ballast factor is a factor of the intensities. In later
+/// editions this number is reserved, or it is a code for the way in which the file was generated.
 constexpr int kLastWithLampFactor = 1991;
 
 /// Removes `word` and the separators after it from the start of a line in lower case, if the line starts with it.

@@ -15,15 +15,19 @@ namespace retrace::studies {
 /// ending
 PhotometricLamp read_lamp(const std::filesystem::path& file, const std::string& option);
 
-/// Reads ANSI/IESNA LM-63-86, -91, -95, -2002 and -19: planes C, B and A, with the symmetries of their first and last
-/// plane; TILT is NONE or INCLUDE, whose factors are for other positions of burning and left out. Candela are
-/// multiplied by the candela multiplier and the ballast factor, and by the ballast-lamp photometric factor if the
-/// edition is of 1986 (no header line before TILT) or 1991. The header line and keywords may be in upper or lower case.
-/// \param file its name, for messages \throw InputError naming it and the line
+/// Reads a photometric file of the editions LM-63-86, -91, -95, -2002 and -19 (ANSI/IESNA). The planes may be of type
+/// C, B or A; the angles of the first and the last plane determine the symmetry. TILT must be NONE or INCLUDE. The
+/// factors of INCLUDE have no effect, because they apply to lamps that are operated in a tilted position. Intensities
+/// are multiplied by the candela multiplier and the ballast factor. In the editions of 1986 (no header line before
+/// TILT) and 1991, they are also multiplied by the ballast-lamp photometric factor. The header line and keywords may be
+/// in upper or lower case.
+/// \param file name of the file, for messages
+/// \throw InputError that names the file and the line
 PhotometricLamp parse_ies(std::string_view text, const std::string& file);
 
-/// EULUMDAT (A. Stockmar 1990): planes C with the symmetries 0 to 4, cd per 1000 lm of the first set of light sources.
-/// \throw InputError likewise
+/// Reads a EULUMDAT file (A. Stockmar 1990): planes C with the symmetries 0 to 4. Intensities are in cd per 1000 lm of
+/// the first set of light sources.
+/// \throw InputError that names the file and the line
 PhotometricLamp parse_ldt(std::string_view text, const std::string& file);
 
 }  // namespace retrace::studies

@@ -115,7 +115,8 @@ Json programme_json(const PhotometryResult& result) {
 std::string point_text(const PhotometricPoint& p) {
   std::string text = p.verdict() == Verdict::fail ? "FAIL" : std::string(verdict_name(p.verdict()));
   if (p.is_lower_bound) text += " (at least)";
-  if (p.v_deg != p.asked.v_deg) text += fmt::format(" (at V {}, beside the mirror image)", shortest(p.v_deg));
+  if (p.v_deg != p.asked.v_deg)
+    text += fmt::format(" (measured at V {}, away from the mirror image of the lamp)", shortest(p.v_deg));
   if (p.asked.status == LimitStatus::recalled) text += " (limit unconfirmed)";
   return text;
 }

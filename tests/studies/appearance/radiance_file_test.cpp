@@ -1,4 +1,4 @@
-// A BSDF file of Radiance is XML whatever a design is called.
+// Tests that BSDF files of Radiance are well-formed XML for every title of a design.
 
 #include "studies/appearance/io/radiance_file.h"
 

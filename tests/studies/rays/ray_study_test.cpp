@@ -352,8 +352,8 @@ TEST(RayStudy, AnEmitterBeforeAnInfinitePartIsTheBeamOfRre) {
   const RrePoint known = RreStudy({endless_triangles()}, beam).run(nullptr, nullptr).points.at(0);
   EXPECT_EQ(result.ledger.rays_missed, 0U);
   for (std::size_t k = 0; k < raytrace::kAccountCount; ++k) {
-    // A ray adds between 0 and the whole power of the ray to an account. The variance of the account is therefore at
-    // most that of a binomial distribution.
+    // An account of the ledger is a sum over rays. Each ray adds between 0 and its own power. The variance of the
+    // account is therefore at most that of a binomial distribution.
     const double share = std::max(known.ledger.power[k], 0.0);  // rounding may make an account negative
     EXPECT_NEAR(result.ledger.ledger.power[k], share, 4.0 * std::sqrt(share * (1.0 - share) / 100000.0) + 1e-6)
         << raytrace::kAccountNames[k];
