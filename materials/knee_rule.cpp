@@ -74,8 +74,8 @@ std::vector<double> grid_of(const SpectralCurve& power, const Interval& interval
   return grid;
 }
 
-/// Returns the flux at the grid points of an interval. Each grid point is given by its Interval::coordinate() in place
-/// of its wavelength. The weights are fluxes and are not normalised.
+/// Returns the grid points of an interval, each with the flux at it as its weight. The sum of the weights is not 1. In
+/// place of its wavelength, each grid point has its Interval::coordinate().
 Spectrum flux_over(const SpectralCurve& power, const SpectralCurve& efficiency, const Interval& interval) {
   const std::vector<double> grid = grid_of(power, interval);
   Spectrum flux;

@@ -21,8 +21,8 @@ struct ErrorFreeExit {
   /// Maps the true exit point of light to its exit point without errors of angle. Both are points of the entrance face,
   /// relative to the part's centre.
   Eigen::Affine2d from_exit = Eigen::Affine2d::Identity();
-  /// Correction that the caller adds to ReturnedBeam::phase_mm when the exit point is moved. The correction keeps the
-  /// phase of the wave at the apex.
+  /// Correction, in mm, that the caller adds to ReturnedBeam::phase_mm after it moves the exit point by `from_exit`.
+  /// The wave then has the same phase at the apex of the element as before the move.
   double phase_change_mm = 0.0;
 };
 

@@ -26,8 +26,8 @@ const std::map<std::string, std::string>& exempt() {
   return files;
 }
 
-/// Returns the first expression in a text that averages points: a sum of vectors divided by their number, or a
-/// constant times a sum of named points. Returns an empty string if there is none.
+/// Searches C++ code for an expression that averages points: a sum of vectors divided by their number, or a constant
+/// times a sum of named points. Returns the first one, or an empty string if there is none.
 std::string mean_of_points(const std::string& text) {
   static const std::regex sum(R"((Vec[23]) (\w+) = Vec[23]::Zero\(\);)");
   for (std::sregex_iterator at(text.begin(), text.end(), sum), end; at != end; ++at) {

@@ -23,7 +23,7 @@ double mean(const Spectrum& rule, const Property& property) {
   return sum;
 }
 
-/// Returns the mean of the property by the midpoint rule with fine steps.
+/// Returns the mean of a function of the wavelength, weighted by flux. The midpoint rule with fine steps is used.
 double fine_mean(const SpectralCurve& lamp, const SpectralCurve& eye, const Property& property) {
   constexpr double kStepNm = 0.02;
   double sum = 0.0, flux = 0.0;
@@ -52,8 +52,8 @@ TEST_F(KneeRule, IsARule) {
   }
 }
 
-// At wavelengths above the knee, the property falls like the reflectance of partial reflection. Below the knee, it
-// changes like the phase of total reflection. A rule of four spans is accurate enough.
+// The test function behaves like a reflectance above the knee, and like the phase of total reflection below it. Its
+// mean is accurate with a spectrum that is divided into four spans.
 TEST_F(KneeRule, KneesCostLittle) {
   for (const SpectralCurve* lamp : {&table.illuminant_a, &table.illuminant_d65}) {
     for (double knee = 440.0; knee < 680.0; knee += 7.3) {

@@ -168,7 +168,8 @@ std::optional<bool> is_wet_below(const Part& part, const ChosenElements& chosen,
   return std::nullopt;
 }
 
-// The space behind a wall lies below a facet of the neighbouring element, and has the medium of that element.
+// The space behind a wall lies below a facet of the neighbouring element. It contains the medium, air or water, that is
+// behind this facet.
 TEST(ChosenElements, WallsHaveTheMediumOfTheirNeighbour) {
   int unlike = 0;
   for (const PartSpec& spec : arrays()) {

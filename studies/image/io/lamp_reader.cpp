@@ -176,7 +176,8 @@ constexpr int kFirstEdition = 1986;
 /// editions this number is reserved, or it is a code for the way in which the file was generated.
 constexpr int kLastWithLampFactor = 1991;
 
-/// Removes `word` and the separators after it from the start of a line in lower case, if the line starts with it.
+/// If a line starts with `word`, removes `word` and the separators after it.
+/// \param line a line in lower case
 bool skip(std::string_view& line, std::string_view word) {
   if (!line.starts_with(word)) return false;
   line.remove_prefix(word.size());

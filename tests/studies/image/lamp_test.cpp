@@ -208,8 +208,9 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-// The ballast-lamp photometric factor multiplies in LM-63-86 and LM-63-91. Later editions have another number there
-// (I. Ashdown, Parsing the IESNA LM-63 photometric data file, 1998; ANSI/IES LM-63-19).
+// In files of LM-63-86 and LM-63-91, intensities are multiplied by the ballast-lamp photometric factor. In later
+// editions, this field of the file has another meaning and is ignored (I. Ashdown, Parsing the IESNA LM-63 photometric
+// data file, 1998; ANSI/IES LM-63-19).
 TEST(Lamp, EditionIsThatOfItsHeader) {
   constexpr double kFactor = 1.1;
   const std::vector<std::pair<std::string, double>> headers = {{"", kFactor},
