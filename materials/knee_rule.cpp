@@ -11,8 +11,8 @@ namespace {
 
 /// Spacing of the grid points that are added to the wavelengths of the lamp's table for the trapezium rule.
 constexpr double kTableStepNm = 5.0;
-/// Distance from a knee to the nearest grid point of the trapezium rule. Grid point j is located at j^2 times this
-/// distance from the knee.
+/// Distance from a knee to grid point 1 of the trapezium rule. Grid point j is located at j^2 times this distance from
+/// the knee.
 constexpr double kFirstStepNm = 0.05;
 constexpr int kStepsAtKnee = 10;
 

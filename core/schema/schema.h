@@ -181,8 +181,8 @@ struct Precedence {
   std::span<const std::string_view> keys;  ///< keys that then have no effect, as paths relative to the table
   std::string_view effect;                 ///< text after "has no effect", such as "on the refractive index"
   std::string_view meaning;                ///< the rule in one sentence, for the documentation
-  /// True if a file normally gives both the winner and the keys without effect. The warning is then printed only for a
-  /// key that an override (`--set`) sets after the winner was set.
+  /// True if files normally give the winner together with the keys that it makes ineffective. Such files cause no
+  /// warning. A warning is printed only if an override (`--set`) sets one of these keys after the winner was set.
   bool is_refinement = false;
 };
 using Rule = std::variant<OneOf, Check, Precedence>;

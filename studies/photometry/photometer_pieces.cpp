@@ -31,7 +31,8 @@ constexpr double kLeastMirrorTrace = 1.0;
 // Lattice points of the window, beyond which its power is not integrated.
 constexpr double kMostLatticePoints = 300'000.0;
 
-// Maximum fraction of missing light that is neglected. Above it, Piece::missing_per_sr is computed.
+// If the truncated power is at most this fraction of the incident power, it is neglected. Otherwise,
+// Piece::missing_per_sr is computed.
 constexpr double kLeastTruncated = 1e-9;
 // Maximum number of directions in which brightest_per_sr() evaluates the far field.
 constexpr std::size_t kMaxSpots = 2;

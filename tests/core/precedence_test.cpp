@@ -1,5 +1,5 @@
 // Tests of keys that have no effect because another key takes precedence: a warning names both keys. The tests cover
-// all tables of a format.
+// every kind of table that a file can contain.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

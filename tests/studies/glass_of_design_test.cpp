@@ -87,8 +87,8 @@ TEST(GlassOfDesign, MayBeOfARecord) {
   EXPECT_EQ(again.substance.material, "N-BK7");
 }
 
-// Doubtful data in a catalogue or a record cause warnings of the design. The index of the design is still computed from
-// the data.
+// If a glass catalogue or an index record contains doubtful data, the user gets warnings. The refractive index is still
+// computed from these data.
 TEST(GlassOfDesign, DoubtsAreWarnings) {
   const fs::path folder = fs::temp_directory_path() / "retrace_doubtful_glass";
   fs::create_directories(folder);

@@ -56,8 +56,8 @@ class PixelCube {
       }
   }
 
-  /// Returns the intensity per steradian in the direction with the cosines q along x and y, divided by the peak of a
-  /// perfect cube corner with mirrors.
+  /// Returns the radiant intensity in a direction, relative to the peak intensity of a perfect cube corner with
+  /// mirrors. \param q direction cosines along x and y
   double at(const Vec2& q) const {
     Field sum = Field::Zero();
     for (const Pixel& pixel : pixels_)
