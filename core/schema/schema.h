@@ -178,7 +178,7 @@ struct Check {
 /// gives, the user gets a warning that names both keys.
 struct Precedence {
   Condition winner;                        ///< condition under which the rule applies; its key is the winner
-  std::span<const std::string_view> keys;  ///< keys that then have no effect, as paths relative to the table
+  std::span<const std::string_view> keys;  ///< keys without effect under this condition, relative to the table
   std::string_view effect;                 ///< text after "has no effect", such as "on the refractive index"
   std::string_view meaning;                ///< the rule in one sentence, for the documentation
   /// True if files normally give the winner together with the keys that it makes ineffective. Such files cause no

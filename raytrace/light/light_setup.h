@@ -48,7 +48,7 @@ struct LightSetup {
   struct Entry {
     Vec3 direction = -Vec3::UnitZ();  ///< of what enters
     CoherentLight light;
-    Vec3 front_direction = Vec3::UnitZ();  ///< direction of the light that the face reflects from outside
+    Vec3 front_direction = Vec3::UnitZ();  ///< direction in which light travels after reflection outside the part
     std::size_t front_cone = 0;            ///< narrowest cone that contains `front_direction`, see cone_of()
     Stokes front;  ///< Stokes parameters of the reflected light, with source_axis(front_direction) as first axis
     /// Jones matrix of the reflection. The first axis is source_axis(to_source) before and

@@ -59,7 +59,7 @@ class Session {
     EXPECT_NE(std::ranges::find(codes, outcome.code), codes.end()) << arguments[0] << ": " << outcome.err;
     for (const std::string& text : {outcome.out, outcome.err})
       EXPECT_EQ(text, printable_lines(text)) << arguments[0] << " prints control characters";
-    printed.push_back(arguments[0]);
+    commands.push_back(arguments[0]);
     lines.push_back(std::ranges::count(outcome.out, '\n'));
   }
 
@@ -91,7 +91,7 @@ class Session {
     run({"rre", "NAME.toml", "-o", "NAME.toml"}, {2, 3});
   }
 
-  std::vector<std::string> printed;   ///< names of the commands that were run
+  std::vector<std::string> commands;  ///< names of the commands, in the order in which they ran
   std::vector<std::ptrdiff_t> lines;  ///< number of lines that each command printed
 
  private:
@@ -104,9 +104,9 @@ TEST(Terminal, NamesOfFilesNeitherCommandItNorAddLines) {
   plain.run_all();
   Session hostile(kHostile);
   hostile.run_all();
-  ASSERT_EQ(plain.printed, hostile.printed);
+  ASSERT_EQ(plain.commands, hostile.commands);
   for (std::size_t k = 0; k < plain.lines.size(); ++k)
-    EXPECT_EQ(hostile.lines[k], plain.lines[k]) << plain.printed[k] << ", run " << k;
+    EXPECT_EQ(hostile.lines[k], plain.lines[k]) << plain.commands[k] << ", run " << k;
 }
 
 TEST(Terminal, ATextThatIsAFileIsPrintedByteForByte) {

@@ -134,8 +134,8 @@ TEST(LevelBeams, OnlyPiecesWithAConvexUnionAreJoined) {
 
 INSTANTIATE_TEST_SUITE_P(All, LevelBeams, ::testing::Range<std::size_t>(0, cases().size()));
 
-// The component of a direction along an axis is exactly 0 across the axis. Rounding errors therefore do not break the
-// mirror symmetry of a part.
+// A direction along a coordinate axis has components of exactly 0 along the two other axes. Rounding errors therefore
+// do not break the mirror symmetry of a part.
 TEST(LevelBeams, DirectionsAlongAxesHaveNoComponentAcross) {
   for (const double incidence_deg : {0.0, 17.0, 30.0, 89.0}) {
     EXPECT_EQ(direction_to_source(from(incidence_deg, 90.0)).x(), 0.0);

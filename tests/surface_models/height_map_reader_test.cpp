@@ -194,8 +194,9 @@ std::vector<std::vector<double>> numbers_of(const std::string& text) {
   return rows;
 }
 
-/// A file, and an independent reading of it by the rules of its format.
-struct Written {
+/// The content of a file, and the points that it contains. The test computes the points without the reader that it
+/// tests.
+struct FileAndPoints {
   std::string name;
   std::string content;
   std::vector<Point> points;
@@ -212,8 +213,8 @@ std::vector<Point> points_of(const std::string& text, bool first_row_has_largest
 }
 
 /// Returns files in every format that contain the same heights.
-std::vector<Written> every_format() {
-  std::vector<Written> files;
+std::vector<FileAndPoints> every_format() {
+  std::vector<FileAndPoints> files;
   const std::string grid = matrix(0, 1.0);
   files.push_back({"m.txt", "pixel_um 2\nheight_unit nm\n" + grid, points_of(grid, false)});
   // ESRI: "the first row of the data is at the top of the raster" (ArcGIS, Esri ASCII raster format).
@@ -247,7 +248,7 @@ std::vector<Written> every_format() {
 }
 
 TEST(HeightMapFormats, PlaceAnAsymmetricMapAlike) {
-  for (const Written& file : every_format()) {
+  for (const FileAndPoints& file : every_format()) {
     SCOPED_TRACE(file.name + "\n" + file.content.substr(0, 60));
     const HeightMap map = parse_height_map(file.content, file.name, {}).map;
     ASSERT_EQ(map.columns, static_cast<std::size_t>(kColumns));
