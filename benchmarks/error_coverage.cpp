@@ -1,7 +1,9 @@
 // Compares the RRE of the exact engine with the RRE of Monte Carlo. Random designs are each lit from one direction.
 //   retrace_error_coverage_benchmark [DESIGNS [FIRST_SEED [TARGET_ERROR]]]
-// The program prints one line for each design whose two values differ by more than 1.96 standard errors and half of the
-// truncated power. At the end it prints the percentage of designs whose values differ by less.
+// The RRE expected from the exact engine is its RRE plus half of the power that it truncated. Two values agree if the
+// Monte Carlo RRE differs from the expected RRE by at most 1.96 standard errors plus half of the truncated power.
+// The program prints one line for each design whose values disagree, and at the end the percentage of designs whose
+// values agree.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -19,28 +21,28 @@ namespace retrace::benchmarks {
 namespace {
 
 // Ratio of the target error of the exact engine to the target error of Monte Carlo.
-constexpr double kExactness = 0.05;
-// Maximum time for one run of an engine. Designs that need more time are skipped.
-constexpr double kPatience_s = 5.0;
+constexpr double kTargetErrorRatio = 0.05;
+// Maximum time for one run of an engine. A design is skipped if a run takes longer.
+constexpr double kMaxTime_s = 5.0;
 
 std::optional<studies::RrePoint> answer(const studies::Design& design, studies::RreRequest request,
                                         studies::Engine engine) {
   request.engine = engine;
-  const Deadline deadline(kPatience_s);
+  const Deadline deadline(kMaxTime_s);
   const studies::RreResult found = studies::RreStudy({design}, request).run(nullptr, &deadline.cancellation);
   return found.complete ? std::optional(found.points.front()) : std::nullopt;
 }
 
 struct Trial {
-  /// RRE of Monte Carlo minus the RRE expected from the exact engine, in standard errors of Monte Carlo. The expected
-  /// RRE is the RRE of the exact engine plus half of its truncated power.
-  double off = 0.0;
-  /// True if the difference is at most 1.96 standard errors plus half of the truncated power.
-  bool within = false;
+  /// Monte Carlo RRE minus the RRE expected from the exact engine, divided by the standard error of the Monte Carlo
+  /// RRE.
+  double difference = 0.0;
+  /// True if the two values agree, as defined at the top of this file.
+  bool agrees = false;
 };
 
 /// Runs both engines on the random design that `seed` generates. Returns nothing if the design is invalid or has rough
-/// facets. Returns nothing if an engine exceeds kPatience_s or its budget.
+/// facets, or if an engine exceeds kMaxTime_s or its limit on time, memory or accuracy (BudgetError).
 std::optional<Trial> trial(unsigned seed, double target_error) {
   RandomDesigns random(seed);
   const std::string text = random.next();
@@ -51,18 +53,20 @@ std::optional<Trial> trial(unsigned seed, double target_error) {
   request.seed = seed;
   try {
     const studies::Design design = studies::parse_design(text, fmt::format("design {}", seed));
-    request.target_error = kExactness * target_error;
+    request.target_error = kTargetErrorRatio * target_error;
     const auto exact = answer(design, request, studies::Engine::exact);
     if (!exact) return std::nullopt;
     request.target_error = target_error;
     const auto rays = answer(design, request, studies::Engine::montecarlo);
     if (!rays) return std::nullopt;
-    const double left = 0.5 * exact->ledger[raytrace::Account::truncated];
-    const double off = rays->rre - exact->rre - left;
-    const Trial result{off / rays->std_error, std::abs(off) <= 1.96 * rays->std_error + left};
-    if (!result.within)
-      fmt::print("seed {:4}: RRE {:.7f} +- {:.2g} by {}, exact RRE {:.7f}, difference {:.2f} standard errors\n", seed,
-                 rays->rre, rays->std_error, rays->engine, exact->rre, result.off);
+    const double half_truncated = 0.5 * exact->ledger[raytrace::Account::truncated];
+    const double difference = rays->rre - exact->rre - half_truncated;
+    const Trial result{difference / rays->std_error, std::abs(difference) <= 1.96 * rays->std_error + half_truncated};
+    if (!result.agrees)
+      fmt::print(
+          "seed {:4}: RRE {:.7f} +- {:.2g} by {}, exact RRE {:.7f}, difference from the expected RRE {:.2f} standard "
+          "errors\n",
+          seed, rays->rre, rays->std_error, rays->engine, exact->rre, result.difference);
     return result;
   } catch (const InputError&) {
     return std::nullopt;
@@ -74,20 +78,19 @@ std::optional<Trial> trial(unsigned seed, double target_error) {
 }  // namespace
 
 int run(unsigned designs, unsigned seed, double target_error) {
-  unsigned count = 0, within = 0;
+  unsigned count = 0, agreeing = 0;
   double squares = 0.0;
   for (; count < designs; ++seed) {
     const std::optional<Trial> one = trial(seed, target_error);
     if (!one) continue;
     ++count;
-    if (one->within) ++within;
-    squares += one->off * one->off;
+    if (one->agrees) ++agreeing;
+    squares += one->difference * one->difference;
   }
   fmt::print(
-      "{} designs, target error {}: {:.1f} % differ by at most 1.96 standard errors and half of the truncated power; "
-      "root mean square difference "
-      "{:.2f} standard errors\n",
-      count, target_error, 100.0 * within / count, std::sqrt(squares / count));
+      "{} designs, target error {}: {:.1f} % agree within 1.96 standard errors plus half of the truncated power; "
+      "root mean square difference of the two values: {:.2f} standard errors\n",
+      count, target_error, 100.0 * agreeing / count, std::sqrt(squares / count));
   return 0;
 }
 

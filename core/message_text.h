@@ -18,7 +18,8 @@ std::size_t printable_length(std::string_view text);
 /// replaced by escapes such as `\n` and `\x1b`. A text longer than `max_bytes` is cut and ends in "...".
 std::string printable(std::string_view text, std::size_t max_bytes = 80);
 
-/// `text` of several lines for a terminal: as printable(), but ends of lines and tabs are kept.
+/// Returns `text` for a terminal. Characters are replaced as by printable(), but ends of lines and tabs are kept, and
+/// the text is not shortened.
 std::string printable_lines(std::string_view text);
 
 /// printable(text) between double quotes.

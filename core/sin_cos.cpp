@@ -12,8 +12,8 @@ namespace {
 constexpr double kStep_deg = 15.0;
 constexpr std::int64_t kStepsOfTurn = 24;
 constexpr std::int64_t kStepsOfQuarter = 6;
-// Maximum deviation of an angle from a multiple of 15 degrees for the angle to count as this multiple, relative to the
-// angle. The rounding errors of a conversion to radians and back are smaller.
+// Maximum relative deviation |angle - m| / |angle| with which an angle counts as m, the nearest multiple of 15 degrees.
+// The rounding errors of a conversion to radians and back are smaller.
 constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 // Sines of 0, 15, ... 90 degrees. The sine of 15 degrees is (sqrt(6) - sqrt(2)) / 4, and the sine of 75 degrees is

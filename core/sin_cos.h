@@ -12,8 +12,9 @@ struct SinCos {
 };
 
 /// Returns the sine and the cosine of an angle. At multiples of 15 degrees, both are the doubles nearest to the exact
-/// values. A direction along a coordinate axis therefore has components that are exactly 0. An angle counts as a
-/// multiple of 15 degrees if the difference is at most the rounding error of a conversion between degrees and radians.
+/// values. A direction along a coordinate axis therefore has components of exactly 0 along the other axes. An angle
+/// counts as a multiple of 15 degrees if it differs from this multiple by at most the rounding error of a conversion
+/// between degrees and radians.
 SinCos sin_cos(Angle angle);
 
 /// Returns the sine and the cosine of an angle in degrees.

@@ -15,10 +15,10 @@ namespace retrace {
 /// `text` without blanks, tabs and carriage returns at its ends.
 std::string_view trimmed(std::string_view text);
 
-/// `text` without the byte order mark of UTF-8 that some programs write at the beginning of a file.
+/// Returns `text` without the UTF-8 byte order mark that some programs write at the beginning of a file.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// `text` with the letters A to Z in lower case.
+/// Returns `text` with the letters A to Z in lower case. Other characters are unchanged.
 std::string lower_case(std::string_view text);
 
 /// What stands between separators, trimmed; at least one part.

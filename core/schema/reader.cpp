@@ -458,17 +458,17 @@ void check(const Table& table, const void* object, const Refuse& refuse) {
 
 namespace {
 
-/// Returns the warning that `key` has no effect because `winner` takes precedence. Returns an empty
-/// text if no warning is due.
+/// Returns the warning that `key` has no effect because `winner` takes precedence. Returns an empty text if the user
+/// needs no warning.
 /// \param winner path of the key that takes precedence
+/// \param key path of the key that has no effect
 std::string superseded_text(const Precedence& rule, const Document& document, const std::string& winner,
                             const std::string& key) {
   const Row* const row = document.row(key);
   if (row == nullptr || !document.has(key) || document.value(key) == default_value(*row)) return {};
   const std::size_t winner_source = document.source_of(winner), source = document.source_of(key);
-  // No warning is due if the file gives the key and an override gives the winner: the user then intends to replace the
-  // key. For a refinement (Precedence::is_refinement), a warning is due only if an override gives the key after the
-  // winner.
+  // If the file gives `key` and an override gives `winner`, the user intends to replace `key` and needs no warning. For
+  // rules with Precedence::is_refinement, a warning is needed only if an override gives `key` after `winner` was given.
   if (rule.is_refinement ? source <= winner_source : source == 0 && winner_source > 0) return {};
   const InputLocation where = document.where(winner);
   const std::string place = where.line > 0 ? fmt::format(" (line {})", where.line) : std::string();

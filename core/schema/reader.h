@@ -14,11 +14,13 @@
 
 namespace retrace::schema {
 
-/// Reads a document of the format: every key known, of its kind, and meaning something beside the others.
-/// \param source_name stands for the file in messages; names of files are meant from its folder
-/// \param overrides each KEY=VALUE, or KEY= to unset a key
-/// \throw InputError with file, line and key for the first value that is not what the format allows, and for text that
-/// is no TOML or longer than `most_bytes`
+/// Reads a document of the format and checks it: each key must be known, have a value of its type, and be meaningful
+/// together with the other keys.
+/// \param source_name name of the file in messages; relative file names in the document are relative to its folder
+/// \param most_bytes maximum length of the text
+/// \param overrides texts of the form KEY=VALUE, which override a key, or KEY=, which unset a key
+/// \throw InputError with file, line and key for the first value that the format does not allow, and for text that is
+/// not TOML or is longer than `most_bytes`
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
                        std::size_t most_bytes = kMostTextBytes, std::span<const std::string> overrides = {});
 

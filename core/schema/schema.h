@@ -174,15 +174,15 @@ struct Check {
   /// \param object that of the table; of formats that are read as documents alone: the document
   void (*check)(const void* object, const Refuse& refuse);
 };
-/// A rule by which one key, the winner, makes other keys of a file have no effect. For each such key that the file
-/// gives, the user gets a warning that names both keys.
+/// A rule by which one key takes precedence over other keys, which then have no effect. The key that takes precedence
+/// is called the winner. For each key without effect that the file gives, a warning names this key and the winner.
 struct Precedence {
-  Condition winner;                        ///< condition under which the rule applies; its key is the winner
-  std::span<const std::string_view> keys;  ///< keys without effect under this condition, relative to the table
+  Condition winner;                        ///< condition on the winner under which the rule applies
+  std::span<const std::string_view> keys;  ///< keys without effect if `winner` holds; paths relative to the table
   std::string_view effect;                 ///< text after "has no effect", such as "on the refractive index"
   std::string_view meaning;                ///< the rule in one sentence, for the documentation
-  /// True if files normally give the winner together with the keys that it makes ineffective. Such files cause no
-  /// warning. A warning is printed only if an override (`--set`) sets one of these keys after the winner was set.
+  /// True if files normally give both the winner and the keys of `keys`. Such files cause no warning. A warning is
+  /// given only if an override (`--set`) sets one of `keys` after the file or an earlier override has set the winner.
   bool is_refinement = false;
 };
 using Rule = std::variant<OneOf, Check, Precedence>;

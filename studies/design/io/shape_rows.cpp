@@ -123,9 +123,9 @@ constexpr Row kPartRows[] = {
      "An STL file, binary or ASCII, in mm of the part frame, in place of elements; at most 10 million triangles.",
      kMeshOnly},
     {"allow_open", Flag{}, false,
-     "Whether to trace a mesh with defects. Openings are closed by flat pieces, bodies that intersect are united, and "
-     "a mesh that touches itself along edges is traced unchanged. A warning reports each defect; results are those of "
-     "the repaired mesh.",
+     "Whether to trace a mesh with defects. Openings are closed by flat pieces, and bodies that intersect are united. "
+     "A mesh that touches itself along edges is traced unchanged. A warning reports each defect; results apply to the "
+     "repaired mesh.",
      kWithMesh},
     {"plate_mm", Numbers{2, kSaneSize, "lengths, along x and y"}, kNone,
      "Lengths along x and y of a plate whose flat back on z = 0 is its one retro facet, in place of elements."},
