@@ -24,6 +24,9 @@ using geometry::Vec2, std::numbers::pi;
 constexpr double kOneDirection_rad = 1e-9;
 // Beams below this are not looked at one by one.
 constexpr double kFaint = 1e-10;
+// Up to this number of polygons, even the faintest beams are diffracted. An undiffracted beam has all its power in one
+// direction. It would be much too bright for discs of source and receiver that are smaller than a diffracted spot.
+constexpr std::size_t kFewPolygons = 256;
 // Steps by which fields of cells are compared: of lengths in elements, of cosines, of amplitudes, of paths in mm.
 constexpr double kLengthStep = 1e-7, kCosineStep = 1e-8, kAmplitudeStep = 1e-7, kPathStep_mm = 1e-7;
 // Of places where facets were met, in elements, and of their slopes.
@@ -379,7 +382,7 @@ void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
                                      policy_.replicates);
   for (CoherentGroup& group : groups) {
     if (is_cancelled(policy_.cancel)) return;
-    const bool is_strong = left > least;
+    const bool is_strong = left > least || polygons < kFewPolygons;
     const bool is_narrow = field_.wavelength_mm_ >= policy_.finest_detail_rad * group.extent_mm;
     const bool is_to_be_diffracted = is_strong && is_narrow;
     left -= group.power();

@@ -211,6 +211,30 @@ FarField front_of(const Part& part, const Optics& optics, const Illumination& li
   return collector.finish();
 }
 
+// A weak beam is diffracted like a strong one if there are few beams. An undiffracted beam would have an infinite
+// intensity in its direction.
+TEST(Diffraction, WeakBeamsAreDiffractedIfTheyAreFew) {
+  constexpr double kWave_mm = 550e-6;
+  constexpr double kWeak = 1e-6;
+  const Part part = build_part(single(HexagonalCube{1.0}, 1.0));
+  FarFieldPolicy policy;
+  policy.wavelength_nm = 1e6 * kWave_mm;
+  FarFieldCollector collector(part, {}, policy);
+  const std::array<Vec3, 2> directions = {Vec3::UnitZ(), tilted(0.01)};
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    ReturnedBeam beam;
+    beam.direction = directions[k];
+    beam.stokes.i = k == 0 ? 1.0 : kWeak;
+    beam.transmission = beam.stokes.i;
+    beam.left_mm = beam.entered_mm = regular(64, 0.2);
+    beam.trail.first = CellPlace{static_cast<std::uint32_t>(k)};
+    collector.add(beam);
+  }
+  const FarField field = collector.finish();
+  EXPECT_TRUE(field.rays().empty());
+  EXPECT_NEAR(field.total_power(), 1.0 + kWeak, 1e-12);
+}
+
 // The entrance face of a finite part diffracts like an aperture. For unit incident power, the intensity in the
 // direction of the reflection is R A cos(theta) / w^2, with the reflectance R, the area A, the angle of incidence
 // theta and the wavelength w. For a rectangle, the intensity falls like sinc^2 in a plane parallel to a side. The
