@@ -28,6 +28,15 @@ struct CutPlane {
   }
 };
 
+/// Frame of the mounted tool for lengths from its reference point, as columns in the frame of the machine. Of a chisel:
+/// along the edge, across it, and up the plane in which it plunges. The tool is touched off as it is mounted, so that a
+/// turn about the edge moves none of these lengths.
+Eigen::Matrix3d edge_frame(const Machine& machine);
+
+/// Angle by which the mount turns a chisel about its edge, from the plane in which it plunges: it adds to the
+/// clearance.
+Angle clearance_change(const Machine& machine);
+
 /// Along the edge that cuts, in the machine frame and of length 1.
 geometry::Vec3 cutting_edge(const Machine& machine, Angle edge_rise);
 

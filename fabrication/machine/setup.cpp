@@ -108,7 +108,7 @@ class CutMotion {
     at_words_ = {cut.at.x_mm, cut.at.y_mm, cut.at.z_mm};
     edge_ = cutting_edge(machine, cut.edge_rise);
     travel_ = slides_ * directions_ * cut.travel_mm;
-    tip_ = machine_point(machine, cut.at) + tool_turn(machine) * cut.tip_mm;
+    tip_ = machine_point(machine, cut.at) + edge_frame(machine) * cut.tip_mm;
     point_ = both_.inverse().point(tip_);
   }
 
@@ -171,7 +171,22 @@ class CutMotion {
     travel_change_ = slides_ * lean * cut_.travel_mm[slide];
     shift_ = both_.rotation.transpose() * slides_ * lean * at_words_[slide];
     // A tool of a tilting head is aligned to Y and Z.
-    if (machine_.tilt == Tilt::head) edge_change_ = v_edge_change(slide, lean);
+    if (machine_.tilt == Tilt::head)
+      edge_change_ = v_edge_change(slide, lean);
+    else if (slide == 2)
+      shift_ += both_.rotation.transpose() * tip_change(Vec3::Zero(), lean);
+  }
+
+  /// Change of edge_frame() times the tip of a chisel, where its edge and the direction of Z change.
+  Vec3 tip_change(const Vec3& edge_change, const Vec3& z_change) const {
+    const Vec3 edge = edge_direction(machine_);
+    const Vec3 z = directions_.col(2);
+    const Vec3 square = z - edge * edge.dot(z);
+    const Vec3 up = square.normalized();
+    const Vec3 square_change = z_change - edge_change * edge.dot(z) - edge * (edge_change.dot(z) + edge.dot(z_change));
+    const Vec3 up_change = (square_change - up * up.dot(square_change)) / square.norm();
+    const Vec3 across_change = up_change.cross(edge) + up.cross(edge_change);
+    return edge_change * cut_.tip_mm.x() + across_change * cut_.tip_mm.y() + up_change * cut_.tip_mm.z();
   }
 
   Vec3 v_edge_change(int slide, const Vec3& lean) const {
@@ -191,7 +206,10 @@ class CutMotion {
     const Vec3 turn_rad = machine_.mount.turn_deg.value * (std::numbers::pi / 180.0);
     const Vec3 turn = turn_gain(turn_rad) * Vec3::Unit(axis);
     edge_change_ = turn.cross(edge_);
-    shift_ = both_.rotation.transpose() * turn.cross(tool_turn(machine_) * cut_.tip_mm);
+    const bool is_chisel = machine_.tilt == Tilt::table;
+    const Vec3 of_tip = is_chisel ? tip_change(turn.cross(edge_direction(machine_)), Vec3::Zero())
+                                  : Vec3(turn.cross(edge_frame(machine_) * cut_.tip_mm));
+    shift_ = both_.rotation.transpose() * of_tip;
   }
 
   const Machine& machine_;

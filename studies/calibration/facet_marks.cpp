@@ -125,7 +125,7 @@ std::map<FacetPlace, EdgeView> edge_views(const FabricationResult& plan, const s
     const Vec3 level = groove.level_of(made.facet);
     const EdgeCut& cut = made.cut;
     const RigidMotion back = machine_from_workpiece(plan.machine, rotary_pose(plan.machine, cut.at)).inverse();
-    const Vec3 middle = back.point(machine_point(plan.machine, cut.at) + tool_turn(plan.machine) * cut.tip_mm);
+    const Vec3 middle = back.point(machine_point(plan.machine, cut.at) + edge_frame(plan.machine) * cut.tip_mm);
     const Vec3 edge = back.direction(cutting_edge(plan.machine, cut.edge_rise));
     Vec3 way = groove.facets[made.facet].normal.cross(edge);
     if (way.dot(up) < 0.0) way = -way;

@@ -98,7 +98,7 @@ double CutPart::end_nm(const Measurement& m, const Machine& real) const {
   const EdgeCut& cut = cuts_.at({m.at.element, m.at.facet});
   const RigidMotion back = machine_from_workpiece(real, rotary_pose(real, cut.at)).inverse();
   const Vec3 end =
-      back.point(machine_point(real, cut.at) + tool_turn(real) * cut.tip_mm +
+      back.point(machine_point(real, cut.at) + edge_frame(real) * cut.tip_mm +
                  (real.tilt == Tilt::table ? m.along_edge * half_edge_mm_ : 0.0) * cutting_edge(real, cut.edge_rise));
   return kNmPerMm * other.plane.normal.dot(end - other.plane.point_mm);
 }

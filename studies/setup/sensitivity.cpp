@@ -82,7 +82,7 @@ double chip_change_nm(const std::vector<PlacedCut>& cuts, const SetupQuantity& q
 /// Where the ends of the edge stand when a cut ends, in the workpiece frame; of a V its tip.
 std::vector<Vec3> edge_ends(const Machine& machine, const EdgeCut& cut, double half_width_mm) {
   const RigidMotion back = machine_from_workpiece(machine, rotary_pose(machine, cut.at)).inverse();
-  const Vec3 tip = machine_point(machine, cut.at) + tool_turn(machine) * cut.tip_mm;
+  const Vec3 tip = machine_point(machine, cut.at) + edge_frame(machine) * cut.tip_mm;
   if (machine.tilt == Tilt::head) return {back.point(tip)};
   const Vec3 half = half_width_mm * cutting_edge(machine, cut.edge_rise);
   return {back.point(tip - half), back.point(tip + half)};

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/machine/edge_cut.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -35,7 +36,7 @@ double length_of_cut_mm(const Job& job, const Machine& machine, const CutElement
   // Where the edge's tangents in the two facets cross, from the reference point (docs/theory/verification.md).
   const double below_mm =
       job.strategy == Strategy::dmc ? 0.0 : pose.section.edge_mm / std::sin(pose.section.apex.rad());
-  const Vec3 tip = tool_turn(machine) * Vec3(0.0, 0.0, -below_mm);
+  const Vec3 tip = edge_frame(machine) * Vec3(0.0, 0.0, -below_mm);
   const auto height_mm = [&](const Vec3& words) {
     AxisPositions axes{words.x(), words.y(), words.z(), 0.0, pose.rounded.c_deg};
     (machine.tilt == Tilt::table ? axes.a_deg : axes.b_deg) = pose.rounded.a_deg;

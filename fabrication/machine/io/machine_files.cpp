@@ -301,10 +301,12 @@ constexpr ValueTable kMountTurn = {kMountTurnRows, kPointRules};
 constexpr Table kMountTables[] = {
     value("offset_mm", kMountOffset, child<&ToolMount::offset_mm>,
           "The tool reference point from where programs would take it, along X, Y and Z; of a head at B = 0.", "0"),
-    value("turn_deg", kMountTurn, child<&ToolMount::turn_deg>,
-          "By which the tool is turned about its reference point: a vector along the axis of the turn, by the right "
-          "hand. About X: other clearance; about Y: the edge is not level; about Z: the edge is not along X.",
-          "0")};
+    value(
+        "turn_deg", kMountTurn, child<&ToolMount::turn_deg>,
+        "How the tool is turned as it is mounted: a vector along the axis of the turn, by the right hand. The tool is "
+        "touched off after that, so a turn leaves its reference point where it is. About X: other clearance; about Y: "
+        "the edge is not level; about Z: the edge is not along X.",
+        "0")};
 
 bool is_mounted_askew(const Machine& m) {
   return m.mount.offset_mm.value != Vec3::Zero() || m.mount.turn_deg.value != Vec3::Zero();

@@ -50,7 +50,7 @@ ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex) {
   // The tangent in the other facet, at the apex angle to the vertical, crosses the vertical one below or above it.
   const double radius_mm = 1e-3 * tool.edge_radius_um;
   const double below_mm = radius_mm * (1.0 - std::sin(apex.rad()) + std::cos(apex.rad())) / std::sin(apex.rad());
-  wedge.tip_mm = -below_mm * z;
+  wedge.tip_mm = -below_mm * plunged_normal(machine).cross(x);
   wedge.clearance_direction = -std::sin(clearance) * y + std::cos(clearance) * z;
   wedge.rake_direction = -std::sin(rake) * y + std::cos(rake) * z;
   wedge.rays = {wedge.clearance_direction, wedge.rake_direction};
