@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fabrication/machine/edge_cut.h"
+
 namespace retrace::fabrication {
 namespace {
 
@@ -58,7 +60,8 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
     bends_mm_ = {reach_mm_, reach_mm_};
     return;
   }
-  const Angle rake = Angle::from_deg(tool.clearance_deg + tool.wedge_deg + workpiece.machine->mount.turn_deg.value.x());
+  const Angle rake = Angle::from_rad(Angle::from_deg(tool.clearance_deg + tool.wedge_deg).rad() +
+                                     clearance_change(*workpiece.machine).rad());
   apex_ = Angle::from_rad(std::acos(-groove.facets[0].normal.dot(groove.facets[1].normal)));
   rake_slope_ = std::tan(rake.rad());
   const double sine = std::sin(apex_.rad());

@@ -27,7 +27,7 @@ void PlungeCheck::move(const CutMove& cut) {
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   if (retracts(workpiece_.grooves[cut.element], travel)) return close();
   // Only a retract may move the tool towards the facet that its clearance face looks at.
-  if (travel.y() > kMostSlip * travel.norm()) find_clearance_face(cut);
+  if (travel.dot(plunged_normal(*workpiece_.machine)) < -kMostSlip * travel.norm()) find_clearance_face(cut);
   if (travel.z() < -kMostlyDown * travel.norm()) return plunge(cut);
   plough(cut);
 }

@@ -25,15 +25,31 @@ Prediction predict_cube(const Machine& machine, const Groove& cavity) {
   return prediction;
 }
 
+/// Distance into a wall that an end of the edge, or the tool above it, reaches at most (docs/theory/verification.md).
+/// \param motion the pose in which a facet is plunged \param length_mm of a facet, up to where the blank ends
+double wall_overcut_mm(const Groove& groove, const ToolWedge& wedge, const Vec3& pass_normal, const RigidMotion& motion,
+                       double length_mm) {
+  const Vec3 root = motion.direction(groove.root_direction);
+  double drift = 0.0;
+  for (const DesignFacet& facet : groove.facets) {
+    const Vec3 up = motion.direction(facet.up_slope);
+    for (const Vec3& normal : {pass_normal, wedge.edge})
+      drift = std::max(drift, std::abs(normal.dot(up) / normal.dot(root)));
+  }
+  const double reach_mm =
+      wedge.half_width_mm * std::abs(pass_normal.dot(wedge.edge)) + std::abs(pass_normal.dot(wedge.tip_mm));
+  return drift * length_mm + std::max(0.0, reach_mm / std::abs(pass_normal.dot(root)) - wedge.half_width_mm);
+}
+
 }  // namespace
 
-Prediction predict(const Machine& machine, const Groove& groove, double tool_width_mm) {
+Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge& wedge) {
   if (groove.is_cube()) return predict_cube(machine, groove);
   Prediction prediction;
   prediction.poses.resize(2);
-  const Vec3 edge = edge_direction(machine);
-  // Up a facet, from the rim to where the blank ends.
-  const double stock_mm = groove.stock_mm / groove.axis.dot(groove.facets[0].up_slope);
+  prediction.pass_normal = machine.y.direction.value.cross(machine.z.direction.value).normalized();
+  // Length of a facet from the root to where the blank ends.
+  const double length_mm = groove.facet_length_mm + groove.stock_mm / groove.axis.dot(groove.facets[0].up_slope);
   for (std::size_t f = 0; f < 2; ++f) {
     const Vec3& normal = groove.facets[f].normal;
     // Nominal pose: C turns what the facet faces to -y_w, A stands it up.
@@ -42,18 +58,20 @@ Prediction predict(const Machine& machine, const Groove& groove, double tool_wid
     near.c_deg = machine.c.sign.value * Angle::from_rad(-0.5 * std::numbers::pi - facing).deg();
     near.a_deg = machine.a.sign.value * Angle::from_rad(std::asin(normal.z())).deg();
     prediction.poses[f] = solve_plunge_pose(machine, normal, groove.axis.cross(normal).normalized(), near);
-    const double tilt = std::abs(std::tan(prediction.poses[f].root_tilt.rad()));
-    prediction.root_of_mm[f] = tool_width_mm * tilt;
+    prediction.root_of_mm[f] = 2.0 * wedge.half_width_mm * std::abs(std::tan(prediction.poses[f].root_tilt.rad()));
     prediction.root_mm = std::max(prediction.root_mm, prediction.root_of_mm[f]);
-    prediction.wall_mm = std::max(prediction.wall_mm, (groove.facet_length_mm + stock_mm) * tilt);
     const RigidMotion motion = machine_from_workpiece(machine, prediction.poses[f].pose);
+    prediction.wall_mm =
+        std::max(prediction.wall_mm, wall_overcut_mm(groove, wedge, prediction.pass_normal, motion, length_mm));
     // The edge stays level while it ploughs the other facet, whose normal has a part along it.
     const std::size_t other = 1 - f;
-    const Vec3 other_normal = motion.direction(groove.facets[other].normal);
-    const double along_edge = edge.dot(other_normal);
-    const double slope = along_edge / std::sqrt(1.0 - along_edge * along_edge);
-    const double edge_along_root = edge.dot(motion.direction(groove.root_direction));
-    prediction.plough_slope[other] = edge_along_root < 0.0 ? -slope : slope;
+    const DesignFacet& ploughed = groove.facets[other];
+    const Vec3 root = motion.direction(groove.root_direction);
+    const Vec3 up = motion.direction(ploughed.up_slope);
+    const double drift = -prediction.pass_normal.dot(up) / prediction.pass_normal.dot(root);
+    prediction.plough_drift[other] = drift;
+    prediction.plough_slope[other] =
+        wedge.edge.dot(motion.direction(ploughed.normal)) / (wedge.edge.dot(root) - drift * wedge.edge.dot(up));
   }
   return prediction;
 }

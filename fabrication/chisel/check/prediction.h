@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/simulation/swept_volume.h"
 #include "fabrication/machine/machine.h"
 
 namespace retrace::fabrication {
@@ -17,13 +18,18 @@ struct Prediction {
   /// By how much facet f rises from one end of the tool's edge to the other, per mm, when it is ploughed in the pose of
   /// the other facet; signed along the root direction of the groove.
   std::array<double, 2> plough_slope{};
+  /// Distance by which the edge moves along the root for each mm that it ploughs up facet f: the slides need not be
+  /// square to the root.
+  std::array<double, 2> plough_drift{};
+  /// Normal of the plane in which Y and Z move the tool while X stands, in the frame of the machine.
+  geometry::Vec3 pass_normal = geometry::Vec3::UnitX();
   /// Of prisms. A V follows the dihedral edges themselves and its planes hold the facets: it leaves nothing.
   double root_mm = 0.0;                ///< by which the ends of the tilted edge stay up a facet at the root at most
   std::array<double, 2> root_of_mm{};  ///< the same, up each facet
-  double wall_mm = 0.0;                ///< by which the tilted edge's ends cut into the walls at most
+  double wall_mm = 0.0;                ///< by which the ends of the edge and the tool above them go into walls at most
 };
 
 /// \throw InputError if the machine cannot plunge a facet
-Prediction predict(const Machine& machine, const Groove& groove, double tool_width_mm);
+Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge& wedge);
 
 }  // namespace retrace::fabrication

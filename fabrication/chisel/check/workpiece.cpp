@@ -14,11 +14,12 @@ Workpiece3d workpiece_of(const Job& job, const Machine& machine, double toleranc
   workpiece.tolerance_mm = tolerance_nm / kNmPerMm;
   workpiece.elements = cut_elements(job);
   const double stock = stock_mm(job, workpiece.elements);
+  const ToolWedge wedge = wedge_of(job, machine);
   std::map<std::pair<bool, std::int32_t>, std::size_t> groups;
   for (const CutElement& element : workpiece.elements) {
     Groove groove = groove_of(element, job, stock);
     const auto [group, is_new] = groups.try_emplace({element.rotated, element.orientation}, groups.size());
-    if (is_new) workpiece.predictions.push_back(predict(machine, groove, job.tool.width_mm));
+    if (is_new) workpiece.predictions.push_back(predict(machine, groove, wedge));
     groove.group = group->second;
     workpiece.grooves.push_back(std::move(groove));
   }

@@ -61,8 +61,8 @@ Vec2 on_clearance_plane(const Section& section, const Vec2& point, const Vec2& d
 
 /// The thickest that the first slice takes, along the wall's normal, over its width at the floor: what the rake face
 /// reaches of the triangle below the blank's face.
-double share_of_first_slice(const Job& job, const Section& section) {
-  const double rake_slope = std::tan(Angle::from_deg(job.tool.clearance_deg + job.tool.wedge_deg).rad());
+double share_of_first_slice(const Section& section) {
+  const double rake_slope = std::tan(section.rake.rad());
   const double face_slope = 1.0 / std::tan(0.5 * section.apex.rad());
   return rake_slope * face_slope / (rake_slope + face_slope) / std::sin(section.apex.rad());
 }
@@ -150,7 +150,7 @@ Routine unidirectional_routine(const Job& job, const Section& section) {
   const Process& process = job.process;
   const double left_mm = finishing_allowance_mm(job);
   const double across_mm = slices_across_mm(section, left_mm);
-  const double share = share_of_first_slice(job, section);
+  const double share = share_of_first_slice(section);
   const double dip_mm = edge_dip_mm(section);
   const int cuts = cuts_per_facet(job, section.stock_mm);
   const auto wall_y = [&](int cut) {

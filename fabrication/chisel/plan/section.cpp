@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/machine/edge_cut.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -43,11 +44,6 @@ void check_root(const Job& job, const CuttingPose& pose, const InputLocation& wh
                   "most {} are borne: a finishing cut over the edge's width, which would have to be {} mm",
                   stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4), fixed(Angle::from_rad(limit).deg(), 4),
                   fixed(width_mm, 4)));
-}
-
-Vec2 direction_in_words(const Machine& machine, double y, double z) {
-  const auto words = words_along(machine, Vec3(0.0, y, z));
-  return {words[1], words[2]};
 }
 
 }  // namespace
@@ -125,16 +121,15 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   Section& section = pose.section;
   const Vec3 wall = in_words(machine, motion.direction(normal));
   section.wall_y = 1.0 / wall.y();
-  // A floor that is ploughed makes exactly the apex angle with the wall; the other facet's own normal is turned away
-  // from it by the root's tilt, and touches the deeper end of the edge.
-  const Vec3 floor = in_words(machine, Vec3(0.0, std::cos(apex_rad), std::sin(apex_rad)));
-  section.floor_normal = {floor.y(), floor.z()};
-  section.floor_direction = direction_in_words(machine, -std::sin(apex_rad), std::cos(apex_rad));
-  section.bisector = direction_in_words(machine, -std::sin(0.5 * apex_rad), std::cos(0.5 * apex_rad));
+  // Y and Z move the tool along the floor's design, which the root's tilt turns against the edge: its deeper end
+  // touches the floor.
   const FacetChoice other{facet.rotated, 3 - facet.facet};
   const Vec3 design_floor = motion.direction(pose.turn * facet_normal(element, other));
-  section.lift_mm = std::abs(design_floor.dot(edge_direction(machine)) / in_words(machine, design_floor).z()) * 0.5 *
-                    job.tool.width_mm;
+  const Vec3 floor = in_words(machine, design_floor);
+  section.floor_normal = Vec2(floor.y(), floor.z()).normalized();
+  section.floor_direction = {-section.floor_normal.y(), section.floor_normal.x()};
+  section.bisector = (Vec2::UnitY() + section.floor_direction).normalized();
+  section.lift_mm = std::abs(design_floor.dot(edge_direction(machine)) / floor.z()) * 0.5 * job.tool.width_mm;
   const Vec3 face = in_words(machine, motion.direction(pose.turn.col(2)));
   section.face_normal = {face.y(), face.z()};
   section.depth_mm = root_depth_mm(element);
@@ -142,6 +137,8 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   section.start_mm = stance.start_mm;
   section.edge_mm = 1e-3 * job.tool.edge_radius_um * (1.0 - std::sin(apex_rad) + std::cos(apex_rad));
   section.apex = Angle::from_rad(apex_rad);
+  section.rake = Angle::from_rad(Angle::from_deg(job.tool.clearance_deg + job.tool.wedge_deg).rad() +
+                                 clearance_change(machine).rad());
   section.step_nm = machine.increments.linear_nm;
   return pose;
 }

@@ -68,12 +68,13 @@ class Measurer {
       double previous_slant = 0.0;
       double previous_top = 0.0;
       for (const double slant : slants) {
-        const double floor_mm =
-            is_other_ploughed && slant == kAtRootMm ? ploughed_height(1 - facet, along).high / sine_between() : 0.0;
+        const double floor_mm = is_other_ploughed && slant == kAtRootMm
+                                    ? ploughed_height(1 - facet, along, 0.0).high / sine_between()
+                                    : 0.0;
         if (!is_clear_of_other(slant)) continue;
         const LineSurface surface = slant == kAtRootMm ? at_root(facet, along, kAtRootMm + floor_mm)
                                                        : surface_at(facet, along, slant + floor_mm);
-        take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along) : Interval{});
+        take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along, slant) : Interval{});
         if (is_for_plane(slant, along)) plane.add(slant, along, surface.lowest);
         figures.residual_mm3 += 0.5 * (surface.top + previous_top) * (slant - previous_slant) * width_mm;
         previous_slant = slant;
@@ -117,11 +118,11 @@ class Measurer {
     burr_height_mm_ = strip_mm_ + end_mm * slope;
   }
 
-  /// Where the plane in which the middle of the edge moves meets the root line, along it.
+  /// Position along the root line where the plane in which the middle of the edge moves meets that line.
   double middle_of(const SweptVolume& sweep) const {
-    const Vec3& across = wedge_.edge;
+    const Vec3& normal = prediction_.pass_normal;
     const RigidMotion& pose = poses_[sweep.pose];
-    return across.dot(sweep.to_mm - pose.point(groove_.root_mm)) / across.dot(pose.direction(groove_.root_direction));
+    return normal.dot(sweep.to_mm - pose.point(groove_.root_mm)) / normal.dot(pose.direction(groove_.root_direction));
   }
 
   /// \param end_mm by which a pass may be off along the root
@@ -235,15 +236,16 @@ class Measurer {
     return std::min(at_face, free / towards);
   }
 
-  /// What ploughing must leave at a station: 0 at the deeper end of the edge, which touches the design's facet. The
-  /// ends of a tilted edge wander by up to wall_mm along a facet: within that of an end the pass may or may not have
-  /// been there.
-  Interval ploughed_height(std::size_t facet, double along) const {
+  /// Heights that ploughing must leave at a station, so far up the facet: 0 at the deeper end of the edge, which
+  /// touches the design's facet. The ends of a tilted edge wander by up to wall_mm along a facet: within that distance
+  /// of an end the pass may or may not have been there.
+  Interval ploughed_height(std::size_t facet, double along, double slant) const {
     const double slope = prediction_.plough_slope[facet];
     const double half = wedge_.half_width_mm;
     const double most = 2.0 * half * std::abs(slope);
     Interval height{most, most};
-    for (const double middle : stations_.pass_middles_mm) {
+    for (const double at_root : stations_.pass_middles_mm) {
+      const double middle = at_root + prediction_.plough_drift[facet] * slant;
       const double off = std::abs(along - middle);
       const double left = std::clamp(half * std::abs(slope) + slope * (along - middle), 0.0, most);
       if (off <= half + prediction_.wall_mm + kSamePassMm) height.low = std::min(height.low, left);

@@ -1,0 +1,217 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/chisel/plan/plan.h"
+#include "fabrication/machine/edge_cut.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "fabrication/machine/setup.h"
+#include "fabrication/post/post.h"
+#include "tests/fabrication/chiseling_jobs.h"
+#include "tests/fabrication/findings_text.h"
+
+// Machines whose slides and rotary axes lean and whose tool is mounted askew: what is planned for them passes, and what
+// such a machine makes unavoidable has a closed form.
+
+namespace retrace::fabrication::test::random_machines_test {
+namespace {
+
+using geometry::Vec3;
+
+constexpr double kRadPerArcsec = std::numbers::pi / 648000.0;
+
+Machine machine(const std::string& name) {
+  return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
+}
+
+Machine machine_with(const char* key, double amount) {
+  return with_error(machine("ideal"), *setup_quantity(Tilt::table, key), amount);
+}
+
+/// \param along_x_nm by which all visits are moved along X
+Verification verified(const Job& job, const Machine& m, Nanometres along_x_nm = 0) {
+  std::vector<NcProgram> programs;
+  for (Program& program : make_plan(job, m).programs) {
+    for (Item& item : program.items)
+      if (auto* const visit = std::get_if<Visit>(&item)) visit->start.x() += along_x_nm;
+    programs.push_back(parse_nc(nc_text(program, "rs274ngc"), "p.ngc", NcDialect::rs274ngc));
+  }
+  return verify_programs(job, m, programs, {}, {});
+}
+
+Job prism(Strategy strategy) {
+  Job job = square_job(1);
+  job.strategy = strategy;
+  job.process.roughing_depth_um = 30.0;
+  return job;
+}
+
+struct Lean {
+  const char* key;
+  Strategy strategy;
+  double least_share;  ///< of the prediction that right programs reach
+};
+
+/// An edge along the root moves along it by the slide's lean times the way along the slide: Z goes up facet 1, and Y
+/// goes along facet 2. An edge that is not level stands across the tool's side, which leans over the wall by the same
+/// angle. First cuts of roughing begin below the rim, so that a slide's lean along Y is not used up. The clearance face
+/// is 3 degrees off the wall and leaves the blank before the rim, after cos 3 sin 45 / sin 48 = 0.95 of its length.
+TEST(RandomMachines, WhatGoesIntoWallsIsTheDirectionOfTravel) {
+  const double facet_nm = 1e6 * 0.451 / std::numbers::sqrt2;
+  for (const auto& [key, strategy, least_share] :
+       {Lean{"z_lean_x_arcsec", Strategy::two_step, 0.999}, Lean{"z_lean_x_arcsec", Strategy::bidirectional, 0.999},
+        Lean{"y_lean_x_arcsec", Strategy::unidirectional, 0.8}, Lean{"tool_turn_y_arcsec", Strategy::two_step, 0.95}})
+    for (const double arcsec : {-100.0, 10.0, 300.0}) {
+      SCOPED_TRACE(fmt::format("{} {}", key, arcsec));
+      const Verification v = verified(prism(strategy), machine_with(key, arcsec));
+      EXPECT_TRUE(v.passes()) << listed(v);
+      const double into_wall_nm = facet_nm * std::abs(arcsec) * kRadPerArcsec;
+      EXPECT_NEAR(v.wall_overcut_nm_predicted, into_wall_nm, 1e-3 * into_wall_nm);
+      EXPECT_LT(v.wall_overcut_nm_max, v.wall_overcut_nm_predicted + 2.0);
+      EXPECT_GT(v.wall_overcut_nm_max, least_share * v.wall_overcut_nm_predicted - 2.0);
+      EXPECT_LT(v.facet_distance_nm_max, 2.0);
+    }
+}
+
+/// The prediction excuses no more than it must: 15 nm farther into the wall to which the slide leans are found.
+TEST(RandomMachines, AnEdgeTooFarInAWallIsFound) {
+  for (const double arcsec : {-200.0, 200.0}) {
+    const Machine m = machine_with("z_lean_x_arcsec", arcsec);
+    const Job job = prism(Strategy::bidirectional);
+    const Verification v = verified(job, m, arcsec > 0.0 ? 15 : -15);
+    EXPECT_FALSE(v.passes()) << arcsec;
+    for (const Finding& finding : v.findings) EXPECT_EQ(finding.kind, "wall_overcut");
+  }
+}
+
+/// Facets that are ploughed by a tilted edge while the slides lean along it: the edge stays on the design's facet, and
+/// moves along the root as predicted.
+TEST(RandomMachines, PloughsKeepToTheFacetWhereSlidesLeanAlongATiltedEdge) {
+  for (const double tilt_arcsec : {-1000.0, 1000.0})
+    for (const double lean_arcsec : {-1000.0, 1000.0}) {
+      const Machine tilted = machine_with("tool_turn_y_arcsec", tilt_arcsec);
+      const Machine m = with_error(tilted, *setup_quantity(Tilt::table, "y_lean_x_arcsec"), lean_arcsec);
+      const Verification v = verified(prism(Strategy::unidirectional), m);
+      EXPECT_TRUE(v.passes()) << tilt_arcsec << " " << lean_arcsec << "\n" << listed(v);
+      EXPECT_LT(v.facet_distance_nm_max, 2.0);
+    }
+}
+
+/// A machine all of whose axes lean, with a tool that is mounted askew: by up to so many arcsec and a hundredth of that
+/// in um.
+Machine any_machine(std::mt19937_64& bits, const std::string& name, double most_arcsec) {
+  std::uniform_real_distribution<double> share(-1.0, 1.0);
+  Machine m = machine(name);
+  std::vector<double> amounts;
+  for (const SetupQuantity& quantity : setup_quantities(m.tilt))
+    amounts.push_back((quantity.is_angle() ? most_arcsec : 0.01 * most_arcsec) * share(bits));
+  m.a.sign.value = share(bits) < 0.0 ? -1.0 : 1.0;
+  m.c.sign.value = share(bits) < 0.0 ? -1.0 : 1.0;
+  if (m.a.sign.value < 0.0) m.a.limits_deg.value = {-m.a.limits_deg.value.high, -m.a.limits_deg.value.low};
+  return with_errors(std::move(m), amounts);
+}
+
+template <class Value>
+Value one_of(std::mt19937_64& bits, std::initializer_list<Value> values) {
+  return values.begin()[std::uniform_int_distribution<std::size_t>(0, values.size() - 1)(bits)];
+}
+
+Job any_job(std::mt19937_64& bits, bool is_prism) {
+  if (!is_prism) {
+    Job job = cube_job(one_of(bits, {false, true}), 0.2);
+    job.array = {};
+    job.array.arrangement = geometry::Arrangement::single;
+    return job;
+  }
+  Job job = square_job(1);
+  job.strategy = one_of(bits, {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step});
+  prism_of(job).apex_angle_deg = one_of(bits, {80.0, 90.0, 90.0, 90.05, 100.0});
+  job.tool.width_mm = one_of(bits, {0.451, 0.451, 0.3});
+  job.tool.edge_radius_um = one_of(bits, {0.0, 1.0, 5.0});
+  job.process.roughing_depth_um = one_of(bits, {30.0, 40.0});
+  return job;
+}
+
+/// Machines of all sizes of error: of arcseconds, which are as large as the tolerance, and of a tenth of a degree.
+TEST(RandomMachines, RightProgramsOfAnyMachinePass) {
+  constexpr int kMachines = 500;
+  std::mt19937_64 bits(59);
+  std::uniform_real_distribution<double> decades(0.0, 2.6);
+  for (int k = 0; k < kMachines; ++k) {
+    const bool is_prism = k % 5 != 0;
+    const std::string name =
+        is_prism ? one_of<std::string>(bits, {"ideal", "paper", "thesis"}) : std::string("ideal-dmc");
+    const double most_arcsec = std::pow(10.0, decades(bits));
+    const Machine m = any_machine(bits, name, most_arcsec);
+    const Job job = any_job(bits, is_prism);
+    const Verification v = verified(job, m);
+    EXPECT_TRUE(v.passes()) << fmt::format("machine {}: {}, {} arcsec, strategy {}, apex {}, width {}, radius {}\n{}",
+                                           k, name, most_arcsec, static_cast<int>(job.strategy),
+                                           is_prism ? prism_of(job).apex_angle_deg : 0.0, job.tool.width_mm,
+                                           job.tool.edge_radius_um, listed(v));
+    EXPECT_LT(v.facet_distance_nm_max, 3.0) << k;
+    EXPECT_LT(v.wall_overcut_nm_max, v.wall_overcut_nm_predicted + 3.0) << k;
+  }
+}
+
+/// The tool is touched off as it is mounted. Its edge is a circle that touches the plane of the plunge and the line of
+/// its lowest points in the reference point's axes, however the diamond is turned; the tip is where the tangents along
+/// both facets cross.
+TEST(RandomMachines, ATurnedToolCutsWhereItWasTouchedOff) {
+  std::mt19937_64 bits(8);
+  std::uniform_real_distribution<double> share(-1.0, 1.0);
+  for (int k = 0; k < 100; ++k) {
+    Machine m = any_machine(bits, "ideal", 2000.0);
+    m.mount.turn_deg.value = Vec3(3.0 * share(bits), share(bits), share(bits));
+    Tool tool;
+    tool.width_mm = 0.5;
+    tool.edge_radius_um = 5.0 + 4.0 * share(bits);
+    const Angle apex = Angle::from_deg(90.0 + 15.0 * share(bits));
+    const ToolWedge wedge = tool_wedge(tool, m, apex);
+    const Vec3 wall = plunged_normal(m);
+    const Vec3 up = wall.cross(edge_direction(m));
+    const Vec3 floor = -std::cos(apex.rad()) * wall + std::sin(apex.rad()) * up;
+    const double radius_mm = 1e-3 * tool.edge_radius_um;
+    const Vec3 centre = radius_mm * (wall + up);
+    EXPECT_NEAR(wall.dot(centre - wedge.tip_mm), radius_mm, 1e-12);
+    EXPECT_NEAR(floor.dot(centre - wedge.tip_mm), radius_mm, 1e-12);
+    EXPECT_NEAR(wedge.edge.dot(wedge.tip_mm), 0.0, 1e-12);
+  }
+}
+
+/// So a known turn about the edge changes the clearance only: facets of any apex angle are cut by a blunt edge as
+/// designed.
+TEST(RandomMachines, ATurnAboutTheEdgeMovesNoFacet) {
+  for (const double turn_deg : {-1.0, 1.0})
+    for (const double apex_deg : {80.0, 90.0, 100.0}) {
+      Machine m = machine("ideal");
+      m.mount.turn_deg.value = Vec3(turn_deg, 0.0, 0.0);
+      Job job = prism(Strategy::two_step);
+      prism_of(job).apex_angle_deg = apex_deg;
+      job.tool.edge_radius_um = 5.0;
+      const Verification v = verified(job, m);
+      EXPECT_TRUE(v.passes()) << turn_deg << " " << apex_deg << "\n" << listed(v);
+      EXPECT_LT(v.facet_distance_nm_max, 1.0);
+    }
+  EdgeCut cut;
+  cut.at.a_deg = 45.0;
+  cut.tip_mm = Vec3(0.0, 0.0, -0.001);
+  const Machine m = machine("ideal");
+  const PlaneChange change =
+      plane_change(m, cut, *setup_quantity(Tilt::table, "tool_turn_x_arcsec"), Vec3(0, -1, 1).normalized());
+  EXPECT_LT(change.point_mm.norm(), 1e-15);
+  EXPECT_LT(change.normal.norm(), 1e-15);
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::test::random_machines_test
