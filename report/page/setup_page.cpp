@@ -143,7 +143,7 @@ PageSection tool_section(const FabricationResult& result, const SetupSheet& shee
   if (mount.offset_mm.value != Vec3::Zero() || mount.turn_deg.value != Vec3::Zero())
     s.paragraphs.push_back(
         fmt::format("Programs are made for a tool that stands {} mm off along X, Y, Z and is turned by {} "
-                    "degrees about them ({}).",
+                    "degrees about them as it is mounted ({}).",
                     triple(mount.offset_mm.value, 6), triple(mount.turn_deg.value, 6), mount.turn_deg.source));
   s.steps = tool_steps(result, sheet);
   return s;
@@ -157,7 +157,10 @@ PageSection zero_section(const FabricationResult& result, const SetupSheet& shee
       result.job.substrate ? ", as high as its highest place" : "", tilt_word(result),
       is_dmc ? "the tip" : "the middle of the edge's width, where its clearance side and its lowest line meet"));
   s.steps = {
-      fmt::format("{}0 C0, spindle stopped, the control's transformation off.", tilt_word(result)),
+      fmt::format(
+          "{}0 C0, spindle stopped, the control's transformation off. The tool is mounted and aligned: if it is "
+          "turned in its holder later, touch it off again.",
+          tilt_word(result)),
       fmt::format("Z: bring the edge down to the face beside the array until it marks, and set that as Z0. {}.",
                   cost(sheet, "tool_z_um")),
       fmt::format(
