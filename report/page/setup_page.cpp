@@ -50,8 +50,9 @@ std::string tilt_word(const FabricationResult& result) {
 std::string cost(const SetupSheet& sheet, std::string_view key) {
   for (const Sensitivity& row : sheet.sensitivities.rows)
     if (row.quantity->key == key)
-      return fmt::format("1 {} costs up to {} nm on facets, {} nm at roots, {} nm of chip", row.quantity->unit(),
-                         fixed(row.farthest_nm(), 0), fixed(std::max(row.root_left_nm, row.root_cut_nm), 0),
+      return fmt::format("1 {} costs up to {} nm on facets, {} nm at roots, {} nm in walls, {} nm of chip",
+                         row.quantity->unit(), fixed(row.farthest_nm(), 0),
+                         fixed(std::max(row.root_left_nm, row.root_cut_nm), 0), fixed(row.wall_nm, 0),
                          fixed(row.chip_nm, 0));
   return {};
 }
@@ -316,12 +317,15 @@ PageTable sensitivity_table(const FabricationResult& result, const SetupSheet& s
   table.columns = {"quantity, by one"};
   for (const studies::FacetKind& kind : sheet.sensitivities.kinds) table.columns.push_back(kind.name());
   table.columns.insert(table.columns.end(), {"farthest (nm)", "chip (nm)", "left at root (nm)", "into root (nm)"});
+  const bool has_walls = result.machine.tilt == Tilt::table;
+  if (has_walls) table.columns.emplace_back("into walls (nm)");
   if (sheet.light) table.columns.insert(table.columns.end(), {"RRE (%)", "R_A (%)"});
   for (const Sensitivity& row : sheet.sensitivities.rows) {
     std::vector<PageCell> cells = {fmt::format("{}, {}", row.quantity->words, row.quantity->unit())};
     for (const studies::FacetEffect& effect : row.facets) cells.push_back(effect_text(effect));
     for (const double nm : {row.farthest_nm(), row.chip_nm, row.root_left_nm, row.root_cut_nm})
       cells.push_back(fixed(nm, 1));
+    if (has_walls) cells.push_back(fixed(row.wall_nm, 1));
     if (const studies::PartLight* const change = sheet.change_of_light(*row.quantity, result.machine.tilt)) {
       cells.push_back(
           change_text(change->rre.back(), sheet.light->nominal.rre.back(), studies::SetupLight::kLeastChangeOfRre));

@@ -103,6 +103,37 @@ void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut&
   }
 }
 
+/// Positions of the edge's ends at the root and at the rims of both facets, and of the tool a facet above its ends at
+/// the root, in the workpiece frame. \param machine that runs the words which `planned` needs
+std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, const PlacedCut& ending,
+                              double half_width_mm) {
+  const Groove& groove = ending.groove();
+  EdgeCut cut = ending.cut().cut;
+  const RigidMotion motion = machine_from_workpiece(planned, rotary_pose(planned, cut.at));
+  const AxisPositions at_root = cut.at;
+  std::vector<Vec3> places = edge_ends(machine, cut, half_width_mm);
+  const Vec3 up =
+      machine_from_workpiece(machine, rotary_pose(machine, cut.at)).inverse().direction(edge_frame(machine).col(2));
+  for (std::size_t k = 0; k < 2; ++k) places.push_back(places[k] + groove.facet_length_mm * up);
+  for (const DesignFacet& facet : groove.facets) {
+    const auto words = words_along(planned, groove.facet_length_mm * motion.direction(facet.up_slope));
+    cut.at.y_mm = at_root.y_mm + words[1];
+    cut.at.z_mm = at_root.z_mm + words[2];
+    for (const Vec3& end : edge_ends(machine, cut, half_width_mm)) places.push_back(end);
+  }
+  return places;
+}
+
+/// Compares the tool's ends with the walls: where a whole edge moves along the root, one of its ends goes into a wall.
+void tell_walls(const Machine& machine, const PlacedCut& ending, double half_width_mm, const SetupQuantity& quantity,
+                Sensitivity& row) {
+  if (machine.tilt == Tilt::head) return;
+  const std::vector<Vec3> before = wall_places(machine, machine, ending, half_width_mm);
+  const std::vector<Vec3> after = wall_places(with_error(machine, quantity, 1.0), machine, ending, half_width_mm);
+  for (std::size_t k = 0; k < before.size(); ++k)
+    row.wall_nm = std::max(row.wall_nm, kNmPerMm * std::abs(ending.groove().root_direction.dot(after[k] - before[k])));
+}
+
 /// \param ways_up of a V, which sweep the other part of their facets
 Sensitivity row_of(const Machine& machine, double half_width_mm, const SetupQuantity& quantity,
                    const CutsOfFacets& cuts, const CutsOfFacets& ways_up, const std::vector<CutElement>& elements,
@@ -122,6 +153,7 @@ Sensitivity row_of(const Machine& machine, double half_width_mm, const SetupQuan
     take(element, facet, list.back());
     row.chip_nm = std::max(row.chip_nm, chip_change_nm(list, quantity));
     if (!list.back().cut().ends_at_root) continue;
+    tell_walls(machine, list.back(), half_width_mm, quantity, row);
     for (std::size_t other = 0; other < list.back().groove().facets.size(); ++other)
       if (const auto found = cuts.find({element, other}); other != facet && found != cuts.end())
         tell_root(machine, list.back(), found->second.back(), half_width_mm, quantity, row);

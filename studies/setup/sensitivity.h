@@ -35,9 +35,10 @@ struct Sensitivity {
   double chip_nm = 0.0;       ///< by which the chip of a cut changes most, from how the material was left before it
   double root_left_nm = 0.0;  ///< at most, that an end of the edge stops short of another facet
   double root_cut_nm = 0.0;   ///< at most, that it goes below one
+  double wall_nm = 0.0;       ///< at most, that an end of a chisel's edge or the tool above it moves along the root
 
   double farthest_nm() const;  ///< of all facets, unsigned
-  double largest_nm() const;   ///< of facets, chips and roots
+  double largest_nm() const;   ///< of facets, chips and roots; walls are not counted
 };
 
 struct Sensitivities {

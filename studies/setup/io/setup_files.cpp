@@ -98,6 +98,7 @@ Json sensitivities_json(const FabricationResult& result, const SetupSheet& sheet
     Json json = {{"quantity", row.quantity->key}, {"words", row.quantity->words}, {"unit", row.quantity->unit()},
                  {"facets", std::move(facets)},   {"chip_nm", row.chip_nm},       {"root_left_nm", row.root_left_nm},
                  {"root_cut_nm", row.root_cut_nm}};
+    if (result.machine.tilt == Tilt::table) json["wall_nm"] = row.wall_nm;
     if (const PartLight* const change = sheet.change_of_light(*row.quantity, result.machine.tilt)) {
       json["rre_change"] = change->rre;
       json["r_a_change"] = change->r_a;

@@ -75,6 +75,23 @@ TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
   EXPECT_NEAR(level.root_cut_nm, end_nm, 1e-6);
 }
 
+/// Edges that move along the root go into a wall by as much, whatever moves them.
+TEST(SetupSheet, WallsAreWhatTheVerifierFinds) {
+  const FabricationResult result = made();
+  const SetupSheet sheet = setup_sheet(result, false);
+  for (const auto& [key, amount] : {std::pair{"z_lean_x_arcsec", 200.0},
+                                    {"y_lean_x_arcsec", 200.0},
+                                    {"tool_turn_y_arcsec", 200.0},
+                                    {"tool_x_um", 1.0}}) {
+    const Sensitivity& row = row_of(sheet, key);
+    EXPECT_GT(row.wall_nm, 1.0) << key;
+    const Verification v = cut_on(result, with_error(result.machine, *row.quantity, amount));
+    EXPECT_NEAR(v.wall_overcut_nm_max, amount * row.wall_nm, 0.2 * amount * row.wall_nm) << key;
+  }
+  EXPECT_NEAR(row_of(sheet, "tool_x_um").wall_nm, 1000.0, 1e-6);
+  EXPECT_NEAR(row_of(sheet, "tool_z_um").wall_nm, 0.0, 1e-6);
+}
+
 /// Roughing ploughs facet 2 in the pose of facet 1, and its first finishing cut takes what an error of A leaves there.
 TEST(SetupSheet, ChipsAreWhatTheVerifierFinds) {
   std::string job = kJob;
