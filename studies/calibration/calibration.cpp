@@ -1,6 +1,7 @@
 #include "studies/calibration/calibration.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -134,6 +135,43 @@ double most_by_chance(std::size_t measurements) {
                   line > 0 ? "those of lines " : "", places));
 }
 
+/// Rows of one quantity of like facets, whose sign is told in one way.
+bool is_alike(const MeasuredParts& measured, const Measurement& a, const Measurement& b) {
+  const auto is_rotated = [&](const Measurement& m) {
+    return measured.plan_of(m.part).plan.elements[m.at.element].rotated;
+  };
+  return a.what == b.what && a.at.facet == b.at.facet && is_rotated(a) == is_rotated(b);
+}
+
+/// Refuses tables of which outliers are all that was measured of a quantity of like facets: several rows of one part,
+/// or all of all parts. A wrong sign does that. \param measured without the outliers
+void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& parts,
+                 const std::vector<Outlier>& outliers) {
+  for (const Outlier& outlier : outliers) {
+    const Measurement& worst = outlier.measurement;
+    if (worst.line == 0) continue;  // figures of maps have no sign that someone wrote
+    bool is_in_part = false;
+    bool is_in_others = false;
+    for (const Measurement& m : measured.measurements)
+      if (is_alike(measured, m, worst)) (m.part == worst.part ? is_in_part : is_in_others) = true;
+    std::vector<int> lines;
+    for (const Outlier& other : outliers)
+      if (is_alike(measured, other.measurement, worst) && other.measurement.part == worst.part)
+        lines.push_back(other.measurement.line);
+    if (is_in_part || (is_in_others && lines.size() < 2)) continue;
+    std::sort(lines.begin(), lines.end());
+    const FabricationResult& plan = measured.plan_of(worst.part);
+    throw InputError(
+        {measured.file, lines.front(), "value"},
+        fmt::format("the other rows contradict all that was measured as {} of facet {}{} of {} (line{} {}): check the "
+                    "sign, a positive value means \"{}\" at {}0 C0",
+                    kFacetQuantityWords[static_cast<std::size_t>(worst.what)], worst.at.facet + 1,
+                    plan.plan.elements[worst.at.element].rotated ? " of turned elements" : "",
+                    measured.jobs[worst.part], lines.size() > 1 ? "s" : "", fmt::join(lines, ", "),
+                    parts[worst.part].positive_sense(worst), plan.machine.tilt_letter()));
+  }
+}
+
 /// One combination: "2 c_x_um + 1 tool_x_um".
 std::string words_of(const VectorXd& combination, std::span<const SetupQuantity> quantities) {
   std::string words;
@@ -231,6 +269,7 @@ Calibration calibrate(MeasuredParts measured) {
     fitted = fit(parts, measured);
     std::tie(at, deviations) = worst(fitted, measurements.size());
   }
+  check_signs(measured, parts, result.outliers);
   result.parts = std::move(measured);
   tell(result, fitted);
   return result;

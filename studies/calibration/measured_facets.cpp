@@ -26,6 +26,15 @@ double included_rad(const Vec3& a, const Vec3& b) {
   return std::numbers::pi - std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+/// "+X" or "-Y" for directions along an axis, numbers for others.
+std::string direction_text(const Vec3& direction) {
+  constexpr double kAlongAxis = 0.99;
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    if (std::abs(direction[axis]) > kAlongAxis)
+      return fmt::format("{}{}", direction[axis] < 0.0 ? '-' : '+', "XYZ"[axis]);
+  return fmt::format("({:.3f} {:.3f} {:.3f})", direction.x(), direction.y(), direction.z());
+}
+
 Eigen::Matrix3d rotation_by(const Vec3& turn_arcsec) {
   const Vec3 turn = turn_arcsec / kArcsecPerRad;
   if (turn.isZero(0.0)) return Eigen::Matrix3d::Identity();
@@ -66,6 +75,18 @@ std::string CutPart::fault_of(const Measurement& m) const {
   }
   if (m.what == FacetQuantity::end && m.from) return "where a cut ends is told over the other facet of its element";
   return {};
+}
+
+std::string CutPart::positive_sense(const Measurement& m) const {
+  switch (m.what) {
+    case FacetQuantity::distance: return "material is left";
+    case FacetQuantity::up: return "rises away from the root";
+    case FacetQuantity::along: return "rises towards " + direction_text(grooves_[m.at.element].level_of(m.at.facet));
+    case FacetQuantity::angle: return "opens the groove";
+    case FacetQuantity::depth: return "deeper";
+    case FacetQuantity::end: break;
+  }
+  return "ends above the other facet";
 }
 
 CutPart::MadeFacet CutPart::made(const FacetPlace& at, const Machine& real, const PartPose& pose) const {

@@ -178,11 +178,13 @@ std::string residuals_csv(const Calibration& result) {
 }
 
 std::string test_cuts_csv(const TestCuts& cuts) {
-  CsvWriter table("job,element,facet,what,value,uncertainty,from_element,from_facet,at");
+  CsvWriter table("job,element,facet,what,value,uncertainty,from_element,from_facet,at,positive");
+  std::vector<CutPart> parts;
+  for (const FabricationResult& plan : cuts.parts.plans) parts.emplace_back(plan, std::vector<std::size_t>());
   const std::optional<double> none;
   for (const Measurement& m : cuts.parts.measurements)
     table.row(cuts.parts.jobs[m.part], m.at.element, m.at.facet + 1, word_of(m.what), none, m.uncertainty, none, none,
-              m.what == FacetQuantity::end ? std::optional(m.along_edge) : none);
+              m.what == FacetQuantity::end ? std::optional(m.along_edge) : none, parts[m.part].positive_sense(m));
   return table.text();
 }
 

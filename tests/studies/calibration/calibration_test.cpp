@@ -176,6 +176,59 @@ TEST(Calibration, NamesWhatTheOthersContradict) {
   }
 }
 
+std::string refusal_of(const MeasuredParts& parts) {
+  try {
+    calibrate(parts);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// Somebody who takes the tilts along the roots of turned prisms the other way round, on one part, gives four wrong
+/// rows of 72: too few to be refused as a whole, and no row is left that would say so.
+TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
+  const Machine& ideal = test_cuts().plans.front().machine;
+  const Machine real = with_error(ideal, *setup_quantity(Tilt::table, "tool_turn_z_arcsec"), 60.0);
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    std::mt19937 bits(seed);
+    MeasuredParts parts = measured_on(real, bits);
+    ASSERT_EQ(refusal_of(parts), "accepted");
+    const auto is_of_turned = [](const Measurement& m) {
+      return m.part == 1 && m.what == FacetQuantity::along && (m.at.element == 1 || m.at.element == 2);
+    };
+    for (Measurement& m : parts.measurements)
+      if (is_of_turned(m)) m.value = -m.value;
+    const std::string refusal = refusal_of(parts);
+    EXPECT_TRUE(refusal.starts_with("measurements.csv:")) << refusal;
+    EXPECT_NE(refusal.find("along_arcsec of facet"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("of turned elements of 1.toml"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("a positive value means \"rises towards +Y\" at A0 C0"), std::string::npos) << refusal;
+    // One wrong row of two is an outlier as before.
+    for (Measurement& m : parts.measurements)
+      if (is_of_turned(m) && m.at != FacetPlace{1, 0}) m.value = -m.value;
+    EXPECT_EQ(refusal_of(parts), "accepted") << seed;
+  }
+}
+
+/// The words of a positive tilt along the root, against the part itself: tilted so that its +X or +Y side rises, its
+/// facets rise that way.
+TEST(Calibration, TiltsAlongTheRootArePositiveWhereTheWordsSay) {
+  const FabricationResult& plan = test_cuts().plans.front();
+  const CutPart part(plan, {});
+  for (std::size_t element = 0; element < 4; ++element)
+    for (const std::size_t facet : {0U, 1U}) {
+      const Measurement along{0, {element, facet}, FacetQuantity::along, 0.0, 1.0, {}, 0.0, 0};
+      const std::string words = part.positive_sense(along);
+      ASSERT_TRUE(words == "rises towards +X" || words == "rises towards +Y") << words;
+      EXPECT_EQ(words == "rises towards +Y", plan.plan.elements[element].rotated);
+      PartPose pose;
+      // By the right hand: about -Y the side of +X goes up, about X that of +Y.
+      pose.turn_arcsec = words.ends_with("X") ? geometry::Vec3(0, -10, 0) : geometry::Vec3(10, 0, 0);
+      EXPECT_NEAR(part.predicted(along, plan.machine, pose), 10.0 / std::numbers::sqrt2, 1e-3);
+    }
+}
+
 /// Where cuts end is what the verifier finds left at the root, or cut into the other facet.
 TEST(Calibration, WhereCutsEndIsWhatTheVerifierFinds) {
   const FabricationResult& plan = test_cuts().plans.front();
