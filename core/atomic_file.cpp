@@ -2,13 +2,19 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <iostream>
 #include <system_error>
+#include <utility>
 
 #include "core/error.h"
 
@@ -20,20 +26,59 @@ std::string reason(int error_number) {
   return std::generic_category().message(error_number);
 }
 
-/// Owns a file under a temporary name until it is moved into place; otherwise removes it.
+/// Number of random bytes in the name of a temporary file.
+constexpr std::size_t kRandomBytes = 8;
+
+/// What the names of all temporary files of a target begin and end with; kRandomBytes in hexadecimal are in between.
+std::string temporary_prefix(const fs::path& target) {
+  return "." + target.filename().string() + ".";
+}
+constexpr std::string_view kTemporarySuffix = ".tmp";
+
+bool is_temporary_name(const std::string& name, const std::string& prefix) {
+  if (name.size() != prefix.size() + 2 * kRandomBytes + kTemporarySuffix.size()) return false;
+  const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  return name.starts_with(prefix) && name.ends_with(kTemporarySuffix) &&
+         std::ranges::all_of(std::string_view(name).substr(prefix.size(), 2 * kRandomBytes), is_hex);
+}
+
+/// Removes a temporary file unless a process is still writing it. The writer holds a lock on its file, and the system
+/// releases the lock when the process ends.
+void remove_if_abandoned(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return;
+  struct stat status = {};
+  const bool is_regular = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+  if (is_regular && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(file.c_str());
+  ::close(descriptor);
+}
+
+/// Removes the temporary files of a target that killed processes have left.
+void remove_abandoned(const fs::path& target) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const std::string prefix = temporary_prefix(target);
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (is_temporary_name(entry->path().filename().string(), prefix)) remove_if_abandoned(entry->path());
+}
+
+/// Owns a file under a temporary name until it is moved into place; otherwise removes it. The name is random and the
+/// file is new: what others have put into the folder is never opened.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& target)
-      : name_(target.parent_path() / fmt::format(".{}.{}.tmp", target.filename().string(), ::getpid())) {
-    descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) throw OutputError(fmt::format("{}: cannot be written: {}", target.string(), reason(errno)));
+  explicit TemporaryFile(const fs::path& target) {
+    remove_abandoned(target);
+    struct stat before = {};
+    const bool is_replacement = ::stat(target.c_str(), &before) == 0;
+    const mode_t mode = is_replacement ? before.st_mode & 0777 : 0666;
+    make(target, mode);
+    // The umask limits the mode of a new file; a replaced file keeps its mode. A file system without modes does no
+    // harm.
+    if (is_replacement) static_cast<void>(::fchmod(descriptor_, mode));
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!moved_) ::unlink(name_.c_str());
-  }
+  ~TemporaryFile() { discard(); }
 
   void write(std::string_view content, const fs::path& target) {
     while (!content.empty()) {
@@ -50,11 +95,10 @@ class TemporaryFile {
 
   void move_to(const fs::path& target) {
     if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target);
-    const int descriptor = descriptor_;
-    descriptor_ = -1;
-    if (::close(descriptor) != 0) fail(target);
+    // The lock is held until the file has its name, so that no other process takes it for abandoned.
     if (::rename(name_.c_str(), target.c_str()) != 0) fail(target);
-    moved_ = true;
+    name_.clear();
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail(target);
   }
 
  private:
@@ -62,9 +106,38 @@ class TemporaryFile {
     throw OutputError(fmt::format("{}: cannot be written: {}", target.string(), reason(errno)));
   }
 
-  fs::path name_;
+  /// Opens and locks a new file. If another process has removed the file before it was locked, makes another one.
+  void make(const fs::path& target, mode_t mode) {
+    constexpr int kMaxAttempts = 100;
+    for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
+      name_ = target.parent_path() / random_name(target);
+      descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+      if (descriptor_ < 0 && errno == EEXIST) continue;
+      if (descriptor_ < 0) fail(target);
+      // Some network file systems have no locks. Abandoned files are not removed there.
+      static_cast<void>(::flock(descriptor_, LOCK_EX));
+      struct stat made = {};
+      if (::fstat(descriptor_, &made) == 0 && made.st_nlink > 0) return;
+      ::close(std::exchange(descriptor_, -1));
+    }
+    errno = EEXIST;
+    fail(target);
+  }
+
+  static std::string random_name(const fs::path& target) {
+    std::array<unsigned char, kRandomBytes> bytes{};
+    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) fail(target);
+    return fmt::format("{}{:02x}{}", temporary_prefix(target), fmt::join(bytes, ""), kTemporarySuffix);
+  }
+
+  void discard() {
+    if (descriptor_ < 0) return;
+    if (!name_.empty()) ::unlink(name_.c_str());
+    ::close(std::exchange(descriptor_, -1));
+  }
+
+  fs::path name_;  ///< empty after the file has been moved into place
   int descriptor_ = -1;
-  bool moved_ = false;
 };
 
 /// Through a symbolic link the file it points to is replaced or made, not the link.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -105,6 +107,89 @@ TEST_F(AtomicFile, SymbolicLinkStaysAndWhatItPointsToIsReplaced) {
   write_file_atomically(folder_ / "link", "new");
   EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
   EXPECT_EQ(read_file(folder_ / "target"), "new");
+}
+
+/// Permission bits of a file.
+int mode_of(const fs::path& file) {
+  return static_cast<int>(fs::status(file).permissions());
+}
+
+TEST_F(AtomicFile, AReplacedFileKeepsItsMode) {
+  const fs::path file = folder_ / "a.txt";
+  for (const int mode : {0600, 0640, 0644, 0666, 0755, 0400}) {
+    write_file_atomically(file, "first");
+    fs::permissions(file, fs::perms(mode));
+    write_file_atomically(file, "second");
+    EXPECT_EQ(mode_of(file), mode);
+    GrowingFile growing(file);
+    growing.append("third");
+    for (const auto& entry : fs::directory_iterator(folder_))
+      EXPECT_EQ(mode_of(entry.path()) & ~mode, 0) << "the content is readable for others before it has its name";
+    growing.finish();
+    EXPECT_EQ(mode_of(file), mode);
+    EXPECT_EQ(read_file(file), "third");
+    fs::remove(file);
+  }
+  const mode_t before = ::umask(027);
+  write_file_atomically(file, "new");
+  ::umask(before);
+  EXPECT_EQ(mode_of(file), 0640) << "the umask limits the mode of a new file";
+}
+
+TEST_F(AtomicFile, NoPlantedFileIsFollowedOverwrittenOrRemoved) {
+  const fs::path victim = folder_ / "victim";
+  write_file_atomically(victim, "precious");
+  // Names that could be guessed: with the number of the process, and of the form of temporary files.
+  const std::string by_process = ".a.txt." + std::to_string(::getpid()) + ".tmp";
+  fs::create_symlink("victim", folder_ / by_process);
+  fs::create_symlink("victim", folder_ / ".a.txt.0123456789abcdef.tmp");
+  ASSERT_EQ(::mkfifo((folder_ / ".a.txt.0123456789abcdee.tmp").c_str(), 0600), 0);
+  write_file_atomically(folder_ / ".a.txt.notes.tmp", "of the user");
+  const std::set<std::string> planted = names();
+  write_file_atomically(folder_ / "a.txt", "content");
+  std::set<std::string> expected = planted;
+  expected.insert("a.txt");
+  EXPECT_EQ(names(), expected);
+  EXPECT_EQ(read_file(victim), "precious");
+  EXPECT_FALSE(fs::is_symlink(folder_ / "a.txt"));
+  EXPECT_EQ(read_file(folder_ / "a.txt"), "content");
+}
+
+TEST_F(AtomicFile, WritersOfOneFileDoNotMixAndTheLastOneWins) {
+  // In containers two processes may have the same number. Two files in one process have it as well.
+  const fs::path file = folder_ / "a.txt";
+  GrowingFile first(file);
+  first.append("first");
+  GrowingFile second(file);
+  second.append("second, longer");
+  write_file_atomically(file, "third");
+  EXPECT_EQ(read_file(file), "third");
+  first.finish();
+  EXPECT_EQ(read_file(file), "first");
+  second.finish();
+  EXPECT_EQ(read_file(file), "second, longer");
+  EXPECT_EQ(names(), std::set<std::string>{"a.txt"});
+}
+
+TEST_F(AtomicFile, WhatAKilledProcessLeftIsRemovedByTheNextRun) {
+  const fs::path file = folder_ / "a.txt";
+  write_file_atomically(folder_ / "b.txt", "another output");
+  for (int k = 0; k < 3; ++k) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      GrowingFile growing(file);
+      growing.append(std::string(1 << 20, 'x'));
+      ::kill(::getpid(), SIGKILL);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(names().size(), 2U) << "the killed process leaves its file and removes that of the one before";
+  }
+  write_file_atomically(folder_ / "b.txt", "only removes what belongs to it");
+  EXPECT_EQ(names().size(), 2U);
+  write_file_atomically(file, "content");
+  EXPECT_EQ(names(), (std::set<std::string>{"a.txt", "b.txt"}));
 }
 
 TEST_F(AtomicFile, OutputFolderIsMadeWithItsParents) {
