@@ -45,6 +45,7 @@ void install_interrupt_handlers() {
   has_deadline = ::timer_create(CLOCK_MONOTONIC, nullptr, &deadline) == 0;
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 OrderlyInterrupt::OrderlyInterrupt() {

@@ -1,6 +1,7 @@
 #pragma once
 
-// What happens on Ctrl-C and SIGTERM: long work stops in order and keeps its finished results, other work ends at once.
+// What happens on Ctrl-C, SIGTERM and SIGHUP: long work stops in order and keeps its finished results, other work ends
+// at once.
 
 #include <functional>
 #include <optional>
@@ -10,7 +11,8 @@
 
 namespace retrace::app {
 
-/// From here on an interrupt (SIGINT, SIGTERM) ends the program with exit code 130.
+/// From here on an interrupt (SIGINT, SIGTERM, SIGHUP) ends the program with exit code 130. SIGHUP stays ignored if it
+/// was, as under nohup.
 void install_interrupt_handlers();
 
 /// While one exists, the first interrupt only asks for the end, so that work can stop in order and write what it has;

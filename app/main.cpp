@@ -3,9 +3,11 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "app/command_line.h"
 #include "app/interrupt.h"
@@ -25,6 +27,29 @@ int fail(ExitCode code, const std::string& text) {
   return static_cast<int>(code);
 }
 
+/// Ends the program when an allocation fails. It does not unwind the stack: destructors, and functions that must not
+/// throw, may need memory as well, and libraries may hold locks. Every finished point of a study is in its store.
+[[noreturn]] void end_without_memory() {
+  constexpr std::string_view text =
+      "retrace: out of memory; the finished points of a study are kept, and --resume goes on from there\n";
+  static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
+  ::_exit(static_cast<int>(ExitCode::failed));
+}
+
+/// Ends the program with an error where C++ would abort it: an exception of a library left a function that must not
+/// throw.
+[[noreturn]] void end_on_exception() {
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    end_without_memory();
+  } catch (const std::exception& error) {
+    ::_exit(fail(ExitCode::failed, error.what()));
+  } catch (...) {
+  }
+  std::abort();
+}
+
 /// With standard error closed, the next file that is opened would get its number, and our warnings with it.
 void keep_standard_error_apart() {
   if (::fcntl(STDERR_FILENO, F_GETFD) != -1 || errno != EBADF) return;
@@ -40,12 +65,14 @@ int main(int argc, char** argv) {
   keep_standard_error_apart();
   app::install_interrupt_handlers();
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an output that cannot be written
+  std::set_new_handler(end_without_memory);
+  std::set_terminate(end_on_exception);
   try {
     return static_cast<int>(run(argc, argv));
   } catch (const Error& error) {
     return fail(error.exit_code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ExitCode::failed, "out of memory");
+  } catch (const std::bad_alloc&) {  // of a library that does not allocate with new
+    end_without_memory();
   } catch (const std::exception& error) {
     return fail(ExitCode::failed, error.what());
   }

@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <new>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <type_traits>
 #include <vector>
 
 #include "core/error.h"
+#include "core/threads.h"
 #include "raytrace/faces/facet_boxes.h"
 
 namespace retrace::raytrace {
@@ -17,10 +21,36 @@ namespace {
 
 // Single-precision roundings that may add up in Embree's walk through boxes, relative to the coordinates.
 constexpr double kSinglePrecisionBand = 32.0 * 0x1p-24;
+
 void throw_on_error(void*, RTCError code, const char* text) {
-  if (code == RTC_ERROR_OUT_OF_MEMORY) throw BudgetError("out of memory while building the scene");
+  if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   throw std::runtime_error(std::string("Embree: ") + (text != nullptr ? text : "unknown error"));
 }
+
+RTCDevice new_device() {
+  RTCDevice device = nullptr;
+  // Embree builds scenes on as many threads as are allowed where its device is made.
+  run_with_threads(std::thread::hardware_concurrency(), [&] { device = rtcNewDevice(nullptr); });
+  if (device == nullptr) {
+    if (rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU)
+      throw BudgetError("Embree cannot start: it does not support this processor");
+    throw std::bad_alloc();
+  }
+  rtcSetDeviceErrorFunction(device, throw_on_error, nullptr);
+  return device;
+}
+
+/// Returns the device of the process. It is never released: Embree may hang when one device is made while another one
+/// ends.
+RTCDevice shared_device() {
+  static RTCDevice device = new_device();
+  return device;
+}
+
+struct SceneReleaser {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using OwnedScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneReleaser>;
 
 float below(double value) {
   return std::nextafter(static_cast<float>(value), -INFINITY);
@@ -88,27 +118,19 @@ struct BackSurface::Boxes {
         surface(its_surface),
         band_mm(kSinglePrecisionBand * greatest_reach_mm(part, surface.placements()) + surface.wide_tolerance_mm()) {
     for (const auto& patch : part.patches) contents.push_back(box_contents(patch));
-    device = rtcNewDevice(nullptr);
-    if (device == nullptr) throw BudgetError("Embree cannot start: not enough memory or address space");
-    rtcSetDeviceErrorFunction(device, throw_on_error, nullptr);
     scene = new_scene();
     if (repeats_much())
       attach_instances();
     else
       attach_all();
-    rtcCommitScene(scene);
+    rtcCommitScene(scene.get());
   }
   Boxes(const Boxes&) = delete;
   Boxes& operator=(const Boxes&) = delete;
-  ~Boxes() {
-    for (RTCScene s : patch_scenes) rtcReleaseScene(s);
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
 
-  RTCScene new_scene() const {
-    RTCScene made = rtcNewScene(device);
-    rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+  OwnedScene new_scene() const {
+    OwnedScene made(rtcNewScene(device));
+    rtcSetSceneFlags(made.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
     return made;
   }
 
@@ -126,7 +148,8 @@ struct BackSurface::Boxes {
     groups.reserve(placements.size());
     for (std::uint32_t k = 0; k < placements.size(); ++k) {
       const geometry::Placement& at = placements[k];
-      attach(scene, groups.emplace_back(Group{this, at.patch, {at.offset_mm.x(), at.offset_mm.y(), at.height_mm}}), k);
+      attach(scene.get(),
+             groups.emplace_back(Group{this, at.patch, {at.offset_mm.x(), at.offset_mm.y(), at.height_mm}}), k);
     }
   }
 
@@ -134,20 +157,20 @@ struct BackSurface::Boxes {
     groups.reserve(contents.size());
     for (std::uint32_t k = 0; k < contents.size(); ++k) {
       patch_scenes.push_back(new_scene());
-      attach(patch_scenes.back(), groups.emplace_back(Group{this, k, Vec3::Zero()}), 0);
-      rtcCommitScene(patch_scenes.back());
+      attach(patch_scenes.back().get(), groups.emplace_back(Group{this, k, Vec3::Zero()}), 0);
+      rtcCommitScene(patch_scenes.back().get());
     }
     for (std::uint32_t k = 0; k < surface.placements().size(); ++k) {
       const geometry::Placement& at = surface.placements()[k];
       RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-      rtcSetGeometryInstancedScene(instance, patch_scenes[at.patch]);
+      rtcSetGeometryInstancedScene(instance, patch_scenes[at.patch].get());
       std::array<float, 12> matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1};
       matrix[9] = static_cast<float>(at.offset_mm.x());
       matrix[10] = static_cast<float>(at.offset_mm.y());
       matrix[11] = static_cast<float>(at.height_mm);
       rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
       rtcCommitGeometry(instance);
-      rtcAttachGeometryByID(scene, instance, k);
+      rtcAttachGeometryByID(scene.get(), instance, k);
       rtcReleaseGeometry(instance);
     }
   }
@@ -195,7 +218,7 @@ struct BackSurface::Boxes {
     query.best.t = ray.t_max;
     RTCRayHit embree = embree_ray(ray);
     if (std::isfinite(ray.t_max)) embree.ray.tfar = above(ray.t_max + band_mm);
-    rtcIntersect1(scene, &query.substrate, &embree);
+    rtcIntersect1(scene.get(), &query.substrate, &embree);
     return ExactSurface::settled(query.best);
   }
 
@@ -204,9 +227,9 @@ struct BackSurface::Boxes {
   double band_mm;                                 ///< what single precision may put wrong of rays and boxes
   std::vector<std::vector<BoxContent>> contents;  ///< by patch
   std::vector<Group> groups;
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  std::vector<RTCScene> patch_scenes;  ///< instances
+  RTCDevice device = shared_device();
+  OwnedScene scene;
+  std::vector<OwnedScene> patch_scenes;  ///< instances
 };
 
 BackSurface::BackSurface(const geometry::Part& part, const Vec2& centre_mm)

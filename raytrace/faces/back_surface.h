@@ -17,7 +17,7 @@ class BackSurface {
  public:
   /// \param part must outlive this
   /// \param centre_mm point of the plane that becomes the origin of rays: keeps single-precision coordinates small
-  /// \throw BudgetError when memory ends
+  /// \throw std::bad_alloc
   BackSurface(const geometry::Part& part, const Vec2& centre_mm);
   BackSurface(geometry::Part&&, const Vec2&) = delete;
   BackSurface(const BackSurface&) = delete;

@@ -34,6 +34,9 @@ StoreLayout optimise_layout(const Study& study) {
   StoreLayout layout{kStoreKind, study.source, study.parts, {}, {}};
   for (const Parameter& parameter : study.parameters) layout.inputs.push_back(parameter.name);
   for (const auto& quantity : study.quantities) layout.outputs.push_back(quantity->name());
+  layout.fault_of = [study](const StoredPoint& point) -> std::string {
+    return values_of(study, point.inputs) ? "" : "its values are outside of what the study's parameters allow";
+  };
   return layout;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <new>
 #include <nlopt.hpp>
 #include <utility>
 
@@ -147,6 +148,8 @@ void run(nlopt::algorithm algorithm, const OptimiseRequest& request, Problem& pr
   double best = 0.0;
   try {
     optimiser.optimize(shares, best);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
     // NLopt gave up: what it looked at counts all the same.
   }

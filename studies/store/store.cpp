@@ -4,12 +4,17 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <mutex>
+#include <new>
 #include <system_error>
 #include <thread>
 
 #include "core/error.h"
+#include "core/message_text.h"
 #include "core/version.h"
 #include "studies/store/process_locks.h"
 
@@ -24,6 +29,9 @@ constexpr int kApplication = 0x72747263;
 constexpr int kWaitMs = 60'000;
 /// Columns of a point that are no parameter and no quantity.
 constexpr int kFixedColumns = 5;
+constexpr const char* kAllPoints = "SELECT * FROM points ORDER BY point";
+/// Maximum length of the reason that a message gives.
+constexpr std::size_t kMaxReasonLength = 160;
 
 std::string quoted(const std::string& name) {
   std::string text = "\"";
@@ -48,10 +56,28 @@ bool is_new(const fs::path& file) {
 
 void remove_store(const fs::path& file) {
   std::error_code error;
-  for (const char* suffix : {"", "-wal", "-shm"}) {
+  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
     fs::remove(file.string() + suffix, error);
     if (error) throw OutputError(file.string() + ": cannot be replaced: " + error.message());
   }
+}
+
+/// The statements that make the tables of a store, by name.
+std::vector<std::pair<std::string, std::string>> tables_of(const StoreLayout& layout) {
+  std::string columns =
+      "point INTEGER PRIMARY KEY, failed INTEGER NOT NULL, reason TEXT, elapsed_s REAL NOT NULL, version TEXT NOT NULL";
+  for (const std::string& input : layout.inputs) columns += ", " + quoted(input);
+  for (const std::string& output : output_columns(layout)) columns += ", " + quoted(output) + " REAL";
+  return {{"study", "CREATE TABLE study (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"},
+          {"claims", "CREATE TABLE claims (point INTEGER PRIMARY KEY, owner INTEGER NOT NULL)"},
+          {"points", "CREATE TABLE points (" + columns + ")"}};
+}
+
+/// Whether SQLite could not do its work for a reason outside of the file: no space, no permission, another process.
+bool is_of_the_system(int code) {
+  constexpr std::array kOfTheSystem = {SQLITE_BUSY, SQLITE_CANTOPEN, SQLITE_FULL,     SQLITE_IOERR, SQLITE_INTERRUPT,
+                                       SQLITE_AUTH, SQLITE_LOCKED,   SQLITE_READONLY, SQLITE_PERM,  SQLITE_NOLFS};
+  return std::ranges::find(kOfTheSystem, code) != kOfTheSystem.end();
 }
 
 }  // namespace
@@ -64,12 +90,23 @@ struct ResultStore::Database {
   std::unique_ptr<SQLite::Statement> claim;
   std::unique_ptr<SQLite::Statement> insert;
   std::unique_ptr<SQLite::Statement> unclaim;
+  bool is_checked = false;
   mutable std::mutex mutex;
 
   std::string name() const { return file.empty() ? "the store in memory" : file.string(); }
   std::int64_t owner() const { return locks ? locks->own() : 0; }
 
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw InputError({name(), 0, ""}, what + ": --overwrite starts anew, another --out keeps it");
+  }
+  [[noreturn]] void refuse_damaged(const std::string& why) const {
+    refuse("is damaged: " + printable(why, kMaxReasonLength));
+  }
   [[noreturn]] void fail(const SQLite::Exception& error) const {
+    const int code = error.getErrorCode() & 0xff;
+    if (code == SQLITE_NOMEM) throw std::bad_alloc();
+    if (code == SQLITE_NOTADB) refuse("is no store of retrace");
+    if (!is_of_the_system(code)) refuse_damaged(error.getErrorStr());
     throw OutputError(
         fmt::format("{}: cannot be written: {}; the points that are finished are kept", name(), error.getErrorStr()));
   }
@@ -84,28 +121,61 @@ struct ResultStore::Database {
     }
   }
 
+  void connect();
   void open();
-  void switch_to_log();
-  void check_kind();
-  void make_tables();
+  bool is_empty() const;
+  void keep_log(bool keep) const;
+  void check_existing();
+  void check();
+  void check_kind() const;
+  void check_tables() const;
   void check_study() const;
+  void switch_to_log();
+  void make_tables();
   void prepare();
+  std::uint64_t number_in(const SQLite::Statement& row) const;
+  StoredPoint point_in(const SQLite::Statement& row) const;
 };
 
-void ResultStore::Database::open() {
+void ResultStore::Database::connect() {
   sqlite = std::make_unique<SQLite::Database>(file.empty() ? ":memory:" : file.string(),
                                               SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kWaitMs);
-  check_kind();
+}
+
+/// Whether nothing has been made in the file yet. The first page is there as soon as a transaction has begun.
+bool ResultStore::Database::is_empty() const {
+  return sqlite->execAndGet("PRAGMA page_count").getInt() <= 1 &&
+         sqlite->execAndGet("PRAGMA application_id").getInt() == 0 &&
+         sqlite->execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
+}
+
+/// Whether the log of a process that was killed is kept when the file is closed. Otherwise it is moved into the file.
+void ResultStore::Database::keep_log(bool keep) const {
+  sqlite3_db_config(sqlite->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
+}
+
+/// Opens and checks a store that is to go on. A file that is refused stays as it is. A process that is killed while it
+/// makes a store leaves an empty one.
+void ResultStore::Database::check_existing() {
+  const bool has_log = !is_new(file.string() + "-wal");
+  connect();
+  if (has_log) keep_log(true);
+  if (!is_empty()) check();
+  keep_log(false);
+}
+
+void ResultStore::Database::open() {
+  if (!sqlite) connect();
+  sqlite->exec("PRAGMA synchronous = NORMAL");
+  SQLite::Transaction transaction(*sqlite, SQLite::TransactionBehavior::IMMEDIATE);
+  if (is_empty())
+    make_tables();
+  else if (!is_checked)
+    check();  // another process has made it
+  transaction.commit();
   // A commit in the write-ahead log survives the death of the process without waiting for the disk; a power cut may
   // cost the last points, never the file.
   if (!file.empty()) switch_to_log();
-  sqlite->exec("PRAGMA synchronous = NORMAL");
-  SQLite::Transaction transaction(*sqlite, SQLite::TransactionBehavior::IMMEDIATE);
-  if (!sqlite->tableExists("study"))
-    make_tables();
-  else
-    check_study();
-  transaction.commit();
 }
 
 /// The switch fails at once, whatever the time-out, where another process is about it too.
@@ -121,11 +191,22 @@ void ResultStore::Database::switch_to_log() {
   }
 }
 
-void ResultStore::Database::check_kind() {
-  if (sqlite->execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0) return;
+/// Checks everything that is read of a store: its format, its pages, its tables, its study and every point.
+void ResultStore::Database::check() {
+  check_kind();
+  const std::string pages = sqlite->execAndGet("PRAGMA integrity_check(1)").getString();
+  if (pages != "ok") refuse_damaged(pages);
+  check_study();
+  check_tables();
+  SQLite::Statement rows(*sqlite, kAllPoints);
+  while (rows.executeStep()) static_cast<void>(point_in(rows));
+  is_checked = true;
+}
+
+void ResultStore::Database::check_kind() const {
   const int application = sqlite->execAndGet("PRAGMA application_id").getInt();
   const int format = sqlite->execAndGet("PRAGMA user_version").getInt();
-  if (application != kApplication) throw InputError({name(), 0, ""}, "is no store of retrace");
+  if (application != kApplication) refuse("is no store of retrace");
   if (format > kFormat)
     throw InputError(
         {name(), 0, ""},
@@ -135,13 +216,7 @@ void ResultStore::Database::check_kind() {
 void ResultStore::Database::make_tables() {
   sqlite->exec(fmt::format("PRAGMA application_id = {}", kApplication));
   sqlite->exec(fmt::format("PRAGMA user_version = {}", kFormat));
-  sqlite->exec("CREATE TABLE study (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID");
-  sqlite->exec("CREATE TABLE claims (point INTEGER PRIMARY KEY, owner INTEGER NOT NULL)");
-  std::string columns =
-      "point INTEGER PRIMARY KEY, failed INTEGER NOT NULL, reason TEXT, elapsed_s REAL NOT NULL, version TEXT NOT NULL";
-  for (const std::string& input : layout.inputs) columns += ", " + quoted(input);
-  for (const std::string& output : output_columns(layout)) columns += ", " + quoted(output) + " REAL";
-  sqlite->exec("CREATE TABLE points (" + columns + ")");
+  for (const auto& [table, statement] : tables_of(layout)) sqlite->exec(statement);
   SQLite::Statement insert_part(*sqlite, "INSERT INTO study VALUES (?, ?)");
   const auto add = [&](const std::string& key, const std::string& value) {
     insert_part.bind(1, key);
@@ -154,6 +229,16 @@ void ResultStore::Database::make_tables() {
   for (const auto& [key, value] : layout.parts) add("part." + key, value);
 }
 
+void ResultStore::Database::check_tables() const {
+  SQLite::Statement query(*sqlite, "SELECT sql FROM sqlite_master WHERE type = 'table' AND name = ?");
+  for (const auto& [table, statement] : tables_of(layout)) {
+    query.reset();
+    query.bind(1, table);
+    if (!query.executeStep() || query.getColumn(0).getString() != statement)
+      refuse_damaged("its table " + table + " is missing or has other columns");
+  }
+}
+
 void ResultStore::Database::check_study() const {
   SQLite::Statement query(*sqlite, "SELECT value FROM study WHERE name = ?");
   const auto stored = [&](const std::string& key) {
@@ -161,7 +246,9 @@ void ResultStore::Database::check_study() const {
     query.bind(1, key);
     return query.executeStep() ? query.getColumn(0).getString() : std::string();
   };
-  if (const std::string kind = stored("kind"); kind != layout.kind)
+  const std::string kind = stored("kind");
+  if (kind.empty()) refuse_damaged("its study is missing");
+  if (kind != layout.kind)
     throw InputError({name(), 0, ""}, fmt::format("is a store of {}, not of {}", kind, layout.kind));
   for (const auto& [key, value] : layout.parts)
     if (stored("part." + key) != value)
@@ -189,6 +276,8 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
     throw InputError({file.string(), 0, ""},
                      "exists: --resume goes on with it, --overwrite starts anew, another --out keeps it");
   try {
+    // Before anything is made, so that nothing is left next to a store that is refused.
+    if (!is_new(file) && if_exists == IfExists::resume) database_->check_existing();
     if (!file.empty()) {
       database_->locks = std::make_unique<ProcessLocks>(file.string() + "-lock");
       if (if_exists == IfExists::overwrite && database_->owner() != 0)
@@ -198,7 +287,6 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
     database_->open();
     database_->prepare();
   } catch (const SQLite::Exception& error) {
-    if (error.getErrorCode() == SQLITE_NOTADB) throw InputError({file.string(), 0, ""}, "is no store of retrace");
     database_->fail(error);
   }
   // Claims in our name are those of a process that died.
@@ -290,47 +378,88 @@ std::vector<std::uint64_t> ResultStore::finished() const {
   return database_->guarded([&] {
     std::vector<std::uint64_t> numbers;
     SQLite::Statement query(*database_->sqlite, "SELECT point FROM points ORDER BY point");
-    while (query.executeStep()) numbers.push_back(static_cast<std::uint64_t>(query.getColumn(0).getInt64()));
+    while (query.executeStep()) numbers.push_back(database_->number_in(query));
     return numbers;
   });
 }
 
+std::vector<StoredPoint> ResultStore::points() const {
+  return database_->guarded([&] {
+    std::vector<StoredPoint> points;
+    SQLite::Statement query(*database_->sqlite, kAllPoints);
+    while (query.executeStep()) points.push_back(database_->point_in(query));
+    return points;
+  });
+}
+
+std::uint64_t ResultStore::Database::number_in(const SQLite::Statement& row) const {
+  const std::int64_t number = row.getColumn(0).getInt64();
+  if (number < 0) refuse_damaged(fmt::format("the number of a point must be >= 0, got {}", number));
+  return static_cast<std::uint64_t>(number);
+}
+
 namespace {
 
-StoredPoint point_of(SQLite::Statement& row, const StoreLayout& layout) {
-  StoredPoint point;
-  point.point = static_cast<std::uint64_t>(row.getColumn(0).getInt64());
-  point.failed = row.getColumn(1).getInt() != 0;
-  if (point.failed) point.reason = row.getColumn(2).getString();
-  point.elapsed_s = row.getColumn(3).getDouble();
-  point.version = row.getColumn(4).getString();
-  int column = kFixedColumns;
-  for (std::size_t k = 0; k < layout.inputs.size(); ++k, ++column) {
-    const SQLite::Column value = row.getColumn(column);
-    if (value.isFloat() || value.isInteger())
-      point.inputs.emplace_back(value.getDouble());
-    else
-      point.inputs.emplace_back(value.getString());
-  }
-  if (point.failed) return point;
-  for (std::size_t k = 0; k < layout.outputs.size(); ++k, column += 2) {
-    StoredOutput output;
-    if (!row.getColumn(column).isNull())
-      output = {row.getColumn(column).getDouble(), row.getColumn(column + 1).getDouble()};
-    point.outputs.push_back(output);
-  }
-  return point;
+using IsRight = bool (*)(const SQLite::Column&);
+
+bool is_nothing(const SQLite::Column& value) {
+  return value.isNull();
+}
+bool is_text(const SQLite::Column& value) {
+  return value.isText();
+}
+bool is_number(const SQLite::Column& value) {
+  return (value.isFloat() || value.isInteger()) && std::isfinite(value.getDouble());
+}
+bool is_number_or_text(const SQLite::Column& value) {
+  return is_number(value) || is_text(value);
+}
+bool is_flag(const SQLite::Column& value) {
+  return value.isInteger() && (value.getInt64() == 0 || value.getInt64() == 1);
+}
+bool is_duration(const SQLite::Column& value) {
+  return is_number(value) && value.getDouble() >= 0.0;
+}
+bool is_output(const SQLite::Column& value) {
+  return is_nothing(value) || is_number(value);
+}
+/// SQLite stores NaN as nothing.
+bool is_std_error(const SQLite::Column& value) {
+  return is_nothing(value) || (value.isFloat() && value.getDouble() >= 0.0);
 }
 
 }  // namespace
 
-std::vector<StoredPoint> ResultStore::points() const {
-  return database_->guarded([&] {
-    std::vector<StoredPoint> points;
-    SQLite::Statement query(*database_->sqlite, "SELECT * FROM points ORDER BY point");
-    while (query.executeStep()) points.push_back(point_of(query, database_->layout));
-    return points;
-  });
+StoredPoint ResultStore::Database::point_in(const SQLite::Statement& row) const {
+  StoredPoint point;
+  point.point = number_in(row);
+  std::string fault;
+  int column = 1;
+  const auto next = [&](const std::string& name, IsRight is_right) {
+    const SQLite::Column value = row.getColumn(column++);
+    if (fault.empty() && !is_right(value))
+      fault = fmt::format("{} cannot be {}", name, value.isNull() ? "empty" : value.getString());
+    return value;
+  };
+  point.failed = next("failed", is_flag).getInt() != 0;
+  point.reason = next("reason", point.failed ? is_text : is_nothing).getText();
+  point.elapsed_s = next("elapsed_s", is_duration).getDouble();
+  point.version = next("version", is_text).getText();
+  for (const std::string& name : layout.inputs) {
+    const SQLite::Column value = next(name, is_number_or_text);
+    point.inputs.push_back(value.isText() ? StoredValue(value.getString()) : StoredValue(value.getDouble()));
+  }
+  for (const std::string& name : layout.outputs) {
+    const SQLite::Column value = next(name, point.failed ? is_nothing : is_output);
+    const SQLite::Column error = next(name + "_std_error", value.isNull() ? is_nothing : is_std_error);
+    if (point.failed) continue;
+    StoredOutput output;
+    if (!value.isNull()) output = {value.getDouble(), error.getDouble()};
+    point.outputs.push_back(output);
+  }
+  if (fault.empty() && layout.fault_of) fault = layout.fault_of(point);
+  if (!fault.empty()) refuse_damaged(fmt::format("point {}: {}", point.point, fault));
+  return point;
 }
 
 }  // namespace retrace::studies

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,6 +42,9 @@ struct StoreLayout {
   std::vector<std::pair<std::string, std::string>> parts;
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
+  /// Returns why a point cannot be of this study, by its number and its inputs; an empty text if it can. Every point
+  /// that is read from a file is checked.
+  std::function<std::string(const StoredPoint& point)> fault_of = {};
 };
 
 enum class IfExists { refuse, resume, overwrite };
@@ -51,8 +55,8 @@ enum class IfExists { refuse, resume, overwrite };
 class ResultStore {
  public:
   /// \param file empty: in memory, for this process alone
-  /// \throw InputError for a file that exists although it may not, that is no store, of another study, or of a newer
-  /// version; OutputError if it cannot be written
+  /// \throw InputError for a file that exists although it may not, that is no store, damaged, of another study, or of a
+  /// newer version; nothing is written then. OutputError if it cannot be written
   ResultStore(const std::filesystem::path& file, const StoreLayout& layout, IfExists if_exists);
   ~ResultStore();
   ResultStore(const ResultStore&) = delete;
@@ -69,9 +73,9 @@ class ResultStore {
 
   /// Voids the claims of processes that died. \return how many points others still have claimed
   std::size_t claimed_by_others();
-  /// Numbers of the finished points, ascending.
+  /// Numbers of the finished points, ascending. \throw InputError as points()
   std::vector<std::uint64_t> finished() const;
-  /// All finished points in ascending order.
+  /// All finished points in ascending order. \throw InputError if the file has been damaged
   std::vector<StoredPoint> points() const;
 
  private:

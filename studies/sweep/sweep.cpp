@@ -7,10 +7,11 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
-#include <new>
 #include <thread>
 #include <utility>
 
+#include "core/message_text.h"
+#include "core/number_format.h"
 #include "core/threads.h"
 #include "core/version.h"
 #include "studies/quantity/io/study_reader.h"
@@ -100,10 +101,39 @@ PointValues values_at(const Study& study, const std::vector<double>& shares) {
   return values;
 }
 
+namespace {
+
+/// Whether a stored value is that of the study. Another machine may have rounded it differently.
+bool is_same(const StoredValue& stored, const StoredValue& of_study) {
+  const double* const a = std::get_if<double>(&stored);
+  const double* const b = std::get_if<double>(&of_study);
+  if (a == nullptr || b == nullptr) return stored == of_study;
+  return std::abs(*a - *b) <= std::max(1e-9 * std::abs(*b), 1e-15);
+}
+
+std::string text_of_value(const StoredValue& value) {
+  const double* const number = std::get_if<double>(&value);
+  return number != nullptr ? shortest(*number) : in_quotes(std::get<std::string>(value));
+}
+
+/// Returns what of a stored point does not belong to the sweep; an empty text if everything does.
+std::string fault_of(const Sweep& sweep, const StoredPoint& point) {
+  if (point.point >= sweep.size()) return fmt::format("the study has only {} points", sweep.size());
+  const PointValues values = sweep.values(point.point);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!is_same(point.inputs[k], values[k].shown))
+      return fmt::format("{} is {} in the study, got {}", sweep.study().parameters[k].name,
+                         text_of_value(values[k].shown), text_of_value(point.inputs[k]));
+  return {};
+}
+
+}  // namespace
+
 StoreLayout Sweep::layout() const {
   StoreLayout layout{kind_, study_.source, study_.parts, {}, {}};
   for (const Parameter& parameter : study_.parameters) layout.inputs.push_back(parameter.name);
   for (const auto& quantity : study_.quantities) layout.outputs.push_back(quantity->name());
+  layout.fault_of = [sweep = *this](const StoredPoint& point) { return fault_of(sweep, point); };
   return layout;
 }
 
@@ -140,9 +170,6 @@ std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t numbe
   } catch (const Error& error) {
     point.failed = true;
     point.reason = error.what();
-  } catch (const std::bad_alloc&) {
-    point.failed = true;
-    point.reason = "out of memory";
   }
   point.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return point;

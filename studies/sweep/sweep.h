@@ -63,6 +63,7 @@ class Sweep {
 };
 
 /// Computes one point of a study; what is wrong with it is recorded, not thrown. Nothing if it was cancelled.
+/// \throw std::bad_alloc: the same point may succeed when more memory is available
 std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
                                          const Cancellation* cancel);
 

@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
         LongRun{"inspect", {"inspect", "wide.toml", "--set=array.x_length_mm=40000", "-o", "i"}},
         LongRun{"export", {"export", "wide.toml", "e.stl"}, SIGTERM},
         LongRun{"export_of_a_material", {"export", kReflector, "m.json", "--threads=1"}},
-        LongRun{"turn", {"turn", example("turning/lenslet_array.toml"), "-o", "t"}},
+        LongRun{"turn", {"turn", example("turning/lenslet_array.toml"), "-o", "t"}, SIGHUP},
         LongRun{"fabricate", kFabricate, SIGTERM, 1.0, {kJob}},
         LongRun{"validate", {"validate", "--threads=1", "-o", "v.md"}},
         LongRun{"verify", {"verify", "job.toml", "f/program.ngc", "--threads=1"}, SIGINT, 1.0, {kJob, kFabricate}},

@@ -6,6 +6,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
 #include <thread>
 
 #include "core/error.h"
@@ -160,13 +163,164 @@ TEST_F(Store, ANewerFormatIsSaidToBeOne) {
 
 TEST_F(Store, OtherFilesAreNoStores) {
   std::ofstream(file()) << "a text that is long enough to be looked at as a database, and is none";
-  EXPECT_EQ(message(layout(), IfExists::resume), file().string() + ": is no store of retrace");
+  const std::string expected =
+      file().string() + ": is no store of retrace: --overwrite starts anew, another --out keeps it";
+  EXPECT_EQ(message(layout(), IfExists::resume), expected);
   fs::remove(file());
   {
     SQLite::Database database(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     database.exec("CREATE TABLE t (a)");
   }
-  EXPECT_EQ(message(layout(), IfExists::resume), file().string() + ": is no store of retrace");
+  EXPECT_EQ(message(layout(), IfExists::resume), expected);
+}
+
+/// A store that is damaged in one way after another.
+class DamagedStore : public Store {
+ protected:
+  static constexpr std::uint64_t kPoints = 400;
+
+  DamagedStore() {
+    ResultStore store(file(), layout(), IfExists::refuse);
+    for (std::uint64_t k = 0; k < kPoints; ++k) store.record(k == 5 ? failed(k) : point(k));
+  }
+
+  static StoreLayout layout() {
+    StoreLayout layout = Store::layout();
+    layout.fault_of = [](const StoredPoint& p) -> std::string {
+      return p.point < kPoints && p.inputs == point(p.point).inputs ? "" : "not of this study";
+    };
+    return layout;
+  }
+  static StoredPoint failed(std::uint64_t number) {
+    StoredPoint p = point(number);
+    p.failed = true;
+    p.reason = "no";
+    p.outputs.clear();
+    return p;
+  }
+
+  std::string bytes() const {
+    std::ostringstream text;
+    text << std::ifstream(file(), std::ios::binary).rdbuf();
+    return text.str();
+  }
+  void write(const std::string& content) const { std::ofstream(file(), std::ios::binary) << content; }
+
+  /// Every file of the folder with its content.
+  std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      std::ostringstream text;
+      text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
+      files[entry.path().filename()] = text.str();
+    }
+    return files;
+  }
+
+  /// Expects a refusal that names the store and the remedy and writes nothing.
+  void expect_refused(const std::string& what) const {
+    fs::remove(file().string() + "-lock");
+    const auto before = files();
+    const std::string refusal = message(layout(), IfExists::resume);
+    EXPECT_TRUE(refusal.starts_with(file().string() + ": is ")) << what << ": " << refusal;
+    EXPECT_TRUE(refusal.ends_with(": --overwrite starts anew, another --out keeps it")) << what << ": " << refusal;
+    EXPECT_TRUE(files() == before) << what << ": something was written";
+  }
+};
+
+TEST_F(DamagedStore, IsRefusedWhateverWasChangedInItsTables) {
+  const std::string whole = bytes();
+  ASSERT_EQ(message(layout(), IfExists::resume), "");
+  for (const std::string change : {"UPDATE points SET point = -1 WHERE point = 1",
+                                   "UPDATE points SET point = 9999 WHERE point = 1",
+                                   "UPDATE points SET x = x + 0.1 WHERE point = 7",
+                                   "UPDATE points SET x = NULL WHERE point = 7",
+                                   "UPDATE points SET x = 'text' WHERE point = 7",
+                                   "UPDATE points SET word = 3 WHERE point = 7",
+                                   "UPDATE points SET word = x'00ff' WHERE point = 7",
+                                   "UPDATE points SET x = 9e999 WHERE point = 7",
+                                   "UPDATE points SET failed = 2 WHERE point = 7",
+                                   "UPDATE points SET failed = 1 WHERE point = 7",
+                                   "UPDATE points SET failed = 0 WHERE point = 5",
+                                   "UPDATE points SET failed = 'no' WHERE point = 7",
+                                   "UPDATE points SET reason = NULL WHERE point = 5",
+                                   "UPDATE points SET rre = 'much' WHERE point = 7",
+                                   "UPDATE points SET rre = 9e999 WHERE point = 7",
+                                   "UPDATE points SET rre = NULL WHERE point = 7",
+                                   "UPDATE points SET rre_std_error = -1 WHERE point = 7",
+                                   "UPDATE points SET elapsed_s = -1 WHERE point = 7",
+                                   "UPDATE points SET version = x'00' WHERE point = 7",
+                                   "ALTER TABLE points ADD COLUMN more",
+                                   "ALTER TABLE points DROP COLUMN rre",
+                                   "ALTER TABLE points RENAME COLUMN rre TO other",
+                                   "DROP TABLE points",
+                                   "DROP TABLE claims",
+                                   "DROP TABLE study",
+                                   "DELETE FROM study",
+                                   "PRAGMA application_id = 7"}) {
+    write(whole);
+    SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec(change);
+    expect_refused(change);
+  }
+  write(whole);
+  EXPECT_EQ(message(layout(), IfExists::resume), "");
+}
+
+TEST_F(DamagedStore, IsRefusedWhereverItIsCut) {
+  const std::string whole = bytes();
+  ASSERT_GT(whole.size(), std::size_t{5 * 4096});
+  for (int percent = 1; percent < 100; percent += 2) {
+    write(whole.substr(0, whole.size() * static_cast<std::size_t>(percent) / 100));
+    expect_refused(std::to_string(percent) + " %");
+  }
+}
+
+TEST_F(DamagedStore, IsRefusedWithTheLogOfAKilledProcess) {
+  {
+    ResultStore killed(file(), layout(), IfExists::resume);
+    killed.give_up(0);
+    EXPECT_TRUE(killed.claim(kPoints));
+    for (const char* suffix : {"", "-wal"})
+      fs::copy(file().string() + suffix, folder_ / (std::string("kept") + suffix));
+  }
+  for (const char* suffix : {"", "-wal"})
+    fs::rename(folder_ / (std::string("kept") + suffix), file().string() + suffix);
+  ASSERT_GT(fs::file_size(file().string() + "-wal"), 0U);
+  const std::string whole = bytes();
+  write(whole.substr(0, whole.size() - 4096) + std::string(4096, 'x'));
+  const std::string log = files().at("s.sqlite-wal");
+  EXPECT_NE(message(layout(), IfExists::resume).find("is damaged"), std::string::npos);
+  EXPECT_EQ(files().at("s.sqlite-wal"), log);
+  EXPECT_EQ(bytes().substr(0, 4096), whole.substr(0, 4096));
+}
+
+TEST_F(DamagedStore, IsRefusedOrRightWhateverBytesWereOverwritten) {
+  const std::string whole = bytes();
+  std::mt19937 random(21);
+  for (int k = 0; k < 150; ++k) {
+    std::string damaged = whole;
+    const std::size_t at = random() % whole.size();
+    for (std::size_t byte = at; byte < std::min(at + 1 + random() % 300, whole.size()); ++byte)
+      damaged[byte] = static_cast<char>(random());
+    write(damaged);
+    const std::string refusal = message(layout(), IfExists::resume);
+    if (!refusal.empty()) {
+      EXPECT_TRUE(refusal.starts_with(file().string() + ": is ") || refusal.starts_with("study.toml: ")) << refusal;
+      continue;
+    }
+    for (const StoredPoint& p : ResultStore(file(), layout(), IfExists::resume).points())
+      EXPECT_EQ(p.inputs, point(p.point).inputs);
+  }
+}
+
+TEST_F(Store, ClaimsOfNoProcessAreVoid) {
+  { const ResultStore store(file(), layout(), IfExists::refuse); }
+  SQLite::Database(file().string(), SQLite::OPEN_READWRITE)
+      .exec("INSERT INTO claims VALUES (1, -7), (2, 99999999), (-3, 4), (4, 9223372036854775807)");
+  ResultStore store(file(), layout(), IfExists::resume);
+  store.claimed_by_others();
+  EXPECT_EQ(store.claimed_by_others(), 0U);
+  for (const std::uint64_t number : {1U, 2U, 4U}) EXPECT_TRUE(store.claim(number)) << number;
 }
 
 TEST_F(Store, AStoreInUseIsNotOverwritten) {

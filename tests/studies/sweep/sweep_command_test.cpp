@@ -83,7 +83,9 @@ TEST(SweepCommand, TwoProcessesShareOneStore) {
   EXPECT_EQ(database.execAndGet("SELECT count(*) FROM claims").getInt(), 0);
 }
 
-TEST(SweepCommand, AnInterruptedRunIsValidAndGoesOn) {
+class Interrupted : public testing::TestWithParam<int> {};
+
+TEST_P(Interrupted, RunIsValidAndGoesOn) {
   const TemporaryFolder folder;
   folder.write("study.toml", sweep_study(400));
   Child child(folder.path(), sweep_arguments("out", false));
@@ -93,7 +95,7 @@ TEST(SweepCommand, AnInterruptedRunIsValidAndGoesOn) {
     ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "no points were stored";
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  child.interrupt();
+  child.interrupt(GetParam());
   const Outcome outcome = child.wait(patient(60));
   EXPECT_EQ(outcome.code, 130);
   const Json json = folder.json("out/sweep.json");
@@ -101,6 +103,124 @@ TEST(SweepCommand, AnInterruptedRunIsValidAndGoesOn) {
   EXPECT_EQ(json["points_in_all"], 400);
   EXPECT_GE(json["points"].size(), 5U);
   EXPECT_LT(json["points"].size(), 400U);
+}
+
+INSTANTIATE_TEST_SUITE_P(SweepCommand, Interrupted, testing::Values(SIGINT, SIGTERM, SIGHUP));
+
+TEST(SweepCommand, AHangUpThatIsIgnoredStaysIgnored) {
+  const TemporaryFolder folder;
+  folder.write("study.toml", sweep_study(40));
+  Child child(
+      folder.path(),
+      {"/bin/sh", "-c", std::string("trap '' HUP; exec '") + RETRACE_PROGRAM + "' sweep study.toml -o out --quiet"});
+  const auto deadline = std::chrono::steady_clock::now() + patient(60);
+  while (!child.has_ended() && stored_points(folder.path() / "out/sweep.sqlite").empty() &&
+         std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  child.interrupt(SIGHUP);
+  EXPECT_EQ(child.wait(patient(60)).code, 0);
+  EXPECT_EQ(folder.json("out/sweep.json")["complete"], true);
+}
+
+/// A command with a study that it takes, its store, and what in the store is wrong.
+struct Damage {
+  std::string command;
+  std::string study;
+  std::string store;
+  std::vector<std::string> changes;
+};
+
+TEST(StudyCommands, RefuseDamagedStoresAndWriteNothing) {
+  const std::string design = "design = \"" + example("rtp_brick_1mm.toml") + "\"\n";
+  const std::string sizes = design +
+                            "[[parameter]]\nkey = \"element.base_mm\"\nname = \"b\"\nvalues = [0.5, 1, 2]\n"
+                            "[[quantity]]\nkind = \"lens_thickness_mm\"\n";
+  const std::string negative = "UPDATE points SET point = -1 WHERE point = 1";
+  const std::string beyond = "UPDATE points SET point = 99 WHERE point = 1";
+  const std::string value = "UPDATE points SET b = 0.75 WHERE point = 1";
+  for (const Damage& damage :
+       {Damage{"sweep", sizes, "sweep.sqlite", {negative, beyond, value}},
+        Damage{"tolerance",
+               design +
+                   "[[parameter]]\nkey = \"body.thickness_mm\"\nname = \"b\"\ndistribution = \"uniform\"\nfrom = 1\n"
+                   "to = 3\n[[quantity]]\nkind = \"lens_thickness_mm\"\n[tolerance]\nsamples = 8\nindices = false\n",
+               "tolerance.sqlite",
+               {negative, beyond, value}},
+        Damage{
+            "optimize", sizes + "[optimize]\nmaximize = \"lens_thickness_mm\"\n", "optimum.sqlite", {negative, value}},
+        Damage{"compose",
+               "design = \"" + example("honeycomb_infinite.toml") +
+                   "\"\n[[parameter]]\nkey = \"element.cant_deg\"\nname = \"b\"\nvalues = [0, 5, 10]\n[[quantity]]\n"
+                   "kind = \"rre\"\nname = \"g\"\n[analysis]\nengine = \"exact\"\ncutoff = 1e-2\n[compose]\n"
+                   "maximize = \"g\"\n",
+               "composition.sqlite",
+               {negative, value}}}) {
+    SCOPED_TRACE(damage.command);
+    const TemporaryFolder folder;
+    folder.write("study.toml", damage.study);
+    const Arguments run = {damage.command, "study.toml", "-o", "out", "--quiet"};
+    ASSERT_EQ(retrace(folder, run).code, 0);
+    const std::string store = "out/" + damage.store;
+    const std::string whole = folder.read(store);
+    fs::remove(folder.path() / (store + "-lock"));
+    const std::vector<std::string> names = folder.names();
+    const auto expect_store_refused = [&] {
+      const std::string damaged = folder.read(store);
+      expect_refused(Child(folder.path(), with(with({RETRACE_PROGRAM}, run), {"--resume"})).wait(patient(30)),
+                     store + ": is damaged: ");
+      EXPECT_EQ(folder.names(), names);
+      EXPECT_EQ(folder.read(store), damaged);
+    };
+    for (const std::string& change : damage.changes) {
+      SCOPED_TRACE(change);
+      folder.write(store, whole);
+      SQLite::Database((folder.path() / store).string(), SQLite::OPEN_READWRITE).exec(change);
+      expect_store_refused();
+    }
+    for (const int percent : {50, 80, 85, 90, 95}) {
+      SCOPED_TRACE(percent);
+      folder.write(store, whole.substr(0, whole.size() * static_cast<std::size_t>(percent) / 100));
+      expect_store_refused();
+    }
+  }
+}
+
+// A lack of memory passes: it must not stay in a store as the result of a point, and must not abort the program.
+TEST(SweepCommand, ALackOfMemoryEndsTheRunAndStoresNothing) {
+  if (kIsSanitized) GTEST_SKIP() << "sanitizers reserve far more address space than a limit would allow";
+  const TemporaryFolder folder;
+  folder.write("study.toml", "design = \"" + example("honeycomb_infinite.toml") +
+                                 "\"\n[[parameter]]\nkey = \"analysis.incidence_deg\"\nvalues = [0, 10, 20]\n"
+                                 "[[quantity]]\nkind = \"rre\"\n[analysis]\nengine = \"embree\"\nsamples = 1000\n");
+  const std::string expected = whole_run(folder);
+  const auto limited = [&](const std::string& kilobytes, const std::string& arguments) {
+    return Child(folder.path(),
+                 {"/bin/sh", "-c",
+                  "ulimit -c 0; ulimit -v " + kilobytes + "; exec '" + RETRACE_PROGRAM + "' " + arguments})
+        .wait(patient(60));
+  };
+  int starts = 0;
+  int lacks = 0;
+  for (int kilobytes = 60'000; kilobytes < 2'000'000; kilobytes += kilobytes / 32) {
+    SCOPED_TRACE(kilobytes);
+    // Below some limit the system cannot even load the program.
+    if (limited(std::to_string(kilobytes), "--version").code != 0) continue;
+    ++starts;
+    const Outcome outcome = limited(std::to_string(kilobytes), "sweep study.toml -o out --resume --quiet");
+    EXPECT_TRUE(outcome.code == 0 || outcome.code == 3) << outcome.code << ' ' << outcome.err;
+    lacks += outcome.code == 3 ? 1 : 0;
+    const fs::path store = folder.path() / "out/sweep.sqlite";
+    if (!stored_points(store).empty()) {
+      SQLite::Database database(store.string(), SQLite::OPEN_READWRITE);
+      EXPECT_EQ(database.execAndGet("SELECT count(*) FROM points WHERE failed").getInt(), 0) << outcome.err;
+    }
+    if (outcome.code == 0) break;
+  }
+  EXPECT_GT(starts, 0);
+  EXPECT_GT(lacks, 0) << "no limit was tight enough";
+  const Outcome resumed = Child(folder.path(), sweep_arguments("out", true)).wait(patient(60));
+  EXPECT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_EQ(folder.read("out/sweep.csv"), expected);
 }
 
 TEST(SweepCommand, AnExistingStoreNeedsAWord) {

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <memory>
+#include <new>
 #include <optional>
 
 #include "core/error.h"
@@ -314,6 +316,20 @@ TEST(Sweep, ResultsDoNotDependOnWhatIsAlreadyThere) {
   EXPECT_EQ(unfinished(sweep, store), (std::vector<std::uint64_t>{0, 1, 2, 4}));
   EXPECT_TRUE(run_sweep(sweep, store, nullptr, nullptr));
   EXPECT_EQ(sweep_csv(collect(sweep, store, true)), sweep_csv(swept(sweep)));
+}
+
+TEST(Sweep, ALackOfMemoryIsNoResultOfAPoint) {
+  class Greedy : public Quantity {
+   public:
+    Greedy() : Quantity("rre") {}
+    std::optional<Measured> measure(const Candidate&, const Cancellation*) const override { throw std::bad_alloc(); }
+  };
+  Study study = read_study(kFolder + "studies/table1.toml");
+  study.quantities = {std::make_shared<Greedy>()};
+  const Sweep sweep(study, Combine::grid, 0);
+  ResultStore store("", sweep.layout(), IfExists::refuse);
+  EXPECT_THROW(run_sweep(sweep, store, nullptr, nullptr), std::bad_alloc);
+  EXPECT_TRUE(store.points().empty());
 }
 
 TEST(Sweep, ACancelledSweepKeepsWhatIsFinished) {
