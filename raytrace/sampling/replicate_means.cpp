@@ -21,6 +21,7 @@ ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double
     for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays / count;
   }
   result.rre = result.ledger[Account::retroreflected];
+  result.stokes.i = result.rre;  // the same sum, rounded in the same order
   double squares = 0.0;
   for (const double r : rre) squares += (r - result.rre) * (r - result.rre);
   result.spread = std::sqrt(squares / (count - 1.0) / count);

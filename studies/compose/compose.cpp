@@ -85,10 +85,11 @@ class Composer {
         observer_(observer),
         cancel_(cancel),
         single_(single_request(request)),
+        family_(study, single_, store, observer, cancel),
         reader_(study, request) {}
 
   void run(Composition& composition) {
-    const Optimum optimum = optimise(study_, single_, store_, observer_, cancel_);
+    const Optimum optimum = optimise(study_, single_, family_, cancel_);
     if (!optimum.complete) throw Interrupted{};
     read_catalogue(composition);
     if (optimum.best) composition.single = reader_.cell_of(*optimum.best);
@@ -100,14 +101,13 @@ class Composer {
     if (request_.errors) composition.errors = effects_of_errors(study_, request_, composition, observer_, cancel_);
   }
 
-  /// Everything of the family that the store holds.
+  /// Every cell of the family that this run has looked at. Others that the store holds would make the result depend on
+  /// which runs were there before.
   void read_catalogue(Composition& composition) const {
-    Evaluator evaluator(study_, single_, store_, nullptr, cancel_);
-    evaluator.look_at_stored();
     composition.catalogue.clear();
     composition.failed = 0;
-    composition.evaluations = evaluator.seen().size();
-    for (const Variant& variant : evaluator.seen()) {
+    composition.evaluations = family_.seen().size();
+    for (const Variant& variant : family_.seen()) {
       if (variant.failed && composition.failed++ == 0) composition.first_failure = variant.reason;
       if (std::optional<FamilyCell> cell = reader_.cell_of(variant)) composition.catalogue.push_back(*std::move(cell));
     }
@@ -188,6 +188,7 @@ class Composer {
     Evaluator evaluator(study_, pricing, store_, observer_, cancel_);
     for (const PointValues& start : starts)
       refine(study_, pricing, evaluator, evaluator.look_at(start), {request_.looks, kFirstStep});
+    family_.take_in(evaluator.seen());
     read_catalogue(composition);
     const double least_gain = kHelps * (1.0 + std::abs(mixture.merit));
     return std::ranges::any_of(composition.catalogue,
@@ -317,6 +318,7 @@ class Composer {
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
   OptimiseRequest single_;
+  Evaluator family_;  ///< has seen every cell of this run
   CellReader reader_;
 };
 

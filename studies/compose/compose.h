@@ -98,7 +98,7 @@ enum class Proof {
 };
 
 struct Composition {
-  std::vector<FamilyCell> catalogue;  ///< all cells that are allowed, by their points
+  std::vector<FamilyCell> catalogue;  ///< all cells that are allowed, in the order in which they were looked at
   std::optional<PartOfZones> best;    ///< none if no mixture holds the bounds
   std::string none_because;           ///< then, which bounds exclude all
   std::optional<FamilyCell> single;   ///< the best part of one kind of cell, as `optimise` finds it
@@ -124,7 +124,8 @@ StoreLayout compose_layout(const Study& study);
 Sweep compose_scan(const Study& study, const ComposeRequest& request);
 
 /// Looks for the best part: a scan of the family and what `optimise` makes of it, then cells that gain by the prices of
-/// the best mixture so far, until none does. Cells that the store has are not computed again, and all serve.
+/// the best mixture so far, until none does. Cells that the store has are not computed again; the result is the same as
+/// without them.
 /// \throw OutputError as ResultStore::record()
 Composition compose(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
                     const Cancellation* cancel);

@@ -32,9 +32,16 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, ResultS
   for (StoredPoint& point : store.points()) {
     std::string key;
     for (const StoredValue& value : point.inputs) key += text_of(value) + '\n';
-    next_ = std::max(next_, point.point + 1);
+    taken_.insert(point.point);
     stored_.emplace(std::move(key), std::move(point));
   }
+}
+
+/// Returns the lowest number that no point has. The points that a killed run lacks get the numbers that they would have
+/// had in it, because a search looks at its designs in the same order again.
+std::uint64_t Evaluator::free_number() {
+  while (taken_.contains(next_)) ++next_;
+  return next_++;
 }
 
 std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs) {
@@ -50,7 +57,7 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
   std::vector<std::uint64_t> number(open.size());
   for (std::size_t k = 0; k < open.size(); ++k) {
     const auto found = stored_.find(keys[k]);
-    number[k] = found != stored_.end() ? found->second.point : next_++;
+    number[k] = found != stored_.end() ? found->second.point : free_number();
   }
   std::vector<std::optional<StoredPoint>> points(open.size());
   for_each_in_parallel(open.size(), [&](std::size_t k) {
@@ -74,14 +81,11 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
   return found;
 }
 
-void Evaluator::look_at_stored() {
-  std::map<std::uint64_t, const std::string*> by_number;
-  for (const auto& [key, point] : stored_) by_number[point.point] = &key;
-  for (const auto& [number, key] : by_number) {
-    const StoredPoint& point = stored_.at(*key);
-    if (const std::optional<PointValues> values = values_of(study_, point.inputs);
-        values && numbers_.try_emplace(*key, seen_.size()).second)
-      seen_.push_back(variant_of(point, *values));
+void Evaluator::take_in(const std::vector<Variant>& seen) {
+  for (Variant variant : seen) {
+    if (!numbers_.try_emplace(key_of(variant.values), seen_.size()).second) continue;
+    judge(variant);
+    seen_.push_back(std::move(variant));
   }
 }
 
@@ -103,6 +107,8 @@ std::optional<double> Evaluator::value(const Variant& variant, const std::string
 }
 
 void Evaluator::judge(Variant& variant) const {
+  variant.objective.reset();
+  variant.broken.clear();
   if (variant.failed) return;
   double sum = 0.0;
   double least = std::numeric_limits<double>::infinity();

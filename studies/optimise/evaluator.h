@@ -3,7 +3,7 @@
 // Computes and judges candidates for all stages of a search, each point only once: what a store has is looked up.
 
 #include <map>
-#include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,8 +23,8 @@ class Evaluator {
   /// The designs, in the order given; several are computed at a time. \throw Interrupted, OutputError
   std::vector<Variant> look_at(const std::vector<PointValues>& designs);
   Variant look_at(const PointValues& design) { return look_at(std::vector<PointValues>{design}).front(); }
-  /// Takes in every design of the store that the study's parameters allow, as if it had been looked at.
-  void look_at_stored();
+  /// Takes in designs that another search for the same study has looked at.
+  void take_in(const std::vector<Variant>& seen);
 
   /// Everything looked at so far, in the order of its first look.
   const std::vector<Variant>& seen() const { return seen_; }
@@ -35,6 +35,7 @@ class Evaluator {
 
  private:
   static std::string key_of(const PointValues& design);
+  std::uint64_t free_number();
   void judge(Variant& variant) const;
   Variant variant_of(const StoredPoint& point, const PointValues& design) const;
 
@@ -46,7 +47,11 @@ class Evaluator {
   std::map<std::string, std::size_t> numbers_;  ///< in seen_, by values
   std::map<std::string, StoredPoint> stored_;   ///< of a run that is resumed
   std::vector<Variant> seen_;
+  std::set<std::uint64_t> taken_;  ///< numbers of the points in the store
   std::uint64_t next_ = 0;
 };
+
+/// The search of optimise() with an evaluator for the same study and request, which has then seen all its designs.
+Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Cancellation* cancel);
 
 }  // namespace retrace::studies

@@ -411,8 +411,12 @@ Sweep optimise_scan(const Study& study, const OptimiseRequest& request) {
 
 Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
                  const Cancellation* cancel) {
-  Optimum optimum;
   Evaluator evaluator(study, request, store, observer, cancel);
+  return optimise(study, request, evaluator, cancel);
+}
+
+Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Cancellation* cancel) {
+  Optimum optimum;
   try {
     search(study, request, evaluator, cancel, optimum);
   } catch (const Interrupted&) {

@@ -93,7 +93,7 @@ Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 
 /// Looks for the best design: every combination of discrete values over a scan of the continuous ones, the edges of
 /// what is feasible, a refinement within bounds and constraints, and rounder numbers where they are as good. What the
-/// store has is not computed again. \throw OutputError as ResultStore::record()
+/// store has is not computed again; the result is the same as without it. \throw OutputError as ResultStore::record()
 Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
                  const Cancellation* cancel);
 

@@ -11,6 +11,7 @@
 #include "geometry/part/mesh_part.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/sampling/entrance_sampler.h"
+#include "raytrace/sampling/replicate_means.h"
 #include "raytrace/sampling/sobol.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
@@ -20,6 +21,19 @@ namespace {
 
 using namespace geometry;
 using namespace raytrace;
+
+TEST(ReplicateMeans, TheStokesParameterOfPowerIsTheEfficiency) {
+  std::mt19937 random(59);
+  std::uniform_real_distribution<double> power(0.0, 1.0);
+  for (const std::uint32_t rays : {1U, 3U, 1000U, 4097U}) {
+    std::vector<Tally> replicates(32, Tally(3));
+    for (Tally& tally : replicates)
+      for (auto* const sums : {&tally.returned, &tally.scattered, &tally.front})
+        for (Stokes& sum : *sums) sum.i = rays * power(random);
+    for (const ConeResult& cone : result_of(replicates, rays, {0.1, 0.5, 2.0}).cones)
+      EXPECT_EQ(cone.stokes.i, cone.rre) << rays << " rays";
+  }
+}
 
 // A scrambled (0, m, 2)-net: every elementary interval of area 2^-m holds exactly one of 2^m points.
 TEST(SobolSquare, IsAStratifiedNet) {

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <random>
 #include <utility>
 
 #include "core/error.h"
 #include "studies/optimise/io/optimise_reader.h"
+#include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies::optimise_test {
@@ -191,6 +193,26 @@ TEST(Optimise, AResumedSearchComputesNothingAgain) {
   const Optimum second = optimise(study, request, store, nullptr, nullptr);
   EXPECT_EQ(computed, 0);
   EXPECT_EQ(second.best->number, first.best->number);
+}
+
+TEST(Optimise, IsTheSameWhateverAKilledRunLeft) {
+  const Study study = analytic_study(
+      "[optimize]\nmaximize = \"f\"\nscan = 20\n",
+      {{"f", [](double x, double y) { return 1.0 - std::pow(x - 1.7, 2) - 2.0 * std::pow(y - 2.2, 2); }}});
+  const OptimiseRequest request = read_optimise(study);
+  ResultStore whole("", optimise_layout(study), IfExists::refuse);
+  const std::string expected = optimum_json(study, request, optimise(study, request, whole, nullptr, nullptr), 0.0);
+  const std::vector<StoredPoint> points = whole.points();
+  std::mt19937 random(30);
+  for (int kill = 0; kill < 20; ++kill) {
+    const std::size_t begun = random() % points.size();
+    ResultStore left("", optimise_layout(study), IfExists::refuse);
+    for (std::size_t k = 0; k < begun; ++k)
+      if (k + 8 < begun || random() % 2 == 0) left.record(points[k]);
+    const Optimum optimum = optimise(study, request, left, nullptr, nullptr);
+    EXPECT_EQ(optimum_json(study, request, optimum, 0.0), expected) << "killed after " << begun << " points";
+    EXPECT_EQ(left.finished(), whole.finished());
+  }
 }
 
 /// The example, with fewer sizes that the tool cannot cut.
