@@ -83,7 +83,7 @@ TEST(SweepCommand, TwoProcessesShareOneStore) {
   EXPECT_EQ(database.execAndGet("SELECT count(*) FROM claims").getInt(), 0);
 }
 
-class Interrupted : public testing::TestWithParam<int> {};
+class Interrupted : public ::testing::TestWithParam<int> {};
 
 TEST_P(Interrupted, RunIsValidAndGoesOn) {
   const TemporaryFolder folder;
@@ -105,7 +105,7 @@ TEST_P(Interrupted, RunIsValidAndGoesOn) {
   EXPECT_LT(json["points"].size(), 400U);
 }
 
-INSTANTIATE_TEST_SUITE_P(SweepCommand, Interrupted, testing::Values(SIGINT, SIGTERM, SIGHUP));
+INSTANTIATE_TEST_SUITE_P(SweepCommand, Interrupted, ::testing::Values(SIGINT, SIGTERM, SIGHUP));
 
 TEST(SweepCommand, AHangUpThatIsIgnoredStaysIgnored) {
   const TemporaryFolder folder;
