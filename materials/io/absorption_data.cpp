@@ -37,7 +37,8 @@ void AbsorptionData::warn(const Blemishes& blemishes, std::string_view one, std:
 }
 
 void AbsorptionData::finish(Material& material) {
-  std::ranges::stable_sort(samples_, {}, &Sample::wavelength_nm);
+  std::stable_sort(samples_.begin(), samples_.end(),
+                   [](const Sample& a, const Sample& b) { return a.wavelength_nm < b.wavelength_nm; });
   SpectralCurve curve;
   for (std::size_t k = 0; k < samples_.size();) {
     const Sample& first = samples_[k];
