@@ -177,7 +177,8 @@ class CutMotion {
       shift_ += both_.rotation.transpose() * tip_change(Vec3::Zero(), lean);
   }
 
-  /// Change of edge_frame() times the tip of a chisel, where its edge and the direction of Z change.
+  /// Returns the first-order change of the vector edge_frame() * tip of a chisel, if the direction of the edge changes
+  /// by `edge_change` and the direction of Z by `z_change`.
   Vec3 tip_change(const Vec3& edge_change, const Vec3& z_change) const {
     const Vec3 edge = edge_direction(machine_);
     const Vec3 z = directions_.col(2);

@@ -163,7 +163,7 @@ void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& part
     const FabricationResult& plan = measured.plan_of(worst.part);
     throw InputError(
         {measured.file, lines.front(), "value"},
-        fmt::format("the other rows contradict all that was measured as {} of facet {}{} of {} (line{} {}): check the "
+        fmt::format("all measurements of {} of facet {}{} of {} (line{} {}) contradict the other rows: check the "
                     "sign, a positive value means \"{}\" at {}0 C0",
                     kFacetQuantityWords[static_cast<std::size_t>(worst.what)], worst.at.facet + 1,
                     plan.plan.elements[worst.at.element].rotated ? " of turned elements" : "",

@@ -123,9 +123,9 @@ StoreLayout compose_layout(const Study& study);
 /// \throw InputError for too many combinations of discrete values
 Sweep compose_scan(const Study& study, const ComposeRequest& request);
 
-/// Looks for the best part: a scan of the family and what `optimise` makes of it, then cells that gain by the prices of
-/// the best mixture so far, until none does. Cells that the store has are not computed again; the result is the same as
-/// without them.
+/// Searches for the mixture of cells that makes the best part. First, the family of cells is scanned and `optimise`
+/// improves the best of them. Then cells are added that gain at the dual prices of the best mixture so far (column
+/// generation), until no cell gains. Cells that are in the store are not computed again, and the result is the same.
 /// \throw OutputError as ResultStore::record()
 Composition compose(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
                     const Cancellation* cancel);

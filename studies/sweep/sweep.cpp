@@ -116,7 +116,8 @@ std::string text_of_value(const StoredValue& value) {
   return number != nullptr ? shortest(*number) : in_quotes(std::get<std::string>(value));
 }
 
-/// Returns what of a stored point does not belong to the sweep; an empty text if everything does.
+/// Compares the number and the parameter values of a stored point with those of the sweep. Returns a message about
+/// the first difference, or an empty text if there is none.
 std::string fault_of(const Sweep& sweep, const StoredPoint& point) {
   if (point.point >= sweep.size()) return fmt::format("the study has only {} points", sweep.size());
   const PointValues values = sweep.values(point.point);

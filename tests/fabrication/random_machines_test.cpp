@@ -107,8 +107,8 @@ TEST(RandomMachines, PloughsKeepToTheFacetWhereSlidesLeanAlongATiltedEdge) {
     }
 }
 
-/// A machine all of whose axes lean, with a tool that is mounted askew: by up to so many arcsec and a hundredth of that
-/// in um.
+/// Returns a random machine. Its axes and its tool are tilted by at most `most_arcsec`, and displaced in um by at most
+/// a hundredth of this number.
 Machine any_machine(std::mt19937_64& bits, const std::string& name, double most_arcsec) {
   std::uniform_real_distribution<double> share(-1.0, 1.0);
   Machine m = machine(name);
