@@ -143,7 +143,7 @@ TEST(StudyCommands, RefuseDamagedStoresAndWriteNothing) {
         Damage{"tolerance",
                design +
                    "[[parameter]]\nkey = \"body.thickness_mm\"\nname = \"b\"\ndistribution = \"uniform\"\nfrom = 1\n"
-                   "to = 3\n[[quantity]]\nkind = \"lens_thickness_mm\"\n[tolerance]\nsamples = 8\nindices = false\n",
+                   "to = 3\n[[quantity]]\nkind = \"lens_thickness_mm\"\n[tolerance]\nsamples = 8\nindices = \"none\"\n",
                "tolerance.sqlite",
                {negative, beyond, value}},
         Damage{
