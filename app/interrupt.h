@@ -1,7 +1,7 @@
 #pragma once
 
-// What happens on Ctrl-C, SIGTERM and SIGHUP: long work stops in order and keeps its finished results, other work ends
-// at once.
+// Handles Ctrl-C, SIGTERM and SIGHUP. Long work stops in order and keeps its finished results. Other work ends
+// immediately.
 
 #include <functional>
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace retrace::app {
 
-/// From here on an interrupt (SIGINT, SIGTERM, SIGHUP) ends the program with exit code 130. SIGHUP stays ignored if it
-/// was, as under nohup.
+/// Installs handlers for the interrupts SIGINT, SIGTERM and SIGHUP, which end the program with exit code 130. If SIGHUP
+/// was ignored before, as it is under nohup, it remains ignored.
 void install_interrupt_handlers();
 
 /// While one exists, the first interrupt only asks for the end, so that work can stop in order and write what it has;

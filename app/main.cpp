@@ -36,8 +36,7 @@ int fail(ExitCode code, const std::string& text) {
   ::_exit(static_cast<int>(ExitCode::failed));
 }
 
-/// Ends the program with an error where C++ would abort it: an exception of a library left a function that must not
-/// throw.
+/// Ends the program with an error message. C++ would abort it when an exception leaves a function that must not throw.
 [[noreturn]] void end_on_exception() {
   try {
     if (std::current_exception()) std::rethrow_exception(std::current_exception());

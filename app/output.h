@@ -95,8 +95,7 @@ void ResultFiles::add_drawing(const std::string& name, Plot plot) {
 }
 
 /// Output of a command whose result is a text, such as a job file or a page. The text is written to the file that --out
-/// names.
-/// Without --out it is printed unchanged to standard output, even if --quiet is given; with `--json -` it is not
+/// names. Without --out it is printed unchanged to standard output, even if --quiet is given; with `--json -` it is not
 /// printed.
 class TextFiles {
  public:

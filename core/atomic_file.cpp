@@ -29,7 +29,8 @@ std::string reason(int error_number) {
 /// Number of random bytes in the name of a temporary file.
 constexpr std::size_t kRandomBytes = 8;
 
-/// What the names of all temporary files of a target begin and end with; kRandomBytes in hexadecimal are in between.
+/// Returns the beginning of the names of all temporary files of a target. It is followed by kRandomBytes random bytes
+/// in hexadecimal and by kTemporarySuffix.
 std::string temporary_prefix(const fs::path& target) {
   return "." + target.filename().string() + ".";
 }
@@ -63,7 +64,7 @@ void remove_abandoned(const fs::path& target) {
 }
 
 /// Owns a file under a temporary name until it is moved into place; otherwise removes it. The name is random and the
-/// file is new: what others have put into the folder is never opened.
+/// file is new. Files that others have put into the folder are therefore never opened.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target) {
@@ -95,7 +96,7 @@ class TemporaryFile {
 
   void move_to(const fs::path& target) {
     if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target);
-    // The lock is held until the file has its name, so that no other process takes it for abandoned.
+    // The lock is held until the file has its name, so that no other process removes it as abandoned.
     if (::rename(name_.c_str(), target.c_str()) != 0) fail(target);
     name_.clear();
     if (::close(std::exchange(descriptor_, -1)) != 0) fail(target);

@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 4a1c955c5f70bed4a734ba4466786df1020628cbf737c9d3e627ff5f354beb9c */
+/* made by tools/live_page; engine.wasm.gz 39fe8c9bdfd0b13f5c734641d02d7a4dab38f49ed2a9b59f7e7f9974ee6f60c2 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

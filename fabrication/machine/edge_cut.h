@@ -28,13 +28,14 @@ struct CutPlane {
   }
 };
 
-/// Frame of the mounted tool for lengths from its reference point, as columns in the frame of the machine. Of a chisel:
-/// along the edge, across it, and up the plane in which it plunges. The tool is touched off as it is mounted, so that a
-/// turn about the edge moves none of these lengths.
+/// Returns the axes of the mounted tool as columns in the machine frame. Positions of points of the tool, relative to
+/// its reference point, are given in these axes. Those of a chisel are the edge, the direction across it, and the
+/// upward direction in the plane of plunging. The tool is touched off after mounting. A rotation about the edge
+/// therefore does not change these axes.
 Eigen::Matrix3d edge_frame(const Machine& machine);
 
-/// Angle by which the mount turns a chisel about its edge, from the plane in which it plunges: it adds to the
-/// clearance.
+/// Returns the angle by which the mount rotates a chisel about its edge, relative to the plane of plunging. It is added
+/// to the clearance angle.
 Angle clearance_change(const Machine& machine);
 
 /// Along the edge that cuts, in the machine frame and of length 1.

@@ -84,8 +84,8 @@ struct MachineBody {
 struct ToolMount {
   /// Of the tool reference point, from where programs take it, along the axes of the machine. Of a head: at B = 0.
   Sourced<geometry::Vec3> offset_mm = {geometry::Vec3::Zero(), Basis::assumed, "the tool is touched off"};
-  /// Turn of the tool as it is mounted and touched off, about its reference point: a vector along the axis by the right
-  /// hand, as long as the angle. About X it changes the clearance, about Y an edge is not level, about Z not along X.
+  /// Rotation vector of the tool about its reference point, as mounted and touched off. A rotation about X changes the
+  /// clearance. A rotation about Y tilts an edge from the horizontal, and one about Z turns it away from X.
   Sourced<geometry::Vec3> turn_deg = {geometry::Vec3::Zero(), Basis::assumed, "the tool is aligned"};
 };
 

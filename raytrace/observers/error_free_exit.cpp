@@ -12,14 +12,15 @@ using Eigen::Matrix3d, geometry::Vec2;
 // Maximum norm of M^T M - 1 for a path that consists only of reflections, where M is product_of_reflections(). The norm
 // exceeds 0 by rounding errors. It is larger than this limit if light is also refracted at the back surface.
 constexpr double kIsometryTolerance = 1e-7;
-// Maximum angle between M and the nearest involution, which is a matrix that is its own inverse. Errors of angle cause
-// smaller angles. The constant is also the minimum z component of the direction in which light leaves.
+// Maximum angle of the rotation from the product of reflections to the nearest involution, which is a matrix that is
+// its own inverse. Errors of angle cause smaller angles. The constant is also the minimum z component of the direction
+// in which light leaves.
 constexpr double kLargestError_rad = 0.1;
 // Minimum absolute determinant of the linear part of ReturnedBeam::entry_from_exit. Below this limit, light leaves
 // almost parallel to the face, and no error-free exit is computed.
 constexpr double kLeastDeterminant = 1e-6;
 
-/// Returns the unit direction inside the part of a ray that is refracted at the entrance face.
+/// Returns the unit direction that a ray has in the body after refraction at the entrance face.
 /// \param in_air x and y components of the unit direction of the ray in air
 Vec3 inside(const Vec2& in_air, double index, double sign_of_z) {
   const Vec2 across = in_air / index;

@@ -26,7 +26,8 @@ struct FarFieldPolicy {
   /// Light of one cell whose optical paths differ by more does not interfere: the coherence length of a lamp (a few um)
   /// and what the errors of angle of a part make of equal paths.
   double coherence_length_mm = 0.02;
-  /// Share of the power in the window that may be left undiffracted: the faintest of it.
+  /// Maximum fraction of the power in the window that is not diffracted. It is the power of the faintest beams. A far
+  /// field of few polygons is diffracted completely.
   double undiffracted_share = 1e-4;
   std::size_t most_polygons = 20'000;  ///< that are diffracted; the faintest beyond are not
   /// Cells so large that their pattern is finer than this are not diffracted: the discs of source and receiver hide it.

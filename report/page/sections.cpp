@@ -80,7 +80,7 @@ void add_pictures(PageSection& section, const ResultDocument& document, const Re
             {caption_of(wanted), "", picture.media_type, picture.bytes, caption_of(wanted) + ", a drawing"});
 }
 
-/// Efficiencies of one of the designs of a document.
+/// Appends the efficiencies of one design of a document to `facts`.
 void add_efficiencies(const Json& points, double design, const std::string& whose, std::vector<PageFact>& facts) {
   const Json* best = nullptr;
   const Json* normal = nullptr;

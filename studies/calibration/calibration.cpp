@@ -135,7 +135,7 @@ double most_by_chance(std::size_t measurements) {
                   line > 0 ? "those of lines " : "", places));
 }
 
-/// Rows of one quantity of like facets, whose sign is told in one way.
+/// Measurements of one quantity of similar facets. The same convention gives the sign of all of them.
 bool is_alike(const MeasuredParts& measured, const Measurement& a, const Measurement& b) {
   const auto is_rotated = [&](const Measurement& m) {
     return measured.plan_of(m.part).plan.elements[m.at.element].rotated;
@@ -143,8 +143,9 @@ bool is_alike(const MeasuredParts& measured, const Measurement& a, const Measure
   return a.what == b.what && a.at.facet == b.at.facet && is_rotated(a) == is_rotated(b);
 }
 
-/// Refuses tables of which outliers are all that was measured of a quantity of like facets: several rows of one part,
-/// or all of all parts. A wrong sign does that. \param measured without the outliers
+/// Refuses a table if all measurements of one quantity of similar facets are outliers, because their sign is then
+/// likely to be wrong. This applies to several rows of one part, or to all rows of all parts. \param measured the
+/// measurements without the outliers
 void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& parts,
                  const std::vector<Outlier>& outliers) {
   for (const Outlier& outlier : outliers) {

@@ -70,8 +70,8 @@ std::vector<CutPart> cut_parts(const MeasuredParts& measured);
 
 /// Estimates the set-up by Gauss-Newton steps. Measurements that miss what the others say by more than chance are left
 /// out one by one (Baarda's data snooping: W. Baarda, A testing procedure for use in geodetic networks, 1968).
-/// \throw InputError naming the lines that contradict each other, if too many do, or if none would be left of a
-/// quantity of a facet: their sign is likely to be wrong
+/// \throw InputError naming the lines if too many measurements contradict each other, or if all measurements of one
+///        quantity of a facet do, because their sign is then likely to be wrong
 Calibration calibrate(MeasuredParts parts);
 
 }  // namespace retrace::studies

@@ -26,7 +26,7 @@ double included_rad(const Vec3& a, const Vec3& b) {
   return std::numbers::pi - std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// "+X" or "-Y" for directions along an axis, numbers for others.
+/// Returns "+X", "-Y" or the like for a direction along an axis, and the components of any other direction.
 std::string direction_text(const Vec3& direction) {
   constexpr double kAlongAxis = 0.99;
   for (Eigen::Index axis = 0; axis < 3; ++axis)

@@ -101,8 +101,8 @@ class Composer {
     if (request_.errors) composition.errors = effects_of_errors(study_, request_, composition, observer_, cancel_);
   }
 
-  /// Every cell of the family that this run has looked at. Others that the store holds would make the result depend on
-  /// which runs were there before.
+  /// Every cell of the family that this run has evaluated. Other cells of the store are excluded. Otherwise the result
+  /// would depend on earlier runs.
   void read_catalogue(Composition& composition) const {
     composition.catalogue.clear();
     composition.failed = 0;

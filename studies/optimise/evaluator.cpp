@@ -37,8 +37,8 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, ResultS
   }
 }
 
-/// Returns the lowest number that no point has. The points that a killed run lacks get the numbers that they would have
-/// had in it, because a search looks at its designs in the same order again.
+/// Returns the lowest number that no stored point has. A search evaluates its designs in a fixed order. After a resumed
+/// run, each point therefore has the same number as in an uninterrupted run.
 std::uint64_t Evaluator::free_number() {
   while (taken_.contains(next_)) ++next_;
   return next_++;

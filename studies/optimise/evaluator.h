@@ -23,7 +23,7 @@ class Evaluator {
   /// The designs, in the order given; several are computed at a time. \throw Interrupted, OutputError
   std::vector<Variant> look_at(const std::vector<PointValues>& designs);
   Variant look_at(const PointValues& design) { return look_at(std::vector<PointValues>{design}).front(); }
-  /// Takes in designs that another search for the same study has looked at.
+  /// Adds the designs that another search of the same study has evaluated.
   void take_in(const std::vector<Variant>& seen);
 
   /// Everything looked at so far, in the order of its first look.
@@ -51,7 +51,8 @@ class Evaluator {
   std::uint64_t next_ = 0;
 };
 
-/// The search of optimise() with an evaluator for the same study and request, which has then seen all its designs.
+/// Runs the search of optimise() with an evaluator for the same study and request. Afterwards, the evaluator has all
+/// designs of the search.
 Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Cancellation* cancel);
 
 }  // namespace retrace::studies

@@ -35,10 +35,10 @@ struct Sensitivity {
   double chip_nm = 0.0;       ///< by which the chip of a cut changes most, from how the material was left before it
   double root_left_nm = 0.0;  ///< at most, that an end of the edge stops short of another facet
   double root_cut_nm = 0.0;   ///< at most, that it goes below one
-  double wall_nm = 0.0;       ///< at most, that an end of a chisel's edge or the tool above it moves along the root
+  double wall_nm = 0.0;       ///< maximum motion along the root of an edge end or of the tool above it
 
   double farthest_nm() const;  ///< of all facets, unsigned
-  double largest_nm() const;   ///< of facets, chips and roots; walls are not counted
+  double largest_nm() const;   ///< maximum change at facets, chips and roots, without walls
 };
 
 struct Sensitivities {

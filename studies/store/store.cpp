@@ -62,7 +62,7 @@ void remove_store(const fs::path& file) {
   }
 }
 
-/// The statements that make the tables of a store, by name.
+/// Returns the SQL statements that create the tables of a store, by name of the table.
 std::vector<std::pair<std::string, std::string>> tables_of(const StoreLayout& layout) {
   std::string columns =
       "point INTEGER PRIMARY KEY, failed INTEGER NOT NULL, reason TEXT, elapsed_s REAL NOT NULL, version TEXT NOT NULL";
@@ -73,7 +73,8 @@ std::vector<std::pair<std::string, std::string>> tables_of(const StoreLayout& la
           {"points", "CREATE TABLE points (" + columns + ")"}};
 }
 
-/// Whether SQLite could not do its work for a reason outside of the file: no space, no permission, another process.
+/// Returns true if SQLite failed for a reason outside of the file, such as a full disk, a missing permission or another
+/// process.
 bool is_of_the_system(int code) {
   constexpr std::array kOfTheSystem = {SQLITE_BUSY, SQLITE_CANTOPEN, SQLITE_FULL,     SQLITE_IOERR, SQLITE_INTERRUPT,
                                        SQLITE_AUTH, SQLITE_LOCKED,   SQLITE_READONLY, SQLITE_PERM,  SQLITE_NOLFS};
@@ -142,20 +143,21 @@ void ResultStore::Database::connect() {
                                               SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kWaitMs);
 }
 
-/// Whether nothing has been made in the file yet. The first page is there as soon as a transaction has begun.
+/// Returns true if the file has no tables yet. Its first page exists as soon as a transaction has begun.
 bool ResultStore::Database::is_empty() const {
   return sqlite->execAndGet("PRAGMA page_count").getInt() <= 1 &&
          sqlite->execAndGet("PRAGMA application_id").getInt() == 0 &&
          sqlite->execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
 }
 
-/// Whether the log of a process that was killed is kept when the file is closed. Otherwise it is moved into the file.
+/// Sets whether closing the file keeps the write-ahead log that a killed process left. Otherwise the log is
+/// merged into the file.
 void ResultStore::Database::keep_log(bool keep) const {
   sqlite3_db_config(sqlite->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
 }
 
-/// Opens and checks a store that is to go on. A file that is refused stays as it is. A process that is killed while it
-/// makes a store leaves an empty one.
+/// Opens and checks an existing store. A refused file is not changed. If a process was killed while it created a store,
+/// the store is empty.
 void ResultStore::Database::check_existing() {
   const bool has_log = !is_new(file.string() + "-wal");
   connect();
@@ -191,7 +193,7 @@ void ResultStore::Database::switch_to_log() {
   }
 }
 
-/// Checks everything that is read of a store: its format, its pages, its tables, its study and every point.
+/// Checks the format, the pages, the tables, the study and every point of a store.
 void ResultStore::Database::check() {
   check_kind();
   const std::string pages = sqlite->execAndGet("PRAGMA integrity_check(1)").getString();
@@ -276,7 +278,7 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
     throw InputError({file.string(), 0, ""},
                      "exists: --resume goes on with it, --overwrite starts anew, another --out keeps it");
   try {
-    // Before anything is made, so that nothing is left next to a store that is refused.
+    // The store is checked before other files are created, so that none remains next to a refused store.
     if (!is_new(file) && if_exists == IfExists::resume) database_->check_existing();
     if (!file.empty()) {
       database_->locks = std::make_unique<ProcessLocks>(file.string() + "-lock");

@@ -103,7 +103,7 @@ PointValues values_at(const Study& study, const std::vector<double>& shares) {
 
 namespace {
 
-/// Whether a stored value is that of the study. Another machine may have rounded it differently.
+/// Returns true if a stored value equals that of the study. Another machine may have rounded it differently.
 bool is_same(const StoredValue& stored, const StoredValue& of_study) {
   const double* const a = std::get_if<double>(&stored);
   const double* const b = std::get_if<double>(&of_study);

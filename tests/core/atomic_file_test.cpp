@@ -156,7 +156,7 @@ TEST_F(AtomicFile, NoPlantedFileIsFollowedOverwrittenOrRemoved) {
 }
 
 TEST_F(AtomicFile, WritersOfOneFileDoNotMixAndTheLastOneWins) {
-  // In containers two processes may have the same number. Two files in one process have it as well.
+  // Processes in different containers may have the same process id. Two files of this process imitate them.
   const fs::path file = folder_ / "a.txt";
   GrowingFile first(file);
   first.append("first");

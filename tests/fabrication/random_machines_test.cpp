@@ -38,7 +38,8 @@ Machine machine_with(const char* key, double amount) {
   return with_error(machine("ideal"), *setup_quantity(Tilt::table, key), amount);
 }
 
-/// \param along_x_nm by which all visits are moved along X
+/// Verifies the programs of a job after a shift of all cuts.
+/// \param along_x_nm distance by which the cuts are shifted along X
 Verification verified(const Job& job, const Machine& m, Nanometres along_x_nm = 0) {
   std::vector<NcProgram> programs;
   for (Program& program : make_plan(job, m).programs) {
@@ -59,7 +60,7 @@ Job prism(Strategy strategy) {
 struct Lean {
   const char* key;
   Strategy strategy;
-  double least_share;  ///< of the prediction that right programs reach
+  double least_share;  ///< minimum ratio of the simulated to the predicted cut into a wall
 };
 
 /// An edge along the root moves along it by the slide's lean times the way along the slide: Z goes up facet 1, and Y

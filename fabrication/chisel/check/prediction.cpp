@@ -25,8 +25,10 @@ Prediction predict_cube(const Machine& machine, const Groove& cavity) {
   return prediction;
 }
 
-/// Distance into a wall that an end of the edge, or the tool above it, reaches at most (docs/theory/verification.md).
-/// \param motion the pose in which a facet is plunged \param length_mm of a facet, up to where the blank ends
+/// Returns the maximum distance by which an end of the edge, or the tool above it, cuts into a wall
+/// (docs/theory/verification.md).
+/// \param motion rigid motion of the workpiece while the facet is plunged
+/// \param length_mm length of the facet from the root to the face of the blank
 double wall_overcut_mm(const Groove& groove, const ToolWedge& wedge, const Vec3& pass_normal, const RigidMotion& motion,
                        double length_mm) {
   const Vec3 root = motion.direction(groove.root_direction);
@@ -48,7 +50,7 @@ Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge
   Prediction prediction;
   prediction.poses.resize(2);
   prediction.pass_normal = machine.y.direction.value.cross(machine.z.direction.value).normalized();
-  // Length of a facet from the root to where the blank ends.
+  // Length of a facet from the root to the face of the blank.
   const double length_mm = groove.facet_length_mm + groove.stock_mm / groove.axis.dot(groove.facets[0].up_slope);
   for (std::size_t f = 0; f < 2; ++f) {
     const Vec3& normal = groove.facets[f].normal;

@@ -18,15 +18,15 @@ struct Prediction {
   /// By how much facet f rises from one end of the tool's edge to the other, per mm, when it is ploughed in the pose of
   /// the other facet; signed along the root direction of the groove.
   std::array<double, 2> plough_slope{};
-  /// Distance by which the edge moves along the root for each mm that it ploughs up facet f: the slides need not be
-  /// square to the root.
+  /// Distance, in mm, by which the edge moves along the root for each mm that it ploughs up facet f. It differs from 0
+  /// if the slides are not perpendicular to the root.
   std::array<double, 2> plough_drift{};
-  /// Normal of the plane in which Y and Z move the tool while X stands, in the frame of the machine.
+  /// Normal, in the machine frame, of the plane in which Y and Z move the tool while X does not move.
   geometry::Vec3 pass_normal = geometry::Vec3::UnitX();
   /// Of prisms. A V follows the dihedral edges themselves and its planes hold the facets: it leaves nothing.
   double root_mm = 0.0;                ///< by which the ends of the tilted edge stay up a facet at the root at most
   std::array<double, 2> root_of_mm{};  ///< the same, up each facet
-  double wall_mm = 0.0;                ///< by which the ends of the edge and the tool above them go into walls at most
+  double wall_mm = 0.0;                ///< maximum depth of the cuts of edge ends and tool into walls
 };
 
 /// \throw InputError if the machine cannot plunge a facet

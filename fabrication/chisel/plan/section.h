@@ -38,7 +38,7 @@ struct Section {
   double lift_mm = 0.0;            ///< by which the tool stays up so that the deeper end of its edge touches the floor
   double edge_mm = 0.0;            ///< the floor's distance that the edge's radius asks of the reference point
   Angle apex;
-  Angle rake;              ///< from the wall to the rake face
+  Angle rake;              ///< angle from the wall to the rake face
   Nanometres step_nm = 1;  ///< positions are whole multiples of it
 
   double floor_z(double y, double left_mm) const {

@@ -236,9 +236,11 @@ class Measurer {
     return std::min(at_face, free / towards);
   }
 
-  /// Heights that ploughing must leave at a station, so far up the facet: 0 at the deeper end of the edge, which
-  /// touches the design's facet. The ends of a tilted edge wander by up to wall_mm along a facet: within that distance
-  /// of an end the pass may or may not have been there.
+  /// Returns the range of heights above the design's facet that a correct ploughing pass leaves at a point. The height
+  /// is 0 at the deeper end of the edge. The ends of a tilted edge move by up to wall_mm along a facet. Within this
+  /// distance of an end, the range therefore includes both a cut and an uncut surface.
+  /// \param along position of the point along the root, in mm
+  /// \param slant distance of the point from the root along the facet, in mm
   Interval ploughed_height(std::size_t facet, double along, double slant) const {
     const double slope = prediction_.plough_slope[facet];
     const double half = wedge_.half_width_mm;
