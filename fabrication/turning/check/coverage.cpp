@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/angle.h"
 #include "core/number_format.h"
@@ -44,9 +45,10 @@ class CoverageCheck {
   void add(const char* kind, const CutPass& pass, std::size_t i, std::string message, double value, double limit) {
     findings_.add({kind, cuts_.programs[pass.program], pass.line[i], -1, std::move(message), value, limit, 1});
   }
-  void add_uncut(std::size_t program, std::int32_t line, const char* message, double value, double limit) {
+  void add_uncut(std::size_t program, std::int32_t line, std::string message, double value, double limit) {
     figures_.is_whole = false;
-    findings_.add({"uncut", cuts_.programs.empty() ? "" : cuts_.programs[program], line, -1, message, value, limit, 1});
+    findings_.add({"uncut", cuts_.programs.empty() ? "" : cuts_.programs[program], line, -1, std::move(message), value,
+                   limit, 1});
   }
 
   /// The first block of a pass that does not go on stands for those that follow.
@@ -117,7 +119,8 @@ class CoverageCheck {
 
   /// Across, where a line passes that place along it; nothing where it does not reach it.
   static std::optional<double> across_at(const std::vector<geometry::Vec2>& line, double along) {
-    if (along > line.front().y() + kPlacesMm || along < line.back().y() - kPlacesMm) return std::nullopt;
+    if (line.empty() || along > line.front().y() + kPlacesMm || along < line.back().y() - kPlacesMm)
+      return std::nullopt;
     const auto next =
         std::lower_bound(line.begin(), line.end(), along, [](const geometry::Vec2& p, double y) { return p.y() > y; });
     const auto k = std::clamp<std::ptrdiff_t>(next - line.begin(), 1, static_cast<std::ptrdiff_t>(line.size()) - 1);
@@ -139,18 +142,32 @@ class CoverageCheck {
         add_uncut(pass.program, pass.line.front(), "a line does not go over the whole part",
                   line.front().y() - line.back().y(), path_.width_mm);
       for (std::size_t i = 0; i < line.size(); ++i) {
-        const std::optional<double> neighbour =
-            before.empty() ? std::optional(half_across) : across_at(before, line[i].y());
+        const std::optional<double> neighbour = across_at(before, line[i].y());
         if (neighbour) check_step(pass, i, *neighbour - line[i].x());
       }
+      if (before.empty())
+        check_edge(pass, pass.line.front(), half_across - lowest_across(line), "the first line lies inside the border");
       before = std::move(line);
     }
     const CutPass& last = cuts_.passes.back();
     double end = -half_across;
     for (const geometry::Vec2& p : before) end = std::max(end, p.x());
-    if (end + half_across > path_.feed_mm + kPlacesMm)
-      add_uncut(last.program, last.line.back(), "the lines end before the other side of the part", end + half_across,
-                path_.feed_mm);
+    check_edge(last, last.line.back(), end + half_across, "the last line ends before the border");
+  }
+
+  static double lowest_across(const std::vector<geometry::Vec2>& line) {
+    return std::min_element(line.begin(), line.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); })->x();
+  }
+
+  /// Checks the distance between a border of the part and the line next to it. A cusp ends half a feed from a line, so
+  /// that a wider strip at the border would be higher than the cusps.
+  void check_edge(const CutPass& pass, std::int32_t line, double inside_mm, const char* what) {
+    const double limit_mm = 0.5 * path_.feed_mm;
+    if (inside_mm <= limit_mm + kPlacesMm) return;
+    add_uncut(pass.program, line,
+              fmt::format("{} of the part by {} um, at most half the feed is allowed, {} um", what,
+                          fixed(1e3 * inside_mm, 3), shortest(1e3 * limit_mm)),
+              inside_mm, limit_mm);
   }
 
   /// Blocks of a row that are too far off are told by the first; those of farther rows by themselves.

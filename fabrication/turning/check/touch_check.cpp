@@ -10,6 +10,7 @@
 #include "core/angle.h"
 #include "core/number_format.h"
 #include "core/threads.h"
+#include "fabrication/turning/check/deviation_map.h"
 
 namespace retrace::fabrication::turning {
 namespace {
@@ -20,6 +21,8 @@ using geometry::Vec2;
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 /// Findings of one kind that are told each by itself; farther ones are counted with the last.
 constexpr std::size_t kMostStretches = 200;
+/// Distance beyond the border that still counts as inside the region: words are rounded to whole nanometres.
+constexpr double kBorderMm = 1e-6;
 
 struct Pose {
   double x_mm = 0.0;
@@ -65,8 +68,9 @@ class EdgeProbe {
 
   bool is_within(const Pose& at, double angle) const {
     const Vec2 p = place(at, angle);
-    if (region_.is_round) return p.norm() <= region_.radius_mm;
-    return std::abs(p.x()) <= region_.half_height_mm && std::abs(p.y()) <= region_.half_width_mm;
+    if (region_.is_round) return p.norm() <= region_.radius_mm + kBorderMm;
+    return std::abs(p.x()) <= region_.half_height_mm + kBorderMm &&
+           std::abs(p.y()) <= region_.half_width_mm + kBorderMm;
   }
 
   /// \param start_rad angle near which it touched last
@@ -76,6 +80,7 @@ class EdgeProbe {
     stand.touches_mm = climb(at, stand.angle_rad);
     take_within(at, stand.angle_rad, stand.touches_mm, stand);
     if (looks_all_over) look_all_over(at, stand);
+    if (!is_within(at, stand.angle_rad)) look_at_border(at, stand);
     return stand;
   }
 
@@ -93,6 +98,47 @@ class EdgeProbe {
     if (touches <= stand.touches_within_mm || !is_within(at, angle)) return;
     stand.touches_within_mm = touches;
     stand.angle_within_rad = angle;
+  }
+
+  /// Returns the angle at the middle of the part of the arc that is inside the region. Takes the arc as straight in
+  /// plan, which it is without rake.
+  double inner_angle(const Pose& at) const {
+    const Vec2 tip = place(at, 0.0);
+    const Vec2 across(std::cos(at.c_rad), -std::sin(at.c_rad));
+    const double reach = radius_mm_ * std::sin(end_rad_);
+    double low = -reach;
+    double high = reach;
+    const auto clip = [&](double middle, double half) {
+      low = std::max(low, middle - half);
+      high = std::min(high, middle + half);
+    };
+    if (region_.is_round) {
+      const double middle = -tip.dot(across);
+      const double distance = (tip + middle * across).norm();
+      clip(middle, std::sqrt(std::max(0.0, region_.radius_mm * region_.radius_mm - distance * distance)));
+    } else {
+      const double halves[] = {region_.half_height_mm, region_.half_width_mm};
+      for (Eigen::Index axis = 0; axis < 2; ++axis)
+        if (across[axis] != 0.0) clip(-tip[axis] / across[axis], halves[axis] / std::abs(across[axis]));
+    }
+    return std::asin(std::clamp(0.5 * (low + high), -reach, reach) / radius_mm_);
+  }
+
+  /// Adds both places in which the arc crosses the border of the region. If the arc is lowest over the surface beyond
+  /// the region, it is lowest within the region at one of them.
+  void look_at_border(const Pose& at, Stand& stand) const {
+    const double inner = inner_angle(at);
+    if (!is_within(at, inner)) return;
+    constexpr int kBisections = 40;
+    for (const double end : {-end_rad_, end_rad_}) {
+      double inside = inner;
+      double outside = end;
+      for (int k = 0; k < kBisections; ++k) {
+        const double middle = 0.5 * (inside + outside);
+        (is_within(at, middle) ? inside : outside) = middle;
+      }
+      take_within(at, inside, touches_mm(at, inside), stand);
+    }
   }
 
   /// A steep place farther along the arc may touch first, and beyond the region's rim there may be a higher one.
@@ -173,13 +219,56 @@ class EdgeProbe {
 struct Standing {
   double low_nm = 0.0;
   double high_nm = 0.0;
+  double beyond_nm = 0.0;  ///< distance by which it stays off where it is to touch beyond the region
   double touches_mm = kNowhere;
+  double angle_rad = 0.0;  ///< on the arc, of the place that is to touch at the end of the block
+  bool is_within = false;  ///< true if that place is inside the region
+};
+
+/// Joins findings of blocks that follow each other into one, with the worst value.
+class Stretch {
+ public:
+  Stretch(const char* kind, const TurningCuts& cuts, FindingList& findings)
+      : kind_(kind), cuts_(cuts), findings_(findings) {
+    now_.count = 0;
+  }
+
+  /// \param message makes the text of the finding
+  template <typename Message>
+  void add(std::size_t program, std::int32_t line, double nm, double limit_nm, const Message& message) {
+    if (now_.count == 0 || nm > now_.value)
+      now_ = {kind_, cuts_.programs[program], line, -1, message(), nm, limit_nm, now_.count};
+    ++now_.count;
+  }
+
+  /// Ends the stretch. Blocks after the 200th stretch are counted with the last one.
+  void end() {
+    if (told_ < kMostStretches) close();
+  }
+  /// Ends the stretch, and the last one as well.
+  void close() {
+    if (now_.count > 0) {
+      findings_.add(now_);
+      ++told_;
+    }
+    now_.count = 0;
+  }
+
+ private:
+  const char* kind_;
+  const TurningCuts& cuts_;
+  FindingList& findings_;
+  std::size_t told_ = 0;
+  Finding now_;
 };
 
 class TouchCheck {
  public:
   TouchCheck(const TurnedPart& part, const TurningCuts& cuts, FindingList& findings)
-      : probe_(part), limit_nm_(part.form_tolerance_nm), cuts_(cuts), findings_(findings) {}
+      : probe_(part),
+        limit_nm_(part.form_tolerance_nm),
+        gouge_("gouge", cuts, findings),
+        excess_("excess", cuts, findings) {}
 
   void follow(const CutPass& pass) {
     std::vector<Standing> all(pass.size());
@@ -188,16 +277,17 @@ class TouchCheck {
       double angle = 0.0;
       const std::size_t end_of_piece = std::min(pass.size(), (piece + 1) * kPiece);
       for (std::size_t i = piece * kPiece; i < end_of_piece; ++i) {
-        const Pose end{pass.x_mm[i], pass.y_mm[i], pass.z_mm[i], pass.c_rad[i]};
-        stand(end, true, angle, all[i]);
+        stand(pose_at(pass, i, 1.0), true, angle, all[i]);
         if (i == 0) continue;
-        const auto half = [i](const std::vector<double>& v) { return 0.5 * (v[i - 1] + v[i]); };
         double half_way = angle;
-        stand({half(pass.x_mm), half(pass.y_mm), half(pass.z_mm), half(pass.c_rad)}, false, half_way, all[i]);
+        stand(pose_at(pass, i, 0.5), false, half_way, all[i]);
       }
     });
-    for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i > 0 && all[i].is_within != all[i - 1].is_within) stand_at_border(pass, i, all[i]);
       take(all[i], pass.program, pass.line[i], pass.servo_mm.empty() ? 0.0 : pass.servo_mm[i]);
+      if (all[i].beyond_nm > limit_nm_) add_border_places(pass, i, all[i].angle_rad);
+    }
     end_stretches();
   }
 
@@ -212,27 +302,60 @@ class TouchCheck {
     end_stretches();
   }
 
-  const TouchFigures& figures() const { return figures_; }
+  TouchFigures take_figures() { return std::move(figures_); }
 
  private:
-  /// Blocks that follow each other and do the same.
-  struct Stretch {
-    const char* kind;
-    const char* message;
-    std::size_t told = 0;
-    Finding now{};
-  };
+  /// Returns the pose within the block that ends at point `i`. \param share 0 at its beginning, 1 at its end
+  static Pose pose_at(const CutPass& pass, std::size_t i, double share) {
+    const auto at = [i, share](const std::vector<double>& v) {
+      return share == 1.0 ? v[i] : v[i - 1] + share * (v[i] - v[i - 1]);
+    };
+    return {at(pass.x_mm), at(pass.y_mm), at(pass.z_mm), at(pass.c_rad)};
+  }
 
   void stand(const Pose& at, bool looks_all_over, double& angle, Standing& standing) const {
     const Stand s = probe_.stand(at, angle, looks_all_over);
     angle = s.angle_rad;
-    if (looks_all_over) standing.touches_mm = s.touches_mm;
+    if (looks_all_over) {
+      standing.touches_mm = s.touches_mm;
+      standing.angle_rad = s.angle_rad;
+      standing.is_within = probe_.is_within(at, s.angle_rad);
+    }
     if (s.touches_within_mm == kNowhere) return;
     const double below = 1e6 * (s.touches_within_mm - at.z_mm);
     if (below > 0.0) standing.low_nm = std::min(standing.low_nm, -probe_.square(at, s.angle_within_rad, below));
-    // It is to touch in the region, unless a place beyond that holds it up.
-    if (below < 0.0 && s.touches_within_mm >= s.touches_mm)
+    if (below >= 0.0) return;
+    if (s.touches_within_mm >= s.touches_mm)
       standing.high_nm = std::max(standing.high_nm, -probe_.square(at, s.angle_within_rad, below));
+    else
+      standing.beyond_nm = std::max(standing.beyond_nm, probe_.square(at, s.angle_rad, 1e6 * (at.z_mm - s.touches_mm)));
+  }
+
+  /// Judges the pose in which the place that is to touch crosses the border of the region.
+  void stand_at_border(const CutPass& pass, std::size_t i, Standing& standing) const {
+    double inside = standing.is_within ? 1.0 : 0.0;
+    double outside = 1.0 - inside;
+    double angle = standing.angle_rad;
+    constexpr int kBisections = 20;
+    for (int k = 0; k < kBisections; ++k) {
+      const double middle = 0.5 * (inside + outside);
+      const Pose at = pose_at(pass, i, middle);
+      angle = probe_.stand(at, angle, false).angle_rad;
+      (probe_.is_within(at, angle) ? inside : outside) = middle;
+    }
+    stand(pose_at(pass, i, inside), false, angle, standing);
+  }
+
+  void add_border_places(const CutPass& pass, std::size_t i, double angle) {
+    for (const double share : {0.5, 1.0}) {
+      if (i == 0 && share < 1.0) continue;
+      const Pose at = pose_at(pass, i, share);
+      const Stand s = probe_.stand(at, angle, true);
+      if (s.touches_within_mm == kNowhere) continue;
+      const auto square_nm = [&](double mm) { return probe_.square(at, s.angle_within_rad, 1e6 * mm); };
+      figures_.border.push_back({probe_.place(at, s.angle_within_rad), square_nm(at.z_mm - s.touches_within_mm),
+                                 square_nm(s.touches_mm - s.touches_within_mm), pass.program, pass.line[i]});
+    }
   }
 
   void take(const Standing& standing, std::size_t program, std::int32_t line, double stroke_mm) {
@@ -240,54 +363,28 @@ class TouchCheck {
     figures_.high_nm = std::max(figures_.high_nm, standing.high_nm);
     if (standing.touches_mm > kNowhere)
       figures_.highest_mm = std::max(figures_.highest_mm.value_or(kNowhere), standing.touches_mm - stroke_mm);
-    add(gouge_, -standing.low_nm, program, line);
-    add(excess_, standing.high_nm, program, line);
+    add(gouge_, "the edge goes below the surface", -standing.low_nm, program, line);
+    add(excess_, "the edge stays off the surface", standing.high_nm, program, line);
   }
 
-  void add(Stretch& stretch, double nm, std::size_t program, std::int32_t line) {
-    if (!(nm > limit_nm_)) {
-      if (stretch.told < kMostStretches) end(stretch);
-      return;
-    }
-    if (stretch.now.count == 0 || nm > stretch.now.value) {
-      stretch.now.kind = stretch.kind;
-      stretch.now.program = cuts_.programs[program];
-      stretch.now.line = line;
-      stretch.now.value = nm;
-      stretch.now.limit = limit_nm_;
-      stretch.now.message = fmt::format("{} by {} nm, which exceeds the tolerance of {} nm", stretch.message,
-                                        fixed_apart(nm, limit_nm_, 2), shortest(limit_nm_));
-    }
-    ++stretch.now.count;
-  }
-
-  void end(Stretch& stretch) {
-    if (stretch.now.count > 0) {
-      findings_.add(stretch.now);
-      ++stretch.told;
-    }
-    stretch.now = {};
-    stretch.now.count = 0;
+  void add(Stretch& stretch, const char* what, double nm, std::size_t program, std::int32_t line) const {
+    if (!(nm > limit_nm_)) return stretch.end();
+    stretch.add(program, line, nm, limit_nm_, [&] {
+      return fmt::format("{} by {} nm, which exceeds the tolerance of {} nm", what, fixed_apart(nm, limit_nm_, 2),
+                         shortest(limit_nm_));
+    });
   }
 
   void end_stretches() {
-    end(gouge_);
-    end(excess_);
+    gouge_.close();
+    excess_.close();
   }
 
   EdgeProbe probe_;
   double limit_nm_;
-  const TurningCuts& cuts_;
-  FindingList& findings_;
   TouchFigures figures_;
-  Stretch gouge_{"gouge", "the edge goes below the surface", 0, none()};
-  Stretch excess_{"excess", "the edge stays off the surface", 0, none()};
-
-  static Finding none() {
-    Finding finding;
-    finding.count = 0;
-    return finding;
-  }
+  Stretch gouge_;
+  Stretch excess_;
 };
 
 }  // namespace
@@ -306,7 +403,32 @@ TouchFigures check_touch(const TurnedPart& part, const TurningCuts& cuts, Findin
   TouchCheck check(part, cuts, findings);
   for (const CutPass& pass : cuts.passes) check.follow(pass);
   for (const DownMove& move : cuts.down_moves) check.follow(move);
-  return check.figures();
+  return check.take_figures();
+}
+
+void check_border(const TurnedPart& part, const TurningCuts& cuts, const Envelope& envelope, TouchFigures& figures,
+                  FindingList& findings) {
+  Stretch excess("excess", cuts, findings);
+  const BorderPlace* last = nullptr;
+  for (const BorderPlace& place : figures.border) {
+    const bool follows = last != nullptr && last->program == place.program && place.line <= last->line + 1;
+    if (!follows) excess.end();
+    last = &place;
+    const double left_nm = deviation_nm(envelope, part.surface, place.at_mm).value_or(place.edge_nm);
+    figures.high_nm = std::max(figures.high_nm, left_nm - place.touching_nm);
+    const double limit_nm = place.touching_nm + part.form_tolerance_nm;
+    if (!(left_nm > limit_nm)) {
+      excess.end();
+      continue;
+    }
+    excess.add(place.program, place.line, left_nm, limit_nm, [&] {
+      return fmt::format(
+          "the edge stays off the surface: {} nm of material are left at the border of the part, at most {} nm are "
+          "allowed (the tolerance of {} nm above what a cut that touches would leave)",
+          fixed_apart(left_nm, limit_nm, 2), fixed(limit_nm, 2), shortest(part.form_tolerance_nm));
+    });
+  }
+  excess.close();
 }
 
 }  // namespace retrace::fabrication::turning

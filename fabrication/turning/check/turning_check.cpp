@@ -85,6 +85,7 @@ TurningCheck check_turning(const TurnedPart& part, TurningCuts cuts, const std::
   if (!check.coverage.is_orderly || !check.coverage.is_whole) return check;
   try {
     check.envelope.emplace(part.tool, std::move(cuts.passes));
+    check_border(part, cuts, *check.envelope, check.touch, findings);
     check.inspection = inspect(*check.envelope, part.surface, part.tool, region_of(part.path), part.map_pixels);
     judge(part.form_tolerance_nm, check.blend_nm, check.inspection, findings);
   } catch (const InputError& error) {

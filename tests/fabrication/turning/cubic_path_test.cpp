@@ -19,6 +19,7 @@
 #include "fabrication/turning/io/part_files.h"
 #include "fabrication/turning/plan/turning_program.h"
 #include "tests/fabrication/mutants.h"
+#include "tests/fabrication/turning/plain_cut.h"
 
 // Spirals by places, velocities and times. Their text is read here by a few lines of the test's own and evaluated as
 // Bezier curves, and held against planes, on which the nose touches by a closed form.
@@ -199,6 +200,23 @@ TEST(CubicPath, TextOfEveryDialectStaysAsNearAsAsked) {
   }
 }
 
+/// Deviations at places of the border, by curves of the test's own.
+std::vector<double> border_of(const TurnedPart& part, const std::vector<Knot>& knots) {
+  std::vector<std::array<double, 4>> points = {knots.front().at};
+  for (std::size_t i = 1; i < knots.size(); ++i)
+    for (int step = 1; step <= 12; ++step) points.push_back(between(knots[i - 1], knots[i], step / 12.0));
+  return fabrication::test::deviations(fabrication::test::PlainCut(part, points),
+                                       fabrication::test::border_places(part, 40));
+}
+
+bool differ_in_z_only(const std::vector<Knot>& a, const std::vector<Knot>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Knot& one, const Knot& other) {
+    for (const std::size_t axis : {0U, 1U, 3U})
+      if (one.at[axis] != other.at[axis] || one.speed[axis] != other.speed[axis]) return false;
+    return one.seconds == other.seconds;
+  });
+}
+
 std::vector<Finding> findings_of(const TurnedPart& part, const std::string& text, NcDialect dialect) {
   FindingList findings;
   check_turning(part, read_cuts(part, {parse_nc(text, "part", dialect)}, findings), std::nullopt, findings);
@@ -319,10 +337,19 @@ TEST(CubicPath, NoFaultOfAMovePasses) {
     const std::string text = nc_text(plan.program, word_of(dialect));
     std::vector<fabrication::test::Mutant> mutants = fabrication::test::mutants_of(text, {}, {});
     add_changed_numbers(text, mutants);
+    const std::vector<Knot> right_knots = knots_in(text, dialect, start);
+    const std::vector<double> right = border_of(plan.part, right_knots);
     for (const fabrication::test::Mutant& mutant : mutants) {
       double left_nm = 0.0;
       try {
-        left_nm = worst_nm(knots_in(mutant.text, dialect, start));
+        const std::vector<Knot> knots = knots_in(mutant.text, dialect, start);
+        left_nm = worst_nm(knots);
+        // Where X, Y and C are as they were, the border is no worse than the right program leaves it.
+        if (differ_in_z_only(knots, right_knots)) {
+          const std::vector<double> border = border_of(plan.part, knots);
+          for (std::size_t i = 0; i < border.size(); ++i)
+            left_nm = std::max(left_nm, 1e6 * std::max(border[i] - right[i], -border[i]));
+        }
       } catch (const std::exception&) {
         continue;  // no move that these lines can read
       }

@@ -18,14 +18,17 @@
 #include "fabrication/turning/plan/path.h"
 #include "fabrication/turning/plan/turning_program.h"
 #include "tests/fabrication/mutants.h"
+#include "tests/fabrication/turning/plain_cut.h"
 
 namespace retrace::fabrication::turning::turning_mutation_test {
 namespace {
 
+using fabrication::test::border_places;
+using fabrication::test::deviations;
+using fabrication::test::PlainCut;
 using fabrication::test::PlainMove;
 using fabrication::test::PlainProgram;
 
-constexpr double kRad = std::numbers::pi / 180.0;
 const std::string kHead =
     "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"formula\"\nformula = \"0.1*x-0.3*y^2\"\n"
     "[tool]\nnose_radius_mm = 0.2\nclearance_deg = 20\n";
@@ -83,54 +86,6 @@ std::string listed(const std::vector<Finding>& findings) {
   return text;
 }
 
-/// What a program leaves, place by place: every block cut into small turns, the edge laid over the place as it passes.
-class PlainCut {
- public:
-  PlainCut(const TurnedPart& part, const std::vector<PlainMove>& cuts) : part_(part) {
-    for (const PlainMove& m : cuts)
-      for (int k = 0; k <= kPieces; ++k) {
-        const double t = static_cast<double>(k) / kPieces;
-        const auto at = [&](std::size_t axis) { return m.from[axis] + t * (m.at[axis] - m.from[axis]); };
-        poses_.push_back({at(0), at(1), at(2), std::cos(at(3) * kRad), std::sin(at(3) * kRad)});
-      }
-  }
-
-  /// Less the design; large where no edge passes.
-  double deviation(double x, double y) const {
-    const double r = part_.tool.nose_radius_mm;
-    const double reach = r * std::sin(0.5 * part_.tool.window_deg * kRad);
-    double lowest = 1e300;
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      if (i % (kPieces + 1) == 0) continue;
-      const Pose& a = poses_[i - 1];
-      const Pose& b = poses_[i];
-      const double before = x * a.sine + y * a.cosine - a.y;
-      const double after = x * b.sine + y * b.cosine - b.y;
-      if ((before > 0.0) == (after > 0.0)) continue;
-      const double share = before / (before - after);
-      const double aside_a = x * a.cosine - y * a.sine - a.x;
-      const double aside_b = x * b.cosine - y * b.sine - b.x;
-      const double aside = aside_a + share * (aside_b - aside_a);
-      if (std::abs(aside) < reach)
-        lowest = std::min(lowest, a.z + share * (b.z - a.z) + r - std::sqrt(r * r - aside * aside));
-    }
-    return lowest - part_.surface.height_mm(x, y);
-  }
-
- private:
-  static constexpr int kPieces = 8;
-  struct Pose {
-    double x;
-    double y;
-    double z;
-    double cosine;
-    double sine;
-  };
-
-  const TurnedPart& part_;
-  std::vector<Pose> poses_;
-};
-
 std::string form_fault(const PlainProgram& program) {
   if (program.is_odd) return "not understood";
   if (!program.ends) return "does not end";
@@ -142,7 +97,9 @@ std::string form_fault(const PlainProgram& program) {
 }
 
 /// The first fault; empty: none.
-std::string fault_of(const TurnedPart& part, const PlainProgram& program) {
+/// \param border deviations at the border, which must be no larger where other cuts are not higher than cusps; empty:
+/// to be filled
+std::string fault_of(const TurnedPart& part, const PlainProgram& program, std::vector<double>& border) {
   if (const std::string fault = form_fault(program); !fault.empty()) return fault;
   const bool is_spiral = part.path.strategy == Strategy::spiral;
   const double reach = is_spiral ? part.path.radius_mm : 0.5 * part.path.width_mm;
@@ -231,6 +188,12 @@ std::string fault_of(const TurnedPart& part, const PlainProgram& program) {
       }
       if (!fault.empty()) return fault;
     }
+  const std::vector<double> at_border = deviations(left, border_places(part, 15));
+  if (border.empty()) border = at_border;
+  for (std::size_t i = 0; i < border.size(); ++i) {
+    if (at_border[i] > std::max(border[i], cusp) + 2.0 * tolerance) return "too high at the border";
+    if (at_border[i] < -1.5 * tolerance) return "too deep at the border";
+  }
   return "";
 }
 
@@ -238,7 +201,8 @@ void judge_all(const std::string& file, const std::vector<fabrication::test::Num
   const Planned plan = planned(file);
   const std::string text = plan.text("rs274ngc");
   EXPECT_EQ(listed(findings_of(plan.part, {text})), "");
-  EXPECT_EQ(fault_of(plan.part, fabrication::test::plain_program(text)), "");
+  std::vector<double> border;
+  EXPECT_EQ(fault_of(plan.part, fabrication::test::plain_program(text), border), "");
   // Each is so small that handing it out would take longer.
   const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   int tried = 0;
@@ -247,7 +211,7 @@ void judge_all(const std::string& file, const std::vector<fabrication::test::Num
   int found_besides = 0;
   for (const fabrication::test::Mutant& mutant :
        fabrication::test::mutants_of(text, changes, {"M3 S300", "G61", "G64", "G91", "G94", "G20"})) {
-    const std::string fault = fault_of(plan.part, fabrication::test::plain_program(mutant.text));
+    const std::string fault = fault_of(plan.part, fabrication::test::plain_program(mutant.text), border);
     const bool found = is_found(plan.part, {mutant.text});
     ++tried;
     faults += !fault.empty();
