@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/chisel/plan/plan.h"
+#include "fabrication/chisel/plan/section.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
 #include "tests/fabrication/jobs.h"
@@ -260,6 +262,48 @@ TEST(PlannedJobs, RootsAreAsPredictedAtEveryApex) {
     const Verification high = verified(raised(programs, 0, 20, "finishing-2-facet-2"), job, paper);
     EXPECT_TRUE(has_kind(high, "root_residual")) << apex_deg << "\n" << listed(high);
   }
+}
+
+/// A machine whose axis A is oblique, so that roots stand at `slope` to the edge; slopes are proportional to the angle.
+Machine with_root_slope(const Job& job, double slope) {
+  Machine m = machine("ideal");
+  const auto lean = [&](double angle) {
+    m.a.direction.value = geometry::Vec3(std::cos(angle), std::sin(angle), 0.6 * std::sin(angle));
+    m.a.direction.value.normalize();
+    Job ploughed = job;
+    ploughed.strategy = Strategy::unidirectional;
+    double largest = 0.0;
+    for (const int facet : {1, 2})
+      largest = std::max(largest, std::abs(std::tan(cutting_pose(ploughed, m, {false, facet}, 0.0).root_tilt.rad())));
+    return largest;
+  };
+  double angle = 1e-4;
+  for (int step = 0; step < 4; ++step) angle *= slope / lean(angle);
+  lean(angle);
+  return m;
+}
+
+/// A plunge frees its chip only if the strip that its tilted edge leaves at the root is narrower than the cut is deep.
+/// Wider strips are refused, narrower ones cut right.
+TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
+  for (const Strategy strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step})
+    for (const double share : {0.3, 0.9, 0.99, 1.01, 1.3, 2.5}) {
+      Job job = square_job(1);
+      job.strategy = strategy;
+      job.process.roughing_depth_um = 20.0;
+      job.process.finishing_depth_um = 4.0;
+      const double depth_mm = strategy == Strategy::two_step ? 4e-3 : 20e-3;
+      const Machine m = with_root_slope(job, share * depth_mm / job.tool.width_mm);
+      try {
+        const Verification v = verified(job, job, m);
+        EXPECT_TRUE(v.passes()) << static_cast<int>(strategy) << ' ' << share << "\n" << listed(v);
+        EXPECT_TRUE(share < 1.0 || strategy == Strategy::unidirectional) << static_cast<int>(strategy) << ' ' << share;
+      } catch (const InputError& error) {
+        EXPECT_TRUE(share > 1.0 && strategy != Strategy::unidirectional) << share << ' ' << error.what();
+        EXPECT_NE(std::string(error.what()).find("machine: its root would stand at"), std::string::npos)
+            << error.what();
+      }
+    }
 }
 
 }  // namespace

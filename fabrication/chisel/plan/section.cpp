@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 #include "core/error.h"
@@ -30,20 +33,38 @@ Vec3 in_words(const Machine& machine, const Vec3& normal) {
           normal.dot(machine.z.direction.value)};
 }
 
-/// A and C lay a facet's normal where the tool plunges it, and nothing is left to lay its root along the tool's edge: a
-/// root that slopes against the table's axes keeps material at one end of the edge, of which a finishing cut's depth is
-/// borne.
-void check_root(const Job& job, const CuttingPose& pose, const InputLocation& where, const Stance& stance) {
-  if (stance.element < 0) return;
-  const double limit = std::atan(1e-3 * job.process.finishing_depth_um / job.tool.width_mm);
-  if (std::abs(pose.root_tilt.rad()) <= limit) return;
-  const double width_mm = 1e-3 * job.process.finishing_depth_um / std::tan(std::abs(pose.root_tilt.rad()));
+/// Returns the widest strip, in mm, that the tilted edge of a plunge may leave at the root. A plunge frees its chip
+/// only if it passes the last surface of the other facet, so the strip must be narrower than the depth of cut, less the
+/// tolerance of verification and the rounding of two positions. On a substrate it is at most a finishing cut besides.
+/// Ploughs free chips of any facet: infinity.
+double max_strip_mm(const Job& job, const Machine& machine, bool is_on_substrate) {
+  constexpr double kToleranceNm = 10.0;
+  const Process& process = job.process;
+  const double diagonal_nm = std::numbers::sqrt3 * static_cast<double>(machine.increments.linear_nm);
+  const double finishing_mm = 1e-3 * process.finishing_depth_um;
+  double strip_mm = is_on_substrate ? finishing_mm : std::numeric_limits<double>::infinity();
+  if (job.strategy != Strategy::unidirectional) {
+    const double depth_mm = job.strategy == Strategy::two_step ? finishing_mm : 1e-3 * process.roughing_depth_um;
+    strip_mm = std::min(strip_mm, depth_mm - 1e-6 * (std::max(kToleranceNm, diagonal_nm) + diagonal_nm));
+  }
+  return strip_mm;
+}
+
+/// Refuses a pose in which the root stands oblique to the tool's edge by too much. A and C lay a facet's normal where
+/// the tool plunges it, and no axis is left to lay its root along the edge.
+void check_root(const Job& job, const Machine& machine, const CuttingPose& pose, const InputLocation& where,
+                const Stance& stance) {
+  const double strip_mm = max_strip_mm(job, machine, stance.element >= 0);
+  const double tangent = std::abs(std::tan(pose.root_tilt.rad()));
+  if (job.tool.width_mm * tangent <= strip_mm) return;
   throw InputError(
-      where,
-      fmt::format("{}its root would stand at {} degrees to the tool's edge, which A and C cannot turn in the facet, at "
-                  "most {} are borne: a finishing cut over the edge's width, which would have to be {} mm",
-                  stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4), fixed(Angle::from_rad(limit).deg(), 4),
-                  fixed(width_mm, 4)));
+      where, fmt::format(
+                 "{}its root would stand at {} degrees to the tool's edge, which A and C cannot turn in the facet; at "
+                 "most {} degrees are allowed, at which the edge leaves a strip of {} um, less than a depth of cut (or "
+                 "tool.width_mm at most {})",
+                 stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4),
+                 fixed(Angle::from_rad(std::atan(strip_mm / job.tool.width_mm)).deg(), 4), fixed(1e3 * strip_mm, 3),
+                 fixed(strip_mm / tangent, 4)));
 }
 
 }  // namespace
@@ -115,7 +136,7 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
                    machine.increments.rotary_units);
   pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
   check_tilt(machine, pose.rounded.a_deg, where, stance.who());
-  check_root(job, pose, where, stance);
+  check_root(job, machine, pose, where, stance);
 
   const RigidMotion motion = machine_from_workpiece(machine, pose.rounded);
   Section& section = pose.section;
