@@ -8,6 +8,8 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/job/cube_corner.h"
+#include "fabrication/job/v_tool.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -39,6 +41,24 @@ void check_increments(const Job& job, const Machine& machine) {
   if (has_finishing_cuts(job)) check("process.finishing_depth_um", job.process.finishing_depth_um);
 }
 
+/// Refuses a V whose cuts, as the control rounds them, may leave a fin that is wider than the strip along an edge.
+void check_fin(const Job& job, const Machine& machine) {
+  const double step_mm = 1e-6 * static_cast<double>(machine.increments.linear_nm);
+  const double limit_mm = max_fin_mm(step_mm);
+  for (std::size_t zone = 0; zone < zone_count(job); ++zone) {
+    const Angle error = Angle::from_deg(blank_corner(job, zone).largest_error_deg());
+    const double fin_mm = rounded_fin_mm(job.tool, error, step_mm);
+    if (fin_mm <= limit_mm) continue;
+    throw InputError(
+        job.where("tool.wedge_deg"),
+        fmt::format(
+            "must be larger, or the increments of the control smaller: machine {} rounds positions to {} um, so "
+            "that a fin of {} um may stay along dihedral edges, at most {} um are allowed, got {}",
+            machine.name, shortest(1e3 * step_mm), fixed(1e3 * fin_mm, 3), shortest(1e3 * limit_mm),
+            shortest(job.tool.wedge_deg)));
+  }
+}
+
 }  // namespace
 
 bool has_finishing_cuts(const Job& job) {
@@ -48,6 +68,7 @@ bool has_finishing_cuts(const Job& job) {
 void check_on_machine(const Job& job, const Machine& machine) {
   check_tilt(job, machine);
   check_increments(job, machine);
+  if (job.strategy == Strategy::dmc) check_fin(job, machine);
   const Process& p = job.process;
   if (has_finishing_cuts(job) && p.finishing_depth_um > p.roughing_depth_um)
     throw InputError(job.where("process.finishing_depth_um"),

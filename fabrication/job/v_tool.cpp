@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numbers>
 
 #include "core/angle.h"
@@ -51,6 +53,33 @@ double cavity_edge_mm(const geometry::Element& element) {
 
 double nose_strip_mm(const Tool& tool) {
   return 1e-3 * tool.edge_radius_um * (std::sin(rad(45.0)) / std::sin(rad(0.5 * tool.nose_angle_deg)) - 1.0);
+}
+
+double rounded_fin_mm(Angle first, Angle second, Angle between, double step_mm) {
+  const double overlap_rad = first.rad() + second.rad() - between.rad();
+  if (overlap_rad <= 0.0) return std::numeric_limits<double>::infinity();
+  // A position is the sum of a start and a path, each rounded within a box of increments and, along the facet's normal,
+  // by half an increment at most.
+  const double along_mm = 2.0 * std::numbers::sqrt3 * step_mm;
+  const double across_mm = step_mm;
+  const auto height_mm = [&](Angle own, Angle other) {
+    const double rest_rad = between.rad() - other.rad();
+    const double off_mm = along_mm * (std::sin(other.rad()) + std::abs(std::sin(rest_rad))) +
+                          across_mm * (std::abs(std::cos(other.rad())) + std::abs(std::cos(rest_rad)));
+    return across_mm + std::sin(own.rad()) * off_mm / std::sin(overlap_rad);
+  };
+  return std::max(height_mm(first, second), height_mm(second, first));
+}
+
+double max_fin_mm(double step_mm) {
+  return kEdgeStripMm - *std::max_element(std::begin(kEdgeLineSteps), std::end(kEdgeLineSteps)) * step_mm;
+}
+
+double rounded_fin_mm(const Tool& tool, Angle error, double step_mm) {
+  const Vec3 spine = v_tool_edges(tool).spine;
+  return rounded_fin_mm(Angle::from_rad(std::atan2(spine.z(), spine.y())),
+                        Angle::from_rad(std::atan2(spine.z(), spine.x())),
+                        Angle::from_rad(0.5 * std::numbers::pi + error.rad()), step_mm);
 }
 
 void check_v_tool(const geometry::Element& element, const geometry::AngleErrors& errors, const Tool& tool,

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "core/angle.h"
 #include "core/schema/schema.h"
 #include "fabrication/job/job.h"
 #include "geometry/vec.h"
@@ -27,6 +28,26 @@ double cavity_edge_mm(const geometry::Element& element);
 
 /// Width that a nose of the tool's radius leaves uncut on either facet along a dihedral edge.
 double nose_strip_mm(const Tool& tool);
+
+/// Width of the strip along a dihedral edge in which remaining material counts for the edge and not for a facet.
+inline constexpr double kEdgeStripMm = 1e-3;
+/// Distances from a dihedral edge at which the strip is measured, in least increments of the control. Rounding moves a
+/// facet by one increment at most.
+inline constexpr double kEdgeLineSteps[] = {1.5, 8.0};
+
+/// Returns the height over either facet of the fin that two cuts along a dihedral edge may leave between them because
+/// positions are rounded (docs/theory/micro_chiseling.md, section "Fins"); infinity if the cuts do not overlap.
+/// \param first angle over the first facet up to which the cut along it reaches, seen along the edge
+/// \param second likewise for the second facet
+/// \param between angle between the facets
+/// \param step_mm least increment of the control
+double rounded_fin_mm(Angle first, Angle second, Angle between, double step_mm);
+
+/// Returns the greatest fin that stays within the strip along the edge, measured beyond all lines of the strip.
+double max_fin_mm(double step_mm);
+
+/// Returns the fin of a tool that stands in all facets as it should. \param error largest error of angle of the element
+double rounded_fin_mm(const Tool& tool, Angle error, double step_mm);
 
 /// That the tool reaches the apex of a cube corner, and every place of its facets.
 /// \param element as it is cut into the blank \pre it is a cube corner

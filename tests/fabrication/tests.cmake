@@ -34,7 +34,8 @@ retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/forces_test.cpp
   LIBRARIES retrace::forces)
 retrace_test(fabrication_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/chiseling_test.cpp ${CMAKE_CURRENT_LIST_DIR}/zone_jobs_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/chiseling_test.cpp ${CMAKE_CURRENT_LIST_DIR}/rounded_cuts_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/zone_jobs_test.cpp
   LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/substrate_faults_test.cpp ${CMAKE_CURRENT_LIST_DIR}/substrate_jobs_test.cpp

@@ -5,14 +5,41 @@
 #include <cmath>
 #include <numbers>
 
+#include "fabrication/job/v_tool.h"
+
 namespace retrace::fabrication {
 
 using geometry::Vec3;
 
 namespace {
 
-Prediction predict_cube(const Machine& machine, const Groove& cavity) {
+/// Returns the highest fin that rounding may leave along the three dihedral edges, at most the strip that is measured.
+/// \pre all poses are known
+double highest_fin_mm(const Machine& machine, const Groove& cavity, const ToolWedge& wedge,
+                      const Prediction& prediction) {
+  double highest_mm = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const Vec3& edge = cavity.edges[next];
+    // Directions in the facets on either side of the edge, away from it.
+    const auto away = [&](const Vec3& other) -> Vec3 { return (other - other.dot(edge) * edge).normalized(); };
+    const Vec3 along_first = away(cavity.edges[k]);
+    const Vec3 along_second = away(cavity.edges[(k + 2) % 3]);
+    const auto reach = [&](std::size_t facet, const Vec3& along) {
+      const Vec3 up =
+          machine_from_workpiece(machine, prediction.poses[facet].pose).inverse().direction(wedge.rake_direction);
+      return Angle::from_rad(std::atan2(up.dot(cavity.facets[facet].normal), up.dot(along)));
+    };
+    highest_mm = std::max(
+        highest_mm, rounded_fin_mm(reach(k, along_first), reach(next, along_second),
+                                   Angle::from_rad(std::acos(along_first.dot(along_second))), prediction.step_mm));
+  }
+  return std::min(highest_mm, max_fin_mm(prediction.step_mm));
+}
+
+Prediction predict_cube(const Machine& machine, const Groove& cavity, const ToolWedge& wedge) {
   Prediction prediction;
+  prediction.step_mm = 1e-6 * static_cast<double>(machine.increments.linear_nm);
   for (const DesignFacet& facet : cavity.facets) {
     // Nominal pose: C turns what the facet faces to -x, B leans the tool against it.
     const double facing = std::atan2(facet.normal.y(), facet.normal.x());
@@ -22,6 +49,7 @@ Prediction predict_cube(const Machine& machine, const Groove& cavity) {
     const Vec3 level = facet.normal.cross(cavity.axis).normalized();
     prediction.poses.push_back(solve_plunge_pose(machine, facet.normal, level, near));
   }
+  prediction.fin_mm = highest_fin_mm(machine, cavity, wedge, prediction);
   return prediction;
 }
 
@@ -46,7 +74,7 @@ double wall_overcut_mm(const Groove& groove, const ToolWedge& wedge, const Vec3&
 }  // namespace
 
 Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge& wedge) {
-  if (groove.is_cube()) return predict_cube(machine, groove);
+  if (groove.is_cube()) return predict_cube(machine, groove, wedge);
   Prediction prediction;
   prediction.poses.resize(2);
   prediction.pass_normal = machine.y.direction.value.cross(machine.z.direction.value).normalized();

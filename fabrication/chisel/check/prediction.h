@@ -27,6 +27,8 @@ struct Prediction {
   double root_mm = 0.0;                ///< by which the ends of the tilted edge stay up a facet at the root at most
   std::array<double, 2> root_of_mm{};  ///< the same, up each facet
   double wall_mm = 0.0;                ///< maximum depth of the cuts of edge ends and tool into walls
+  double fin_mm = 0.0;   ///< of cube corners: height of the fin that rounding may leave along a dihedral edge
+  double step_mm = 0.0;  ///< least increment of the control
 };
 
 /// \throw InputError if the machine cannot plunge a facet

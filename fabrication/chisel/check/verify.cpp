@@ -122,7 +122,7 @@ class Judge {
   /// What is left at the root of a facet was left by the plunges along the other one; a job that only ploughs it turns
   /// no edge for it.
   double root_limit_mm(const Prediction& prediction, std::size_t facet) const {
-    if (workpiece_.job->strategy == Strategy::dmc) return prediction.root_mm;
+    if (workpiece_.job->strategy == Strategy::dmc) return prediction.fin_mm;
     return workpiece_.job->strategy == Strategy::unidirectional ? prediction.root_mm : prediction.root_of_mm[1 - facet];
   }
 
@@ -268,18 +268,29 @@ std::string_view Verification::verdict() const {
   return is_unfinished ? "incomplete" : "fail";
 }
 
+namespace {
+
+/// Returns the increments to which the words of the programs are rounded.
+Increments increments_in(const Machine& machine, const std::vector<NcProgram>& programs) {
+  const auto is_fanuc = [](const NcProgram& program) { return program.dialect == NcDialect::fanuc; };
+  return std::any_of(programs.begin(), programs.end(), is_fanuc) ? increments_of(machine.control.increment_system)
+                                                                 : Increments{};
+}
+
+}  // namespace
+
 double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs) {
   constexpr double kUsualNm = 10.0;
-  const auto is_fanuc = [](const NcProgram& program) { return program.dialect == NcDialect::fanuc; };
-  if (std::none_of(programs.begin(), programs.end(), is_fanuc)) return kUsualNm;
-  const auto step_nm = static_cast<double>(increments_of(machine.control.increment_system).linear_nm);
+  const auto step_nm = static_cast<double>(increments_in(machine, programs).linear_nm);
   return std::max(kUsualNm, std::ceil(std::numbers::sqrt3 * step_nm));
 }
 
-Verification verify_programs(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
+Verification verify_programs(const Job& job, const Machine& given_machine, const std::vector<NcProgram>& programs,
                              const VerifyOptions& options, const std::vector<Machine>& others,
                              const Cancellation* cancellation) {
-  check_on_machine(job, machine);
+  Machine machine = given_machine;
+  machine.increments = increments_in(given_machine, programs);
+  check_on_machine(job, job.strategy == Strategy::dmc ? machine : given_machine);
   const Workpiece3d workpiece =
       workpiece_of(job, machine, options.tolerance_nm.value_or(usual_tolerance_nm(machine, programs)));
   FindingList findings;

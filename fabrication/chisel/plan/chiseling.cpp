@@ -136,14 +136,23 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& along_second = spines[k];
     const Vec3& along_first = spines[(k + 1) % 3];
-    const double covered_deg =
-        Angle::from_rad(std::atan2(along_second.z(), along_second.x()) + std::atan2(along_first.z(), along_first.y()))
-            .deg();
+    const Angle first = Angle::from_rad(std::atan2(along_second.z(), along_second.x()));
+    const Angle second = Angle::from_rad(std::atan2(along_first.z(), along_first.y()));
+    const double covered_deg = first.deg() + second.deg();
     if (covered_deg < 90.0 + error_deg)
       throw InputError(where,
                        fmt::format("{}the tool stands so in facets {} and {} that a fin of {} degrees would stay "
                                    "between its cuts, 0 are allowed: tool.wedge_deg must be larger",
                                    stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 + error_deg - covered_deg, 3)));
+    const double step_mm = 1e-6 * static_cast<double>(poses[k].section.step_nm);
+    const double fin_mm = rounded_fin_mm(first, second, Angle::from_deg(90.0 + error_deg), step_mm);
+    if (fin_mm > max_fin_mm(step_mm))
+      throw InputError(
+          where, fmt::format("{}the tool stands so in facets {} and {} that a fin of {} um may stay between its "
+                             "cuts as positions are rounded to {} um, at most {} um are allowed: tool.wedge_deg "
+                             "must be larger",
+                             stance.who(), k + 1, (k + 1) % 3 + 1, fixed(1e3 * fin_mm, 3), shortest(1e3 * step_mm),
+                             shortest(1e3 * max_fin_mm(step_mm))));
   }
   double most_turned = 0.0;
   for (const CuttingPose& pose : poses) most_turned = std::max(most_turned, std::abs(pose.root_tilt.rad()));

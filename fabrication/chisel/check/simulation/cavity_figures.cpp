@@ -1,11 +1,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/angle.h"
 #include "fabrication/chisel/check/simulation/facet_figures.h"
 #include "fabrication/chisel/check/simulation/plane_fit.h"
+#include "fabrication/job/v_tool.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -15,10 +17,7 @@ using geometry::Vec3;
 
 /// Nearer to a dihedral edge than this a line runs into what the other facet keeps as soon as that is off: what is left
 /// counts for the edge, and so far from the facet.
-constexpr double kStripMm = 1e-3;
-/// Where what is left at an edge is taken, and where the facet begins.
-constexpr double kAtEdgeMm = 1.5e-6;
-constexpr double kBesideEdgeMm = 8e-6;
+constexpr double kStripMm = kEdgeStripMm;
 /// Lines stay this share of a facet within its borders.
 constexpr double kWithin = 1e-6;
 /// Directions from the apex on both sides of the tool's leading edge.
@@ -29,9 +28,11 @@ class Places {
  public:
   /// \param edges_mm lengths of the two
   /// \param turn of the facet in the tool's view
-  Places(const Vec2& edges_mm, bool is_hexagonal, double nose_angle_deg, Angle turn)
+  /// \param step_mm least increment of the control
+  Places(const Vec2& edges_mm, bool is_hexagonal, double nose_angle_deg, Angle turn, double step_mm)
       : edges_mm_(edges_mm),
         is_hexagonal_(is_hexagonal),
+        step_mm_(step_mm),
         leading_rad_(Angle::from_deg(45.0 + 0.5 * nose_angle_deg).rad() - turn.rad()) {}
 
   std::vector<Vec2> all() const {
@@ -44,12 +45,12 @@ class Places {
       const Vec2 unit(std::cos(direction), std::sin(direction));
       for (const double share : shares()) {
         const Vec2 place = share * reach(unit) * unit;
-        // Nearer to the apex than that a line runs along both other facets, as near as their words are rounded.
-        if (place.maxCoeff() >= kBesideEdgeMm) places.push_back(place);
+        places.push_back(place);
       }
     }
-    for (const double off : {kAtEdgeMm, kBesideEdgeMm})
+    for (const double steps : kEdgeLineSteps)
       for (const double share : shares()) {
+        const double off = steps * step_mm_;
         places.emplace_back(share * along(0, off), off);
         places.emplace_back(off, share * along(1, off));
       }
@@ -72,6 +73,7 @@ class Places {
 
   Vec2 edges_mm_;
   bool is_hexagonal_;
+  double step_mm_;
   double leading_rad_;
 };
 
@@ -85,20 +87,29 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
   return surface_along(spans, exit);
 }
 
-/// Where a line normal to a facet leaves what says something of that facet: at the blank's face, close to a dihedral
-/// edge where the edge's residue ends, and before another facet that includes less than 90 degrees with it.
-double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge) {
+/// Returns where a line normal to a facet leaves what says something of that facet: at the blank's face, close to a
+/// dihedral edge where the edge's residue ends, and before another facet that includes less than 90 degrees with it. A
+/// line close to both other facets runs along their dihedral edge and ends before the fin that rounding may leave
+/// there.
+double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge, double fin_mm) {
   constexpr double kParallel = 1e-9;
   const Vec3& normal = cavity.facets[facet].normal;
   double exit = cavity.to_face_mm(point, normal);
   if (is_at_edge) exit = std::min(exit, kStripMm);
+  double fin_exit = -std::numeric_limits<double>::infinity();
   for (std::size_t other = 0; other < cavity.facets.size(); ++other) {
+    if (other == facet) continue;
     const double towards = -normal.dot(cavity.facets[other].normal);
-    if (other == facet || towards < kParallel) continue;
     const double height_mm = cavity.facets[other].height_mm(point);
-    exit = std::min(exit, (is_at_edge ? 0.5 * height_mm : height_mm - kStripMm) / towards);
+    const double over_fin_mm = height_mm - fin_mm;
+    if (towards >= kParallel) {
+      exit = std::min(exit, (is_at_edge ? 0.5 * height_mm : height_mm - kStripMm) / towards);
+      fin_exit = std::max(fin_exit, over_fin_mm / towards);
+    } else if (over_fin_mm >= 0.0) {
+      fin_exit = std::numeric_limits<double>::infinity();
+    }
   }
-  return exit;
+  return std::min(exit, fin_exit);
 }
 
 /// Share of a facet's breadth at its edges, and of its edges' length below the blank's face, from which its plane is
@@ -128,7 +139,7 @@ ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span
     const Vec2 edges_mm(cavity.edge_length_mm(k), cavity.edge_length_mm((k + 1) % 3));
     const Vec3 level = cavity.level_of(k);
     const std::vector<Vec2> places =
-        Places(edges_mm, is_hexagonal, nose_angle_deg, prediction.poses[k].root_tilt).all();
+        Places(edges_mm, is_hexagonal, nose_angle_deg, prediction.poses[k].root_tilt, prediction.step_mm).all();
     FacetFigures facet;
     PlaneFit plane;
     for (const Vec2& place : places) {
@@ -136,7 +147,7 @@ ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span
       const Vec3 point = cavity.root_mm + from_apex;
       const Vec3& normal = cavity.facets[k].normal;
       const double at_face = cavity.to_face_mm(point, normal);
-      const double exit = exit_of(cavity, k, point, place.minCoeff() <= kStripMm);
+      const double exit = exit_of(cavity, k, point, place.minCoeff() <= kStripMm, prediction.fin_mm);
       if (exit <= 0.0) continue;
       const LineSurface surface = surface_at(point, normal, exit, sweeps, poses, wedge, spans);
       take(facet, place, surface);

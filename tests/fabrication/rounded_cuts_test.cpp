@@ -1,0 +1,168 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+#include "fabrication/job/io/job_files.h"
+#include "fabrication/job/v_tool.h"
+#include "tests/fabrication/chiseling_programs.h"
+#include "tests/fabrication/findings_text.h"
+
+// Cuts of V-shaped tools as controls round them: the fin that they may leave along dihedral edges against displaced
+// cuts, and right jobs of random tools, which pass.
+
+namespace retrace::fabrication::test::rounded_cuts_test {
+namespace {
+
+using namespace chiseling;
+
+/// Height over the first facet up to which material stands between two cuts. Each removes an angle over its facet, from
+/// its tip. The facets lie at the angles 0 and `between`.
+double fin_between(double first, double second, double between, const geometry::Vec2& tip,
+                   const geometry::Vec2& other_tip) {
+  const geometry::Vec2 up(std::cos(first), std::sin(first));
+  const geometry::Vec2 other_up(std::cos(between - second), std::sin(between - second));
+  // Where the upper ends of both cuts cross.
+  const geometry::Vec2 apart = other_tip - tip;
+  const double along =
+      (apart.x() * other_up.y() - apart.y() * other_up.x()) / (up.x() * other_up.y() - up.y() * other_up.x());
+  return along > 0.0 ? (tip + along * up).y() : 0.0;
+}
+
+TEST(RoundedCuts, FinsAreNoHigherThanTheFormula) {
+  std::mt19937 bits(11);
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
+  for (int tool = 0; tool < 30; ++tool) {
+    const double between = 0.5 * std::numbers::pi + uniform(-0.05, 0.05);
+    const double overlap = uniform(0.01, 0.5);
+    const double first = uniform(0.6, 1.0);
+    const double second = between + overlap - first;
+    const double bound = rounded_fin_mm(Angle::from_rad(first), Angle::from_rad(second), Angle::from_rad(between), 1.0);
+    double highest = 0.0;
+    for (int k = 0; k < 20'000; ++k) {
+      // Along and across their facets, in increments: the corners of what rounding does are the worst.
+      const auto corner = [&](double size) {
+        return k % 2 == 0 ? std::copysign(size, uniform(-1, 1)) : uniform(-size, size);
+      };
+      const double along = 2.0 * std::numbers::sqrt3;
+      const geometry::Vec2 tip(corner(along), corner(1.0));
+      const double other_along = corner(along);
+      const double other_across = corner(1.0);
+      const geometry::Vec2 other_tip = other_along * geometry::Vec2(std::cos(between), std::sin(between)) +
+                                       other_across * geometry::Vec2(std::sin(between), -std::cos(between));
+      highest = std::max(highest, fin_between(first, second, between, tip, other_tip));
+      highest = std::max(highest, fin_between(second, first, between, tip, other_tip));
+    }
+    EXPECT_LE(highest, bound * (1.0 + 1e-9)) << first << ' ' << second << ' ' << between;
+    EXPECT_GE(highest, 0.9 * bound - 1.0) << first << ' ' << second << ' ' << between;
+  }
+}
+
+/// One cube corner with errors of angle, in a zone that is turned.
+Job one_corner(double aperture_mm, const std::array<double, 3>& errors_arcmin, double rotation_deg,
+               const geometry::Vec2& apex_mm) {
+  Job job = cube_job(true, aperture_mm);
+  job.array.pattern.clear();
+  job.array.x_length_mm = job.array.y_length_mm = 1.0;
+  job.angle_errors.dihedral_error_arcmin = errors_arcmin;
+  job.zones.resize(1);
+  job.zones[0].rotation_deg = rotation_deg;
+  job.zones[0].apexes_mm = {apex_mm};
+  return job;
+}
+
+bool fits(const Job& job) {
+  try {
+    check_v_tool(job.element, job.angle_errors, job.tool, [](std::string_view key, const std::string& text) {
+      throw InputError({"", 0, std::string(key)}, text);
+    });
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
+}
+
+/// Lines near the apex that run along an edge between two other facets, and edges with a fin of 10 nm.
+TEST(RoundedCuts, RightCutsOfABluntNosePass) {
+  for (const auto& [clearance_deg, apex] :
+       {std::pair{3.0, geometry::Vec2(0.844313, 0.5911)}, {2.0, geometry::Vec2(0.51237, 0.5031)}}) {
+    Job job = one_corner(0.2386, {17.11, -11.52, -25.79}, -87.0, apex);
+    job.tool = {};
+    job.tool.width_mm = 0.3;
+    job.tool.nose_angle_deg = 45.0;
+    job.tool.wedge_deg = 63.0;
+    job.tool.clearance_deg = clearance_deg;
+    job.tool.edge_radius_um = 1.0;
+    job.process.finishing_cuts = 2;
+    ASSERT_TRUE(fits(job));
+    const Verification v = verified(job, machine(), text_of(job, machine()));
+    EXPECT_TRUE(v.passes()) << listed(v);
+  }
+}
+
+/// Random tools, sizes, errors and places.
+Job random_corner(std::mt19937& bits) {
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
+  const double error = uniform(0.0, 40.0);
+  Job job = one_corner(uniform(0.1, 0.4), {uniform(-error, error), uniform(-error, error), uniform(-error, error)},
+                       uniform(-180.0, 180.0), {uniform(0.4, 0.6), uniform(0.4, 0.6)});
+  job.tool.nose_angle_deg = uniform(30.0, 60.0);
+  job.tool.clearance_deg = uniform(2.0, 6.0);
+  job.tool.wedge_deg = uniform(55.0, 72.0);
+  job.tool.edge_radius_um = uniform(0.0, 5.0);
+  job.tool.width_mm = 1.5 * cavity_edge_mm(job.element) * std::numbers::sqrt2 *
+                      std::tan(0.5 * job.tool.nose_angle_deg * std::numbers::pi / 180.0);
+  return job;
+}
+
+TEST(RoundedCuts, RandomNosesPass) {
+  std::mt19937 bits(17);
+  int cut = 0;
+  for (int tried = 0; cut < 40 && tried < 400; ++tried) {
+    const Job job = random_corner(bits);
+    if (!fits(job)) continue;
+    std::string text;
+    try {
+      text = text_of(job, machine());
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("a fin of"), std::string::npos) << error.what();
+      continue;
+    }
+    ++cut;
+    const Verification v = verified(job, machine(), text);
+    EXPECT_TRUE(v.passes()) << job_text(job) << listed(v);
+  }
+  EXPECT_EQ(cut, 40);
+}
+
+/// A Fanuc rounds positions to its increments. Cube corners are either refused, with the key, or cut right.
+TEST(RoundedCuts, CubeCornersOfEveryIncrementSystemPassOrAreRefused) {
+  for (const IncrementSystem system : {IncrementSystem::b, IncrementSystem::c, IncrementSystem::d, IncrementSystem::e})
+    for (const bool is_hexagonal : {false, true})
+      for (const double error_arcmin : {0.0, 25.0, -25.0}) {
+        Job job = cube_job(is_hexagonal, 0.2);
+        job.tool.width_mm *= 1.2;
+        job.angle_errors.dihedral_error_arcmin = {error_arcmin, -0.5 * error_arcmin, 0.3 * error_arcmin};
+        Machine m = machine();
+        m.control.increment_system = system;
+        const bool is_coarse = system == IncrementSystem::b || system == IncrementSystem::c;
+        try {
+          const Verification v = verified(job, m, text_of(job, m, "fanuc"), NcDialect::fanuc);
+          EXPECT_TRUE(v.passes()) << static_cast<int>(system) << ' ' << is_hexagonal << ' ' << error_arcmin << "\n"
+                                  << listed(v);
+          EXPECT_FALSE(is_coarse);
+        } catch (const InputError& error) {
+          EXPECT_TRUE(is_coarse) << error.what();
+          const std::string key = system == IncrementSystem::b ? "process.roughing_depth_um" : "tool.wedge_deg";
+          EXPECT_NE(std::string(error.what()).find(key), std::string::npos) << error.what();
+        }
+      }
+}
+
+}  // namespace
+}  // namespace retrace::fabrication::test::rounded_cuts_test
