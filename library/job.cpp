@@ -33,6 +33,7 @@ Fabrication fabricate(const std::filesystem::path& job, const FabricationRequest
   of_study.dialect = request.dialect;
   of_study.options.phase = request.phase;
   of_study.options.from_element = request.from_element;
+  of_study.options.from_pass = request.from_pass;
   of_study.options.stop_every = request.stop_every;
   of_study.options.split_hours = request.split_hours;
   if (request.job_text) of_study.texts = {{job.string(), *request.job_text}};

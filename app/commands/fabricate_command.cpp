@@ -21,6 +21,7 @@ struct FabricateOptions {
   std::string dialect = "rs274ngc";
   std::string phase = "all";
   std::optional<std::uint64_t> from_element;
+  std::optional<std::uint64_t> from_pass;
   std::optional<std::uint64_t> stop_every;
   std::optional<double> split_hours;
 };
@@ -35,6 +36,8 @@ std::vector<Argument> arguments(FabricateOptions& options) {
        "roughing, finishing, one stage such as finishing-1-facet-2, or that stage and all after it with a +",
        &options.phase, one_of(phases)},
       {"--from-element N", "start at that element's first visit [the first]", &options.from_element, whole(0, most)},
+      {"--from-pass K", "of that visit start at its K-th pass, where the tool is narrower than the element [1]",
+       &options.from_pass, whole(1, most)},
       {"--stop-every N", "optional stop after every N visits [none]", &options.stop_every, whole(1, most)},
       {"--split-hours H", "programs of at most so many hours [one program]", &options.split_hours}};
 }
@@ -65,6 +68,7 @@ ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
   request.dialect = options.dialect;
   request.options.phase = options.phase;
   request.options.from_element = options.from_element;
+  request.options.from_pass = options.from_pass;
   request.options.stop_every = options.stop_every;
   request.options.split_hours = options.split_hours;
   const studies::FabricationResult result = studies::fabricate(request);

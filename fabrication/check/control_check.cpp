@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -14,9 +15,13 @@ namespace {
 
 constexpr std::uint8_t kZBit = 0b100;
 constexpr std::uint8_t kLinearBits = 0b111;
-/// Rounding of words.
-constexpr double kSlackMm = 1e-9;
-constexpr double kSlackDeg = 1e-9;
+/// Errors of floating-point sums, in mm or degrees.
+constexpr double kSlack = 1e-9;
+/// A limit that is written in another unit, or as a time, is rounded to the printed digits. Half of the last decimal is
+/// therefore allowed beyond a limit. Numbers with fewer digits than these count as exact: half of 1e-4 inch is 1.3e-3
+/// mm.
+constexpr double kMaxRounding = 2e-3;
+constexpr double kMaxRelativeRounding = 1e-3;
 
 constexpr NcNeed kRotationNeed = {nc_said::kRotationOff, "G69", "that coordinates are not turned"};
 constexpr NcNeed kMirrorNeed = {nc_said::kMirrorOff, "G50.1", "that coordinates are not mirrored"};
@@ -26,6 +31,10 @@ bool has_bit(unsigned bits, char axis) {
 }
 
 }  // namespace
+
+double rounding_slack(const NcMotion& motion, char axis) {
+  return kSlack + std::min(kMaxRounding, motion.rounding[kNcAxisLetters.find(axis)]);
+}
 
 void ControlCheck::begin(const NcProgram& program) {
   dialect_ = program.dialect;
@@ -48,10 +57,11 @@ bool ControlCheck::turns_wrong(const std::string& kind, bool holds) {
 
 void ControlCheck::way(const NcSettings& settings, const NcMotion& motion) {
   if (motion.moved != 0) rested_s_ = 0.0;
+  z_slack_mm_ = rounding_slack(motion, 'Z');
   const std::uint8_t known = known_;
   known_ = static_cast<std::uint8_t>(known_ | motion.absolute | motion.shortest);
   if (!std::exchange(has_moved_, true)) return first_move(settings, motion);
-  const bool goes_low = motion.to.z_mm < rule_.safe_z_mm - kSlackMm && (motion.moved & kZBit) != 0;
+  const bool goes_low = motion.to.z_mm < rule_.safe_z_mm - z_slack_mm_ && (motion.moved & kZBit) != 0;
   if (!goes_low || (known & rule_.axes) == rule_.axes) return;
   std::string unknown;
   for (std::size_t axis = 0; axis < kNcAxes; ++axis)
@@ -73,7 +83,7 @@ void ControlCheck::first_move(const NcSettings& settings, const NcMotion& motion
   if (dialect_ == NcDialect::fanuc && control_.has_rotation) ask(kRotationNeed);
   if (dialect_ == NcDialect::fanuc && control_.has_mirror) ask(kMirrorNeed);
   const double safe_mm = rule_.safe_z_mm;
-  if ((motion.absolute | motion.shortest) != kZBit || motion.to.z_mm < safe_mm - kSlackMm)
+  if ((motion.absolute | motion.shortest) != kZBit || motion.to.z_mm < safe_mm - z_slack_mm_)
     findings_.add("first_move", motion.place.line,
                   std::isfinite(safe_mm)
                       ? fmt::format("the first move must be of Z alone, to {} mm or higher: nothing is known of where "
@@ -87,10 +97,10 @@ void ControlCheck::stop(const NcSettings& settings, const AxisPositions& at, con
   const auto ask = [&](bool holds, std::string message) {
     if (!holds && has_moved_) findings_.add("unsafe_stop", place.line, std::move(message));
   };
-  ask((known_ & rule_.axes) == rule_.axes && at.z_mm >= rule_.safe_z_mm - kSlackMm,
+  ask((known_ & rule_.axes) == rule_.axes && at.z_mm >= rule_.safe_z_mm - z_slack_mm_,
       fmt::format("the program stops while Z stands at {} mm, must be {} mm or higher", shortest(at.z_mm),
                   shortest(rule_.safe_z_mm)));
-  const auto is_at_zero = [](double deg) { return std::abs(std::remainder(deg, 360.0)) < kSlackDeg; };
+  const auto is_at_zero = [](double deg) { return std::abs(std::remainder(deg, 360.0)) < kSlack; };
   ask(is_at_zero(at.a_deg) && is_at_zero(at.b_deg) && is_at_zero(at.c_deg),
       "the program stops while the rotary axes do not stand at 0, where the operator works");
   ask(!settings.mist_on.value_or(false), "the program stops with the mist on");
@@ -175,7 +185,9 @@ void ControlCheck::axes(const Machine& machine, const NcMotion& motion) {
     findings_.add("axis_unknown", motion.place.line, fmt::format("machine {} has no axis {}", machine.name, missing));
   words_of_axes(motion);
   for (const LimitExcess& excess : limit_excesses(machine, motion.to)) {
-    if (!has_bit(motion.known | motion.moved, excess.axis) || is_within_turn(excess)) continue;
+    const double beyond = std::max(excess.limits.low - excess.position, excess.position - excess.limits.high);
+    const bool is_rounding = beyond <= rounding_slack(motion, excess.axis);
+    if (!has_bit(motion.known | motion.moved, excess.axis) || is_rounding || is_within_turn(excess)) continue;
     findings_.add("axis_limit", motion.place.line,
                   fmt::format("{} goes to {}, beyond its limits {} to {}", excess.axis, shortest(excess.position),
                               shortest(excess.limits.low), shortest(excess.limits.high)),
@@ -242,12 +254,11 @@ void ControlCheck::axis_speeds(const Machine& machine, const NcMotion& motion) {
   const auto judge = [&](std::span<const Travel> axes, const char* unit) {
     double length = 0.0;
     for (const Travel& axis : axes) length = std::hypot(length, axis.by);
-    const double feed = motion.duration_s > 0.0 ? 60.0 * length / motion.duration_s : motion.feed_mm_per_min;
     for (const Travel& axis : axes) {
       if (!has_bit(motion.moved, axis.letter)) continue;
       const double share = has_bit(motion.known, axis.letter) ? std::abs(axis.by) / length : 1.0;
-      const double speed = feed * share;
-      if (speed <= axis.most_per_min * (1.0 + 1e-9)) continue;
+      const double speed = motion.path_speed_per_min() * share;
+      if (!is_too_fast(speed, axis.most_per_min, motion)) continue;
       findings_.add("feed_too_high", motion.place.line,
                     fmt::format("{} is fed at {} {}/min, the machine's limit is {}", axis.letter,
                                 shortest(std::round(speed * 1e3) / 1e3), unit, shortest(axis.most_per_min)),
@@ -258,6 +269,10 @@ void ControlCheck::axis_speeds(const Machine& machine, const NcMotion& motion) {
   if ((motion.moved & kLinearBits) == 0) judge(rotary, "degrees");
 }
 
+bool ControlCheck::is_too_fast(double speed, double limit, const NcMotion& motion) const {
+  return speed * (1.0 - std::min(kMaxRelativeRounding, motion.rate_rounding)) > limit * (1.0 + 1e-9);
+}
+
 void ControlCheck::has_feed(const NcMotion& motion) {
   if (motion.feed_mm_per_min <= 0.0 && motion.duration_s <= 0.0)
     findings_.add("zero_feed", motion.place.line, "a move by G1 has no feed");
@@ -265,15 +280,15 @@ void ControlCheck::has_feed(const NcMotion& motion) {
 
 void ControlCheck::feed(const NcMotion& motion, double process_mm_per_min) {
   constexpr double kLeastShare = 0.1;
-  const double feed = motion.feed_mm_per_min;
+  const double feed = motion.path_speed_per_min();
   if (feed <= 0.0) return findings_.add("zero_feed", motion.place.line, "a cutting move has no feed");
   const auto find = [&](const char* kind, const char* bound, double limit) {
     findings_.add(kind, motion.place.line,
                   fmt::format("a cut has a feed of {} mm/min, {} {}", shortest(feed), bound, shortest(limit)), feed,
                   limit);
   };
-  if (feed > process_mm_per_min * (1.0 + 1e-9)) find("feed_too_high", "the process allows", process_mm_per_min);
-  if (feed < kLeastShare * process_mm_per_min * (1.0 - 1e-9))
+  if (is_too_fast(feed, process_mm_per_min, motion)) find("feed_too_high", "the process allows", process_mm_per_min);
+  if (is_too_fast(kLeastShare * process_mm_per_min, feed, motion))
     find("feed_too_low", "the tool rubs below a tenth of the process's, of", kLeastShare * process_mm_per_min);
 }
 

@@ -16,6 +16,10 @@
 
 namespace retrace::fabrication {
 
+/// Returns how far an axis may be beyond a limit because its word is rounded, in mm or degrees
+/// (docs/theory/verification.md).
+double rounding_slack(const NcMotion& motion, char axis);
+
 /// How the spindle is to turn while the tool cuts.
 struct SpindleRule {
   NcSpindle turns = NcSpindle::stopped;
@@ -68,6 +72,7 @@ class ControlCheck {
  private:
   void first_move(const NcSettings& settings, const NcMotion& motion);
   bool is_within_turn(const LimitExcess& excess) const;
+  bool is_too_fast(double speed, double limit, const NcMotion& motion) const;
   void axis_speeds(const Machine& machine, const NcMotion& motion);
   void has_feed(const NcMotion& motion);
   void words_of_axes(const NcMotion& motion);
@@ -83,6 +88,7 @@ class ControlCheck {
   bool has_moved_ = false;       ///< since the program began or stopped
   std::uint8_t known_ = 0;       ///< axes whose place was said since then
   double rested_s_ = 0.0;        ///< in the material, since the last move
+  double z_slack_mm_ = 0.0;      ///< rounding of the word that brought Z to where it is
   std::set<std::string> wrong_;  ///< kinds of settings that are wrong now
 };
 

@@ -17,25 +17,30 @@ void ProgramTime::add(const Machine& machine, const NcMotion& motion) {
                               known(1) ? motion.to.y_mm - motion.from.y_mm : 0.0,
                               known(2) ? motion.to.z_mm - motion.from.z_mm : 0.0);
   const double distance = travel.norm();
-  if (motion.move == NcMove::linear && distance > 0.0 && motion.feed_mm_per_min > 0.0) {
-    MotionLimits path = limits_along(machine, travel);
-    path.speed = motion.feed_mm_per_min / 60.0;
-    feed_s += rest_to_rest_s(distance, path) + (motion.is_exact_stop ? machine.settling_s.value : 0.0);
-  }
-  if (motion.move == NcMove::rapid && distance > 0.0) {
-    const LinearAxis* const axes[] = {&machine.x, &machine.y, &machine.z};
-    double slowest_s = 0.0;
-    for (Eigen::Index i = 0; i < 3; ++i)
-      slowest_s = std::max(slowest_s, rest_to_rest_s(std::abs(travel[i]), {axes[i]->rapid_mm_per_min.value / 60.0,
-                                                                           axes[i]->acceleration_mm_per_s2.value,
-                                                                           axes[i]->jerk_mm_per_s3.value}));
-    rapid_s += slowest_s + machine.settling_s.value;
-  }
   // The tool is touched off at A = C = 0, from where the first turn starts.
   const RotaryPose from = rotary_pose(machine, motion.from);
   const RotaryPose to = rotary_pose(machine, motion.to);
-  const double turning_s = rotary_motion_s(machine, to.a_deg - from.a_deg, to.c_deg - from.c_deg);
-  if (turning_s > 0.0) rotary_s += turning_s + (distance > 0.0 ? 0.0 : machine.settling_s.value);
+  const double tilt_deg = to.a_deg - from.a_deg;
+  const double c_deg = to.c_deg - from.c_deg;
+  const bool is_fed = motion.move == NcMove::linear && motion.feed_mm_per_min > 0.0;
+  const bool turns = tilt_deg != 0.0 || c_deg != 0.0;
+  double linear_s = 0.0;
+  if (motion.move == NcMove::rapid) {
+    linear_s = rapid_motion_s(machine, travel);
+  } else if (is_fed && distance > 0.0) {
+    MotionLimits path = limits_along(machine, travel);
+    path.speed = motion.feed_mm_per_min / 60.0;
+    linear_s = rest_to_rest_s(distance, path);
+  }
+  // Rotary axes that move with linear ones arrive together with them. A feed of rotary axes only is in degrees.
+  const bool is_turn_fed = is_fed && distance == 0.0 && turns;
+  const double turning_s = is_turn_fed ? fed_rotary_motion_s(machine, tilt_deg, c_deg, motion.feed_mm_per_min)
+                                       : rotary_motion_s(machine, tilt_deg, c_deg);
+  const double moving_s = std::max(linear_s, turning_s);
+  if (moving_s == 0.0) return;
+  const bool settles = motion.move == NcMove::rapid || distance == 0.0 || motion.is_exact_stop;
+  double& spent_s = turning_s > linear_s ? (is_turn_fed ? feed_s : rotary_s) : is_fed ? feed_s : rapid_s;
+  spent_s += moving_s + (settles ? machine.settling_s.value : 0.0);
 }
 
 }  // namespace retrace::fabrication

@@ -18,7 +18,8 @@ struct ProgramTime {
     return {feed_s - other.feed_s, rapid_s - other.rapid_s, rotary_s - other.rotary_s, dwell_s - other.dwell_s};
   }
 
-  /// Adds a move; one that says its time takes that. Ways of linear axes whose position is not known yet count nothing;
+  /// Adds a move; one that says its time takes that. All axes move at the same time. Feeds of moves of rotary axes only
+  /// are in degrees per minute. Ways of linear axes whose position is not known yet count nothing;
   /// rotary axes start at 0.
   void add(const Machine& machine, const NcMotion& motion);
 };

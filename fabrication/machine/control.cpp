@@ -1,69 +1,126 @@
 #include "fabrication/machine/control.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
+#include <vector>
+
+#include "core/leading_number.h"
 
 namespace retrace::fabrication {
 namespace {
 
 constexpr std::size_t kLongestLine = 200;
 
-bool is_letter(char c) {
-  return std::isalpha(static_cast<unsigned char>(c)) != 0;
+/// A line that neither moves an axis nor waits. Blanks do not count; # stands for a whole number, ~ for a number, @ for
+/// the name of an axis.
+struct LineForm {
+  std::string_view dialect;
+  LineUse use;
+  std::string_view form;
+};
+
+/// M codes of program flow; the others are those of the machine's builder (ISO 6983-1).
+constexpr int kFlowCodes[] = {0, 1, 2, 30, 47, 48, 49, 96, 97, 98, 99};
+
+constexpr LineForm kLineForms[] = {
+    // Power PMAC Software Reference: variables, and the codes whose subprograms the builder writes.
+    {"pmac", LineUse::output, "M#"},
+    {"pmac", LineUse::output, "P#=~"},
+    {"pmac", LineUse::output, "Q#=~"},
+    {"pmac", LineUse::output, "M#=~"},
+    {"pmac", LineUse::output, "Gate3[#].GpioData[#].#=#"},
+    {"pmac", LineUse::output, "GateIo[#].DataReg[#].#=#"},
+    {"pmac", LineUse::stop, "M0"},
+    {"pmac", LineUse::stop, "M1"},
+    // Programs for the A3200 in public repositories: outputs and variables of the control.
+    {"a3200", LineUse::output, "M#"},
+    {"a3200", LineUse::output, "$DO[#].@=#"},
+    {"a3200", LineUse::output, "$AO[#].@=~"},
+    {"a3200", LineUse::output, "$global[#]=~"},
+    {"a3200", LineUse::stop, "M0"},
+    {"a3200", LineUse::stop, "M1"},
+    // help.aerotech.com/automation1: I/O Functions, Variables.
+    {"automation1", LineUse::output, "M#"},
+    {"automation1", LineUse::output, "DigitalOutputSet(@,#,#)"},
+    {"automation1", LineUse::output, "AnalogOutputSet(@,#,~)"},
+    {"automation1", LineUse::output, "VirtualBinaryOutputSet(#,#)"},
+    {"automation1", LineUse::output, "$iglobal[#]=~"},
+    {"automation1", LineUse::output, "$rglobal[#]=~"},
+    {"automation1", LineUse::stop, "M0"},
+    {"automation1", LineUse::stop, "M1"},
+};
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
 }
 
-/// First words of lines that move axes, set modes, wait, or open, end and lead elsewhere.
-constexpr std::string_view kStatements[] = {
-    // Power PMAC
-    "OPEN", "CLOSE", "ABS", "INC", "RAPID", "LINEAR", "CIRCLE1", "CIRCLE2", "PVT", "SPLINE", "DWELL", "DELAY", "FRAX",
-    "NORMAL", "TM", "TA", "TS", "F", "RETURN", "CALL", "CALLSUB", "GOTO", "GOSUB", "STOP", "HOME", "COORD",
-    // Aerotech A3200
-    "ABSOLUTE", "INCREMENTAL", "METRIC", "ENGLISH", "MINUTES", "SECONDS", "VELOCITY", "WAIT", "DFS", "ENDDFS",
-    "FARCALL", "PROGRAM", "END", "CW", "CCW", "BEZIER", "POSOFFSET",
-    // Automation1
-    "FUNCTION", "MOVELINEAR", "MOVERAPID", "MOVEABSOLUTE", "MOVEINCREMENTAL", "MOVECW", "MOVECCW", "MOVEPT", "MOVEPVT",
-    "POSITIONOFFSETSET", "POSITIONOFFSETCLEAR", "CORNERROUNDINGON", "VELOCITYBLENDINGON", "VELOCITYBLENDINGOFF",
-    "SETUPTASKTARGETMODE", "SETUPTASKDISTANCEUNITS", "SETUPTASKTIMEUNITS", "SETUPTASKWAITMODE",
-    "SETUPCOORDINATEDSPEED"};
+/// Takes what a sign of a form stands for off the front of `text`. \return whether it is there
+bool take_part(char sign, std::string_view& text) {
+  const std::size_t before = text.size();
+  if (sign == '@') {
+    while (!text.empty() && text.front() >= 'A' && text.front() <= 'Z') text.remove_prefix(1);
+    return text.size() < before;
+  }
+  if (sign == '~' && text.starts_with('-')) text.remove_prefix(1);
+  bool has_digit = false;
+  bool has_point = sign != '~';
+  for (; !text.empty() && (is_digit(text.front()) || (text.front() == '.' && !has_point)); text.remove_prefix(1))
+    (is_digit(text.front()) ? has_digit : has_point) = true;
+  return has_digit;
+}
 
-/// Whether a line moves axes, sets modes, waits, or opens, ends and leads elsewhere: its first word says so, or a
-/// letter of an axis, or G, with a number.
-bool is_statement(std::string_view text) {
-  std::string word;
-  bool is_first = true;
-  for (std::size_t i = 0; i <= text.size(); ++i) {
-    const char c = i < text.size() ? text[i] : ' ';
-    if (is_letter(c)) {
-      word += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+bool has_form(std::string_view text, std::string_view form) {
+  for (; !form.empty(); form.remove_prefix(1)) {
+    if (std::string_view("#~@").find(form.front()) != std::string_view::npos) {
+      if (!take_part(form.front(), text)) return false;
       continue;
     }
-    if (word.empty()) continue;
-    if (is_first && std::find(std::begin(kStatements), std::end(kStatements), word) != std::end(kStatements))
-      return true;
-    const std::size_t next = text.find_first_not_of(' ', i);
-    const bool takes_value =
-        next != std::string_view::npos && std::string_view("-+.(0123456789").find(text[next]) != std::string_view::npos;
-    if (word.size() == 1 && std::string_view("ABCGUVWXYZ").find(word) != std::string_view::npos && takes_value)
-      return true;
-    is_first = false;
-    word.clear();
+    if (text.empty() || text.front() != form.front()) return false;
+    text.remove_prefix(1);
   }
-  return false;
+  return text.empty();
+}
+
+bool is_flow_code(std::string_view text) {
+  if (!has_form(text, "M#")) return false;
+  const double code = leading_number(text.substr(1))->value;
+  return std::find(std::begin(kFlowCodes), std::end(kFlowCodes), code) != std::end(kFlowCodes);
 }
 
 }  // namespace
 
 std::string unfit_line(std::string_view text) {
   const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
-  if (text.empty() || text.size() > kLongestLine || !is_plain || text.front() == ' ' || text.back() == ' ' ||
-      text.find("//") != std::string_view::npos)
-    return fmt::format(
-        "must be one line of 1 to {} printable ASCII characters, without // and without blanks at its ends",
-        kLongestLine);
-  return is_statement(text) ? "must not move axes, wait, or lead out of the program" : "";
+  if (!text.empty() && text.size() <= kLongestLine && is_plain && text.front() != ' ' && text.back() != ' ' &&
+      text.find("//") == std::string_view::npos)
+    return "";
+  return fmt::format(
+      "must be one line of 1 to {} printable ASCII characters, without // and without blanks at its ends",
+      kLongestLine);
+}
+
+bool is_harmless_line(std::string_view text, LineUse use, std::string_view dialect) {
+  std::string packed(text);
+  std::erase(packed, ' ');
+  const bool flows = is_flow_code(packed);
+  return std::any_of(std::begin(kLineForms), std::end(kLineForms), [&](const LineForm& line) {
+    const bool fits_use = flows ? use == LineUse::stop && line.use == LineUse::stop : line.use == LineUse::output;
+    return fits_use && (dialect.empty() || dialect == line.dialect) && has_form(packed, line.form);
+  });
+}
+
+std::string unknown_line(std::string_view text, LineUse use, std::string_view dialect) {
+  if (is_harmless_line(text, use, dialect)) return "";
+  std::vector<std::string_view> forms;
+  for (const LineForm& line : kLineForms)
+    if (line.use == LineUse::output && (dialect.empty() || dialect == line.dialect) &&
+        std::find(forms.begin(), forms.end(), line.form) == forms.end())
+      forms.push_back(line.form);
+  return fmt::format("must set an output or a variable, such as {} (# a whole number, ~ a number, @ an axis)",
+                     fmt::join(forms, ", "));
 }
 
 }  // namespace retrace::fabrication

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace retrace::fabrication {
 namespace {
@@ -47,6 +48,36 @@ double rest_to_rest_s(double distance, const MotionLimits& limits) {
   // The mean speed while speeding up and slowing down is half of the greatest.
   if (limits.speed * up_s <= distance) return distance / limits.speed + up_s;
   return 2.0 * distance / middle_speed(distance, limits);
+}
+
+double rapid_motion_s(const Machine& machine, const geometry::Vec3& by_mm) {
+  const double distance_mm = by_mm.norm();
+  if (distance_mm == 0.0) return 0.0;
+  MotionLimits line = limits_along(machine, by_mm);
+  const LinearAxis* const axes[] = {&machine.x, &machine.y, &machine.z};
+  double slowest_s = 0.0;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double axis_mm = std::abs(by_mm[k]);
+    if (axis_mm == 0.0) continue;
+    const double speed = axes[k]->rapid_mm_per_min.value / 60.0;
+    line.speed = std::min(line.speed, speed * distance_mm / axis_mm);
+    slowest_s = std::max(slowest_s, rest_to_rest_s(axis_mm, {speed, axes[k]->acceleration_mm_per_s2.value,
+                                                             axes[k]->jerk_mm_per_s3.value}));
+  }
+  return machine.control.rapids_are_straight ? rest_to_rest_s(distance_mm, line) : slowest_s;
+}
+
+double fed_rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg, double deg_per_min) {
+  const double distance_deg = std::hypot(tilt_deg, c_deg);
+  MotionLimits path;
+  path.speed = deg_per_min / 60.0;
+  for (const auto& [axis, by_deg] : {std::pair{&machine.a, tilt_deg}, {&machine.c, c_deg}}) {
+    if (by_deg == 0.0) continue;
+    const double share = std::abs(by_deg) / distance_deg;
+    path.acceleration = std::min(path.acceleration, axis->acceleration_deg_per_s2.value / share);
+    path.jerk = std::min(path.jerk, axis->jerk_deg_per_s3.value / share);
+  }
+  return rest_to_rest_s(distance_deg, path);
 }
 
 double rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg) {

@@ -22,6 +22,14 @@ MotionLimits limits_along(const Machine& machine, const geometry::Vec3& by_mm);
 /// where jerk has no limit (docs/theory/cutting.md). \pre distance >= 0, limits > 0
 double rest_to_rest_s(double distance, const MotionLimits& limits);
 
+/// Returns the time of a rapid move by (x, y, z) mm in s, without settling: of the axis that arrives last, or of the
+/// straight line if Control::rapids_are_straight.
+double rapid_motion_s(const Machine& machine, const geometry::Vec3& by_mm);
+
+/// Returns the time in s that A or B and C take together at a feed along their path in degrees per minute, without
+/// settling.
+double fed_rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg, double deg_per_min);
+
 /// By A or B and by C, in degrees, each as fast as it goes and both to be waited for; without settling.
 double rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg);
 

@@ -50,9 +50,10 @@ struct PlaningLathe {
   double nose_radius_mm = 0.0;  ///< of the tool
   std::int32_t spindle_rpm = 0;
   SpindleDirection spindle_direction = SpindleDirection::clockwise;
-  std::string spindle_start;       ///< lines of a program, for dialects without words; empty: none
-  std::string spindle_stop;        ///< given if spindle_start is
-  InputLocation spindle_start_at;  ///< where it is given, or would be
+  std::string spindle_start;         ///< lines of a program, for dialects without words; empty: none
+  std::string spindle_stop;          ///< given if spindle_start is
+  InputLocation spindle_start_at;    ///< where it is given, or would be
+  bool has_unchecked_lines = false;  ///< those lines may be any text
 };
 
 /// A flat optical element that is to be planed or turned.

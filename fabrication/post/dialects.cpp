@@ -69,7 +69,8 @@ constexpr DialectWords kFanuc = {.dialect = {"fanuc", ".nc", "Fanuc, 30i series"
                                  .main_end = "M30\n",
                                  .needs =
                                      "Needs: increment system IS-{1}, X as a radius (1006#3), the external work zero "
-                                     "offset at zero",
+                                     "offset at zero,\nrotary axes without roll-over (1008#0 at 0), or with roll-over "
+                                     "along the shortest path (1008#1 at 0)",
                                  .prepare = "G17 G21 G40 G49 G80 G90 G94\nG54 G61{2}\nM5\n",
                                  .spindle_start = "G97 S{0} {1}\n",
                                  .spindle_stop = "M5\n",

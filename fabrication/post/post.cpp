@@ -23,6 +23,40 @@ std::string for_control(std::string_view format, const Control& control) {
                      kIncrementSystemWords[static_cast<std::size_t>(control.increment_system)], codes);
 }
 
+/// A line of a program that the file of the machine or of the part gives, and its key there.
+struct OwnLine {
+  std::string_view key;
+  std::string text;
+  LineUse use = LineUse::output;
+};
+
+std::vector<OwnLine> control_lines(const Control& control) {
+  return {{"control.mist_on", control.mist_on},
+          {"control.mist_off", control.mist_off},
+          {"control.optional_stop", control.optional_stop, LineUse::stop},
+          {"control.stop", control.stop, LineUse::stop}};
+}
+
+std::vector<OwnLine> spindle_lines(const Spindle& spindle) {
+  return {{"lathe.spindle_start", spindle.start_text}, {"lathe.spindle_stop", spindle.stop_text}};
+}
+
+bool is_unchecked(const OwnLine& line, std::string_view dialect) {
+  return !line.text.empty() && !is_harmless_line(line.text, line.use, dialect);
+}
+
+std::string unchecked_text(const OwnLine& line) {
+  return fmt::format("Not checked: the line {} gives, which may move axes or wait", line.key);
+}
+
+/// \throw InputError for a line that retrace does not know, unless the file permits it
+void check_line(const OwnLine& line, std::string_view dialect, std::string_view table, bool may_be_any) {
+  if (may_be_any || !is_unchecked(line, dialect)) return;
+  throw InputError({"", 0, "--dialect"},
+                   fmt::format("{} {} for {}; any other line needs {}.has_unchecked_lines = true, got {}", line.key,
+                               unknown_line(line.text, line.use, dialect), dialect, table, in_quotes(line.text)));
+}
+
 /// Writes one file. Numbers of positions are written from integers, digit by digit.
 class FileWriter {
  public:
@@ -85,7 +119,8 @@ class FileWriter {
     add_for_control(dialect_.path_end);
   }
   void operator()(const Visit& visit) {
-    add(dialect_.comment, fmt::format("element {}", visit.element));
+    const std::string pass = visit.passes > 1 ? fmt::format(" pass {} of {}", visit.pass, visit.passes) : "";
+    add(dialect_.comment, fmt::format("element {}{}", visit.element, pass));
     for (const Move& move : approach(at_, visit)) write(move);
     mist(true);
     add(dialect_.call, program_.subroutines[visit.subroutine].number);
@@ -153,6 +188,9 @@ class FileWriter {
     for (const std::string& line : program_.header) add(dialect_.comment, line);
     for (const std::string& line : control_needs(dialect_.dialect.name, program_.control))
       add(dialect_.comment, in_comment(line));
+    if (!program_.spindle || !dialect_.has_own_texts) return;
+    for (const OwnLine& line : spindle_lines(*program_.spindle))
+      if (is_unchecked(line, dialect_.dialect.name)) add(dialect_.comment, unchecked_text(line));
   }
 
   void mist(bool on) {
@@ -324,6 +362,9 @@ std::vector<std::string> control_needs(std::string_view dialect, const Control& 
     lines.push_back(needs.substr(begin, end - begin));
     begin = end + 1;
   }
+  if (!words_of(dialect).has_own_texts) return lines;
+  for (const OwnLine& line : control_lines(control))
+    if (is_unchecked(line, dialect)) lines.push_back(unchecked_text(line));
   return lines;
 }
 
@@ -338,6 +379,11 @@ void check_words(const Program& program, std::string_view dialect) {
                                    "control.{}, or {}",
                                    dialect, what, key, otherwise));
   };
+  for (const OwnLine& line : control_lines(program.control))
+    check_line(line, dialect, "control", program.control.has_unchecked_lines);
+  if (program.spindle)
+    for (const OwnLine& line : spindle_lines(*program.spindle))
+      check_line(line, dialect, "lathe", program.spindle->has_unchecked_lines);
   if (program.needs_mist) need(program.control.mist_on, "mist", "mist_on", "the job say process.mist = false");
   if (program.needs_mist) need(program.control.mist_off, "mist", "mist_off", "the job say process.mist = false");
   for (const Item& item : program.items) {
@@ -356,6 +402,10 @@ std::string nc_text(const Program& program, std::string_view dialect) {
 
 Increments word_increments(std::string_view dialect, const Control& control) {
   return words_of(dialect).has_increment_systems ? increments_of(control.increment_system) : Increments{};
+}
+
+std::string shortest_axes(std::string_view dialect, const Control& control) {
+  return words_of(dialect).shortest.empty() ? "" : control.modulo_axes;
 }
 
 bool takes_cubics(std::string_view dialect) {

@@ -38,6 +38,9 @@ void check_words(const Program& program, std::string_view dialect);
 /// \throw InputError likewise
 Increments word_increments(std::string_view dialect, const Control& control);
 
+/// Letters of the rotary axes whose words lead along the shortest path in that dialect. \throw InputError likewise
+std::string shortest_axes(std::string_view dialect, const Control& control);
+
 /// Whether paths may have velocities at the ends of their moves in that dialect. \throw InputError likewise
 bool takes_cubics(std::string_view dialect);
 

@@ -80,7 +80,7 @@ class A3200Reader {
   void skip_line_number(std::string_view& text) {
     if (text.size() < 2 || text[0] != 'N' || text[1] < '0' || text[1] > '9') return;
     text.remove_prefix(1);
-    if (!take_number(text, lines_).is_whole()) lines_.fail("a line number must be whole");
+    check_line_number(take_number(text, lines_), lines_);
     text = trimmed(text);
   }
 
@@ -121,7 +121,7 @@ class A3200Reader {
       const std::size_t axis = axis_index(word.letter);
       if (axis == kNcAxes || !rest.starts_with(',')) lines_.fail("PVT must have axes, each with place, velocity");
       rest.remove_prefix(1);
-      iso.set_cubic(axis, word.number.value, take_number(rest, lines_).value, cubic);
+      iso.set_cubic(axis, word.number, take_number(rest, lines_).value, cubic);
     }
     if (rest.empty() || block.axes == 0) lines_.fail("PVT must have axes and a TIME");
     rest.remove_prefix(4);

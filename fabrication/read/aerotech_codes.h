@@ -2,8 +2,6 @@
 
 // What the G codes of Aerotech's controls share.
 
-#include <fmt/format.h>
-
 #include "fabrication/read/nc_text.h"
 
 namespace retrace::fabrication {
@@ -40,8 +38,8 @@ inline void take_aerotech_word(const NcWord& word, IsoBlock& iso, const NcLines&
   if (word.letter == 'P') return iso.set_dwell(word.number.value);
   const double code = word.number.value;
   const bool is_coolant = word.letter == 'M' && code >= 7 && code <= 9;
-  if (is_coolant) lines.fail(fmt::format("M{} is not understood", code));
-  if (!iso.set(word, kAerotechCodes)) lines.fail(fmt::format("a word {} is not understood", word.letter));
+  if (is_coolant) lines.fail_word(word.rest);
+  if (!iso.set(word, kAerotechCodes)) lines.fail_word(word.rest);
 }
 
 /// A name of a subroutine: letters, digits and underscores, no digit first.

@@ -111,7 +111,7 @@ class Automation1Reader {
     } else if (text.empty()) {
       block.call = table_.index_of(name);
     }
-    if (!text.empty()) lines_.fail("is not understood: " + in_quotes(whole));
+    if (!text.empty()) lines_.fail(in_quotes(whole) + " is not understood");
   }
 
   /// X,1.5 or [X,Y],[1.5,2]: axes and their places. Speeds of a move of its own are not understood.
@@ -125,7 +125,7 @@ class Automation1Reader {
       const std::size_t axis = axis_index(axes.front());
       const bool is_one = axes.size() == 1 || axes[1] == ',';
       if (axis == kNcAxes || !is_one) lines_.fail("has an axis that is not understood, " + in_quotes(axes));
-      iso.set_axis(axis, take_number(text, lines_).value);
+      iso.set_axis(axis, take_number(text, lines_));
       if (axes.size() > 1 && !text.starts_with(',')) lines_.fail("needs axes and as many places");
       if (axes.size() > 1) text.remove_prefix(1);
     }
@@ -137,12 +137,12 @@ class Automation1Reader {
   void read_cubic(std::string_view& text, IsoBlock& iso, NcBlock& block) {
     constexpr std::string_view needs = "MovePvt needs [axes], [places], [velocities], time";
     const auto numbers = [&] {
-      std::vector<double> result;
+      std::vector<NcNumber> result;
       if (!text.starts_with('[')) lines_.fail(needs);
       while (!text.starts_with(']')) {
         if (!text.starts_with(result.empty() ? '[' : ',')) lines_.fail(needs);
         text.remove_prefix(1);
-        result.push_back(take_number(text, lines_).value);
+        result.push_back(take_number(text, lines_));
       }
       text.remove_prefix(1);
       if (!text.starts_with(',')) lines_.fail(needs);
@@ -153,8 +153,8 @@ class Automation1Reader {
     if (!text.starts_with('[') || end == std::string_view::npos) lines_.fail(needs);
     const std::string_view axes = text.substr(1, end - 1);
     text.remove_prefix(end + 2);
-    const std::vector<double> places = numbers();
-    const std::vector<double> velocities = numbers();
+    const std::vector<NcNumber> places = numbers();
+    const std::vector<NcNumber> velocities = numbers();
     const std::size_t count = places.size();
     if (axes.size() != 2 * count - 1 || velocities.size() != count)
       lines_.fail("MovePvt needs as many axes as places and velocities");
@@ -163,7 +163,7 @@ class Automation1Reader {
       const std::size_t axis = axis_index(axes[2 * k]);
       if (axis == kNcAxes || (k > 0 && axes[2 * k - 1] != ','))
         lines_.fail("has an axis that is not understood, " + in_quotes(axes));
-      iso.set_cubic(axis, places[k], velocities[k], cubic);
+      iso.set_cubic(axis, places[k], velocities[k].value, cubic);
     }
     cubic.time_s = take_number(text, lines_).value;
     program_.set_cubic(block, cubic);
@@ -177,11 +177,14 @@ class Automation1Reader {
     for (std::string_view rest = packed; !rest.empty(); is_first = false) {
       const char letter = rest.front();
       const NcWord word = take_word(rest, lines_);
-      if (word.letter == 'N' && is_first) continue;
+      if (word.letter == 'N' && is_first) {
+        check_line_number(word.number, lines_);
+        continue;
+      }
       if (axis_index(word.letter) < kNcAxes && letter != word.letter)
         lines_.fail(fmt::format("names of axes are capitals, got {}", letter));
       const bool is_unit = word.letter == 'G' && (word.number.value == 70 || word.number.value == 71);
-      if (is_unit) lines_.fail(fmt::format("G{} is not understood: say SetupTaskDistanceUnits()", word.number.value));
+      if (is_unit) lines_.fail("units must be set by SetupTaskDistanceUnits(), not by G70 or G71");
       take_aerotech_word(word, iso, lines_);
     }
     iso.finish();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/message_text.h"
 #include "fabrication/read/dialects.h"
 #include "fabrication/read/subroutine_table.h"
 
@@ -117,7 +116,7 @@ class FanucReader {
     if (axis_index(word.letter) < kNcAxes && !word.number.has_point)
       lines_.fail(fmt::format("{} needs a decimal point: without one it counts least increments", word.letter));
     if (axis_index(word.letter) < kNcAxes) line.block.decimals = std::max(line.block.decimals, word.number.decimals);
-    if (word.letter == 'N') return;
+    if (word.letter == 'N') return check_line_number(word.number, lines_);
     if (word.letter == 'P') {
       if (line.p) lines_.fail("has two words P");
       line.p = word.number.value;
@@ -127,7 +126,7 @@ class FanucReader {
     } else if (word.letter == 'M' && word.number.value == 99) {
       line.has_return = true;
     } else if (!iso.set(word, kFanucCodes)) {
-      lines_.fail(fmt::format("a word {} is not understood", word.letter));
+      lines_.fail_word(word.rest);
     }
   }
 

@@ -1,5 +1,6 @@
 #include "fabrication/read/nc_program.h"
 
+#include <algorithm>
 #include <array>
 
 #include "core/text.h"
@@ -13,6 +14,15 @@ constexpr std::array kReaders = {parse_rs274ngc, parse_sinumerik, parse_fanuc,
                                  parse_pmac,     parse_a3200,     parse_automation1};
 
 }  // namespace
+
+double half_decimal(std::uint8_t decimals) {
+  constexpr auto halves = [] {
+    std::array<double, 21> values{0.5};
+    for (std::size_t k = 1; k < values.size(); ++k) values[k] = values[k - 1] / 10.0;
+    return values;
+  }();
+  return halves[std::min<std::size_t>(decimals, halves.size() - 1)];
+}
 
 NcProgram parse_nc(std::string_view text, const std::string& file, NcDialect dialect, const NcTexts& texts) {
   NcLines lines(text, file);

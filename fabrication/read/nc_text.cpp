@@ -32,9 +32,34 @@ constexpr NcCode kMCodes[] = {{0, 28, [](NcBlock& b) { b.stop = NcStop::always; 
                               {4, 29, [](NcBlock& b) { b.spindle = NcSpindle::counterclockwise; }},
                               {5, 29, [](NcBlock& b) { b.spindle = NcSpindle::stopped; }},
                               {7, 30, [](NcBlock& b) { b.mist_on = true; }},
-                              {8, 0, nc_effects::kNone},
+                              {8, 30, nc_effects::kNone},
                               {9, 30, [](NcBlock& b) { b.mist_on = false; }},
                               {30, 28, [](NcBlock& b) { b.ends = true; }}};
+
+/// Whether `line` and `rest`, which has capitals, no blanks and marks for comments, are the same text up to a comment.
+bool is_same_text(std::string_view line, std::string_view rest) {
+  if (line.empty() || line.front() == ' ' || line.front() == '\t') return false;
+  for (;; line.remove_prefix(1), rest.remove_prefix(1)) {
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+    if (rest.empty() || rest.front() == kNcCommentMark) return true;
+    if (line.empty() || capital(line.front()) != capital(rest.front())) return false;
+  }
+}
+
+/// Returns the word at the front: its letters, and the number, value or list in brackets behind them; a text that
+/// begins with anything else up to the next blank.
+std::string_view whole_word(std::string_view text) {
+  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
+  const std::size_t blank = std::min(text.find_first_of(" \t"), text.size());
+  const std::size_t name = std::min(text.find_first_not_of(letters), text.size());
+  if (name == 0) return text.substr(0, blank);
+  const std::size_t value = std::min(text.find_first_not_of(" \t", name), text.size());
+  const std::size_t end = std::min(text.find_first_not_of("+-.0123456789", value), text.size());
+  if (end < text.size() && (text[end] == '=' || (text[end] == '(' && end == name && name > 1)))
+    return text.substr(0, std::max(end, blank));
+  return text.substr(0, end > value ? end : name);
+}
 
 const NcCode* code_of(std::span<const NcCode> codes, const NcWord& word) {
   const auto found =
@@ -71,6 +96,7 @@ NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), 
 bool NcLines::next(std::string_view& line) {
   if (rest_.empty()) return false;
   ++number_;
+  line_ = {};
   const std::size_t end = rest_.substr(0, kLongestNcLine + 2).find('\n');
   if (end == std::string_view::npos && rest_.size() > kLongestNcLine)
     fail(fmt::format("a line may have at most {} characters", kLongestNcLine));
@@ -78,18 +104,42 @@ bool NcLines::next(std::string_view& line) {
   line = rest_.substr(0, end);
   rest_ = ended_by_newline_ ? rest_.substr(end + 1) : std::string_view{};
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  line_ = line;
   const auto control = std::find_if(line.begin(), line.end(), is_control);
   if (control != line.end())
-    fail(fmt::format("must be text, got a byte {}", static_cast<unsigned>(static_cast<unsigned char>(*control))));
+    throw InputError({file_, number_, ""}, fmt::format("must be text, got a byte {}",
+                                                       static_cast<unsigned>(static_cast<unsigned char>(*control))));
   return true;
 }
 
 void NcLines::fail(std::string_view text) const {
-  throw InputError({file_, number_, ""}, text);
+  const std::string block = line_.empty() ? "" : ", in " + in_quotes(trimmed(line_));
+  throw InputError({file_, number_, ""}, std::string(text) + block);
+}
+
+void NcLines::fail_word(std::string_view rest) const {
+  for (std::size_t i = 0; i < line_.size(); ++i)
+    if (is_same_text(line_.substr(i), rest)) fail(in_quotes(whole_word(line_.substr(i))) + " is not understood");
+  fail(in_quotes(whole_word(rest)) + " is not understood");
 }
 
 bool NcNumber::is_whole() const {
   return value == std::floor(value) && std::abs(value) < 1e9;
+}
+
+double NcNumber::relative_rounding() const {
+  return value == 0.0 ? 0.0 : half_decimal(decimals) / std::abs(value);
+}
+
+void check_line_number(const NcNumber& number, const NcLines& lines) {
+  if (!number.is_whole() || number.value < 0.0 || std::signbit(number.value))
+    lines.fail(fmt::format("a line number must be whole and >= 0, got {}", number.value));
+}
+
+bool begins_with_number(std::string_view text) {
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('.')) text.remove_prefix(1);
+  return !text.empty() && is_digit(text.front());
 }
 
 NcNumber take_number(std::string_view& text, const NcLines& lines) {
@@ -118,9 +168,11 @@ NcNumber take_number(std::string_view& text, const NcLines& lines) {
 
 NcWord take_word(std::string_view& text, const NcLines& lines) {
   NcWord word;
+  word.rest = text;
   word.letter = capital(text.front());
-  if (word.letter < 'A' || word.letter > 'Z') lines.fail("is not understood from " + in_quotes(text));
+  if (word.letter < 'A' || word.letter > 'Z') lines.fail_word(word.rest);
   text.remove_prefix(1);
+  if (!begins_with_number(text)) lines.fail_word(word.rest);
   word.number = take_number(text, lines);
   return word;
 }
@@ -169,7 +221,7 @@ std::size_t axis_index(char letter) {
 bool IsoBlock::set(const NcWord& word, std::span<const NcCode> g_codes) {
   const std::size_t axis = axis_index(word.letter);
   if (axis < kNcAxes)
-    set_axis(axis, word.number.value);
+    set_axis(axis, word.number);
   else if (word.letter == 'G')
     set_g(word, g_codes);
   else if (word.letter == 'M')
@@ -192,7 +244,7 @@ void IsoBlock::take_group(const NcCode& code, const NcWord& word) {
 
 void IsoBlock::set_g(const NcWord& word, std::span<const NcCode> codes) {
   const NcCode* const code = code_of(codes, word);
-  if (code == nullptr) lines_.fail(fmt::format("G{} is not understood", word.number.value));
+  if (code == nullptr) lines_.fail_word(word.rest);
   take_group(*code, word);
   if (code->effect == nullptr)
     wants_dwell_ = true;
@@ -202,7 +254,7 @@ void IsoBlock::set_g(const NcWord& word, std::span<const NcCode> codes) {
 
 void IsoBlock::set_m(const NcWord& word) {
   const NcCode* const code = code_of(kMCodes, word);
-  if (code == nullptr) lines_.fail(fmt::format("M{} is not understood", word.number.value));
+  if (code == nullptr) lines_.fail_word(word.rest);
   take_group(*code, word);
   code->effect(block_);
 }
@@ -211,6 +263,7 @@ void IsoBlock::set_feed(const NcWord& word) {
   if (block_.feed) lines_.fail("has two feeds");
   if (word.number.value < 0.0) lines_.fail(fmt::format("F must be >= 0, got {}", word.number.value));
   block_.feed = word.number.value;
+  block_.rate_rounding = word.number.relative_rounding();
 }
 
 void IsoBlock::set_spindle_speed(const NcWord& word) {
@@ -219,14 +272,15 @@ void IsoBlock::set_spindle_speed(const NcWord& word) {
   block_.spindle_rpm = word.number.value;
 }
 
-void IsoBlock::set_axis(std::size_t axis, double value) {
+void IsoBlock::set_axis(std::size_t axis, const NcNumber& place) {
   const auto bit = static_cast<std::uint8_t>(1U << axis);
   if ((block_.axes & bit) != 0) lines_.fail(fmt::format("has two words for {}", kNcAxisLetters[axis]));
   block_.axes = static_cast<std::uint8_t>(block_.axes | bit);
-  block_.words[axis] = value;
+  block_.words[axis] = place.value;
+  block_.axis_decimals[axis] = place.decimals;
 }
 
-void IsoBlock::set_cubic(std::size_t axis, double place, double velocity, NcCubic& cubic) {
+void IsoBlock::set_cubic(std::size_t axis, const NcNumber& place, double velocity, NcCubic& cubic) {
   set_axis(axis, place);
   cubic.velocities[axis] = velocity;
 }

@@ -25,10 +25,15 @@ class NcLines {
   /// The line just handed out is the last one, and nothing ends it: the text may have been cut in it.
   bool is_open_end() const { return rest_.empty() && !ended_by_newline_; }
   const std::string& file() const { return file_; }
+  /// \throw InputError with the file, the line's number, `text` and the whole line
   [[noreturn]] void fail(std::string_view text) const;
+  /// Says of the word at the front of `rest` that it is not understood. \param rest of the line, perhaps in capitals,
+  /// without blanks and with marks for comments \throw InputError as fail()
+  [[noreturn]] void fail_word(std::string_view rest) const;
 
  private:
   std::string file_;
+  std::string_view line_;  ///< that was handed out last
   std::string_view rest_;
   std::int32_t number_ = 0;
   bool ended_by_newline_ = true;
@@ -40,7 +45,12 @@ struct NcNumber {
   bool has_point = false;
   std::uint8_t decimals = 0;
   bool is_whole() const;
+  /// Returns half of the last decimal relative to the number; 0 for the number 0.
+  double relative_rounding() const;
 };
+
+/// Whether `text` begins with a number: digits behind an optional sign and point.
+bool begins_with_number(std::string_view text);
 
 /// Takes a number off the front of `text`. \throw InputError if there is none
 NcNumber take_number(std::string_view& text, const NcLines& lines);
@@ -49,7 +59,11 @@ NcNumber take_number(std::string_view& text, const NcLines& lines);
 struct NcWord {
   char letter = ' ';
   NcNumber number;
+  std::string_view rest = {};  ///< of the line, from the letter on
 };
+
+/// Checks the number of a word N. \throw InputError if it is negative or not whole
+void check_line_number(const NcNumber& number, const NcLines& lines);
 
 /// Takes a word such as off the front, its letter as a capital. \throw InputError if there is none
 NcWord take_word(std::string_view& text, const NcLines& lines);
@@ -113,10 +127,10 @@ class IsoBlock {
   void set_m(const NcWord& word);
   void set_feed(const NcWord& word);
   void set_spindle_speed(const NcWord& word);
-  void set_axis(std::size_t axis, double value);
+  void set_axis(std::size_t axis, const NcNumber& place);
   void set_dwell(double seconds);
   /// A place and a velocity of an axis. \param cubic of the block
-  void set_cubic(std::size_t axis, double place, double velocity, NcCubic& cubic);
+  void set_cubic(std::size_t axis, const NcNumber& place, double velocity, NcCubic& cubic);
   bool wants_dwell() const { return wants_dwell_; }
   /// \throw InputError for words that make no sense together
   void finish();

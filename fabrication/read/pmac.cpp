@@ -67,7 +67,7 @@ class PmacReader {
     if (!is_main && !starts_with_word(text, "SUBPROG")) lines_.fail("must be open prog or open subprog");
     text = trimmed(text.substr(is_main ? 4 : 7));
     const std::string name = whole_number(text);
-    if (!text.empty()) lines_.fail("is not understood from " + in_quotes(text));
+    if (!text.empty()) lines_.fail_word(text);
     if (is_main && has_main_) lines_.fail("there is a program already; one file is one program");
     if (is_main) {
       has_main_ = is_in_main_ = true;
@@ -126,7 +126,7 @@ class PmacReader {
     else if (name == "CCMODE" && number_behind(text) == 0)
       block.say(nc_said::kRadiusOff);
     else
-      lines_.fail("is not understood from " + in_quotes(whole));
+      lines_.fail_word(whole);
   }
 
   /// PVT with its time in ms, then places and velocities. PMAC keeps the mode and takes velocities that are left out
@@ -139,7 +139,7 @@ class PmacReader {
       const std::size_t axis = axis_index(word.letter);
       if (axis == kNcAxes || !text.starts_with(':')) lines_.fail("PVT must have axes, each with place:velocity");
       text.remove_prefix(1);
-      iso.set_cubic(axis, word.number.value, take_number(text, lines_).value, cubic);
+      iso.set_cubic(axis, word.number, take_number(text, lines_).value, cubic);
     }
     if (block.axes == 0) lines_.fail("PVT must have axes in its line");
     program_.set_cubic(block, cubic);
@@ -153,9 +153,11 @@ class PmacReader {
   /// Time of a move in ms.
   void read_move_time(std::string_view& text, NcBlock& block) {
     if (block.move_time_s) lines_.fail("has two times of the move");
-    const double ms = number_behind(text);
-    if (!(ms > 0.0)) lines_.fail(fmt::format("TM must be > 0, got {}", ms));
-    block.move_time_s = ms / 1000.0;
+    text = trimmed(text);
+    const NcNumber ms = take_number(text, lines_);
+    if (!(ms.value > 0.0)) lines_.fail(fmt::format("TM must be > 0, got {}", ms.value));
+    block.move_time_s = ms.value / 1000.0;
+    block.rate_rounding = ms.relative_rounding();
   }
 
   /// Times of acceleration, which round the path unless they are 0.
@@ -205,8 +207,7 @@ class PmacReader {
   }
 
   void read_word(const NcWord& word, IsoBlock& iso) {
-    if (word.letter == 'G' || word.letter == 'S' || !iso.set(word, {}))
-      lines_.fail(fmt::format("a word {} is not understood", word.letter));
+    if (word.letter == 'G' || word.letter == 'S' || !iso.set(word, {})) lines_.fail_word(word.rest);
   }
 
   NcLines lines_;

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "core/message_text.h"
 #include "fabrication/read/dialects.h"
 #include "fabrication/read/subroutine_table.h"
 
@@ -8,6 +7,14 @@ namespace retrace::fabrication {
 namespace {
 
 using namespace nc_effects;
+
+/// Effects that LinuxCNC's interpreter has and other controls do not: each G94 sets the feed to 0, also where G94 holds
+/// already, and G80 leaves no motion mode (interp_convert.cc, convert_feed_mode and convert_motion).
+constexpr auto kFeedPerMinuteFromZero = [](NcBlock& b) {
+  kFeedPerMinute(b);
+  b.clears_feed = true;
+};
+constexpr auto kNoMotion = [](NcBlock& b) { b.cancels_move = true; };
 
 /// Modal groups of NISTIR 6556, table 4.
 constexpr NcCode kRs274ngcCodes[] = {
@@ -25,12 +32,12 @@ constexpr NcCode kRs274ngcCodes[] = {
     {61, 13, kExactStop},
     {61.1, 13, kExactStop},
     {64, 13, kBlending},
-    {80, 1, kNone},
+    {80, 1, kNoMotion},
     {90, 3, kAbsolute},
     {91, 3, kIncremental},
     {92.1, 0, kSays<nc_said::kShiftOff>},
     {93, 5, kInverseTime},
-    {94, 5, kFeedPerMinute},
+    {94, 5, kFeedPerMinuteFromZero},
     {97, 14, kNone},  // S counts turns per minute
 };
 
@@ -67,7 +74,11 @@ class Rs274Reader {
     std::string_view line;
     while (!is_over_ && lines_.next(line)) {
       if (line.size() > kLongestLine) lines_.fail(fmt::format("a line may have at most {} characters", kLongestLine));
-      read_line_that_may_be_cut(lines_, program_, [&] { read(with_marked_rs274ngc_comments(line, lines_)); });
+      if (trimmed(line) == "%")
+        read_percent();
+      else
+        read_line_that_may_be_cut(lines_, program_, [&] { read(with_marked_rs274ngc_comments(line, lines_)); });
+      has_text_ = has_text_ || !trimmed(line).empty();
     }
     program_.lines = lines_.number();
     program_.main_last = program_.blocks.size();
@@ -80,12 +91,11 @@ class Rs274Reader {
 
  private:
   void read(std::string_view text) {
+    const bool has_comment_first = text.starts_with(kNcCommentMark);
     skip_comment_marks(text);
     if (text.empty()) return;
-    if (text == "%") {
-      is_over_ = ++percent_signs_ == 2;
-      return;
-    }
+    if (has_comment_first && (text.front() == 'N' || text.front() == 'O'))
+      lines_.fail("a comment must not stand before a word N or O");
     if (text.front() == '/') lines_.fail("a line that a switch of the controller may leave out is not understood");
     skip_line_number(text);
     if (text.empty()) return;
@@ -95,10 +105,17 @@ class Rs274Reader {
       read_words(text);
   }
 
+  /// A program has two lines % around it, or none.
+  void read_percent() {
+    if (percent_signs_ == 0 && has_text_)
+      lines_.fail("% must be the first line with text, or be left out; there is text above it");
+    is_over_ = ++percent_signs_ == 2;
+  }
+
   void skip_line_number(std::string_view& text) {
     if (text.front() != 'N') return;
     text.remove_prefix(1);
-    if (!take_number(text, lines_).is_whole()) lines_.fail("a line number must be whole");
+    check_line_number(take_number(text, lines_), lines_);
   }
 
   void read_o_word(std::string_view text) {
@@ -112,7 +129,7 @@ class Rs274Reader {
     else if (text == "CALL")
       call(name);
     else
-      lines_.fail(fmt::format("o{} is followed by what is not understood, {}", name, in_quotes(text)));
+      lines_.fail(fmt::format("o{} must be followed by sub, endsub or call", name));
   }
 
   void begin(const std::string& name) {
@@ -154,7 +171,7 @@ class Rs274Reader {
       if (given) lines_.fail(fmt::format("has two words {}", word.letter));
       given = word.number.value;
     } else if (!iso.set(word, kRs274ngcCodes)) {
-      lines_.fail(fmt::format("a word {} is not understood", word.letter));
+      lines_.fail_word(word.rest);
     }
   }
 
@@ -164,9 +181,11 @@ class Rs274Reader {
     const bool blends = block.exact_stop == false;
     if (words_.p && !blends) iso.set_dwell(*words_.p);
     if (words_.q && !(blends && words_.p)) lines_.fail("Q is not understood here");
+    if (block.axes != 0 && (block.says & nc_said::kShiftOff) != 0) lines_.fail("G92.1 takes no axis words");
+    const bool is_negative = words_.p.value_or(0.0) < 0.0 || words_.q.value_or(0.0) < 0.0;
+    if (blends && is_negative) lines_.fail("P and Q of G64 must be >= 0");
     // Without Q blocks are merged as far as P allows, so that both errors may add up.
     if (words_.p && blends) block.blend_mm = *words_.p + words_.q.value_or(*words_.p);
-    if (block.blend_mm && (*words_.p < 0.0 || *block.blend_mm < 0.0)) lines_.fail("P and Q of G64 must be >= 0");
     iso.finish();
   }
 
@@ -179,6 +198,7 @@ class Rs274Reader {
   NcProgram program_;
   SubroutineTable table_;
   int percent_signs_ = 0;
+  bool has_text_ = false;  ///< of the lines so far
   bool is_over_ = false;
   Words words_;  ///< of the line
 };

@@ -91,7 +91,7 @@ class SinumerikReader {
   void skip_block_number(std::string_view& text) {
     if (text.size() < 2 || text[0] != 'N' || text[1] < '0' || text[1] > '9') return;
     text.remove_prefix(1);
-    take_number(text, lines_);
+    check_line_number(take_number(text, lines_), lines_);
     text = trimmed(text);
   }
 
@@ -181,9 +181,8 @@ class SinumerikReader {
     if (text.size() > 5 && text[1] == '=' && (text.substr(2, 3) == "DC(" || text.substr(2, 3) == "IC(")) {
       const std::size_t axis = axis_index(text[0]);
       const bool is_shortest = text[2] == 'D';
-      if (axis == kNcAxes || (is_shortest && axis < kFirstRotaryAxis))
-        lines_.fail("is not understood from " + in_quotes(text));
-      NcWord word{text[0], {}};
+      if (axis == kNcAxes || (is_shortest && axis < kFirstRotaryAxis)) lines_.fail_word(text);
+      NcWord word{text[0], {}, text};
       text.remove_prefix(5);
       word.number = take_number(text, lines_);
       if (!text.starts_with(')')) lines_.fail("has a ( that does not end");
@@ -198,7 +197,9 @@ class SinumerikReader {
     if (text.size() > 2 && text[1] == '=') {
       const std::string joined = std::string(1, text[0]) + std::string(text.substr(2));
       std::string_view rest = joined;
-      const NcWord word = take_word(rest, lines_);
+      if (!begins_with_number(rest.substr(1))) lines_.fail_word(text);
+      NcWord word = take_word(rest, lines_);
+      word.rest = text;
       text = trimmed(text.substr(text.size() - rest.size()));
       return word;
     }
@@ -212,7 +213,7 @@ class SinumerikReader {
       if (word.number.value != 0) lines_.fail("D must be 0: offsets of the tool are not understood");
       block.say(nc_said::kLengthOff);
     } else if (!iso.set(word, kSinumerikCodes)) {
-      lines_.fail(fmt::format("a word {} is not understood", word.letter));
+      lines_.fail_word(word.rest);
     }
   }
 

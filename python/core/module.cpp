@@ -235,6 +235,7 @@ void bind_making(py::module_& module) {
       .def_readwrite("dialect", &FabricationRequest::dialect)
       .def_readwrite("phase", &FabricationRequest::phase)
       .def_readwrite("from_element", &FabricationRequest::from_element)
+      .def_readwrite("from_pass", &FabricationRequest::from_pass)
       .def_readwrite("stop_every", &FabricationRequest::stop_every)
       .def_readwrite("split_hours", &FabricationRequest::split_hours)
       .def_readwrite("job_text", &FabricationRequest::job_text);

@@ -188,6 +188,7 @@ def fabricate(
     dialect: str = "rs274ngc",
     phase: str = "all",
     from_element: int | None = None,
+    from_pass: int | None = None,
     stop_every: int | None = None,
     split_hours: float | None = None,
 ) -> Fabrication:
@@ -201,6 +202,8 @@ def fabricate(
     )
     if from_element is not None:
         request.from_element = whole("from_element", from_element, 0, _MOST_NUMBER)
+    if from_pass is not None:
+        request.from_pass = whole("from_pass", from_pass, 1, _MOST_NUMBER)
     if stop_every is not None:
         request.stop_every = whole("stop_every", stop_every, 1, _MOST_NUMBER)
     if split_hours is not None:

@@ -56,6 +56,7 @@ FabricationResult fabricate(const FabricationRequest& request) {
   result.job = fabrication::read_job(request.job_file, request.texts);
   result.machine = fabrication::load_machine(result.job.machine, result.job.where("machine"));
   result.machine.increments = fabrication::word_increments(dialect.name, result.machine.control);
+  result.machine.shortest_axes = fabrication::shortest_axes(dialect.name, result.machine.control);
   result.plan = fabrication::make_plan(result.job, result.machine, request.options);
   for (const fabrication::Program& program : result.plan.programs) fabrication::check_words(program, dialect.name);
   return result;

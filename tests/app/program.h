@@ -136,7 +136,7 @@ inline void give_mist_lines(const TemporaryFolder& folder, const std::string& jo
   const std::size_t begin = job.find("machine = \"") + 11;
   const std::string name = job.substr(begin, job.find('"', begin) - begin);
   folder.write("machine.toml", read_text(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml") +
-                                   "\n[control]\nmist_on = \"P100=1\"\nmist_off = \"P100=0\"\n");
+                                   "\n[control]\nmist_on = \"M107\"\nmist_off = \"M109\"\n");
   folder.write(job_file, job.replace(begin, name.size(), "machine.toml"));
 }
 

@@ -148,8 +148,8 @@ TEST_F(VerifyCommand, BadInputEndsWithOneLineAndWritesNothing) {
       {"empty.ngc", "empty.ngc: must be an NC program, is empty"},
       {"binary.ngc", "binary.ngc:2: must be text, got a byte 1"},
       {"long.ngc", "long.ngc:2: a line may have at most 1024 characters"},
-      {"loop.ngc", "loop.ngc:3: calls are nested more than 16 deep; subroutine 1 may call itself"},
-      {"strange.ngc", "strange.ngc:3: G2 is not understood"},
+      {"loop.ngc", "loop.ngc:3: calls are nested more than 9 deep; subroutine 1 may call itself"},
+      {"strange.ngc", "strange.ngc:3: \"G2\" is not understood, in \"G2 X1 Y1 I1\""},
       {"missing.ngc", "missing.ngc"}};
   for (const auto& [file, message] : cases) {
     const Outcome outcome = retrace(

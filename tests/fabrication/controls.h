@@ -13,7 +13,7 @@ namespace retrace::fabrication::test {
 
 /// Lines of a control without words of its own.
 inline NcTexts control_texts() {
-  return {"", "", "P100=1", "P100=0", "P101=1", "P102=1"};
+  return {"", "", "M107", "M109", "M101", "M100"};
 }
 
 /// With those lines, and rounding positions as that dialect does.
@@ -24,6 +24,7 @@ inline Machine for_dialect(Machine machine, std::string_view dialect) {
   machine.control.optional_stop = texts.optional_stop;
   machine.control.stop = texts.stop;
   if (dialect == "fanuc") machine.increments = increments_of(machine.control.increment_system);
+  if (dialect == "sinumerik") machine.shortest_axes = machine.control.modulo_axes;
   return machine;
 }
 

@@ -25,20 +25,34 @@ struct CanonicalMove {
   double dwell_s = 0.0;  ///< after it
 };
 
+/// What the interpreter printed, and its exit status: 0 for a program that it takes.
+struct Interpretation {
+  int status = 0;
+  std::string out;
+  std::string err;
+};
+
 /// Runs `rs274`, which writes its parameters into the working folder and maps a file of tools in the home folder: tests
 /// that run at a time must not share it.
-inline std::string interpreted(const std::string& text) {
+inline Interpretation interpretation_of(const std::string& text) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("retrace_rs274_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "p.ngc") << text;
   const std::string command = "cd '" + folder.string() + "' && HOME=. rs274 -g p.ngc > out.txt 2> err.txt < /dev/null";
-  const int code = std::system(command.c_str());
-  const std::string out = read_file(folder / "out.txt");
-  const std::string err = read_file(folder / "err.txt");
+  Interpretation result;
+  result.status = std::system(command.c_str());
+  result.out = read_file(folder / "out.txt");
+  result.err = read_file(folder / "err.txt");
   std::filesystem::remove_all(folder);
-  EXPECT_EQ(code, 0) << "LinuxCNC's rs274 (Debian package linuxcnc-uspace): " << err << out.substr(0, 500);
-  return out;
+  return result;
+}
+
+inline std::string interpreted(const std::string& text) {
+  const Interpretation result = interpretation_of(text);
+  EXPECT_EQ(result.status, 0) << "LinuxCNC's rs274 (Debian package linuxcnc-uspace): " << result.err
+                              << result.out.substr(0, 500);
+  return result.out;
 }
 
 inline std::vector<CanonicalMove> canonical_moves(const std::string& printed) {

@@ -1,7 +1,12 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/data_directory.h"
@@ -11,7 +16,10 @@
 #include "fabrication/post/post.h"
 #include "tests/fabrication/controls.h"
 #include "tests/fabrication/linuxcnc.h"
+#include "tests/fabrication/mutants.h"
+#include "tests/fabrication/nc_record.h"
 #include "tests/fabrication/substrate_jobs.h"
+#include "tests/support/refusals.h"
 
 // LinuxCNC's own interpreter reads our RS274/NGC text: its canonical moves are the planned ones. Golden programs pin
 // the text of every dialect.
@@ -87,6 +95,99 @@ TEST(LinuxCnc, MovesAsPlannedForElementsOnBases) {
                  "hexagons");
 }
 
+/// Why the reader or the rules of every process refuse a program; empty: they do not.
+std::string our_refusal(const std::string& text) {
+  std::string fault;
+  const std::string refused = refusal_of([&] {
+    const Record record = record_of(text, NcDialect::rs274ngc);
+    if (!record.end.is_complete) fault = record.end.reason;
+    for (const NcMotion& motion : record.motions)
+      if (motion.move == NcMove::linear && motion.feed_mm_per_min == 0.0 && motion.duration_s == 0.0) fault = "no feed";
+  });
+  return refused + fault;
+}
+
+TEST(LinuxCnc, WhatItRefusesIsRefused) {
+  std::string nested = "%\n";
+  for (int k = 1; k <= 10; ++k)
+    nested += fmt::format("o{0} sub\n{1}o{0} endsub\n", k, k > 1 ? fmt::format("o{} call\n", k - 1) : "");
+  const std::string begin = "%\nG21 G90 G94\n";
+  const std::vector<std::string> refused = {
+      begin + "F50\nG94\nG1 X1\nM2\n%\n",       // G94 clears F
+      begin + "G1 F50 X1\nG80\nX2\nM2\n%\n",    // axis words after G80
+      begin + "G80 X2\nM2\n%\n",                //
+      "G0 X1\n" + begin + "G0 X1\nM2\n%\n",     // text above the first %
+      "(text)\n" + begin + "G0 X1\nM2\n%\n",    //
+      "%(text)\nG0 X1\nM2\n%\n",                // a % that is not alone
+      begin + "M7 M8\nM2\n%\n",                 // two codes of one group
+      begin + "M8 M9\nM2\n%\n",                 //
+      begin + "N-5 G0 X1\nM2\n%\n",             // negative line number
+      begin + "G1\nM2\n%\n",                    // G1 without a feed
+      begin + "F5\nG93 G1\nM2\n%\n",            //
+      begin + "G93 G1 F5 X1\nG94 X2\nM2\n%\n",  // the feed of G93 is none under G94
+      begin + "F5 G1 X1\nG93\nX2\nM2\n%\n",     //
+      begin + "G92.1 X1\nM2\n%\n",              //
+      begin + "(text) N5 G0 X1\nM2\n%\n",       // a comment before N
+      nested + "o10 call\nM2\n%\n"};
+  for (const std::string& text : refused) {
+    EXPECT_NE(interpretation_of(text).status, 0) << text;
+    EXPECT_NE(our_refusal(text), "") << text;
+  }
+  for (const std::string& text : {begin + "G94 F50\nG1 X1\nM2\n%\n", begin + "G80\nG0 X2\nN5 M7\nM8\nM2\n%\n",
+                                  "\n" + begin + "G93 G1 F5 X1\nG94 F5 X2\nM2\n%\n", begin + "G93\nG0 X1\nM2\n%\n"}) {
+    EXPECT_EQ(interpretation_of(text).status, 0) << text;
+    EXPECT_EQ(our_refusal(text), "") << text;
+  }
+}
+
+/// LinuxCNC takes every randomly edited program that we take.
+TEST(LinuxCnc, TakesEveryEditedProgramThatIsRead) {
+  const std::vector<std::string> lines_put_in = {
+      "G94",       "G93",       "F50.000",     "G80",         "G80 G90",
+      "M8",        "M7 M8",     "%",           "(text)",      "G1",
+      "G0",        "G91",       "G92.1",       "G20",         "M9 M5",
+      "F0",        "G1 Y0.1",   "X0.1",        "G0 Z5",       "M2",
+      "G90",       "S100",      "G61",         "G64 P0.01",   "G64 P0.01 Q-0.02",
+      "M0",        "G4 P0.1",   "G4",          "o102 sub",    "G61 G64",
+      "M3 M7",     "N-3 G0 Z6", "N7 G0 Z6",    "G40 G49 G54", "G94 F20",
+      "o101 call", "o103 call", "G0 G92.1 X1", "G97 S5",      "M30"};
+  Job job = square_job(1, Arrangement::single);
+  job.strategy = Strategy::two_step;
+  job.process.roughing_depth_um = 100.0;
+  job.process.finishing_cuts = 1;
+  const std::vector<std::string> whole =
+      lines_of_text(nc_text(make_plan(job, machine("ideal")).programs.front(), "rs274ngc"));
+  std::mt19937 random(59);
+  const auto below = [&](std::size_t count) {
+    return std::uniform_int_distribution<std::size_t>(0, count - 1)(random);
+  };
+  int taken = 0;
+  const char* const more = std::getenv("RETRACE_EDITS");
+  const int tries = more == nullptr ? 60 : std::atoi(more);
+  for (int k = 0; k < tries; ++k) {
+    std::vector<std::string> lines = whole;
+    for (std::size_t edits = 1 + below(3); edits > 0; --edits) {
+      const std::size_t i = below(lines.size());
+      const std::size_t j = below(lines.size());
+      std::string& line = lines[i];
+      switch (below(6)) {
+        case 0: lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(i)); break;
+        case 1: std::swap(line, lines[j]); break;
+        case 2: lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(j), std::string(line)); break;
+        case 3: line = line.substr(0, line.rfind(' ')); break;
+        case 4: line += " " + lines_put_in[below(lines_put_in.size())]; break;
+        default: lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(i), lines_put_in[below(lines_put_in.size())]);
+      }
+    }
+    const std::string text = text_of_lines(lines);
+    if (!our_refusal(text).empty()) continue;
+    ++taken;
+    const Interpretation theirs = interpretation_of(text);
+    EXPECT_EQ(theirs.status, 0) << theirs.err << "\n" << text;
+  }
+  EXPECT_GE(taken, tries / 6);
+}
+
 TEST(LinuxCnc, TakesSplitAndStoppedPrograms) {
   PlanOptions options;
   options.split_hours = 0.03;
@@ -129,6 +230,7 @@ TEST(Dialects, AreComplete) {
     EXPECT_NE(nc.find("Tool: width 0.451 mm"), std::string::npos);
     EXPECT_NE(nc.find("Pose: facet 2 A45.0000000 C180.0000000"), std::string::npos);
     EXPECT_NE(nc.find("Needs: "), std::string::npos);
+    EXPECT_EQ(nc.find("1008#1") != std::string::npos, dialect.name == "fanuc") << "roll-over of negative words";
     EXPECT_NE(nc.find("Roughing 25 percent"), std::string::npos);
     EXPECT_NE(nc.find("Finishing cut 2 of 2 C-axis at 180"), std::string::npos);
     EXPECT_EQ(nc.find("#3006"), std::string::npos);
@@ -144,6 +246,26 @@ TEST(Dialects, AreComplete) {
   EXPECT_NE(text("a3200").find("G4 P0.100\n"), std::string::npos) << "seconds";
   EXPECT_NE(text("automation1").find("Dwell(0.100)\n"), std::string::npos) << "seconds";
   EXPECT_THROW(text("kugler"), InputError);
+}
+
+/// A line of the machine file is known in one dialect and not in another; permission is printed in the header.
+TEST(Dialects, NameLinesThatNobodyChecked) {
+  Machine on = for_dialect(machine("ideal"), "a3200");
+  const auto text = [&](std::string_view dialect) {
+    return nc_text(make_plan(square_job(1, Arrangement::single), on).programs.front(), dialect);
+  };
+  EXPECT_EQ(text("a3200").find("Not checked"), std::string::npos);
+  on.control.mist_on = "DigitalOutputSet(X, 0, 1)";
+  EXPECT_EQ(text("automation1").find("Not checked"), std::string::npos);
+  const std::string refused = refusal_of([&] { text("a3200"); });
+  EXPECT_TRUE(
+      refused.starts_with("--dialect: control.mist_on must set an output or a variable, such as M#, $DO[#].@=#"))
+      << refused;
+  on.control.has_unchecked_lines = true;
+  EXPECT_NE(text("a3200").find("' Not checked: the line control.mist_on gives, which may move axes or wait\n"),
+            std::string::npos);
+  EXPECT_EQ(text("automation1").find("Not checked"), std::string::npos);
+  EXPECT_EQ(text("rs274ngc").find("Not checked"), std::string::npos) << "it has words of its own";
 }
 
 TEST(Dialects, WriteNumbersInFixedPoint) {

@@ -154,26 +154,68 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
             "m.toml:3: schema: must be \"retrace.machine/1\", got \"retrace.machine/2\"");
 }
 
-/// Lines of an integrator are written as they are: none may move what the program does not know of.
-TEST(MachineFile, LinesOfAnIntegratorMoveNothing) {
-  for (const char* line : {"linear Z-3 F100", "X5", "rapid Z50", "close", "abs", "dwell 100", "x (P1)", "P1=2 Z-3",
-                           "call 900", "Coord[1].NoBlend=0", "G91", "VELOCITY ON", "MoveLinear([X], [5])", "end",
-                           "SetupTaskTargetMode(TargetMode.Incremental)", "POSOFFSET SET X 0"})
-    EXPECT_EQ(
-        refusal("[z]", fmt::format("[control]\nmist_on = \"{}\"\n[z]", line)),
-        fmt::format("m.toml:23: control.mist_on: must not move axes, wait, or lead out of the program, got \"{}\"",
-                    line));
-  EXPECT_EQ(refusal("[z]", "[control]\nstop = \"linear X1\"\n[z]"),
-            "m.toml:23: control.stop: must not move axes, wait, or lead out of the program, got \"linear X1\"");
+/// Lines of an integrator are written as they are: only those of which retrace knows that they neither move an axis nor
+/// wait need no permission.
+TEST(MachineFile, LinesOfAnIntegratorAreKnownOrPermitted) {
+  const auto file_with = [](const std::string& lines) { return refusal("[z]", "[control]\n" + lines + "[z]"); };
+  for (const char* line : {"linear Z-3 F100",
+                           "X5",
+                           "rapid Z50",
+                           "close",
+                           "abs",
+                           "dwell 100",
+                           "x (P1)",
+                           "P1=2 Z-3",
+                           "call 900",
+                           "Coord[1].NoBlend=0",
+                           "G91",
+                           "VELOCITY ON",
+                           "MoveLinear([X], [5])",
+                           "end",
+                           "POSOFFSET SET X 0",
+                           "SetupTaskTargetMode(TargetMode.Incremental)",
+                           "cmd'#3j=-100'",
+                           "while(1)",
+                           "FreeRunOn(Z,5)",
+                           "jog Z=-50",
+                           "Disable(Z)",
+                           "MistOn=1",
+                           "ccall 3",
+                           "P1=P2",
+                           "M0",
+                           "M1",
+                           "M2",
+                           "M30",
+                           "M98",
+                           "M99",
+                           "M7 M0",
+                           "P1=1 M0",
+                           "DigitalOutputSet(X, 0, 1) MoveAbsolute(Z, 1, 1)",
+                           "$global[0]=1 Z5",
+                           "M7.5",
+                           "P=1",
+                           "M"}) {
+    const std::string given = fmt::format("mist_on = \"{}\"\n", line);
+    EXPECT_TRUE(
+        file_with(given).starts_with("m.toml:23: control.mist_on: must set an output or a variable, such as M#,"))
+        << line << ": " << file_with(given);
+    EXPECT_TRUE(file_with(given).ends_with(
+        fmt::format("; any other line needs control.has_unchecked_lines = true, got \"{}\"", line)));
+    EXPECT_EQ(file_with(given + "has_unchecked_lines = true\n"), "accepted") << line;
+  }
+  EXPECT_NE(file_with("stop = \"linear X1\"\n"), "accepted");
+  EXPECT_NE(file_with("stop = \"M2\"\n"), "accepted");
+  EXPECT_NE(file_with("mist_on = \" M7\"\nhas_unchecked_lines = true\n"), "accepted") << "no line";
   EXPECT_TRUE(refusal("[x]", "warm_up_s = { value = -1, assumed = \"a test\" }\n[x]")
                   .ends_with(": warm_up_s.value: must be >= 0 and <= 36000, got -1"));
-  EXPECT_EQ(
-      refusal("[z]", "[control]\nmist_on = \"P1=1\"\noptional_stop = \"P1=1\"\n[z]"),
-      "m.toml:23: control.mist_on: must be another line than those of mist_on, mist_off, optional_stop and stop, got "
-      "\"P1=1\"");
-  for (const char* line : {"P100=1", "M7", "Gate3[0].GpioData[0].16=1", "MistOn=1", "ccall 3", "$DO[0].X = 1",
-                           "DigitalOutputSet(X, 0, 1)"})
-    EXPECT_EQ(refusal("[z]", fmt::format("[control]\nmist_on = \"{}\"\n[z]", line)), "accepted") << line;
+  EXPECT_EQ(file_with("mist_on = \"P1=1\"\noptional_stop = \"P1=1\"\n"),
+            "m.toml:23: control.mist_on: must be another line than those of mist_on, mist_off, optional_stop and stop, "
+            "got \"P1=1\"");
+  for (const char* line : {"P100=1", "P100=-1.5", "M7", "M107", "Gate3[0].GpioData[0].16=1", "$DO[0].X = 1",
+                           "DigitalOutputSet(X, 0, 1)", "$rglobal[2] = 0.5"})
+    EXPECT_EQ(file_with(fmt::format("mist_on = \"{}\"\n", line)), "accepted") << line;
+  for (const char* line : {"M0", "M1", "P100=1"})
+    EXPECT_EQ(file_with(fmt::format("stop = \"{}\"\n", line)), "accepted") << line;
 }
 
 TEST(MachineFile, BodiesAreBoxesOrHulls) {

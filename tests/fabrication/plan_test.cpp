@@ -279,8 +279,9 @@ TEST(Order, TravelBetweenElementsIsShort) {
   const Machine m = machine("ideal");
   for (const Arrangement arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
     const Job job = square_job(20, arrangement);
-    const Plan plan =
-        make_plan(job, m, {.phase = "roughing", .from_element = {}, .stop_every = {}, .split_hours = {}, .before = {}});
+    const Plan plan = make_plan(
+        job, m,
+        {.phase = "roughing", .from_element = {}, .from_pass = {}, .stop_every = {}, .split_hours = {}, .before = {}});
     double travel_mm = 0.0;
     int lines = 0;
     std::optional<geometry::Vec2> last;
@@ -509,6 +510,11 @@ TEST(Refused, OptionsWithoutMeaning) {
   PlanOptions options;
   options.from_element = 23;
   EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--from-element: must be 0 to 22, got 23");
+  options = {};
+  options.from_pass = 2;
+  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--from-pass: only allowed with --from-element, got 2");
+  options.from_element = 0;
+  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--from-pass: must be 1 to 1, got 2");
   options = {};
   options.phase = "finishing-3-facet-1";
   EXPECT_TRUE(refusal(square_job(5), machine("ideal"), options).starts_with("--phase: must be all, roughing"));

@@ -273,11 +273,10 @@ std::int32_t line_of_visit(const Lines& lines, std::int64_t n) {
   return 0;
 }
 
-/// Whatever visit the operator stopped behind, the next one begins a program that cuts nothing again.
+/// Whatever pass of an element the operator stopped behind, the next pass begins a program that cuts nothing again.
 TEST_P(Stops, RestartsFromAnyVisit) {
   for (Case c : cases()) {
     const Machine machine = machine_of(c, 5.0);
-    c.job.tool.width_mm = c.name == "dmc" ? c.job.tool.width_mm : 0.451;
     c.job.process.least_chip_um = 2.0;
     c.job.tool.edge_life_mm = 2.5 * longest_visit_mm(c, machine);
     const Plan whole = make_plan(c.job, machine);
@@ -287,13 +286,15 @@ TEST_P(Stops, RestartsFromAnyVisit) {
     for (std::size_t k = 0; k < whole.stages.size(); ++k) {
       PlanOptions options;
       options.phase = whole.stages[k].name + "+";
-      std::vector<std::int32_t> order;
+      std::vector<Visit> order;
       const Plan partial = make_plan(c.job, machine, options);
       for (const Item& item : partial.programs.front().items)
-        if (const auto* const visit = std::get_if<Visit>(&item)) order.push_back(visit->element);
-      for (std::int64_t n = 0; n < whole.stages[k].visits; ++n, ++behind) {
+        if (const auto* const visit = std::get_if<Visit>(&item)) order.push_back(*visit);
+      const std::int64_t passes = whole.stages[k].visits * whole.passes;
+      for (std::int64_t n = 0; n < passes; ++n, ++behind) {
         if (behind == 0 || (c.name == "dmc" && n > 1)) continue;
-        options.from_element = order[static_cast<std::size_t>(n)];
+        options.from_element = order[static_cast<std::size_t>(n)].element;
+        options.from_pass = order[static_cast<std::size_t>(n)].pass;
         const NcProgram done = program(text, line_of_visit(lines, behind));
         const NcProgram next = program(nc_text(make_plan(c.job, machine, options).programs.front(), word()));
         const Verification v = verify_programs(c.job, machine, {done, next}, {}, {});
@@ -301,7 +302,8 @@ TEST_P(Stops, RestartsFromAnyVisit) {
                                        << listed(v);
         if (n != 1) continue;
         // One visit too early, with a tool that was touched off 0.3 um deeper.
-        options.from_element = order[0];
+        options.from_element = order[0].element;
+        options.from_pass = order[0].pass;
         Machine lower = machine;
         lower.mount.offset_mm.value +=
             c.name == "dmc" ? geometry::Vec3(-3e-4, 0.0, 0.0) : geometry::Vec3(0.0, 0.0, 3e-4);

@@ -12,7 +12,7 @@ retrace_test(fabrication_tests
   LIBRARIES retrace::chisel_plan rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/linuxcnc_test.cpp
-  LIBRARIES retrace::chisel_plan retrace::post)
+  LIBRARIES retrace::chisel_plan retrace::post retrace::nc_read)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/nc_reader_test.cpp
   LIBRARIES retrace::nc_read rapidcheck)
@@ -25,6 +25,7 @@ retrace_test(fabrication_tests
           ${CMAKE_CURRENT_LIST_DIR}/cutting_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp ${CMAKE_CURRENT_LIST_DIR}/setup_cuts_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/random_machines_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/rates_test.cpp
   LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp ${CMAKE_CURRENT_LIST_DIR}/chip_test.cpp

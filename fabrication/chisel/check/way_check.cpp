@@ -76,9 +76,8 @@ void WayCheck::turn(const NcMotion& motion) {
 
 /// Where a rotary axis comes from is not known: only the machine's safe Z is clear of all ways.
 void WayCheck::turn_from_anywhere(const NcMotion& motion) {
-  constexpr double kSlackMm = 1e-9;
   const double safe_mm = machine_.first_z_mm();
-  if (motion.from.z_mm < safe_mm - kSlackMm)
+  if (motion.from.z_mm < safe_mm - rounding_slack(motion, 'Z'))
     findings_.add("turn_too_low", motion.place.line,
                   fmt::format("the axes turn from where they happen to be while Z stands at {} mm, below {} mm",
                               shortest(motion.from.z_mm), shortest(safe_mm)),

@@ -10,16 +10,15 @@ namespace retrace::fabrication {
 double linear_move_s(const Machine& machine, const geometry::Vec3& by_mm, std::optional<double> feed_mm_per_min) {
   const double distance_mm = by_mm.norm();
   if (distance_mm <= 0.0) return 0.0;
+  if (!feed_mm_per_min) return rapid_motion_s(machine, by_mm) + machine.settling_s.value;
   constexpr double kSecondsPerMinute = 60.0;
   MotionLimits path = limits_along(machine, by_mm);
-  if (feed_mm_per_min) path.speed = *feed_mm_per_min / kSecondsPerMinute;
+  path.speed = *feed_mm_per_min / kSecondsPerMinute;
   const LinearAxis* const axes[] = {&machine.x, &machine.y, &machine.z};
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double share = std::abs(by_mm[k]) / distance_mm;
     if (share <= 0.0) continue;
-    const LinearAxis& axis = *axes[k];
-    const double most = feed_mm_per_min ? axis.max_feed_mm_per_min.value : axis.rapid_mm_per_min.value;
-    path.speed = std::min(path.speed, most / kSecondsPerMinute / share);
+    path.speed = std::min(path.speed, axes[k]->max_feed_mm_per_min.value / kSecondsPerMinute / share);
   }
   return rest_to_rest_s(distance_mm, path) + machine.settling_s.value;
 }

@@ -61,8 +61,9 @@ bool is_named(const Stage& stage, std::string_view name) {
                   fmt::join(names, ", "), option == "--phase" ? " (with + for all after it too)" : "", plain(name)));
 }
 
-/// Leaves the stages that were requested. \throw InputError for a phase that the job does not have
-void choose_stages(Plan& plan, const PlanOptions& options) {
+/// Leaves the stages that were requested in `plan`.
+/// \return the stages of the job before them \throw InputError for a phase that the job does not have
+std::vector<Stage> choose_stages(Plan& plan, const PlanOptions& options) {
   if (!options.before.empty()) {
     const auto first = std::find_if(plan.stages.begin(), plan.stages.end(),
                                     [&](const Stage& stage) { return is_named(stage, options.before); });
@@ -71,14 +72,18 @@ void choose_stages(Plan& plan, const PlanOptions& options) {
       throw InputError({"", 0, "--standing"}, "must be a stage before which something is cut, got the first");
     plan.stages.erase(first, plan.stages.end());
   }
-  if (options.phase == "all") return;
+  if (options.phase == "all") return {};
   const bool and_after = options.phase.ends_with('+');
   const std::string name = options.phase.substr(0, options.phase.size() - (and_after ? 1 : 0));
   std::vector<Stage> chosen;
-  for (const Stage& stage : plan.stages)
+  std::vector<Stage> before;
+  for (const Stage& stage : plan.stages) {
     if ((and_after && !chosen.empty()) || is_named(stage, name)) chosen.push_back(stage);
+    if (chosen.empty()) before.push_back(stage);
+  }
   if (chosen.empty()) refuse_phase(plan, "--phase", options.phase);
   plan.stages = std::move(chosen);
+  return before;
 }
 
 /// Seconds that a routine takes, by what they are spent on.
@@ -102,12 +107,13 @@ TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
 class ProgramMaker {
  public:
   ProgramMaker(const Job& job, const Machine& machine, const PlanOptions& options, const ProcessFacts& facts,
-               const std::vector<RoutineStart>& starts, Plan& plan)
+               const std::vector<RoutineStart>& starts, const std::vector<Stage>& stages_before, Plan& plan)
       : job_(job),
         machine_(machine),
         options_(options),
         facts_(facts),
         starts_(starts),
+        stages_before_(stages_before),
         plan_(plan),
         has_kinds_(job.substrate || !job.zones.empty()),
         way_(job, machine),
@@ -127,6 +133,7 @@ class ProgramMaker {
     };
     for (const Stage& stage : plan_.stages)
       if (stage.roughs) roughing_total_ += static_cast<std::int64_t>(order_of(stage).size());
+    for (const Stage& stage : stages_before_) skip(static_cast<std::ptrdiff_t>(order_of(stage).size()));
     bool waiting = options_.from_element.has_value();
     begin();
     for (Stage& stage : plan_.stages) {
@@ -135,6 +142,7 @@ class ProgramMaker {
         const auto first = std::find(order.begin(), order.end(), static_cast<std::int32_t>(*options_.from_element));
         waiting = first == order.end();
         if (stage.roughs) roughing_done_ += first - order.begin();
+        skip(first - order.begin());
         order.erase(order.begin(), first);
         if (waiting) continue;
       }
@@ -152,7 +160,8 @@ class ProgramMaker {
   std::string base_name() const {
     std::string name = options_.phase == "all" ? "program" : options_.phase;
     if (name.ends_with('+')) name.replace(name.size() - 1, 1, "_and_after");
-    return options_.from_element ? fmt::format("{}_from_element_{}", name, *options_.from_element) : name;
+    if (options_.from_element) name += fmt::format("_from_element_{}", *options_.from_element);
+    return options_.from_pass ? fmt::format("{}_pass_{}", name, *options_.from_pass) : name;
   }
 
   void number_programs() {
@@ -212,10 +221,16 @@ class ProgramMaker {
     just_turned_ = true;
   }
 
+  /// Returns by how much an axis turns when its word changes by `units`.
+  RotaryUnits rotation(char axis, RotaryUnits units) const {
+    if (machine_.shortest_axes.find(axis) == std::string::npos) return units;
+    return rotary_units(std::remainder(degrees(units), 360.0));
+  }
+
   void turn(RotaryUnits a, RotaryUnits c) {
     // Where the axes stand when a program begins is not known; most likely at 0, as programs leave them.
-    const RotaryUnits by_a = a - at_[kTilt].value_or(0);
-    const RotaryUnits by_c = c - at_[kC].value_or(0);
+    const RotaryUnits by_a = rotation(machine_.tilt_letter(), a - at_[kTilt].value_or(0));
+    const RotaryUnits by_c = rotation('C', c - at_[kC].value_or(0));
     if (at_[kTilt] == a && at_[kC] == c) return;
     raise();
     constexpr double kRotationDeg = 45.0;
@@ -267,6 +282,9 @@ class ProgramMaker {
     go_to(at_, move.to);
   }
 
+  /// Counts visits that the job makes and this plan does not: the direction of passes alternates from visit to visit.
+  void skip(std::ptrdiff_t visits) { forth_ = forth_ != (visits % 2 != 0); }
+
   /// The passes of an element side by side, to and fro.
   std::vector<Visit> passes_of(const Stage& stage, std::int32_t element) {
     const CuttingPose& pose = plan_.poses[stage.pose];
@@ -279,7 +297,8 @@ class ProgramMaker {
       const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
       const auto& [start, reach] = starts_[stage.subroutine];
       passes.push_back({element, stage.subroutine,
-                        rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along, pose.section.step_nm) + start});
+                        rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along, pose.section.step_nm) + start,
+                        static_cast<int>(k) + 1, plan_.passes});
       check_limits(passes.back(), reach);
     }
     return passes;
@@ -328,7 +347,8 @@ class ProgramMaker {
   }
 
   void visit(Stage& stage, std::int32_t element) {
-    const std::vector<Visit> passes = passes_of(stage, element);
+    std::vector<Visit> passes = passes_of(stage, element);
+    if (visits_ == 0 && options_.from_pass) passes.erase(passes.begin(), passes.begin() + (*options_.from_pass - 1));
     make_way(stage, element, passes);
     for (const Visit& pass : passes) {
       clear_way(pass, plan_.poses[stage.pose]);
@@ -494,7 +514,8 @@ class ProgramMaker {
   /// What must stand before a program that makes a part of the job.
   std::string restart_text() const {
     const Stage& first = plan_.stages.front();
-    const std::string from = options_.from_element ? fmt::format(" from element {}", *options_.from_element) : "";
+    std::string from = options_.from_element ? fmt::format(" from element {}", *options_.from_element) : "";
+    if (options_.from_pass) from += fmt::format(", pass {}", *options_.from_pass);
     return plain(fmt::format("A part of the job: begins with stage {}{}. All that comes before it must have been cut",
                              first.name, from));
   }
@@ -504,6 +525,7 @@ class ProgramMaker {
   const PlanOptions& options_;
   const ProcessFacts& facts_;
   const std::vector<RoutineStart>& starts_;
+  const std::vector<Stage>& stages_before_;  ///< of the job before those of the plan
   Plan& plan_;
   std::vector<TimeShares> routine_times_;
   Program program_;
@@ -527,10 +549,16 @@ class ProgramMaker {
   std::int64_t roughing_done_ = 0;
 };
 
-void check_options(const PlanOptions& options, std::size_t elements) {
+void check_options(const PlanOptions& options, std::size_t elements, std::size_t passes) {
   const auto most = static_cast<std::int64_t>(elements) - 1;
   if (options.from_element && (*options.from_element < 0 || *options.from_element > most))
     throw InputError({"", 0, "--from-element"}, fmt::format("must be 0 to {}, got {}", most, *options.from_element));
+  const auto most_passes = static_cast<std::int64_t>(passes);
+  if (options.from_pass && !options.from_element)
+    throw InputError({"", 0, "--from-pass"},
+                     fmt::format("only allowed with --from-element, got {}", *options.from_pass));
+  if (options.from_pass && (*options.from_pass < 1 || *options.from_pass > most_passes))
+    throw InputError({"", 0, "--from-pass"}, fmt::format("must be 1 to {}, got {}", most_passes, *options.from_pass));
   if (options.stop_every && *options.stop_every < 1)
     throw InputError({"", 0, "--stop-every"}, fmt::format("must be >= 1, got {}", *options.stop_every));
   if (options.split_hours && !(*options.split_hours > 0.0))
@@ -571,9 +599,9 @@ Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& option
   check_on_machine(job, machine);
   Plan plan;
   plan.elements = cut_elements(job);
-  check_options(options, plan.elements.size());
   if (job.substrate) plan.stock_mm = stock_mm(job, plan.elements);
   const ProcessFacts facts = facts_of(job, plan);
+  check_options(options, plan.elements.size(), facts.passes_mm.size());
   plan.cuts_per_facet = facts.cuts_per_facet;
   const std::vector<RoutineStart> starts = add_stages(job, machine, plan);
   plan.safe_z_mm = safe_height_mm(job, machine, plan.poses);
@@ -581,8 +609,8 @@ Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& option
     plan.aperture_area_mm2 +=
         geometry::area(geometry::aperture_outline(blank_element(job, zone))) *
         static_cast<double>(job.zones.empty() ? plan.elements.size() : job.zones[zone].apexes_mm.size());
-  choose_stages(plan, options);
-  ProgramMaker(job, machine, options, facts, starts, plan).run();
+  const std::vector<Stage> stages_before = choose_stages(plan, options);
+  ProgramMaker(job, machine, options, facts, starts, stages_before, plan).run();
   return plan;
 }
 

@@ -317,6 +317,10 @@ std::string unfit_text(const Control& control) {
   const std::string& text = control.*line;
   if (text.empty()) return {};
   if (const std::string fault = unfit_line(text); !fault.empty()) return fault + ", got " + in_quotes(text);
+  const bool is_stop = &text == &control.stop || &text == &control.optional_stop;
+  const std::string fault = unknown_line(text, is_stop ? LineUse::stop : LineUse::output);
+  if (!control.has_unchecked_lines && !fault.empty())
+    return fmt::format("{}; any other line needs control.has_unchecked_lines = true, got {}", fault, in_quotes(text));
   const std::string* const lines[] = {&control.mist_on, &control.mist_off, &control.optional_stop, &control.stop};
   const bool is_other = std::any_of(std::begin(lines), std::end(lines),
                                     [&](const auto* other) { return other != &text && *other == text; });
@@ -350,6 +354,10 @@ constexpr Row kControlRows[] = {
     {"stop", Text{}, kNone,
      "Of a Power PMAC or an Aerotech control: the line at which a program waits until the operator lets it go on.",
      access<&Control::stop>},
+    {"has_unchecked_lines", Flag{}, false,
+     "Of a Power PMAC or an Aerotech control: whether the lines of mist and stops may be any text, also one that moves "
+     "axes or waits. The headers of programs name such lines.",
+     access<&Control::has_unchecked_lines>},
     {"rapids_are_straight", Flag{}, false,
      "Whether the axes of a rapid move arrive together (Fanuc 1401#1, 840D `RTLIOF`), on a straight line; otherwise "
      "all "
@@ -362,9 +370,9 @@ constexpr std::string_view kStopKeys[] = {"stop"};
 constexpr std::string_view kModuloKeys[] = {"modulo_axes"};
 constexpr Rule kControlRules[] = {
     Check{kMistOnKeys,
-          "`mist_on` is a line of 1 to 200 printable ASCII characters that moves no axis, does not wait and does not "
-          "lead "
-          "out of the program.",
+          "`mist_on` is a line of 1 to 200 printable ASCII characters. It sets an output or a variable, or is an M "
+          "code of "
+          "the machine's builder, as `docs/nc_dialects.md` lists, unless `has_unchecked_lines` is true.",
           check_by<unfit_text<&Control::mist_on>>},
     Check{kMistOffKeys, "So is `mist_off`, another one.", check_by<unfit_text<&Control::mist_off>>},
     Check{kOptionalStopKeys, "So is `optional_stop`, another one.", check_by<unfit_text<&Control::optional_stop>>},

@@ -47,8 +47,6 @@ SectionLine along(const SectionLine& line, double spacing_mm) {
 }
 
 constexpr std::uint8_t kAxesXz = 0b101;
-/// Words of a feed have three decimals.
-constexpr double kFeedRounding = 5e-4;
 constexpr double kWordsMm = 2e-6;  // of positions that words of a nanometre give
 
 /// Some dialects are told by lines of the part's file, which say nothing of sense and speed that could be read.
@@ -118,15 +116,15 @@ void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   }
   const PlaningLathe& lathe = *part_.lathe;
   control_->cut(settings, motion.place);
-  control_->feed(motion, lathe.feed_mm_per_min + kFeedRounding);
+  control_->feed(motion, lathe.feed_mm_per_min);
   const SectionPoint from{motion.from.x_mm, motion.from.z_mm};
   const SectionPoint to{motion.to.x_mm, motion.to.z_mm};
   if (run_.empty()) run_.push_back(from);
   run_.push_back(to);
   standing_.cut(from, to, add_source(motion));
   ++result_.frames.back();
-  if (motion.feed_mm_per_min > 0.0)
-    result_.time_s.back() += std::hypot(to.x_mm - from.x_mm, to.z_mm - from.z_mm) / motion.feed_mm_per_min * 60.0;
+  if (const double feed = motion.path_speed_per_min(); feed > 0.0)
+    result_.time_s.back() += std::hypot(to.x_mm - from.x_mm, to.z_mm - from.z_mm) / feed * 60.0;
 }
 
 /// Rapid moves need not be straight: the nose may be anywhere within the box of their ends.

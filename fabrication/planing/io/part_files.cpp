@@ -70,7 +70,10 @@ constexpr Row kLatheRows[] = {
     {"spindle_rpm", Whole{{.low = 1.0, .high = 99999.0}}, kRequired, "Speed of the spindle."},
     {"spindle_direction", Word{kSpindleDirectionWords}, kRequired, "`M3` and `M4`."},
     {"spindle_start", Text{}, kNone, kSpindleText, kWithStop},
-    {"spindle_stop", Text{}, kNone, kSpindleText, kWithStart}};
+    {"spindle_stop", Text{}, kNone, kSpindleText, kWithStart},
+    {"has_unchecked_lines", Flag{}, false,
+     "Whether `spindle_start` and `spindle_stop` may be any text, also one that moves axes or waits. The headers of "
+     "programs name such lines."}};
 constexpr Table kTables[] = {
     {.name = "element", .meaning = "The lens.", .rows = kElementRows},
     {.name = "tolerance", .meaning = "How near to its form it must be.", .rows = kToleranceRows},
@@ -104,7 +107,8 @@ PlaningLathe lathe_of(const Document& file) {
           file.choice<SpindleDirection>("lathe.spindle_direction"),
           file.text_if("lathe.spindle_start"),
           file.text_if("lathe.spindle_stop"),
-          file.where("lathe.spindle_start")};
+          file.where("lathe.spindle_start"),
+          file.flag("lathe.has_unchecked_lines")};
 }
 
 PlanedPart part_of(const Document& file) {
@@ -138,6 +142,10 @@ void check_spindle_texts(const Document& file) {
   for (const std::string_view key : {kStart, kStop}) {
     const std::string fault = file.has(key) ? unfit_line(file.text(key)) : "";
     if (!fault.empty()) file.fail(key, fault + ", got " + in_quotes(file.text(key)));
+    const std::string unknown = file.has(key) ? unknown_line(file.text(key), LineUse::output) : "";
+    if (!unknown.empty() && !file.flag("lathe.has_unchecked_lines"))
+      file.fail(key, fmt::format("{}; any other line needs lathe.has_unchecked_lines = true, got {}", unknown,
+                                 in_quotes(file.text(key))));
   }
   if (file.has(kStop) && file.text_if(kStart) == file.text(kStop))
     file.fail(kStop, "must not be spindle_start, got " + in_quotes(file.text(kStop)));
@@ -187,12 +195,15 @@ void check_zones(const Document& file) {
 }
 
 constexpr Words kClearKeys = {"mill.clear_mm", "mill.least_move_mm"};
-constexpr Words kSpindleKeys = {kStart, kStop};
+constexpr Words kSpindleKeys = {kStart, kStop, "lathe.has_unchecked_lines"};
 constexpr Words kSizeKeys = {"tolerance.form_mm", "mill.grid_mm", "element.width_mm"};
 constexpr Words kZoneKeys = {"element.focal_length_mm", "element.width_mm", "lathe.nose_radius_mm"};
 constexpr Rule kRules[] = {
     Check{kClearKeys, "The clearance is at least the least move of Z.", check_by<check_clearance>},
-    Check{kSpindleKeys, "They differ.", check_by<check_spindle_texts>},
+    Check{kSpindleKeys,
+          "The lines differ. Each sets an output or a variable, or is an M code of the machine's builder, as "
+          "`docs/nc_dialects.md` lists, unless `has_unchecked_lines` is true.",
+          check_by<check_spindle_texts>},
     Check{kSizeKeys,
           "The tolerance is at most half the depth of a zone and, of a mill, 2 to 200 steps of its grid; the width at "
           "most 2 million of them.",

@@ -153,7 +153,7 @@ void add_pass(const PlanedPart& part, const PlaningPlan& plan, double raised_mm,
 
 Spindle spindle_of(const PlaningLathe& lathe) {
   return {lathe.spindle_rpm, lathe.spindle_direction == SpindleDirection::clockwise, lathe.spindle_start,
-          lathe.spindle_stop};
+          lathe.spindle_stop, lathe.has_unchecked_lines};
 }
 
 PlaningPlan plan_lathe(const PlanedPart& part) {

@@ -18,8 +18,7 @@ namespace {
 
 constexpr std::uint8_t kAxesXyzc = 0b10111;
 constexpr std::uint8_t kXyc = 0b10011;
-/// Words of a feed have three decimals, those of a length six.
-constexpr double kFeedRounding = 5e-4;
+/// Words of a length have six decimals.
 constexpr double kWordMm = 1e-6;
 
 ControlRule rule_of_c_axis() {
@@ -110,11 +109,8 @@ class CutReader : public NcSink {
     is_cutting_ = !is_approach;
     if (!is_approach) return;
     cuts_.down_moves.push_back({motion.to, 0.0, cuts_.programs.size() - 1, motion.place.line});
-    NcMotion by_feed = motion;
-    if (motion.duration_s > 0.0)
-      by_feed.feed_mm_per_min = 60.0 * std::abs(motion.to.z_mm - motion.from.z_mm) / motion.duration_s;
-    if (motion.duration_s == 0.0 || by_feed.feed_mm_per_min > 0.0)
-      control_.feed(by_feed, part_.path.approach_mm_per_min + kFeedRounding);
+    if (motion.duration_s == 0.0 || motion.path_speed_per_min() > 0.0)
+      control_.feed(motion, part_.path.approach_mm_per_min);
     if (!motion.is_exact_stop && !std::exchange(has_soft_start_, true))
       findings_.add("setup", motion.place.line, "the tool comes down without stopping where the cut begins");
   }

@@ -10,29 +10,30 @@ O0001
 (Pose: facet 1 A45.0000000 C0.0000000)
 (A is taken to turn about a line through X0 Y0 Z0 from the work zero, C about one through X0 Y0 Z0 from the work zero)
 (Expected time: 0 h 1 min)
-(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero,)
+(rotary axes without roll-over [1008#0 at 0], or with roll-over along the shortest path [1008#1 at 0])
 G17 G21 G40 G49 G80 G90 G94
 G54 G61
 M5
 G0 Z100.000000
 G0 A45.000000 C0.000000
 (Stage roughing)
-(element 0)
+(element 0 pass 1 of 2)
 G0 X-0.174500 Y0.018905
 G0 Z0.301748
 M7
 M98 P0101
-(element 0)
+(element 0 pass 2 of 2)
 G0 X0.174500 Y0.018905
 G0 Z0.301748
 M98 P0101
 (Roughing 25 percent)
 (Roughing 50 percent)
-(element 1)
+(element 1 pass 1 of 2)
 G0 Y-0.300000
 G0 Z-0.017157
 M98 P0101
-(element 1)
+(element 1 pass 2 of 2)
 G0 X-0.174500 Y-0.300000
 G0 Z-0.017157
 M98 P0101

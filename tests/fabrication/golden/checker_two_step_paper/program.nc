@@ -13,7 +13,8 @@ O0001
 (Pose: facet 2 of turned elements A45.0186800 C269.9171670)
 (A is taken to turn about a line through X0 Y0 Z0 from the work zero, C about one through X0 Y0 Z0 from the work zero)
 (Expected time: 0 h 2 min)
-(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero)
+(Needs: increment system IS-E, X as a radius [1006#3], the external work zero offset at zero,)
+(rotary axes without roll-over [1008#0 at 0], or with roll-over along the shortest path [1008#1 at 0])
 G17 G21 G40 G49 G80 G90 G94
 G54 G61
 M5
