@@ -142,9 +142,14 @@ class TemporaryFile {
 };
 
 /// Through a symbolic link the file it points to is replaced or made, not the link.
+/// \throw OutputError for a link that points to itself
 fs::path followed(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_symlink(path, ignored) ? fs::weakly_canonical(path.parent_path() / fs::read_symlink(path)) : path;
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return path;
+  const fs::path target = fs::read_symlink(path, error);
+  const fs::path found = error ? fs::path() : fs::weakly_canonical(path.parent_path() / target, error);
+  if (error) throw OutputError(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
+  return found;
 }
 
 [[noreturn]] void refuse_unreadable(const fs::path& path, const std::string& why) {
@@ -241,7 +246,8 @@ void GrowingFile::finish() {
 void make_output_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) {
     const std::string why = error ? error.message() : "a file of that name is in the way";
     throw OutputError(fmt::format("{}: the output folder cannot be made: {}", folder.string(), why));
   }
@@ -263,7 +269,7 @@ void require_short_file(const fs::path& path, std::size_t most_bytes) {
 std::string read_file(const fs::path& path, std::size_t most_bytes) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) refuse_unreadable(path, "it is a folder");
-  if (fs::is_regular_file(path, ignored)) require_short_file(path, most_bytes);
+  require_short_file(path, most_bytes);
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) refuse_unreadable(path, reason(errno != 0 ? errno : ENOENT));

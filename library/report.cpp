@@ -10,8 +10,10 @@
 
 namespace retrace {
 
-ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& title) {
+ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& title,
+                       const std::vector<std::string>& readable) {
   report::ResultFolder folder;
+  for (const std::string& path : readable) report::allow_reading(folder, path, "read");
   for (const ReportPart& part : parts) report::add_result(folder, part.file, part.text);
   if (folder.documents.empty()) throw InputError({"", 0, "results"}, "must hold a document of retrace");
   report::Page page = report::study_page(folder, title);

@@ -20,11 +20,14 @@ using Json = nlohmann::ordered_json;
 struct ReportOptions {
   std::string folder;
   std::string title;  ///< empty: that of the design
+  Words read;         ///< files and folders outside the folder that may be read
 };
 
 std::vector<Argument> arguments(ReportOptions& options) {
   return {{"DIR", "folder that other commands wrote with --out", &options.folder, files("/")},
-          {"--title TEXT", "of the page [that of the design]", &options.title}};
+          {"--title TEXT", "of the page [that of the design]", &options.title},
+          {"--read PATH", "file or folder outside DIR that may be read, such as the mesh of a design; repeatable",
+           &options.read, files("")}};
 }
 
 constexpr const char* kPageName = "report.html";
@@ -36,8 +39,8 @@ fs::path page_file(const ReportOptions& options, const CommonOptions& common) {
   return out.extension() == ".html" || out.extension() == ".htm" ? out : out / kPageName;
 }
 
-std::vector<std::string> results_read(const report::ResultFolder& folder) {
-  std::vector<std::string> files;
+std::vector<std::string> results_read(const report::ResultFolder& folder, const Words& named) {
+  std::vector<std::string> files = named;
   for (const auto& document : folder.documents) files.push_back((fs::path(folder.path) / document.name).string());
   for (const auto& picture : folder.pictures) files.push_back((fs::path(folder.path) / picture.name).string());
   return files;
@@ -59,13 +62,13 @@ std::string report_json(const report::Page& page, const report::ResultFolder& fo
 }
 
 ExitCode run(const ReportOptions& options, const CommonOptions& common) {
-  const report::ResultFolder folder = report::read_result_folder(options.folder);
+  const report::ResultFolder folder = report::read_result_folder(options.folder, options.read);
   report::Page page = report::study_page(folder, options.title);
   const std::vector<std::string> warnings = report::add_scene(page, folder);
   report::add_live(page, folder);
   const std::string html = report::page_html(page, report::assets_for(page));
   const fs::path file = page_file(options, common);
-  ResultFiles files(without_folder(common), results_read(folder));
+  ResultFiles files(without_folder(common), results_read(folder, options.read));
   files.add_named("report", file, [&] { return html; });
   files.prepare();
   if (!common.out.empty() && file != fs::path(common.out)) make_output_folder(common.out);
@@ -82,7 +85,7 @@ Command report_command() {
           .summary = "one self-contained HTML page of a folder of results",
           .manual =
               "Makes one self-contained HTML page, `report.html` in that folder, of the results that other "
-              "commands wrote there.",
+              "commands wrote there. It reads no file outside the folder unless `--read` names it.",
           .reads = {"documents and drawings of other commands"},
           .writes = {"retrace.report/1", "HTML"},
           .refuses_set = "report reads results, not designs",

@@ -20,7 +20,10 @@ struct ReportPage {
   std::vector<std::string> warnings;
 };
 
-/// \param title empty: that of the design \throw InputError for no documents, or one that is no document of retrace
-RETRACE_API ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& title = {});
+/// \param title empty: that of the design
+/// \param readable files and folders that may be read for the page, such as the mesh of a design; nothing else is read
+/// \throw InputError for no documents, one that is no document of retrace, or a missing file of `readable`
+RETRACE_API ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& title = {},
+                                   const std::vector<std::string>& readable = {});
 
 }  // namespace retrace

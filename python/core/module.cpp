@@ -489,14 +489,15 @@ void bind_surfaces(py::module_& module) {
     return told(
         watched(py::none(), 0, [map = std::move(map), request](const Running&) { return metrology(map, request); }));
   });
-  module.def(
-      "report_page", [](const std::vector<std::pair<std::string, std::string>>& parts, const std::string& title) {
-        std::vector<ReportPart> all;
-        for (const auto& [file, text] : parts) all.push_back({file, text});
-        const ReportPage page =
-            watched(py::none(), 0, [all = std::move(all), title](const Running&) { return report_page(all, title); });
-        return py::make_tuple(page.html, page.warnings);
-      });
+  module.def("report_page", [](const std::vector<std::pair<std::string, std::string>>& parts, const std::string& title,
+                               const std::vector<std::string>& readable) {
+    std::vector<ReportPart> all;
+    for (const auto& [file, text] : parts) all.push_back({file, text});
+    const ReportPage page = watched(py::none(), 0, [all = std::move(all), title, readable](const Running&) {
+      return report_page(all, title, readable);
+    });
+    return py::make_tuple(page.html, page.warnings);
+  });
 }
 
 }  // namespace

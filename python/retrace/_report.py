@@ -43,12 +43,17 @@ def _parts(result: Result, number: int) -> list[tuple[str, Union[str, bytes]]]:
 
 
 def report(
-    results: Union[Result, Sequence[Result]], file: PathLike | None = None, *, title: str = ""
+    results: Union[Result, Sequence[Result]],
+    file: PathLike | None = None,
+    *,
+    title: str = "",
+    read: Sequence[PathLike] = (),
 ) -> Page:
     """Makes one self-contained HTML page of results, as `retrace report`, and writes it if a file
     is given.
 
-    title: of the page [that of the design]"""
+    title: of the page [that of the design]
+    read: files and folders that may be read, such as the mesh of a design; no others are read"""
     listed = [results] if isinstance(results, Result) else results
     if not isinstance(listed, (list, tuple)) or not all(isinstance(one, Result) for one in listed):
         raise refuse("results", "a result or a list of results", results)
@@ -64,7 +69,9 @@ def report(
             part for part in _parts(result, number) if part[0] not in {name for name, _ in parts}
         ]
         taken.update(os.path.splitext(name)[0] for name, _ in parts)
-    page = Page(*_core.report_page(parts, title))
+    if not isinstance(read, (list, tuple)):
+        raise refuse("read", "a list of paths", read)
+    page = Page(*_core.report_page(parts, title, [path("read", one) for one in read]))
     if file is not None:
         page.save(file)
     return page

@@ -59,6 +59,13 @@ void add_document(ResultFolder& result, const fs::path& file, const std::string&
   result.documents.push_back(std::move(document));
 }
 
+/// Returns the path without symbolic links. The file need not exist. \return an empty path if that fails
+fs::path resolved(const fs::path& path) {
+  std::error_code error;
+  const fs::path found = fs::weakly_canonical(fs::absolute(path, error), error);
+  return error ? fs::path() : found;
+}
+
 /// The media type of a picture; empty of what is none.
 std::string media_type_of(const std::string& ending) {
   return ending == ".svg" ? "image/svg+xml" : ending == ".png" ? "image/png" : "";
@@ -72,20 +79,41 @@ void add_result(ResultFolder& result, const std::string& name, const std::string
   if (const std::string type = media_type_of(ending); !type.empty()) result.pictures.push_back({name, type, text});
 }
 
-ResultFolder read_result_folder(const fs::path& folder) {
+void allow_reading(ResultFolder& result, const fs::path& path, const std::string& option) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored))
+    throw InputError({"", 0, option}, in_quotes(path.string()) + ": there is no such file or folder");
+  result.readable.push_back(resolved(path));
+}
+
+bool may_read(const ResultFolder& result, const fs::path& file) {
+  const fs::path found = resolved(file);
+  return std::ranges::any_of(result.readable, [&](const fs::path& root) {
+    return !root.empty() && std::mismatch(root.begin(), root.end(), found.begin(), found.end()).first == root.end();
+  });
+}
+
+ResultFolder read_result_folder(const fs::path& folder, const std::vector<std::string>& named) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored))
     throw InputError({folder.string(), 0, ""},
                      fs::exists(folder, ignored) ? "must be a folder of results, is none" : "there is no such folder");
   ResultFolder result;
   result.path = folder.string();
+  allow_reading(result, folder, "DIR");
+  for (const std::string& path : named) allow_reading(result, path, "--read");
   const std::vector<fs::path> files = files_in(folder);
   const std::set<fs::path> known(files.begin(), files.end());
   for (const fs::path& file : files) {
     const std::string ending = file.extension().string();
     const std::string name = printable(file.lexically_relative(folder).generic_string(), 200);
-    if (ending == ".json") add_document(result, file, name, read_file(file, kLongestDocumentBytes));
     const std::string type = media_type_of(ending);
+    if (ending != ".json" && type.empty()) continue;
+    if (!may_read(result, file)) {
+      result.warnings.push_back(name + ": left out because it links to a file outside the folder; --read allows it");
+      continue;
+    }
+    if (ending == ".json") add_document(result, file, name, read_file(file, kLongestDocumentBytes));
     if (type.empty() || (ending == ".png" && known.contains(fs::path(file).replace_extension(".svg")))) continue;
     if (fs::file_size(file, ignored) > kLargestPictureBytes) continue;
     result.pictures.push_back({name, type, read_file(file)});

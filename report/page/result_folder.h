@@ -29,6 +29,10 @@ struct ResultFolder {
   std::string path;
   std::vector<ResultDocument> documents;  ///< by name
   std::vector<ResultPicture> pictures;    ///< by name; drawings (SVG), and PNG where there is no drawing of that name
+  /// The only files and folders that may be opened for the page: the folder itself, and those that the user names.
+  /// Without symbolic links.
+  std::vector<std::filesystem::path> readable;
+  std::vector<std::string> warnings;  ///< about results that were left out
 };
 
 /// Longest document that is read.
@@ -38,8 +42,18 @@ inline constexpr std::size_t kLongestDocumentBytes = std::size_t{256} << 20;
 /// neither is passed over. \throw InputError for JSON that cannot be read
 void add_result(ResultFolder& result, const std::string& name, const std::string& text);
 
+/// Allows the page to read a file, or all files in a folder. \param option for messages
+/// \throw InputError if there is no such file or folder
+void allow_reading(ResultFolder& result, const std::filesystem::path& path, const std::string& option);
+
+/// Returns true if the page may read a file. Symbolic links are followed, so that a link in the folder of results gives
+/// no access to files elsewhere.
+bool may_read(const ResultFolder& result, const std::filesystem::path& file);
+
 /// Reads all documents of retrace (JSON with a `schema` of its own) in a folder and in the folders in it; other files
-/// are passed over. \throw InputError if it is no folder, if there is no result in it, or if one is no JSON
-ResultFolder read_result_folder(const std::filesystem::path& folder);
+/// are passed over. Links to files that may not be read are left out with a warning.
+/// \param named files and folders elsewhere that may be read, too
+/// \throw InputError if it is no folder, if there is no result in it, or if one is no JSON
+ResultFolder read_result_folder(const std::filesystem::path& folder, const std::vector<std::string>& named = {});
 
 }  // namespace retrace::report

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/schema/json.h"
 #include "report/page/design_names.h"
@@ -18,6 +19,16 @@ namespace {
 
 std::array<double, 3> numbers(const geometry::Vec3& p) {
   return {p.x(), p.y(), p.z()};
+}
+
+/// Checks that the page may read every file that a design names: designs of documents come from anywhere.
+/// \throw InputError at the first key whose file it may not read
+void check_files(const studies::Design& design, const ResultFolder& folder) {
+  for (const std::string& key : design.document->keys_of_files())
+    if (const std::filesystem::path file = design.document->file(key); !may_read(folder, file))
+      throw InputError({design.source, 0, key}, fmt::format("names {}, which is outside the folder of results and is "
+                                                            "not read; --read FILE allows it",
+                                                            in_quotes(file.string())));
 }
 
 }  // namespace
@@ -39,7 +50,7 @@ SceneView scene_view(const studies::DesignScene& scene) {
 }
 
 std::vector<std::string> add_scene(Page& page, const ResultFolder& folder) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = folder.warnings;
   const auto* const design = first_design(folder);
   if (design == nullptr) return warnings;
   for (PageSection& section : page.sections) {
@@ -48,7 +59,9 @@ std::vector<std::string> add_scene(Page& page, const ResultFolder& folder) {
       std::vector<studies::SceneLight> lights;
       for (const auto& [incidence_deg, azimuth_deg] : extreme_directions_deg(folder))
         lights.push_back({incidence_deg, azimuth_deg});
-      const studies::DesignScene scene = studies::make_scene(studies::design_of_json(*design), lights);
+      const studies::Design quoted = studies::design_of_json(*design);
+      check_files(quoted, folder);
+      const studies::DesignScene scene = studies::make_scene(quoted, lights);
       page.scene = scene_view(scene);
       std::string text =
           "The most frequent ways of light that falls on an element in the middle, each drawn along its strongest "

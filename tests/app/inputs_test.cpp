@@ -330,20 +330,20 @@ void expect_ends(const std::string& shell, const std::string& message) {
   EXPECT_EQ(outcome.err, "retrace: " + message + "\n");
 }
 
+const std::string kNoFile = ": cannot be read: it is no regular file";
+
 TEST(Inputs, FilesWithoutEndAreRefused) {
   const std::string program = "'" + std::string(RETRACE_PROGRAM) + "' ";
   for (const std::string file : {"/dev/zero", "/dev/urandom"})
-    for (const std::string command : {"rre ", "inspect ", "sweep "})
-      expect_ends(program + command + file, file + most(kDesign));
-  expect_ends(program + "fabricate /dev/zero", "/dev/zero" + most(kText));
-  expect_ends(program + "turn /dev/zero", "/dev/zero" + most(kText));
-  expect_ends(program + "metrology /dev/zero", "/dev/zero" + most(kData));
+    for (const std::string command : {"rre ", "inspect ", "sweep ", "fabricate ", "turn ", "metrology "})
+      expect_ends(program + command + file, file + kNoFile);
   expect_ends("yes | " + program + "rre -", "standard input" + most(kDesign));
   expect_ends("yes | " + program + "sweep -", "standard input" + most(kDesign));
-  expect_ends("mkfifo f; yes >f & " + program + "rre f", "f" + most(kDesign));
-  expect_ends("mkfifo f; yes >f & " + program + "turn f", "f" + most(kText));
+  // Nothing ever writes to this pipe.
+  for (const std::string command : {"rre ", "turn "})
+    expect_ends("mkfifo f; " + program + command + "f", "f" + kNoFile);
   expect_ends("mkfifo f; " + program + "rre plain.toml --set array.mask=f",
-              "--set array.mask=f: array.mask: f: cannot be read: it is no regular file");
+              "--set array.mask=f: array.mask: f" + kNoFile);
 }
 
 }  // namespace

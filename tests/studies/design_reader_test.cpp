@@ -390,8 +390,8 @@ TEST(DesignReader, UnreadablePathsAreRefused) {
   const auto refused = [](const fs::path& path) { return refusal_of([&] { read_design(path); }); };
   EXPECT_EQ(refused("no/such.toml"), "no/such.toml: cannot be read: No such file or directory");
   EXPECT_EQ(refused("/"), "/: cannot be read: it is a folder");
-  EXPECT_EQ(refused("/dev/zero"), "/dev/zero: must have at most 1048576 bytes, got more");
-  EXPECT_EQ(refused("/dev/null").substr(0, 24), "/dev/null: element.kind:");
+  for (const std::string device : {"/dev/zero", "/dev/null"})
+    EXPECT_EQ(refused(device), device + ": cannot be read: it is no regular file");
 }
 
 /// Stands in for standard input while it lives.

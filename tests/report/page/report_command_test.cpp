@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +94,7 @@ TEST(Report, TakesMeshesAndTablesOfFacets) {
   folder.write("facets.toml", shape + "[part]\nfacets = \"planes.csv\"\n" + body);
   for (const std::string name : {"mesh", "facets"}) {
     ASSERT_EQ(retrace(folder, {"inspect", name + ".toml", "-o", name, "--quiet"}).code, 0) << name;
-    ASSERT_EQ(retrace(folder, {"report", name}).code, 0) << name;
+    ASSERT_EQ(retrace(folder, {"report", name, "--read", "part.stl", "--read", "planes.csv"}).code, 0) << name;
     const Json data = data_of(folder.read(name + "/report.html"));
     EXPECT_GT(data["scene"]["triangles"].size(), 8U) << name;
     EXPECT_GE(data["scene"]["paths"].size(), 1U) << name;
@@ -154,6 +155,84 @@ TEST(Report, DesignsThatCannotBeShownAreLeftOutWithAWarning) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_TRUE(outcome.err.starts_with("warning: no view in three dimensions: ")) << outcome.err;
   EXPECT_NE(folder.read("d/report.html").find("cannot be shown here"), std::string::npos);
+}
+
+/// A result document whose design names a file under a key.
+std::string document_naming(const std::string& table, const std::string& key, const std::string& file) {
+  Json design = {{"source", "d.toml"},
+                 {"element", {{"kind", "rtp"}, {"base_mm", 1}, {"width_mm", 1}}},
+                 {"array", {{"x_length_mm", 2}, {"y_length_mm", 1}}},
+                 {"body", {{"thickness_mm", 1}, {"refractive_index", 1.5}}}};
+  if (key == "mesh" && table == "part") {
+    design.erase("element");
+    design.erase("array");
+    design["body"].erase("thickness_mm");
+  }
+  if (table == "body") design["body"].erase("refractive_index");
+  design[table][key] = file;
+  return Json{{"schema", "retrace.rre/1"}, {"designs", {design}}, {"points", Json::array()}}.dump();
+}
+
+/// Whatever key of a design names a file outside the folder, by whatever path: it is not opened, and nothing of it is
+/// in the page, in the document or on the terminal.
+TEST(Report, ReadsNoFileThatOnlyADocumentNames) {
+  const TemporaryFolder folder;
+  const std::string secret = "swordfish";
+  folder.write("secret", secret + ":x:0:0\n");
+  folder.write("secret.yml", secret + ": [\n");
+  fs::create_directory(folder.path() / "r");
+  fs::create_symlink("../secret", folder.path() / "r/link");
+  ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+  struct Case {
+    std::string table;
+    std::string key;
+    std::string file;
+  };
+  const std::vector<Case> cases = {{"part", "mesh", "secret"},
+                                   {"part", "mesh", (folder.path() / "secret").string()},
+                                   {"part", "mesh", "r/link"},
+                                   {"part", "mesh", "r/../secret"},
+                                   {"part", "mesh", "pipe"},
+                                   {"part", "mesh", "/dev/zero"},
+                                   {"part", "facets", "secret"},
+                                   {"array", "mask", "secret"},
+                                   {"front", "mesh", "secret"},
+                                   {"front", "turned", "secret"},
+                                   {"body", "catalogue", "secret.yml"},
+                                   {"light", "spectrum", "secret.csv"}};
+  for (const auto& [table, key, file] : cases) {
+    SCOPED_TRACE(testing::Message() << table << '.' << key << " = " << file);
+    folder.write("r/rre.json", document_naming(table, key, file));
+    const Outcome outcome = retrace(folder, {"report", "r", "--json", "-"});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find(table + "." + key + ": names "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("outside the folder of results"), std::string::npos) << outcome.err;
+    for (const std::string& text : {outcome.out, outcome.err, folder.read("r/report.html")})
+      EXPECT_EQ(text.find(secret), std::string::npos);
+  }
+}
+
+/// Results and pictures that are links to files elsewhere are left out, unless the user names these files.
+TEST(Report, FollowsNoLinkOutOfTheFolder) {
+  const TemporaryFolder folder;
+  make_results(folder);
+  const std::string secret = "swordfish";
+  folder.write("other.json", R"({"schema": "retrace.rre/1", "warnings": ["swordfish"], "points": []})");
+  fs::create_directory(folder.path() / "elsewhere");
+  folder.write("elsewhere/inner.json", R"({"schema": "retrace.rre/1", "warnings": ["swordfish"], "points": []})");
+  fs::create_symlink("../other.json", folder.path() / "results/link.json");
+  fs::create_directory_symlink("../elsewhere", folder.path() / "results/sub");
+  Outcome outcome = retrace(folder, {"report", "results"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.err.find("link.json: left out"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("sub/inner.json: left out"), std::string::npos) << outcome.err;
+  EXPECT_EQ(folder.read("results/report.html").find(secret), std::string::npos);
+  outcome = retrace(folder, {"report", "results", "--read", "elsewhere", "--read", "other.json"});
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(folder.read("results/report.html").find(secret), std::string::npos);
+  fs::create_symlink("results", folder.path() / "by_link");
+  EXPECT_EQ(retrace_json(folder, {"report", "by_link", "--read", "elsewhere"}).at("documents").size(), 2U);
+  expect_refused(retrace(folder, {"report", "results", "--read", "none"}), "--read: \"none\": there is no such file");
 }
 
 TEST(Report, SetIsRefusedAndOutputsAreKeptApart) {
