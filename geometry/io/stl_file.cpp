@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/leading_number.h"
 #include "core/message_text.h"
+#include "core/text.h"
 
 // Own code, for want of a library that names the line at fault: a binary file is a header and an array, and an ASCII
 // one has a grammar of seven words.
@@ -47,7 +48,7 @@ Value value_at(std::string_view text, std::size_t at) {
 
 class Welder {
  public:
-  explicit Welder(const std::string& name) : name_(name) {}
+  Welder(const std::string& name, double scale) : name_(name), scale_(scale) {}
 
   /// \param where "triangle 7", "line 12"
   void add(const std::array<Vec3, 3>& corners, const InputLocation& where, std::string_view what) {
@@ -76,7 +77,7 @@ class Welder {
 
   std::uint32_t vertex(const Vec3& p, const InputLocation& where, std::string_view what) {
     // Adding 0 makes -0 the same as 0.
-    const std::array<double, 3> at = {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};
+    const std::array<double, 3> at = {scale_ * p.x() + 0.0, scale_ * p.y() + 0.0, scale_ * p.z() + 0.0};
     for (const double c : at)
       if (!(std::abs(c) < kLargestCoordinateMm))
         throw InputError(where, fmt::format("{}coordinates must be finite and below 1e6 mm, got {}", what, c));
@@ -86,20 +87,45 @@ class Welder {
   }
 
   const std::string& name_;
+  double scale_;
   TriangleMesh mesh_;
   std::size_t read_ = 0;
   std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> known_;
 };
 
-bool is_binary(std::string_view text) {
-  if (text.size() < kHeaderBytes + kCountBytes) return false;
-  const std::size_t count = value_at<std::uint32_t>(text, kHeaderBytes);
-  return text.size() == kHeaderBytes + kCountBytes + kTriangleBytes * count;
+/// Number of triangles that a binary file gives. \pre the text has a header and a count
+std::size_t binary_count(std::string_view text) {
+  return value_at<std::uint32_t>(text, kHeaderBytes);
 }
 
-TriangleMesh parse_binary(std::string_view text, const std::string& name) {
-  Welder welder(name);
-  const std::size_t count = value_at<std::uint32_t>(text, kHeaderBytes);
+std::size_t binary_length(std::size_t triangles) {
+  return kHeaderBytes + kCountBytes + kTriangleBytes * triangles;
+}
+
+bool is_binary(std::string_view text) {
+  return text.size() >= binary_length(0) && text.size() == binary_length(binary_count(text));
+}
+
+/// Whether a file begins with bytes that no text has: a binary file has a zero in its header or its count.
+bool begins_as_binary(std::string_view text) {
+  return text.substr(0, binary_length(0)).find('\0') != std::string_view::npos;
+}
+
+/// \throw InputError for a binary file whose length does not fit its number of triangles
+[[noreturn]] void refuse_length(std::string_view text, const std::string& name) {
+  constexpr std::string_view what = "not an STL file: binary STL has 84 bytes and 50 for each triangle";
+  if (text.size() < binary_length(0)) throw InputError({name, 0, ""}, fmt::format("{}, got {}", what, text.size()));
+  const std::size_t wanted = binary_length(binary_count(text));
+  const std::string remedy = text.size() > wanted
+                                 ? fmt::format("remove the {} bytes behind the last triangle", text.size() - wanted)
+                                 : "the end of the file is missing, or it has another format";
+  throw InputError({name, 0, ""}, fmt::format("{}, {} for the {} that it gives, got {}: {}", what, wanted,
+                                              binary_count(text), text.size(), remedy));
+}
+
+TriangleMesh parse_binary(std::string_view text, const std::string& name, double scale) {
+  Welder welder(name, scale);
+  const std::size_t count = binary_count(text);
   for (std::size_t k = 0; k < count; ++k) {
     std::array<Vec3, 3> corners;
     for (std::size_t c = 0; c < 3; ++c)
@@ -130,9 +156,14 @@ class Words {
     while (at_ < text_.size() && text_[at_] != '\n') ++at_;
   }
 
+  /// Whether a word is a keyword, in small letters or capitals.
+  static bool is(std::string_view got, std::string_view word) {
+    return got.size() == word.size() && lower_case(got) == word;
+  }
+
   void expect(std::string_view word) {
     const std::string_view got = next();
-    if (got != word) fail(word, got);
+    if (!is(got, word)) fail(word, got);
   }
 
   Vec3 vector() {
@@ -164,22 +195,22 @@ class Words {
   int line_ = 1;
 };
 
-TriangleMesh parse_ascii(std::string_view text, const std::string& name) {
+TriangleMesh parse_ascii(std::string_view text, const std::string& name, double scale) {
   Words words(text, name);
-  const std::string_view first = words.next();
-  if (first != "solid") words.fail("\"solid\"", first);
+  if (!Words::is(words.next(), "solid"))
+    throw InputError({name, 0, ""}, "not an STL file: must begin with \"solid\", or be binary STL");
   words.skip_line();  // its name
-  Welder welder(name);
+  Welder welder(name, scale);
   for (std::string_view word = words.next();; word = words.next()) {
-    if (word == "endsolid") {
+    if (Words::is(word, "endsolid")) {
       words.skip_line();
       word = words.next();
       if (word.empty()) break;
-      if (word != "solid") words.fail("\"solid\" or the end", word);
+      if (!Words::is(word, "solid")) words.fail("\"solid\" or the end", word);
       words.skip_line();
       continue;
     }
-    if (word != "facet") words.fail("\"facet\" or \"endsolid\"", word);
+    if (!Words::is(word, "facet")) words.fail("\"facet\" or \"endsolid\"", word);
     words.expect("normal");
     for (int axis = 0; axis < 3; ++axis) words.next();  // made of the vertices; files have nan there at times
     words.expect("outer");
@@ -212,8 +243,10 @@ std::string stl_text(const BoundaryMesh& mesh, std::string_view title) {
   return text;
 }
 
-TriangleMesh parse_stl(std::string_view text, const std::string& name) {
-  return is_binary(text) ? parse_binary(text, name) : parse_ascii(text, name);
+TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale) {
+  if (is_binary(text)) return parse_binary(text, name, scale);
+  if (begins_as_binary(text)) refuse_length(text, name);
+  return parse_ascii(without_byte_order_mark(text), name, scale);
 }
 
 }  // namespace retrace::geometry

@@ -18,12 +18,14 @@ inline constexpr std::size_t kMostStlTriangles = 10'000'000;
 /// header, up to 80 bytes
 std::string stl_text(const BoundaryMesh& mesh, std::string_view title);
 
-/// Reads binary and ASCII STL, told apart by the length that a binary file's count of triangles asks for. Normals are
-/// passed over: the order of the vertices says which side is out. Vertices with equal coordinates become one, triangles
-/// of which two corners are one are dropped.
+/// Reads binary and ASCII STL. A file whose length fits the number of triangles that a binary file gives is binary,
+/// whatever its header begins with. Words of ASCII files may have capitals. Normals are passed over: the order of the
+/// vertices says which side is out. Vertices with equal coordinates become one, triangles of which two corners are one
+/// are dropped.
 /// \param name stands for the file in messages
-/// \throw InputError for text that is neither, coordinates that are no finite number below 1e6, no triangle, or more
-/// than kMostStlTriangles
-TriangleMesh parse_stl(std::string_view text, const std::string& name);
+/// \param scale factor from the unit of the file to mm
+/// \throw InputError for text that is neither, coordinates that are no finite number below 1e6 mm, no triangle, or more
+/// than kMostStlTriangles. The message shows no text of a file that does not begin as STL does.
+TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale = 1.0);
 
 }  // namespace retrace::geometry

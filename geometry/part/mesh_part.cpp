@@ -361,6 +361,24 @@ BoundaryMesh boundary_of(const TriangleMesh& mesh) {
   return {mesh.vertices, mesh.triangles, std::vector<FacetRole>(mesh.triangles.size(), FacetRole::retro_facet)};
 }
 
+std::optional<Vec3> mixed_winding(const TriangleMesh& mesh) {
+  struct Passes {
+    int low_to_high = 0;
+    int high_to_low = 0;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Passes> edges;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+      Passes& passes = edges[{low, high}];
+      ++(t[k] == low ? passes.low_to_high : passes.high_to_low);
+    }
+  for (const auto& [edge, passes] : edges)
+    if ((passes.low_to_high + passes.high_to_low) % 2 == 0 && passes.low_to_high != passes.high_to_low)
+      return 0.5 * (mesh.vertices[edge.first] + mesh.vertices[edge.second]);
+  return std::nullopt;
+}
+
 TriangleMesh turned_over(const TriangleMesh& mesh) {
   TriangleMesh turned = mesh;
   for (auto& t : turned.triangles) std::swap(t[1], t[2]);

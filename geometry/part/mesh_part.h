@@ -2,6 +2,8 @@
 
 // Makes a traceable part of a closed triangle mesh from a file, and closes openings of meshes that are not.
 
+#include <optional>
+
 #include "geometry/part/closed_boundary.h"
 #include "geometry/part/part.h"
 #include "geometry/part/triangle_mesh.h"
@@ -21,6 +23,10 @@ ClosedMesh with_openings_closed(const TriangleMesh& mesh);
 
 /// The mesh as a boundary, all of one role: for check_boundary().
 BoundaryMesh boundary_of(const TriangleMesh& mesh);
+
+/// Returns the middle of an edge along which neighbouring triangles have opposite orientations: triangles on both sides
+/// pass it in the same direction. Returns nothing if there is no such edge; openings do not count.
+std::optional<Vec3> mixed_winding(const TriangleMesh& mesh);
 
 /// The mesh with every triangle turned over.
 TriangleMesh turned_over(const TriangleMesh& mesh);

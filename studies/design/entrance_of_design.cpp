@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "core/atomic_file.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
 #include "geometry/entrance/entrance_mesh.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/io/surface_tables.h"
+#include "studies/design/io/file_names.h"
 
 namespace retrace::studies {
 namespace {
@@ -64,15 +66,14 @@ geometry::Entrance turned_entrance(const EntranceFile& file, const geometry::Par
   return std::make_shared<const geometry::EntranceSurface>(std::move(front.surface), origin_mm);
 }
 
-geometry::Entrance mesh_entrance(const EntranceFile& file, const geometry::Part& part, const Vec3& origin_mm) {
+geometry::Entrance mesh_entrance(const EntranceFile& file, double scale, const geometry::Part& part,
+                                 const Vec3& origin_mm) {
   const std::string name = file.file.string();
-  const geometry::TriangleMesh mesh = geometry::parse_stl(read_file(file.file, kMostDataBytes), name);
-  try {
+  const geometry::TriangleMesh mesh = geometry::parse_stl(read_file(file.file, kMostDataBytes), name, scale);
+  return read_named({name, 0, ""}, [&] {
     return std::make_shared<const geometry::SurfacePatch>(geometry::entrance_of_mesh(
         mesh, file.mesh_bottom ? geometry::MeshSide::bottom : geometry::MeshSide::top, origin_mm, part.outline));
-  } catch (const InputError& error) {
-    throw InputError({name, 0, ""}, error.what());
-  }
+  });
 }
 
 Vec3 origin_of(const EntranceFile& file, const geometry::Part& part) {
@@ -102,15 +103,13 @@ void check_room(const geometry::Entrance& entrance, const geometry::Part& part, 
 
 geometry::Entrance entrance_of_design(const Design& design, const geometry::Part& part) {
   const EntranceFile& file = *design.entrance;
-  try {
+  return read_named(design.where(design.entrance_key()), [&] {
     const Vec3 origin_mm = origin_of(file, part);
-    const geometry::Entrance entrance =
-        file.is_mesh ? mesh_entrance(file, part, origin_mm) : turned_entrance(file, part, origin_mm);
+    const geometry::Entrance entrance = file.is_mesh ? mesh_entrance(file, mesh_scale(design, "front"), part, origin_mm)
+                                                     : turned_entrance(file, part, origin_mm);
     check_room(entrance, part, file.file.string());
     return entrance;
-  } catch (const InputError& error) {
-    throw InputError(design.where(design.entrance_key()), error.what());  // adds the key that names the file
-  }
+  });
 }
 
 }  // namespace retrace::studies

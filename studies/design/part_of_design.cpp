@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/atomic_file.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
 #include "geometry/check/boundary_check.h"
 #include "geometry/check/mesh_union.h"
@@ -15,6 +16,7 @@
 #include "geometry/part/plate.h"
 #include "geometry/part/zones.h"
 #include "studies/design/design_part.h"
+#include "studies/design/io/file_names.h"
 #include "studies/design/zone_elements.h"
 
 namespace retrace::studies {
@@ -31,6 +33,11 @@ void tell(std::vector<std::string>* warnings, const Design& design, const std::s
 geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh, std::vector<std::string>* warnings) {
   geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
   if (report.is_closed) return mesh;
+  if (const auto p = geometry::mixed_winding(mesh))
+    throw InputError(fmt::format(
+        "all triangles must be counter-clockwise seen from outside, or all clockwise: near ({}, {}, {}) mm two "
+        "neighbours differ; orient the faces alike in the program that made the mesh",
+        fixed(p->x(), 3), fixed(p->y(), 3), fixed(p->z(), 3)));
   if (!design.mesh()->allow_open)
     throw InputError("the mesh is not closed; set allow_open = true in [part] to close its openings by flat pieces");
   geometry::ClosedMesh mended = geometry::with_openings_closed(mesh);
@@ -79,6 +86,27 @@ geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh
   return mesh;
 }
 
+/// Warns about a mesh whose size shows that its unit is not the mm. STL files do not name their unit.
+void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, std::vector<std::string>* warnings) {
+  // A part smaller than the first size is probably in metres, and one larger than the second in micrometres.
+  constexpr double kSmallestMm = 0.1;
+  constexpr double kLargestMm = 1000.0;
+  geometry::Vec3 lower = mesh.vertices.front();
+  geometry::Vec3 upper = lower;
+  for (const geometry::Vec3& p : mesh.vertices) {
+    lower = lower.cwiseMin(p);
+    upper = upper.cwiseMax(p);
+  }
+  const double size_mm = (upper - lower).maxCoeff();
+  if (size_mm >= kSmallestMm && size_mm <= kLargestMm) return;
+  const bool is_small = size_mm < kSmallestMm;
+  tell(warnings, design,
+       fmt::format("the largest dimension of the mesh is {} mm; if the unit of the file is the {}, set scale = {} in "
+                   "[part]",
+                   fixed_visible(size_mm, 1), is_small ? "metre" : "micrometre",
+                   shortest(mesh_scale(design, "part") * (is_small ? 1000.0 : 0.001))));
+}
+
 void check_thickness(const Design& design, const geometry::Part& part) {
   const double given_mm = design.thickness_mm();
   if (given_mm == 0.0 || std::abs(given_mm - part.thickness_mm) <= kSameThickness * part.thickness_mm) return;
@@ -92,16 +120,12 @@ geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::str
   if (const Plate* const plate = std::get_if<Plate>(&design.shape))
     return geometry::box_mesh({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
   const std::string name = design.mesh()->file.string();
-  try {
-    geometry::TriangleMesh mesh = geometry::parse_stl(read_file(design.mesh()->file, kMostDataBytes), name);
-    try {
-      return checked(design, std::move(mesh), warnings);
-    } catch (const InputError& error) {
-      throw InputError({name, 0, ""}, error.what());
-    }
-  } catch (const InputError& error) {
-    throw InputError(design.where("part.mesh"), error.what());  // adds the key that names the file
-  }
+  return read_named(design.where("part.mesh"), [&] {
+    geometry::TriangleMesh mesh =
+        geometry::parse_stl(read_file(design.mesh()->file, kMostDataBytes), name, mesh_scale(design, "part"));
+    warn_of_unit(design, mesh, warnings);
+    return read_named({name, 0, ""}, [&] { return checked(design, std::move(mesh), warnings); });
+  });
 }
 
 geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings) {

@@ -3,6 +3,7 @@
 #include "core/overloaded.h"
 #include "core/schema/writer.h"
 #include "studies/design/io/design_format.h"
+#include "studies/design/io/file_names.h"
 
 namespace retrace::studies {
 namespace {
@@ -167,7 +168,7 @@ void set_zones(Document& document, const ZonedPart& part) {
 }
 
 /// The tables that say what is designed.
-void set_shape(Document& document, const Shape& shape) {
+void set_shape(Document& document, const Design& design) {
   std::visit(Overloaded{[&](const ElementArray& array) {
                           set_element(document, array.part.element);
                           set_array(document, array);
@@ -177,6 +178,7 @@ void set_shape(Document& document, const Shape& shape) {
                         [&](const PartMesh& mesh) {
                           Keys part(document, "part");
                           part.set_word("mesh", mesh.name);
+                          part.set("scale", mesh_scale(design, "part"));
                           part.set("allow_open", mesh.allow_open);
                         },
                         [&](const Plate& plate) { Keys(document, "part").set("plate_mm", list_of(plate.size_mm)); },
@@ -186,13 +188,17 @@ void set_shape(Document& document, const Shape& shape) {
                           set_zones(document, part);
                         },
                         [&](const raytrace::BallLayer& balls) { set_balls(document, balls); }},
-             shape);
+             design.shape);
 }
 
-void set_entrance(Document& document, const EntranceFile& entrance) {
+void set_entrance(Document& document, const Design& design) {
+  const EntranceFile& entrance = *design.entrance;
   Keys keys(document, "front");
   keys.set_word(entrance.is_mesh ? "mesh" : "turned", entrance.name);
-  if (entrance.is_mesh) keys.set_choice("mesh_side", entrance.mesh_bottom);
+  if (entrance.is_mesh) {
+    keys.set("scale", mesh_scale(design, "front"));
+    keys.set_choice("mesh_side", entrance.mesh_bottom);
+  }
   if (entrance.centre_mm) keys.set("centre_mm", list_of(*entrance.centre_mm));
 }
 
@@ -416,8 +422,8 @@ void set_form(Document& document, const FormOfFacets& form) {
 Document document_of(const Design& design) {
   Document document(design_format().root);
   if (!design.title.empty()) document.set("title", design.title);
-  set_shape(document, design.shape);
-  if (design.entrance) set_entrance(document, *design.entrance);
+  set_shape(document, design);
+  if (design.entrance) set_entrance(document, design);
   set_body(document, design);
   if (design.wet_back) set_wet_back(document, *design.wet_back);
   set_coating(document, design.surface.coating);

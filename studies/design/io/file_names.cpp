@@ -10,4 +10,8 @@ void check_names_no_file(const Design& design, std::string_view why) {
   if (!keys.empty()) throw InputError(document.where(keys.front()), fmt::format("names a file, {}", why));
 }
 
+double mesh_scale(const Design& design, std::string_view table) {
+  return design.document ? design.document->number_if(schema::path_in(table, "scale")).value_or(1.0) : 1.0;
+}
+
 }  // namespace retrace::studies

@@ -112,6 +112,8 @@ constexpr Row kArrayRows[] = {
      "Pixels with grey < threshold * 255 are elements (0.7: 178 and below).", kThresholdOnly},
     {"gap_mm", Number{kGap}, 0.0, "Between neighbouring balls.", kBallGapOnly}};
 
+constexpr std::string_view kScaleMeaning =
+    "Factor from the unit of the STL file to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for micrometres.";
 constexpr std::string_view kBesidePlate = "not allowed beside plate_mm";
 constexpr Condition kMeshOnly[] = {without("plate_mm", kBesidePlate)};
 constexpr Condition kWithMesh[] = {without("plate_mm", kBesidePlate), beside("mesh")};
@@ -120,8 +122,8 @@ constexpr Condition kFacetsOnly[] = {without("plate_mm", kBesidePlate),
 
 constexpr Row kPartRows[] = {
     {"mesh", File{"an STL file"}, kNone,
-     "An STL file, binary or ASCII, in mm of the part frame, in place of elements; at most 10 million triangles.",
-     kMeshOnly},
+     "An STL file, binary or ASCII, in the part frame, in place of elements; at most 10 million triangles.", kMeshOnly},
+    {"scale", kSize, 1.0, kScaleMeaning, kWithMesh},
     {"allow_open", Flag{}, false,
      "Whether to trace a mesh with defects. Openings are closed by flat pieces, and bodies that intersect are united. "
      "A mesh that touches itself along edges is traced unchanged. A warning reports each defect; results apply to the "
@@ -138,7 +140,8 @@ constexpr Condition kSideOnly[] = {beside("mesh")};
 constexpr Row kEntranceRows[] = {
     {"turned", File{"a turned part"}, kNone,
      "The file of a turned part (turning_file.md): its exact surface, material below.", kTurnedOnly},
-    {"mesh", File{"an STL file"}, kNone, "An STL file, binary or ASCII, in mm, whose triangles are the front."},
+    {"mesh", File{"an STL file"}, kNone, "An STL file, binary or ASCII, whose triangles are the front."},
+    {"scale", kSize, 1.0, kScaleMeaning, kSideOnly},
     {"mesh_side", Word{kSides}, "top",
      "`\"top\"`: the front are its triangles that look towards +z; `\"bottom\"`: those that look towards -z, turned "
      "over, which is what `machined.stl` of `retrace turn` needs: it is the counterpart, moulded in the turned "

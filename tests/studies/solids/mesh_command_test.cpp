@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/app/program.h"
 
@@ -212,6 +214,65 @@ TEST(MeshPart, BodiesThatCrossAreUnitedOnRequest) {
   EXPECT_NE(refused.err.find("cannot be united"), std::string::npos) << refused.err;
 }
 
+/// Whichever triangles are turned over, the message names the winding, not an opening, and `allow_open` does not help.
+TEST(MeshPart, MixedWindingIsNamed) {
+  const TemporaryFolder folder;
+  folder.write("mesh.toml", kMesh);
+  const std::string box = box_facets({0, 0, 0}, {4, 4, 2});
+  for (const std::size_t turned : {0U, 3U, 7U, 11U}) {
+    // Swaps the first two vertices of a triangle.
+    std::vector<std::string> lines;
+    std::stringstream stream(box);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    std::string& line = lines[turned];
+    const std::size_t first = line.find("vertex");
+    const std::size_t second = line.find("vertex", first + 1);
+    const std::size_t third = line.find("vertex", second + 1);
+    line = line.substr(0, first) + line.substr(second, third - second) + line.substr(first, second - first) +
+           line.substr(third);
+    std::string text = "solid\n";
+    for (const std::string& one : lines) text += one + "\n";
+    folder.write("part.stl", text + "endsolid\n");
+    for (const char* const open : {"part.allow_open=false", "part.allow_open=true"})
+      expect_refused(retrace(folder, {"rre", "mesh.toml", "--samples", "64", "--set", open}),
+                     "mesh.toml:2: part.mesh: part.stl: all triangles must be counter-clockwise seen from outside, or "
+                     "all clockwise: near (");
+  }
+}
+
+/// A part in metres or micrometres is read as one in mm with a warning, and traced as one in mm with the scale that the
+/// warning names.
+TEST(MeshPart, ImplausibleSizesGiveAWarningThatNamesTheScale) {
+  const TemporaryFolder folder;
+  folder.write("mesh.toml", kMesh);
+  const auto write_box = [&](double unit) {
+    folder.write("part.stl", "solid\n" + box_facets({0, 0, 0}, {40 * unit, 20 * unit, 2 * unit}) + "endsolid\n");
+  };
+  const auto volume_mm3 = [&](const Arguments& more, std::string* err) {
+    const Outcome outcome = retrace(folder, with({"export", "mesh.toml", "out.stl", "--json", "e.json"}, more));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    *err = outcome.err;
+    return folder.json("e.json").at("volume_mm3").get<double>();
+  };
+  std::string err;
+  write_box(1.0);
+  EXPECT_NEAR(volume_mm3({}, &err), 1600.0, 1e-3);
+  EXPECT_EQ(err, "");
+  write_box(1000.0);
+  volume_mm3({}, &err);
+  EXPECT_NE(err.find("the largest dimension of the mesh is 40000.0 mm; if the unit of the file is the micrometre, set "
+                     "scale = 0.001 in [part]"),
+            std::string::npos)
+      << err;
+  EXPECT_NEAR(volume_mm3({"--set", "part.scale=0.001"}, &err), 1600.0, 1e-2);
+  EXPECT_EQ(err, "");
+  write_box(0.001);
+  volume_mm3({}, &err);
+  EXPECT_NE(err.find("mm; if the unit of the file is the metre, set scale = 1000 in [part]"), std::string::npos) << err;
+  EXPECT_NEAR(volume_mm3({"--set", "part.scale=1000"}, &err), 1600.0, 1e-2);
+  EXPECT_EQ(err, "");
+}
+
 TEST(MeshPart, WrongFilesAndKeysAreRefused) {
   const TemporaryFolder folder;
   export_part(folder, kArray);
@@ -221,11 +282,11 @@ TEST(MeshPart, WrongFilesAndKeysAreRefused) {
   };
   refused("[part]\nmesh = \"none.stl\"\n[body]\n", "d.toml:2: part.mesh: none.stl: cannot be read");
   folder.write("text.stl", "hello");
-  refused("[part]\nmesh = \"text.stl\"\n[body]\n", "d.toml:2: part.mesh: text.stl:1: not an STL file");
+  refused("[part]\nmesh = \"text.stl\"\n[body]\n", "d.toml:2: part.mesh: text.stl: not an STL file");
   refused("[part]\n[body]\n", "d.toml: element.kind: missing, must be");
   refused("[part]\nmesh = 3\n", "d.toml:2: part.mesh: ");
   refused("[part]\nmesh = \"part.stl\"\nallow_open = 1\n", "d.toml:3: part.allow_open: must be true or false, got 1");
-  refused("[part]\nmesh = \"part.stl\"\nscale = 1\n", "d.toml:3: part.scale: unknown key");
+  refused("[part]\nmesh = \"part.stl\"\nscale = 0\n", "d.toml:3: part.scale: must be > 0, got 0");
   refused("[part]\nmesh = \"part.stl\"\n[array]\nx_length_mm = 1\n", "d.toml:3: array: not allowed beside part.mesh");
   refused("[part]\nmesh = \"part.stl\"\n[surface]\nroot_radius_um = 1\n",
           "d.toml:4: surface.root_radius_um: not allowed with [part]");

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -72,8 +73,9 @@ TEST(Stl, TrianglesWithoutAreaInTheirVerticesAreDropped) {
 }
 
 TEST(Stl, WrongFilesAreRefusedWithTheirLine) {
-  EXPECT_EQ(complaint(""), "a.stl:1: not an STL file: must go on with \"solid\", got the end of the file");
-  EXPECT_EQ(complaint("hello"), "a.stl:1: not an STL file: must go on with \"solid\", got \"hello\"");
+  // Nothing of a file that does not begin as STL does is shown.
+  for (const std::string text : {"", "hello", "root:x:0:0:root:/root:/bin/bash\n"})
+    EXPECT_EQ(complaint(text), "a.stl: not an STL file: must begin with \"solid\", or be binary STL");
   EXPECT_EQ(complaint("solid\nendsolid\n"), "a.stl: must have at least one triangle, got none");
   std::string wrong = kTriangle;
   wrong.replace(wrong.find("vertex 1"), 8, "vertex x");
@@ -83,9 +85,48 @@ TEST(Stl, WrongFilesAreRefusedWithTheirLine) {
       << complaint(wrong);
   EXPECT_TRUE(complaint(kTriangle.substr(0, 60)).starts_with("a.stl:5: not an STL file"))
       << complaint(kTriangle.substr(0, 60));
-  // A binary file that was cut off is none, and says nothing of use as ASCII.
-  const std::string binary = stl_text(prism(), "x");
-  EXPECT_NE(complaint(binary.substr(0, binary.size() - 1)), "");
+}
+
+/// A binary file is one whatever its header says, and each message gives its true length and the right one.
+TEST(Stl, BinaryFilesOfAWrongLengthAreRefusedAsBinary) {
+  for (const std::string title : {"x", "solid", "solid facet normal", "SOLID x"}) {
+    const std::string binary = stl_text(prism(), title);
+    const std::size_t triangles = prism().triangles.size();
+    EXPECT_EQ(parse_stl(binary, "a.stl").triangles.size(), triangles) << title;
+    const std::string rule = "a.stl: not an STL file: binary STL has 84 bytes and 50 for each triangle";
+    const std::string wanted = std::to_string(84 + 50 * triangles) + " for the " + std::to_string(triangles);
+    for (const std::size_t more : {1U, 2U, 50U, 1000U})
+      for (const char byte : {'\0', '\n', 'x'})
+        EXPECT_EQ(complaint(binary + std::string(more, byte)),
+                  rule + ", " + wanted + " that it gives, got " + std::to_string(binary.size() + more) +
+                      ": remove the " + std::to_string(more) + " bytes behind the last triangle");
+    for (const std::size_t length : {binary.size() - 1, binary.size() - 50, std::size_t{84}})
+      EXPECT_EQ(complaint(binary.substr(0, length)), rule + ", " + wanted + " that it gives, got " +
+                                                         std::to_string(length) +
+                                                         ": the end of the file is missing, or it has another format");
+  }
+  EXPECT_EQ(complaint(std::string("\x89PNG\0", 5)),
+            "a.stl: not an STL file: binary STL has 84 bytes and 50 for each triangle, got 5");
+}
+
+TEST(Stl, WordsMayHaveCapitals) {
+  std::string upper = kTriangle;
+  for (char& c : upper) c = static_cast<char>(std::toupper(c));
+  EXPECT_EQ(parse_stl(upper, "a.stl").vertices, parse_stl(kTriangle, "a.stl").vertices);
+  EXPECT_EQ(parse_stl("\xef\xbb\xbf" + kTriangle, "a.stl").vertices, parse_stl(kTriangle, "a.stl").vertices);
+}
+
+/// A scale multiplies every coordinate: a file in metres with a scale of 1000 is the file in mm.
+TEST(Stl, ScaleConvertsTheUnit) {
+  const BoundaryMesh mesh = prism();
+  const TriangleMesh in_mm = parse_stl(stl_text(mesh, "x"), "a.stl");
+  for (const double scale : {1024.0, 1.0 / 1024.0}) {
+    BoundaryMesh other = mesh;
+    for (Vec3& p : other.vertices) p /= scale;
+    const TriangleMesh scaled = parse_stl(stl_text(other, "x"), "a.stl", scale);
+    EXPECT_EQ(scaled.vertices, in_mm.vertices) << "powers of two are exact";
+    EXPECT_EQ(scaled.triangles, in_mm.triangles);
+  }
 }
 
 TEST(Stl, CoordinatesThatAreNoNumbersAreRefused) {
