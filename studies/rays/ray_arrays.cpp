@@ -81,10 +81,9 @@ bool ArraySource::read(std::size_t most, std::vector<SetRay>& rays) {
 SetRay ArraySource::ray(std::size_t number) const {
   SetRay ray;
   ray.position_mm = three(arrays_.origins_mm, number, "origins");
-  ray.direction = three(arrays_.directions, number, "directions");
-  const double length = ray.direction.norm();
-  if (!(length > 0.0)) refuse("directions", number, "must not be 0");
-  ray.direction /= length;
+  const std::optional<Vec3> direction = unit_along(three(arrays_.directions, number, "directions"));
+  if (!direction) refuse("directions", number, "must not be 0");
+  ray.direction = *direction;
   const std::size_t at = arrays_.stokes.size() == 4 ? 0 : 4 * number;
   ray.radiant_w = arrays_.stokes[at];
   if (!(ray.radiant_w >= 0.0) || !std::isfinite(ray.radiant_w))

@@ -15,6 +15,15 @@ constexpr double kRounding = 1e-5;
 // Of the sine between axis and direction.
 constexpr double kLeastAcross = 1e-3;
 
+/// Returns a finite vector times the power of two that brings its largest coordinate to 1 to 2. The factor changes no
+/// digit of the coordinates.
+Vec3 moderate(const Vec3& v) {
+  const double largest = v.cwiseAbs().maxCoeff();
+  if (!(largest > 0.0) || !v.allFinite()) return v;
+  const int exponent = -std::ilogb(largest);
+  return v.unaryExpr([exponent](double c) { return std::scalbn(c, exponent); });
+}
+
 }  // namespace
 
 bool is_wavelength(double nm) {
@@ -23,6 +32,13 @@ bool is_wavelength(double nm) {
 
 std::string wavelength_text(double nm) {
   return fmt::format("a wavelength must be {} to {} nm, got {}", kLeastNm, kMostNm, nm);
+}
+
+std::optional<Vec3> unit_along(const Vec3& direction) {
+  const Vec3 scaled = moderate(direction);
+  const double length = scaled.norm();
+  if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
+  return scaled / length;
 }
 
 Vec3 axis_across(const Vec3& direction) {
@@ -40,9 +56,9 @@ const char* settle_stokes(SetRay& ray) {
   if (sum > 1.0 + kRounding) return "the squares of S1, S2 and S3 must add up to 1 at most";
   if (sum > 1.0)
     for (double& s : ray.stokes) s /= std::sqrt(sum);
-  const Vec3 across = ray.axis - ray.axis.dot(ray.direction) * ray.direction;
-  if (!(across.norm() > kLeastAcross * ray.axis.norm()))
-    return "the axis of polarisation must lie across the direction";
+  const Vec3 axis = moderate(ray.axis);
+  const Vec3 across = axis - axis.dot(ray.direction) * ray.direction;
+  if (!(across.norm() > kLeastAcross * axis.norm())) return "the axis of polarisation must lie across the direction";
   ray.axis = across.normalized();
   return nullptr;
 }

@@ -118,10 +118,9 @@ double RayCsvSource::value(std::size_t quantity, bool not_negative) const {
 SetRay RayCsvSource::ray() const {
   SetRay ray;
   ray.position_mm = {value(kX), value(kY), value(kZ)};
-  ray.direction = {value(kDx), value(kDy), value(kDz)};
-  const double length = ray.direction.norm();
-  if (!(length > 0.0) || !std::isfinite(length)) fail("dx", "a direction must have a length above 0");
-  ray.direction /= length;
+  const std::optional<Vec3> direction = unit_along({value(kDx), value(kDy), value(kDz)});
+  if (!direction) fail("dx", "a direction must have a length above 0");
+  ray.direction = *direction;
   if (has(kPower)) ray.radiant_w = value(kPower, true);
   if (has(kLuminous)) ray.luminous_lm = value(kLuminous, true);
   if (has(kWavelength)) {

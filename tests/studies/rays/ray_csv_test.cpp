@@ -43,6 +43,14 @@ TEST(RayCsv, ColumnsMayStandInAnyOrder) {
   EXPECT_EQ(rays[0].wavelength_nm, 555.0);
 }
 
+TEST(RayCsv, DirectionsMayHaveAnyLength) {
+  for (const std::string length : {"1e-320", "1e-200", "1e-155", "1e155", "1e300"}) {
+    const std::vector<SetRay> rays = rays_of(source_of(kNames + "1,2,3,0,0,-" + length + ",1\n"));
+    ASSERT_EQ(rays.size(), 1U) << length;
+    EXPECT_EQ(rays[0].direction, Vec3(0, 0, -1)) << length;
+  }
+}
+
 TEST(RayCsv, TheLastLineMayEndWithTheFile) {
   EXPECT_EQ(rays_of(source_of(kNames + "0,0,0,0,0,1,1\n0,0,0,0,0,1,2")).at(1).radiant_w, 2.0);
 }
