@@ -39,7 +39,7 @@ struct Traits {
   std::uint64_t most = std::uint64_t{1} << 36;  ///< of a whole number
   bool required = false;                        ///< of an option; what has a place is, unless it is a std::optional
   std::string excludes = {};                    ///< the option that it cannot go with
-  std::string needs = {};                       ///< the option that it cannot go without
+  Words needs = {};                             ///< options of which one must be given for it to mean something
 };
 
 /// Traits of what is one of a set of words. \param files ending of files that it may be as well; none: it is no file

@@ -10,10 +10,15 @@
 #include "app/commands.h"
 #include "app/output.h"
 #include "core/leading_number.h"
+#include "core/message_text.h"
+#include "core/text.h"
 #include "core/version.h"
 
 namespace retrace::app {
 namespace {
+
+// Maximum length of a word in an error of CLI11: the name of an option and 80 characters of its value.
+constexpr std::size_t kMaxValueBytes = 110;
 
 const std::string kVersionText = std::string("retrace ") + kVersion;
 
@@ -25,7 +30,7 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
     const bool is_number =
         error == std::errc{} && end == text.data() + text.size() && (text.size() == 1 || text.front() != '0');
     if (is_number && value >= low && value <= high) return {};
-    return fmt::format("must be a whole number from {} to {}, got {}", low, high, text);
+    return fmt::format("must be a whole number from {} to {}, got {}", low, high, printable(text));
   };
   return {check, "", "WHOLE"};
 }
@@ -34,7 +39,7 @@ CLI::Validator real_number() {
   const auto check = [](const std::string& text) -> std::string {
     const std::optional<LeadingNumber> number = leading_number(text);
     if (number && number->length == text.size()) return {};
-    return fmt::format("must be a number, got {}", text);
+    return fmt::format("must be a number, got {}", printable(text));
   };
   return {check, "", "REAL"};
 }
@@ -85,7 +90,19 @@ void add(CLI::App& app, const std::vector<Argument>& arguments) {
   for (const Argument& argument : arguments) {
     const auto [excludes, needs] = std::pair(argument.traits.excludes, argument.traits.needs);
     if (!excludes.empty()) app.get_option(option_names(argument).back())->excludes(app.get_option(excludes));
-    if (!needs.empty()) app.get_option(option_names(argument).back())->needs(app.get_option(needs));
+    if (needs.size() == 1) app.get_option(option_names(argument).back())->needs(app.get_option(needs[0]));
+  }
+}
+
+/// Refuses an option whose meaning depends on others of which none was given. CLI11 checks those that depend on one.
+/// \throw InputError
+void check_needs(const CLI::App& app, const std::vector<Argument>& arguments) {
+  const auto is_given = [&](const std::string& option) { return app.get_option(option)->count() > 0; };
+  for (const Argument& argument : arguments) {
+    const Words& needs = argument.traits.needs;
+    if (needs.size() < 2 || !is_given(option_names(argument).back()) || std::ranges::any_of(needs, is_given)) continue;
+    throw InputError(
+        fmt::format("{} requires {}; see retrace --help", option_names(argument).back(), fmt::join(needs, " or ")));
   }
 }
 
@@ -101,17 +118,18 @@ std::string in_words(std::span<const Command> all) {
 std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::vector<std::string> unknown = app.remaining(true);
   for (const std::string& word : unknown)
-    if (word.starts_with('-')) return "unknown option " + word;
+    if (word.starts_with('-')) return "unknown option " + printable(word);
   if (!app.get_subcommands().empty()) return otherwise;
-  return (unknown.empty() ? "a command is required" : "unknown command " + unknown.front()) + ": there are " +
-         in_words(commands());
+  return (unknown.empty() ? "a command is required" : "unknown command " + printable(unknown.front())) +
+         ": there are " + in_words(commands());
 }
 
-/// CLI11 words its errors over several lines at times.
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
+/// Returns an error of CLI11 on one line, with long values clipped.
+std::string one_line(const std::string& text) {
+  std::string line;
+  for (const std::string_view word : words_in(text))
+    line += (line.empty() ? "" : " ") + printable(word, kMaxValueBytes);
+  return line;
 }
 
 /// Whether there is something to run; else what was requested is printed. \throw InputError
@@ -155,6 +173,7 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
   for (std::size_t k = 0; k < invocations.size(); ++k) {
     const Command& command = commands()[k];
     if (!app.got_subcommand(command.name)) continue;
+    check_needs(*app.get_subcommand(command.name), invocations[k].arguments);
     if (!command.refuses_set.empty() && !common->overrides.empty())
       throw InputError({"", 0, "--set"}, command.refuses_set);
     return [common, run = invocations[k].run] { return run(*common); };

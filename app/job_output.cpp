@@ -26,7 +26,8 @@ std::vector<Argument> making_arguments(MakingOptions& options, const std::string
       {"--workpiece KIND", "mould, or direct: the optic itself is cut", &options.request.workpiece,
        one_of(words_of(fabrication::kWorkpieceWords))},
       {"--shrinkage-percent S", "by which the mould is larger than the part", &options.request.shrinkage_percent}};
-  for (Argument& argument : all) argument.traits.needs = needs;
+  if (!needs.empty())
+    for (Argument& argument : all) argument.traits.needs = {needs};
   return all;
 }
 

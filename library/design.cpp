@@ -23,7 +23,9 @@ const char* version() {
   return kVersion;
 }
 
-Design::Design(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
+Design::Design(std::shared_ptr<const Content> content) : content_(std::move(content)) {
+  if (!content_) throw InputError({"", 0, "design"}, "must be a design that was read, got null");
+}
 
 Design Design::load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return parse(studies::read_toml_text(file), file == "-" ? "standard input" : file.string(), overrides);

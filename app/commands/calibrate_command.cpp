@@ -32,7 +32,7 @@ std::vector<Argument> arguments(CalibrateOptions& options) {
                                 "settle; without a table: write programs to be timed",
                                 &options.times, machine_traits()}};
   all.push_back(dialect_argument(options.dialect));
-  all.back().traits.needs = "--times";
+  all.back().traits.needs = {"--times"};
   return all;
 }
 

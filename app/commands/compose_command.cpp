@@ -58,7 +58,7 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
       {"--design FILE", "write the design of the whole part, with its zones", &options.design, files(".toml")});
   all.push_back({"--layout WORD", "how its zones lie: stripes, blocks or rows", &options.layout,
                  one_of(words_of(studies::kZoneLayouts))});
-  all.back().traits.needs = "--design";
+  all.back().traits.needs = {"--design"};
   all.push_back({"--for-worst", "write the zones that are best for the worst parts, as worst_share of the study asks",
                  &options.for_worst});
   for (const auto& [name, help, length] :
@@ -66,10 +66,10 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
                    &options.x_length_mm},
         {"--y-length-mm L", "likewise", &options.y_length_mm}}) {
     all.push_back({name, help, length});
-    all.back().traits.needs = "--design";
+    all.back().traits.needs = {"--design"};
   }
   all.push_back({"--job FILE", "write the fabrication job of that part", &options.job, files(".toml")});
-  all.back().traits.needs = "--design";
+  all.back().traits.needs = {"--design"};
   for (Argument& argument : making_arguments(options.making, "--job")) all.push_back(std::move(argument));
   return all;
 }

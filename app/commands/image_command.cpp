@@ -107,19 +107,26 @@ std::vector<Argument> road_arguments(ImageOptions& o) {
 }
 
 std::vector<Argument> arguments(ImageOptions& options) {
+  Traits lamp_file = files("");
+  lamp_file.needs = {"--camera", "--road"};
   std::vector<Argument> all = {
       design_argument(options.design),
-      {"--pixels N|CxR", "detector: along the longer side of the face [400]; camera: columns and rows [400x300]",
-       &options.pixels},
+      {"--pixels N|CxR",
+       "detector: along the longer side of the face [400]; camera: columns and rows [400x300]",
+       &options.pixels,
+       {.needs = {"--detector", "--camera"}}},
       {"--lamp FILE",
        "camera, road: the lamp or each headlamp, an IES or EULUMDAT file (.ies, .ldt) [--illuminance-lx; --lamp-cd]",
-       &options.lamp, files("")},
+       &options.lamp, lamp_file},
       {"--lamp-aim-deg D",
        "camera, road: by which the axis of a lamp from a file points down",
        &options.lamp_aim_deg,
-       {.needs = "--lamp"}}};
-  for (const auto& some : {detector_arguments(options), camera_arguments(options), road_arguments(options)})
+       {.needs = {"--lamp"}}}};
+  for (std::vector<Argument> some : {detector_arguments(options), camera_arguments(options), road_arguments(options)}) {
+    // The first option chooses the kind of picture; the others mean something for that kind only.
+    for (std::size_t k = 1; k < some.size(); ++k) some[k].traits.needs = {some.front().name};
     all.insert(all.end(), some.begin(), some.end());
+  }
   return all;
 }
 

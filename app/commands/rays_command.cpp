@@ -32,12 +32,11 @@ struct RaysOptions {
 };
 
 constexpr std::uint64_t kUsualRays = 1'000'000;
-constexpr std::uint64_t kMostRays = std::uint64_t{1} << 40;
 
 std::vector<Argument> arguments(RaysOptions& o) {
   const Words emitters(studies::kEmitterNames.begin(), studies::kEmitterNames.end());
   const auto of_emitter = [](Traits traits = {}) {
-    traits.needs = "--emitter";
+    traits.needs = {"--emitter"};
     return traits;
   };
   Traits no_file = one_of(emitters);
@@ -46,7 +45,8 @@ std::vector<Argument> arguments(RaysOptions& o) {
       design_argument(o.design),
       {"--source FILE", "rays to trace: IES TM-25 (.tm25ray) or a table (.csv)", &o.source, files("")},
       {"--emitter KIND", "in place of a file: a disc that sends out rays", &o.emitter, no_file},
-      {"--rays N", fmt::format("emitter: how many [{}]", kUsualRays), &o.rays, of_emitter(whole(1, kMostRays))},
+      {"--rays N", fmt::format("emitter: how many [{}]", kUsualRays), &o.rays,
+       of_emitter(whole(1, studies::kMaxEmitterRays))},
       {"--disc-mm D",
        "diameter of the emitter [default: 0, a point; collimated light: the size of the part or of one period]",
        &o.disc_mm, of_emitter()},

@@ -12,6 +12,7 @@
 #include "core/data_directory.h"
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_reader.h"
+#include "studies/design/request_limits.h"
 #include "studies/roughness/io/facet_table_reader.h"
 #include "studies/roughness/io/roughness_files.h"
 
@@ -52,8 +53,7 @@ studies::RoughnessRequest request_of(const RoughnessOptions& options, const Comm
   studies::RoughnessRequest request = options.request;
   request.sa_nm = read_number_list(options.sa, "--sa");
   request.correlation_length_um = read_number_list(options.correlation_length_um, "--correlation-length-um");
-  if (!std::isfinite(request.azimuth_deg))
-    throw InputError({"", 0, "--azimuth"}, fmt::format("must be a finite number, got {}", request.azimuth_deg));
+  studies::check_azimuth(request.azimuth_deg);
   if (!(request.target_error > 0.0 && request.target_error < 1.0))
     throw InputError({"", 0, "--target-error"}, fmt::format("must lie between 0 and 1, got {}", request.target_error));
   request.seed = common.seed;

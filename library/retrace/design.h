@@ -41,6 +41,7 @@ class RETRACE_API Design {
   std::vector<std::string> warnings() const;
 
   struct Content;
+  /// \throw InputError for null
   explicit Design(std::shared_ptr<const Content> content);
   const Content& content() const { return *content_; }
 

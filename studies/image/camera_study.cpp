@@ -44,16 +44,19 @@ void check_picture(const CameraRequest& r) {
 void check(const CameraRequest& r) {
   check_picture(r);
   require(r.distance_m > 0.0 && r.distance_m <= 1e6, "--distance-m", "be above 0 and at most 1e6", r.distance_m);
-  require(r.observation_deg >= 0.0 && r.observation_deg < 180.0, "--observation-deg", "be 0 to 180", r.observation_deg);
+  require(r.observation_deg >= 0.0 && r.observation_deg < 180.0, "--observation-deg", "be >= 0 and < 180",
+          r.observation_deg);
   require(std::abs(r.v_deg) < 90.0, "--v-deg", "lie between -90 and 90", r.v_deg);
   require(std::abs(r.h_deg) < 90.0, "--h-deg", "lie between -90 and 90", r.h_deg);
+  require(std::abs(r.rotation_deg) <= 360.0, "--rotation-deg", "be -360 to 360", r.rotation_deg);
   require(r.lamp_arcmin > 0.0 && r.lamp_arcmin <= 600.0, "--lamp-arcmin", "be above 0 and at most 600", r.lamp_arcmin);
   require(r.pupil_arcmin >= 0.0 && r.pupil_arcmin <= 600.0, "--pupil-arcmin", "be 0 to 600", r.pupil_arcmin);
   require(r.illuminance_lx >= 0.0, "--illuminance-lx", "be >= 0", r.illuminance_lx);
   require(std::abs(r.lamp_aim_deg) <= 45.0, "--lamp-aim-deg", "lie between -45 and 45", r.lamp_aim_deg);
   require(r.ambient_lx >= 0.0, "--ambient-lx", "be >= 0", r.ambient_lx);
   require(r.backlight_lx >= 0.0, "--backlight-lx", "be >= 0", r.backlight_lx);
-  for (const double length : r.film_mm) require(length > 0.0 && length <= 1e5, "--film-mm", "be above 0", length);
+  for (const double length : r.film_mm)
+    require(length > 0.0 && length <= 1e5, "--film-mm", "be above 0 and at most 1e5", length);
 }
 
 /// Width over height of the sheet must not go round more than half the cylinder.

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "studies/design/request_limits.h"
 
 namespace retrace::studies {
 namespace {
@@ -35,9 +36,8 @@ void check(const DetectorRequest& request) {
     throw InputError({"", 0, "--window-deg"},
                      fmt::format("must be above 0 and at most 90 degrees, got {}", shortest(request.window_deg)));
   if (request.cutoff) check_share(*request.cutoff, false, "--cutoff");
-  if (request.rays < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
-  if (!std::isfinite(request.azimuth_deg))
-    throw InputError({"", 0, "--azimuth"}, fmt::format("must be finite, got {}", request.azimuth_deg));
+  check_rays(request.rays);
+  check_azimuth(request.azimuth_deg);
   if (request.engine == Engine::cell || request.engine == Engine::stochastic)
     throw InputError({"", 0, "--engine"}, fmt::format("must be auto, exact, montecarlo or embree for pictures, got {}",
                                                       engine_name(request.engine)));

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "studies/design/request_limits.h"
 #include "studies/photometry/advice.h"
 #include "studies/photometry/colour.h"
 #include "studies/photometry/photometer.h"
@@ -65,12 +66,11 @@ void check(const PhotometryRequest& request) {
     throw InputError({"", 0, "--engine"},
                      fmt::format("must be auto, exact, montecarlo or embree, got {}", engine_name(request.engine)));
   if (request.cutoff) check_share(*request.cutoff, false, "--cutoff");
-  if (request.rays < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
+  check_rays(request.rays);
   if (request.rotation_deg.empty() || request.rotation_deg.size() > kMostRotations)
     throw InputError({"", 0, "--rotation"},
                      fmt::format("must be 1 to {} turns, got {}", kMostRotations, request.rotation_deg.size()));
-  for (const double turn : request.rotation_deg)
-    if (!std::isfinite(turn)) throw InputError({"", 0, "--rotation"}, fmt::format("must be finite, got {}", turn));
+  for (const double turn : request.rotation_deg) check_number(turn, -360.0, 360.0, "--rotation");
   for (const TestPoint& point : request.programme.points)
     if (!(point.observation_deg <= request.window_deg))
       throw InputError({request.limits_source, point.line, "observation_deg"},

@@ -10,6 +10,7 @@
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/optics.h"
 #include "raytrace/sampling/entrance_sampler.h"
+#include "studies/design/request_limits.h"
 
 namespace retrace::studies {
 namespace {
@@ -21,7 +22,8 @@ void require(bool is_right, const char* option, const std::string& text) {
 }
 
 Vec3 place_of(const std::array<double, 3>& numbers, const char* option) {
-  for (const double n : numbers) require(std::isfinite(n), option, "must be three finite numbers");
+  for (const double n : numbers)
+    require(std::abs(n) <= kFarthestMm, option, fmt::format("must be three numbers from -1e9 to 1e9, got {}", n));
   return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -53,8 +55,9 @@ RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Pa
     const double distance = request.distance_mm.value_or(kUsualDistanceMm);
     require(std::abs(incidence) < 90.0, "--incidence",
             fmt::format("must lie between -90 and 90 degrees, got {}", incidence));
-    require(std::isfinite(azimuth), "--azimuth", fmt::format("must be finite, got {}", azimuth));
-    require(distance > 0.0 && std::isfinite(distance), "--distance-mm", fmt::format("must be > 0, got {}", distance));
+    check_azimuth(azimuth);
+    require(distance > 0.0 && distance <= kFarthestMm, "--distance-mm",
+            fmt::format("must be > 0 and at most 1e9, got {}", distance));
     aim = middle_of_face(part);
     const raytrace::Illumination light{Angle::from_deg(incidence), Angle::from_deg(azimuth), raytrace::kUnpolarised};
     way = -distance * raytrace::direction_to_source(light);

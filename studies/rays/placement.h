@@ -10,6 +10,9 @@
 
 namespace retrace::studies {
 
+/// Largest coordinate, distance and diameter of a source. Farther away, rays have too few digits to meet the part.
+inline constexpr double kFarthestMm = 1e9;
+
 /// What is asked; `at_mm` or the three angles and distance, not both.
 struct RayPlacementRequest {
   std::optional<std::array<double, 3>> at_mm;   ///< where its origin lies, in the part frame

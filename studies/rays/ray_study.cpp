@@ -124,11 +124,12 @@ Emitter RayStudy::emitter_of(const EmitterRequest& request) const {
   emitter.power = request.power;
   emitter.is_luminous = spectrum != nullptr && spectrum->photopic;
   emitter.seed = hidden_->request.seed;
-  check(emitter.disc_mm >= 0.0 && std::isfinite(emitter.disc_mm), "--disc-mm", ">= 0", emitter.disc_mm);
+  check(emitter.disc_mm >= 0.0 && emitter.disc_mm <= kFarthestMm, "--disc-mm", ">= 0 and <= 1e9", emitter.disc_mm);
   check(emitter.half_angle_deg >= 0.0 && emitter.half_angle_deg <= 90.0, "--half-angle-deg", ">= 0 and <= 90",
         emitter.half_angle_deg);
   check(emitter.power > 0.0 && std::isfinite(emitter.power), "--power", "> 0", emitter.power);
-  if (emitter.rays < 1) throw InputError({"", 0, "--rays"}, "must be at least 1, got 0");
+  if (emitter.rays < 1 || emitter.rays > kMaxEmitterRays)
+    throw InputError({"", 0, "--rays"}, fmt::format("must be 1 to {}, got {}", kMaxEmitterRays, emitter.rays));
   return emitter;
 }
 

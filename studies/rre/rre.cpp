@@ -11,6 +11,7 @@
 #include "core/number_format.h"
 #include "raytrace/exact/stochastic_beams.h"
 #include "raytrace/paths/monte_carlo.h"
+#include "studies/design/request_limits.h"
 #include "studies/rre/request_tracing.h"
 #include "studies/rre/tracing.h"
 
@@ -34,13 +35,15 @@ void check(const RreRequest& request) {
       throw InputError({"", 0, option}, "needs --engine exact");
   if (request.target_error) check_share(*request.target_error, false, "--target-error");
   if (request.cutoff) check_share(*request.cutoff, true, "--cutoff");
-  if (request.rays && *request.rays < 1) throw InputError({"", 0, "--samples"}, "must be at least 1, got 0");
-  for (const double p : request.azimuth_deg)
-    if (!std::isfinite(p)) throw InputError({"", 0, "--azimuth"}, fmt::format("must be finite, got {}", p));
+  if (request.rays) check_rays(*request.rays);
+  for (const double p : request.azimuth_deg) check_azimuth(p);
   for (const double t : request.incidence_deg) check_incidence(t);
   for (const CurveSpan& span : request.incidence_spans) {
     check_incidence(span.low);
     check_incidence(span.high);
+    if (!(span.low < span.high))
+      throw InputError({"", 0, "--incidence"}, fmt::format("a range must have start < stop, got {} and {}",
+                                                           shortest(span.low), shortest(span.high)));
   }
 }
 

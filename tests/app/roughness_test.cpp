@@ -70,7 +70,7 @@ TEST(Roughness, RefusesBadInputInOneLine) {
       {{"d.toml", "--correlation-length-um", "0"}, "--correlation-length-um: must be > 0"},
       {{"d.toml", "--waviness-length-um", "nan"}, "--waviness-length-um: must be > 0"},
       {{"d.toml", "--incidence", "90"}, "--incidence: must lie between -90 and 90 degrees, got 90"},
-      {{"d.toml", "--azimuth", "inf"}, "--azimuth: must be a finite number"},
+      {{"d.toml", "--azimuth", "inf"}, "--azimuth: must be -360 to 360 degrees, got inf"},
       {{"d.toml", "--target-error", "0"}, "--target-error: must lie between 0 and 1"},
       {{"d.toml", "--set", "surface.roughness_sq_nm=3", "--set", "surface.correlation_length_um=3"},
        "--set surface.roughness_sq_nm=3: surface.roughness_sq_nm: must be left out here"},

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <regex>
@@ -15,6 +17,7 @@
 #include "retrace/metrology.h"
 #include "retrace/part.h"
 #include "retrace/photometry.h"
+#include "retrace/rays.h"
 #include "retrace/report.h"
 #include "retrace/rre.h"
 #include "retrace/running.h"
@@ -159,6 +162,21 @@ TEST(Library, WrongInputIsAnErrorWithItsPlace) {
     EXPECT_THROW(rre(design, {.azimuth_deg = {bad}}), InputError);
   }
   EXPECT_THROW(rre(design, {.samples = 0}), InputError);
+  constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+  EXPECT_THROW(rre(design, {.engine = "montecarlo", .samples = most}), InputError);
+  EXPECT_THROW(rays(design, {.emitter = "collimated", .rays = most}), InputError);
+  PhotometryRequest table;
+  table.standard = "r150";
+  table.part_class = "IA";
+  table.colour = "red";
+  table.area_cm2 = 30;
+  table.samples = most;
+  EXPECT_THROW(photometry(design, table), InputError);
+  EXPECT_THROW(rre(design, {.azimuth_deg = {1e300}}), InputError);
+  for (const std::array<double, 2>& span :
+       std::vector<std::array<double, 2>>{{40.0, 20.0}, {20.0, 20.0}, {nan, 20.0}, {0.0, nan}})
+    EXPECT_THROW(rre(design, {.incidence_spans_deg = {span}}), InputError) << span[0] << ' ' << span[1];
+  EXPECT_THROW(Design(nullptr), InputError);
   EXPECT_THROW(mesh(design, {"corner", {}}), InputError);
   EXPECT_THROW(make_job(design, {}), InputError);
   EXPECT_THROW(fabricate("no_such_job.toml"), InputError);
@@ -365,6 +383,22 @@ TEST(Library, OnePageHasSeveralResults) {
   EXPECT_NE(page.html.find("<title>Mine"), std::string::npos);
   EXPECT_THROW(report_page({}), InputError);
   EXPECT_THROW(report_page({{"rre.json", "{\"schema\": \"retrace.rre/1\""}}), InputError);
+}
+
+/// A page reads the files that the caller names and no others.
+TEST(Library, APageReadsNamedFilesOnly) {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder.path() / "part.stl").string();
+  export_solid(Design::load(example("rtp_single_0p45mm.toml")), file);
+  const std::string document = R"({"schema": "retrace.rre/1", "points": [], "designs": [{"source": "d.toml", "part": )"
+                               R"({"mesh": ")" +
+                               file + R"("}, "body": {"refractive_index": 1.5}}]})";
+  const ReportPage without = report_page({{"rre.json", document}});
+  ASSERT_EQ(without.warnings.size(), 1U);
+  EXPECT_NE(without.warnings[0].find("part.mesh: names "), std::string::npos) << without.warnings[0];
+  for (const std::string& readable : {file, folder.path().string()})
+    EXPECT_TRUE(report_page({{"rre.json", document}}, {}, {readable}).warnings.empty()) << readable;
+  EXPECT_THROW(report_page({{"rre.json", document}}, {}, {file + "x"}), InputError);
 }
 
 class InstalledLibrary : public ::testing::Test {

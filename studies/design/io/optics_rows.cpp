@@ -46,7 +46,8 @@ constexpr Row kBodyRows[] = {
      "A catalogue of glasses in the AGF format, such as makers publish: `material` is then the name of one of them. Or "
      "a "
      "record of refractiveindex.info (`.yml`), which has one material: `material` is then not needed."},
-    {"refractive_index", Number{{.low = 1.0}}, Computed{"the material's"}, "Relative to air; wins over the material."},
+    {"refractive_index", Number{{.low = 1.0, .high = 10.0}}, Computed{"the material's"},
+     "Relative to air; wins over the material."},
     {"temperature_c", Number{{.low = -200.0, .high = 400.0}}, Computed{"that of the material's data"},
      "Of the part and the air around it, whose indices change with it; lengths are those at that temperature. For "
      "materials with thermo-optic coefficients; not together with `refractive_index`.",
@@ -80,10 +81,14 @@ constexpr Row kWetBackRows[] = {
     {"half_plane", Numbers{3, kPlaceInPart, "numbers, x and y in mm and an azimuth in degrees"}, kNone,
      "`[x_mm, y_mm, azimuth_deg]`: those whose middle lies on the side towards that azimuth of a line through x, y."}};
 
+// Metals have indices up to about 500 in the far infrared.
+constexpr NumberRange kIndexOfLayer{.low = 0.0, .low_included = false, .high = 1000.0};
+
 constexpr Row kLayerRows[] = {
     {"material", Text{}, kNone, "A name that `retrace list materials` shows, of a material or a metal."},
-    {"refractive_index", Number{kAboveZero}, kNone, "In place of a material, relative to air."},
-    {"extinction_coefficient", Number{kAtLeastZero}, 0.0, "Imaginary part of that index.", kWithLayerIndex},
+    {"refractive_index", Number{kIndexOfLayer}, kNone, "In place of a material, relative to air."},
+    {"extinction_coefficient", Number{{.low = 0.0, .high = 1000.0}}, 0.0, "Imaginary part of that index.",
+     kWithLayerIndex},
     {"thickness_nm", Number{{.low = 0.0, .high = 1e6}}, kNone,
      "Without it the layer is opaque, which takes a metal or an extinction coefficient above 0."}};
 

@@ -115,7 +115,7 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--detector", "--incidence=nan"}, "--incidence: must lie between"},
       {{"--detector", "--engine=cell"}, "--engine: must be auto, exact, montecarlo or embree for pictures, got cell"},
       {{"--detector", "--cutoff=2"}, "--cutoff: must lie between 0 and 1, got 2"},
-      {{"--detector", "--samples=0"}, "--samples: must be at least 1, got 0"},
+      {{"--detector", "--samples=0"}, "--samples: must be 1 to 68719476736, got 0"},
       {{"--camera", "--eye-mm=0,0,0.5"}, "--eye-mm: the camera must be outside the part, got 0,0,0.5 mm"},
       {{"--camera", "--eye-mm=0,0,-0.2"}, "--eye-mm: the camera must be outside the part"},
       {{"--camera", "--lamp-mm=1,1,0.9"}, "--lamp-mm: the lamp must be outside the part, got 1,1,0.9 mm"},
@@ -124,9 +124,12 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--camera", "--eye-mm=a,b,c"}, "--eye-mm: must be three numbers"},
       {{"--camera", "--eye-mm=inf,0,0"}, "--eye-mm: must be three numbers"},
       {{"--camera", "--distance-m=0"}, "--distance-m: must be above 0 and at most 1e6, got 0"},
-      {{"--camera", "--observation-deg=-1"}, "--observation-deg: must be 0 to 180, got -1"},
+      {{"--camera", "--observation-deg=-1"}, "--observation-deg: must be >= 0 and < 180, got -1"},
       {{"--camera", "--v-deg=90"}, "--v-deg: must lie between -90 and 90, got 90"},
       {{"--camera", "--h-deg=nan"}, "--h-deg: must lie between"},
+      {{"--camera", "--rotation-deg=nan"}, "--rotation-deg: must be -360 to 360, got nan"},
+      {{"--camera", "--rotation-deg=1e300"}, "--rotation-deg: must be -360 to 360, got 1e300"},
+      {{"--detector", "--azimuth=1e300"}, "--azimuth: must be -360 to 360 degrees, got 1e+300"},
       {{"--camera", "--lamp-arcmin=0"}, "--lamp-arcmin: must be above 0 and at most 600, got 0"},
       {{"--camera", "--pupil-arcmin=-1"}, "--pupil-arcmin: must be 0 to 600, got -1"},
       {{"--camera", "--illuminance-lx=-1"}, "--illuminance-lx: must be >= 0, got -1"},
@@ -158,10 +161,37 @@ TEST_F(Image, WrongOptionsAreRefused) {
   }
 }
 
+/// Every option that belongs to some kinds of picture is refused with every other kind, whatever its value.
+TEST_F(Image, OptionsOfAnotherKindOfPictureAreRefused) {
+  const Arguments all = {"--detector", "--camera", "--road"};
+  const std::vector<std::pair<Arguments, Arguments>> options = {
+      {{"--detector"},
+       {"--incidence", "--azimuth", "--engine", "--cutoff", "--samples", "--window-deg", "--angle-pixels"}},
+      {{"--camera"},
+       {"--distance-m", "--observation-deg", "--v-deg", "--h-deg", "--rotation-deg", "--eye-mm", "--lamp-mm",
+        "--lamp-arcmin", "--pupil-arcmin", "--illuminance-lx", "--ambient-lx", "--backlight-lx", "--field-mm",
+        "--film-mm", "--cylinder-mm", "--noise", "--passes", "--false-colour"}},
+      {{"--road"}, {"--road-distance-m", "--lamp-cd", "--lamp-height-m", "--dye"}},
+      {{"--detector", "--camera"}, {"--pixels"}},
+      {{"--camera", "--road"}, {"--lamp"}}};
+  for (const auto& [kinds, names] : options)
+    for (const std::string& name : names)
+      for (const std::string& kind : all) {
+        if (std::ranges::count(kinds, kind) > 0) continue;
+        SCOPED_TRACE(kind + " " + name);
+        Arguments arguments = {"image", "brick.toml", "-o", "out", kind, name};
+        if (name != "--false-colour") arguments.emplace_back("1");
+        const Outcome outcome = retrace(folder_, arguments);
+        EXPECT_EQ(outcome.code, 2);
+        const std::string needed = kinds.size() == 1 ? kinds[0] : kinds[0] + " or " + kinds[1];
+        EXPECT_NE(outcome.err.find(name + " requires " + needed), std::string::npos) << outcome.err;
+      }
+}
+
 TEST_F(Image, WrongSheetsAreRefused) {
   const std::vector<std::pair<Arguments, std::string>> cases = {
       {{"--film-mm=100"}, "--film-mm: must be width and height, such as 100x100, got \"100\""},
-      {{"--film-mm=0x5"}, "--film-mm: must be above 0, got 0"},
+      {{"--film-mm=0x5"}, "--film-mm: must be above 0 and at most 1e5, got 0"},
       {{"--cylinder-mm=0"}, "--cylinder-mm: must be at least "},
       {{"--cylinder-mm=10"}, "--cylinder-mm: must be at least "},
       {{"--eye-mm=0,0,0.5"}, "--eye-mm: the camera must be outside the body, in front of its face, got 0,0,0.5 mm"},

@@ -13,6 +13,7 @@
 #include "materials/io/material_library.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/rays/ray_accounts.h"
+#include "studies/rays/ray_arrays.h"
 #include "studies/rre/rre.h"
 #include "tests/support/refusals.h"
 
@@ -394,7 +395,14 @@ TEST(RayStudy, WhatMakesNoSenseIsRefused) {
   EXPECT_EQ(complaint([](RayRequest& r) { r.cutoff = NAN; }), "--cutoff: must be >= 0 and <= 1, got nan");
   EXPECT_EQ(complaint([](RayRequest& r) { r.placement.incidence_deg = 90.0; }),
             "--incidence: must lie between -90 and 90 degrees, got 90");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.distance_mm = 0.0; }), "--distance-mm: must be > 0, got 0");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.distance_mm = 0.0; }),
+            "--distance-mm: must be > 0 and at most 1e9, got 0");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.azimuth_deg = 1e300; }),
+            "--azimuth: must be -360 to 360 degrees, got 1e+300");
+  EXPECT_EQ(complaint([](RayRequest& r) {
+              r.placement.at_mm = {{0, 0, 1e200}};
+            }),
+            "--at-mm: must be three numbers from -1e9 to 1e9, got 1e+200");
   EXPECT_EQ(complaint([](RayRequest& r) {
               r.placement.azimuth_deg = 0.0;
               r.placement.at_mm = {{0, 0, 0}};
@@ -412,11 +420,39 @@ TEST(RayStudy, WhatMakesNoSenseIsRefused) {
       RayStudy(plate(), {}).emitter_of(request);
     });
   };
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.disc_mm = -1.0; }), "--disc-mm: must be >= 0, got -1");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.disc_mm = -1.0; }), "--disc-mm: must be >= 0 and <= 1e9, got -1");
   EXPECT_EQ(emitter([](EmitterRequest& r) { r.half_angle_deg = 91.0; }),
             "--half-angle-deg: must be >= 0 and <= 90, got 91");
   EXPECT_EQ(emitter([](EmitterRequest& r) { r.power = 0.0; }), "--power: must be > 0, got 0");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = 0; }), "--rays: must be at least 1, got 0");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = 0; }), "--rays: must be 1 to 1099511627776, got 0");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = UINT64_MAX; }),
+            "--rays: must be 1 to 1099511627776, got 18446744073709551615");
+}
+
+/// A direction has no length: from the smallest number to the largest, every multiple of it traces the same ray.
+TEST(RayStudy, LengthsOfDirectionsAndAxesDoNotMatter) {
+  const std::vector<double> origins = {4.1, 5.2, 9.0};
+  const Vec3 direction = Vec3(0.3, -0.2, -0.9).normalized();
+  const Vec3 axis(1.0, 0.5, 0.0);
+  const std::vector<double> stokes = {2.0, 1.2, -0.6, 0.8};
+  const auto read = [&](double factor) {
+    const std::vector<double> directions = {factor * direction.x(), factor * direction.y(), factor * direction.z()};
+    const std::vector<double> axes = {factor * axis.x(), factor * axis.y(), 0.0};
+    std::vector<SetRay> rays;
+    ArraySource({origins, directions, stokes, axes, {}}).read(1, rays);
+    return rays.at(0);
+  };
+  const SetRay expected = read(1.0);
+  EXPECT_NEAR((expected.direction - direction).norm(), 0.0, 1e-15);
+  for (const double factor : {1e-300, 1e-170, 1e-155, 1e-9, 1e9, 1e153, 1e155, 1e170, 1e307}) {
+    SCOPED_TRACE(factor);
+    const SetRay ray = read(factor);
+    EXPECT_NEAR((ray.direction - expected.direction).norm(), 0.0, 1e-15);
+    EXPECT_NEAR((ray.axis - expected.axis).norm(), 0.0, 1e-15);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(ray.stokes[k], expected.stokes[k]);
+  }
+  EXPECT_NE(refusal_of([&] { read(0.0); }), "");
+  EXPECT_NE(refusal_of([&] { read(INFINITY); }), "");
 }
 
 TEST(RayStudy, ACancelledRunKeepsWhatItHas) {
