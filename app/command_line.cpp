@@ -17,9 +17,6 @@
 namespace retrace::app {
 namespace {
 
-// Maximum length of a word in an error of CLI11: the name of an option and 80 characters of its value.
-constexpr std::size_t kMaxValueBytes = 110;
-
 const std::string kVersionText = std::string("retrace ") + kVersion;
 
 /// Whole numbers in decimal: CLI11 alone would read 010 as eight.
@@ -124,11 +121,10 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
          ": there are " + in_words(commands());
 }
 
-/// Returns an error of CLI11 on one line, with long values clipped.
+/// Returns an error of CLI11 on one line, with long words clipped.
 std::string one_line(const std::string& text) {
   std::string line;
-  for (const std::string_view word : words_in(text))
-    line += (line.empty() ? "" : " ") + printable(word, kMaxValueBytes);
+  for (const std::string_view word : words_in(text)) line += (line.empty() ? "" : " ") + printable(word);
   return line;
 }
 

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <string_view>
@@ -72,6 +73,8 @@ int main(int argc, char** argv) {
     return fail(error.exit_code(), error.what());
   } catch (const std::bad_alloc&) {  // of a library that does not allocate with new
     end_without_memory();
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(ExitCode::failed, error.path1().string() + ": " + error.code().message());
   } catch (const std::exception& error) {
     return fail(ExitCode::failed, error.what());
   }

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "core/error.h"
+#include "core/message_text.h"
 #include "core/text.h"
 
 namespace retrace::app {
@@ -27,11 +28,11 @@ class ListReader {
       add(number(parts[0], item));
       return;
     }
-    if (parts.size() != 3) fail(fmt::format("a range must be {}, got \"{}\"", ranges(), item));
+    if (parts.size() != 3) fail(fmt::format("a range must be {}, got {}", ranges(), in_quotes(item)));
     if (may_choose_ && parts[2] == "auto") {
       chosen.push_back({number(parts[0], item) + 0.0, number(parts[1], item) + 0.0});  // -0 is 0
       if (!(chosen.back().low < chosen.back().high))
-        fail(fmt::format("a range start:stop:auto must have start < stop, got \"{}\"", item));
+        fail(fmt::format("a range start:stop:auto must have start < stop, got {}", in_quotes(item)));
       return;
     }
     add_range(number(parts[0], item), number(parts[1], item), number(parts[2], item), item);
@@ -44,16 +45,16 @@ class ListReader {
 
   double number(std::string_view text, std::string_view item) const {
     const std::optional<double> value = number_in(text);
-    if (!value) fail(fmt::format("must be numbers a,b,c or ranges {}, got \"{}\"", ranges(), item));
+    if (!value) fail(fmt::format("must be numbers a,b,c or ranges {}, got {}", ranges(), in_quotes(item)));
     return *value;
   }
 
   void add_range(double start, double stop, double step, std::string_view item) {
-    if (step == 0.0) fail(fmt::format("the step of a range must not be 0, got \"{}\"", item));
+    if (step == 0.0) fail(fmt::format("the step of a range must not be 0, got {}", in_quotes(item)));
     const double steps = (stop - start) / step;
-    if (steps < 0.0) fail(fmt::format("the range runs away from its stop, got \"{}\"", item));
+    if (steps < 0.0) fail(fmt::format("the range runs away from its stop, got {}", in_quotes(item)));
     if (steps > static_cast<double>(kMostValues))
-      fail(fmt::format("a range may have at most {} values, got \"{}\"", kMostValues, item));
+      fail(fmt::format("a range may have at most {} values, got {}", kMostValues, in_quotes(item)));
     // The stop belongs to the range although start + i * step may miss it by rounding.
     const auto last = static_cast<long>(std::floor(steps + 1e-9 * std::max(1.0, steps)));
     for (long i = 0; i <= last; ++i) {

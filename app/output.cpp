@@ -43,11 +43,12 @@ void refuse_second(const std::string& own, const fs::path& file, const std::stri
 
 /// Refuses a document that cannot be written, unless it goes to the folder that is to be made.
 void check_can_write(const std::string& json, const std::string& out) {
+  std::error_code error;
   const fs::path folder = fs::absolute(json).parent_path();
-  if (fs::is_directory(json)) throw OutputError(json + ": cannot be written: it is a folder");
+  if (fs::is_directory(json, error)) throw OutputError(json + ": cannot be written: it is a folder");
   const auto parent = [](const std::string& path) { return fs::absolute(path).lexically_normal().parent_path(); };
   if (!out.empty() && parent(json) == parent(out + "/")) return;
-  if (!fs::is_directory(folder)) throw OutputError(json + ": cannot be written: there is no such folder");
+  if (!fs::is_directory(folder, error)) throw OutputError(json + ": cannot be written: there is no such folder");
   if (::access(folder.c_str(), W_OK) != 0) throw OutputError(json + ": cannot be written: no permission");
 }
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/message_text.h"
 #include "core/text.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/read/nc_program.h"
@@ -14,7 +15,8 @@ namespace {
 double spacing_of(std::string_view text, const std::string& whole) {
   const std::optional<double> value = number_in(text);
   if (!value || !(*value > 0.0))
-    throw InputError({"", 0, "--pixel-um"}, "must be one number > 0, or two for x and y as in 0.5,0.6, got " + whole);
+    throw InputError({"", 0, "--pixel-um"},
+                     "must be one number > 0, or two for x and y as in 0.5,0.6, got " + printable(whole));
   return *value;
 }
 

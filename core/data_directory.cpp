@@ -11,12 +11,14 @@ namespace retrace {
 namespace fs = std::filesystem;
 
 fs::path data_directory() {
+  std::error_code ignored;
   if (const char* chosen = std::getenv("RETRACE_DATA_DIR"); chosen != nullptr && *chosen != '\0') {
-    if (!fs::is_directory(chosen)) throw InputError(std::string("RETRACE_DATA_DIR: no such folder: ") + chosen);
+    if (!fs::is_directory(chosen, ignored))
+      throw InputError(std::string("RETRACE_DATA_DIR: no such folder: ") + chosen);
     return chosen;
   }
   fs::path folder = installation_folder() / "share" / "retrace";
-  if (!fs::is_directory(folder))
+  if (!fs::is_directory(folder, ignored))
     throw InputError("the data folder " + folder.string() +
                      " is missing; set RETRACE_DATA_DIR to retrace's data folder");
   return folder;
@@ -24,7 +26,8 @@ fs::path data_directory() {
 
 fs::path schema_file(std::string_view format) {
   fs::path file = installation_folder() / "share" / "retrace_schemas" / (std::string(format) + ".schema.json");
-  if (!fs::is_regular_file(file)) throw InputError(file.string() + ": is missing; retrace schema prints it");
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) throw InputError(file.string() + ": is missing; retrace schema prints it");
   return file;
 }
 

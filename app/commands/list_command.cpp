@@ -9,6 +9,7 @@
 #include "app/output.h"
 #include "core/data_directory.h"
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "fabrication/job/io/process_files.h"
@@ -206,7 +207,8 @@ std::vector<Argument> arguments(ListOptions& options) {
 ExitCode run(const ListOptions& options, const CommonOptions& common) {
   for (const auto& [name, list] : kLists)
     if (name == options.what) return list(common);
-  throw InputError(fmt::format("list: must be materials, machines, processes or standards, got {}", options.what));
+  throw InputError(
+      fmt::format("list: must be materials, machines, processes or standards, got {}", printable(options.what)));
 }
 
 }  // namespace

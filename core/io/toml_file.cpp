@@ -450,7 +450,7 @@ TomlTable parse_toml(std::string_view text, const std::string& source_name, std:
   source->root = parse_file(text, source->file);
   source->paths.push_back(source->root.source().path);
   for (const std::string& each : overrides) {
-    std::string label = "--set " + printable(each, 200);
+    std::string label = "--set " + printable(each);
     if (const auto key = unset_key(each)) {
       erase(source->root, *key);
       source->paths.push_back(std::make_shared<const std::string>(std::move(label)));

@@ -382,7 +382,7 @@ bool has_key_or_table(const Table& root, std::string_view path) {
 void check_unset_keys(const Format& format, std::span<const std::string> overrides) {
   for (const std::string& each : overrides)
     if (const auto key = unset_key(each); key && !has_key_or_table(format.root, *key))
-      throw InputError({"--set " + printable(each, 200), 0, ""}, complaint_about_key(format, *key));
+      throw InputError({"--set " + printable(each), 0, ""}, complaint_about_key(format, *key));
 }
 
 /// The root without the key that names the format.

@@ -1,6 +1,7 @@
 #include "studies/design/design_part.h"
 
 #include "core/atomic_file.h"
+#include "core/named_file.h"
 #include "studies/design/io/facet_planes_reader.h"
 #include "studies/design/mask_part.h"
 
@@ -14,13 +15,11 @@ geometry::Part part_of(const Design& design) {
   if (!design.facet_planes()) return geometry::build_part(design.part());
   if (const auto& planes = design.facet_planes()->planes) return geometry::build_part(design.part(), *planes);
   const std::string file = design.facet_planes()->file.string();
-  const geometry::FacetPlanes planes =
-      parse_facet_planes(read_file(design.facet_planes()->file, kMostFacetPlanesBytes), file, design.part());
-  try {
-    return geometry::build_part(design.part(), planes);
-  } catch (const InputError& error) {
-    throw InputError({file, 0, ""}, error.what());
-  }
+  return read_named(design.where("part.facets"), [&] {
+    const geometry::FacetPlanes planes =
+        parse_facet_planes(read_file(file, kMostFacetPlanesBytes), file, design.part());
+    return read_named({file, 0, ""}, [&] { return geometry::build_part(design.part(), planes); });
+  });
 }
 
 Design single_element_of(const Design& design) {

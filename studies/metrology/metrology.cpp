@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 #include "surface_models/autocorrelation.h"
 #include "surface_models/form.h"
@@ -109,7 +110,7 @@ int form_degree_of(std::string_view name) {
   for (int degree = 1; degree <= kMostFormDegree; ++degree)
     if (name == form_name(degree)) return degree;
   throw InputError({"", 0, "--form"},
-                   fmt::format("must be none, plane or poly2 to poly{}, got {}", kMostFormDegree, name));
+                   fmt::format("must be none, plane or poly2 to poly{}, got {}", kMostFormDegree, printable(name)));
 }
 
 std::string form_name(int degree) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/message_text.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::studies {
@@ -29,13 +30,13 @@ Engine engine_from_name(std::string_view name) {
   for (const auto& [known, engine] : kEngines)
     if (known == name) return engine;
   throw InputError({"", 0, "--engine"},
-                   fmt::format("must be auto, exact, stochastic, montecarlo, cell or embree, got {}", name));
+                   fmt::format("must be auto, exact, stochastic, montecarlo, cell or embree, got {}", printable(name)));
 }
 
 raytrace::Sampling::Kind sampling_from_name(std::string_view name) {
   if (name == "stratified") return raytrace::Sampling::Kind::stratified;
   if (name == "plain") return raytrace::Sampling::Kind::plain;
-  throw InputError({"", 0, "--sampling"}, fmt::format("must be stratified or plain, got {}", name));
+  throw InputError({"", 0, "--sampling"}, fmt::format("must be stratified or plain, got {}", printable(name)));
 }
 
 std::string_view engine_name(Engine engine) {

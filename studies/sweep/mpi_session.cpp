@@ -17,6 +17,7 @@
 
 #include "core/error.h"
 #include "core/leading_number.h"
+#include "core/message_text.h"
 #include "core/threads.h"
 #include "studies/sweep/mpi_mailbox.h"
 
@@ -57,7 +58,8 @@ std::chrono::duration<double> silence_limit() {
   if (text == nullptr) return std::chrono::duration<double>(kSilenceS);
   const std::optional<LeadingNumber> seconds = leading_number(text);
   if (!seconds || text[seconds->length] != '\0' || !(seconds->value >= 1.0 && seconds->value <= 86400.0))
-    throw InputError(fmt::format("{}: must be a number of seconds in 1..86400, got \"{}\"", kSilenceVariable, text));
+    throw InputError(
+        fmt::format("{}: must be a number of seconds in 1..86400, got {}", kSilenceVariable, in_quotes(text)));
   return std::chrono::duration<double>(seconds->value);
 }
 

@@ -158,6 +158,118 @@ TEST(BadInput, FilesThatCannotBeReadAreRefused) {
   }
 }
 
+/// Whatever names a file that is missing, the message begins with the place of the name: file, line and key, or the
+/// option.
+TEST(BadInput, MissingFilesAreReportedWithWhatNamesThem) {
+  const TemporaryFolder folder;
+  const std::string missing = "none.toml: cannot be read: No such file or directory\n";
+  folder.write("d.toml", design_with(0, "") + "[part]\nfacets = \"none.toml\"\n");
+  folder.write("plain.toml", design_with(0, ""));
+  const std::string quantity = "[[quantity]]\nkind = \"elements_full\"\n";
+  folder.write("study.toml",
+               "schema = \"retrace.study/1\"\ndesign = \"none.toml\"\n[[parameter]]\n"
+               "key = \"element.base_mm\"\nvalues = [0.5]\n" +
+                   quantity);
+  folder.write("designs.toml",
+               "schema = \"retrace.study/1\"\n[[parameter]]\nkey = \"design\"\n"
+               "values = [\"plain.toml\", \"none.toml\"]\n" +
+                   quantity);
+  ASSERT_EQ(retrace(folder, {"job", "plain.toml", "--tool-width-mm", "0.5", "-o", "job.toml"}).code, 0);
+  std::string job = folder.read("job.toml");
+  const std::size_t machine = job.find("machine = \"ideal\"");
+  job.replace(machine, 17, "machine = \"none.toml\"");
+  folder.write("job.toml", job);
+  const auto line = std::to_string(1 + std::count(job.begin(), job.begin() + static_cast<long>(machine), '\n'));
+  folder.write("m.csv", "job,element,facet,what,value,uncertainty\nnone.toml,0,1,up_arcsec,1,1\n");
+  folder.write("t.csv", "program,seconds,uncertainty\nnone.toml,1,1\n");
+  const std::vector<Refused> cases = {
+      {{"rre", "d.toml"}, "d.toml:14: part.facets: " + missing},
+      {{"inspect", "d.toml"}, "d.toml:14: part.facets: " + missing},
+      {{"sweep", "study.toml"}, "study.toml:2: design: " + missing},
+      {{"tolerance", "study.toml"}, "study.toml:2: design: " + missing},
+      {{"sweep", "designs.toml"}, "designs.toml:4: parameter[0].values: " + missing},
+      {{"fabricate", "job.toml"}, "job.toml:" + line + ": machine: " + missing},
+      {{"job", "plain.toml", "--tool-width-mm", "0.5", "--machine", "none.toml"}, "--machine: " + missing},
+      {{"job", "plain.toml", "--tool-width-mm", "0.5", "--process", "none.toml"}, "--process: " + missing},
+      {{"calibrate", "m.csv"}, "m.csv:2: job: " + missing},
+      {{"calibrate", "--times", "ideal", "t.csv"}, "t.csv:2: program: " + missing},
+  };
+  expect_refused(folder, cases, {}, {});
+}
+
+/// A value that is longer than 80 characters is cut, wherever it is given.
+TEST(BadInput, LongValuesAreClipped) {
+  const std::string value(5000, 'q');
+  const TemporaryFolder folder;
+  const std::string design = example("rtp_single_0p45mm.toml");
+  folder.write("word.toml", design_with(7, "arrangement = \"" + value + "\""));
+  folder.write("key.toml", design_with(3, value + " = 1"));
+  folder.write("number.toml", design_with(3, "base_mm = \"" + value + "\""));
+  const std::vector<Arguments> cases = {
+      {"rre", "word.toml"},
+      {"rre", "key.toml"},
+      {"rre", "number.toml"},
+      {"rre", design, "--engine", value},
+      {"rre", design, "--sampling", value},
+      {"rre", design, "--samples", value},
+      {"rre", design, "--cutoff", value},
+      {"rre", design, "--incidence", value},
+      {"rre", design, "--azimuth", "1:" + value},
+      {"rre", design, "--set", "element.kind=" + value},
+      {"rre", design, "--set", value},
+      {"rre", design, "--set", value + "="},
+      {"rre", design, "--" + value},
+      {"rre", design, "--threads=" + value},
+      {"inspect", design, value},
+      {value},
+      {"list", value},
+      {"init", value},
+      {"image", design, "--camera", "--pixels", value},
+      {"metrology", design, "--form", value},
+      {"metrology", design, "--pixel-um", value},
+      {"photometry", design, "--area-cm2", "1", "--standard", value},
+      {"job", design, "--tool-width-mm", "0.5", "--machine", value},
+      {"export", design, "--what", value},
+  };
+  for (const Arguments& arguments : cases) {
+    const Outcome outcome = retrace(folder, arguments);
+    SCOPED_TRACE(arguments.front().substr(0, 20) + " " + outcome.err.substr(0, 200));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err.find(std::string(81, 'q')), std::string::npos);
+    EXPECT_NE(outcome.err.find(std::string(50, 'q')), std::string::npos);
+  }
+}
+
+/// What the system reports of a name is in the words of retrace, with the exit code of an input or of an output.
+TEST(BadInput, NamesThatTheSystemRefusesAreReportedInOneLine) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", design_with(0, ""));
+  fs::create_symlink("loop", folder.path() / "loop");
+  for (const std::string name :
+       {std::string(300, 'n'), std::string("loop"), std::string("loop/x"), std::string("d.toml/x")}) {
+    SCOPED_TRACE(name);
+    const std::vector<std::pair<int, Arguments>> cases = {
+        {2, {"rre", name}},
+        {2, {"report", name}},
+        {2, {"verify", "d.toml", name + "@3"}},
+        {2, {"photometry", "d.toml", "--standard", name}},
+        {2, {"photometry", "d.toml", "--area-cm2", "1", "--standard", "r150", "--dye", name}},
+        {2, {"rays", "d.toml", "--source", name + ".csv"}},
+        {3, {"inspect", "d.toml", "-o", name + "/y"}},
+        {3, {"inspect", "d.toml", "--json", name + "/y"}},
+        {3, {"inspect", "d.toml", "--json", name}},
+        {3, {"export", "d.toml", name + ".d/x.stl"}},
+    };
+    for (const auto& [code, arguments] : cases) {
+      const Outcome outcome = retrace(folder, arguments);
+      EXPECT_EQ(outcome.code, code) << arguments.front() << ' ' << outcome.err;
+      EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+      EXPECT_EQ(outcome.err.find("filesystem error"), std::string::npos) << outcome.err;
+    }
+  }
+  EXPECT_EQ(folder.names(), (Arguments{"d.toml", "loop"}));
+}
+
 TEST(BadInput, WrongOptionsAreRefused) {
   const std::vector<Refused> cases = {
       {{"--engine", "magic"}, "--engine: must be auto, exact, stochastic, montecarlo, cell or embree, got magic"},
@@ -209,6 +321,8 @@ TEST(BadInput, WrongOptionsAreRefused) {
       {{"--set", "element.bas=1"}, "--set element.bas=1: element.bas: unknown key"},
       {{"--frobnicate"}, "The following argument was not expected: --frobnicate"},
       {{"--samples"}, "--samples: "},
+      {{"--azimuth=1e300"}, "--azimuth: must be -360 to 360 degrees, got 1e+300"},
+      {{"--set", "body.refractive_index=1e6"}, "--set body.refractive_index=1e6: body.refractive_index: must be "},
       {{"--json", ""}, "--json: must not be empty"},
       {{"--out", ""}, "--out: must not be empty"},
   };

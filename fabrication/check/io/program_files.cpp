@@ -28,7 +28,8 @@ NcTexts texts_of(const Control& control) {
 
 ProgramName program_name(const std::string& given) {
   const std::size_t at = given.rfind('@');
-  if (at == std::string::npos || std::filesystem::exists(given)) return {given, 0};
+  std::error_code ignored;
+  if (at == std::string::npos || std::filesystem::exists(given, ignored)) return {given, 0};
   ProgramName name{given.substr(0, at), 0};
   const char* const end = given.data() + given.size();
   const auto [rest, error] = std::from_chars(given.data() + at + 1, end, name.stop_line);

@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/data_directory.h"
 #include "core/message_text.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
 #include "core/schema/access.h"
 #include "core/schema/reader.h"
@@ -144,7 +145,8 @@ std::vector<Process> shipped_processes() {
 }
 
 Process load_process(const std::string& name_or_file, const InputLocation& where) {
-  if (fs::path(name_or_file).has_extension()) return parse_process(read_file(name_or_file), name_or_file);
+  if (fs::path(name_or_file).has_extension())
+    return read_named(where, [&] { return parse_process(read_file(name_or_file), name_or_file); });
   std::vector<std::string> names;
   for (const Process& process : shipped_processes()) {
     if (process.name == name_or_file) return process;

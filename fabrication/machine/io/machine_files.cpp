@@ -13,6 +13,7 @@
 #include "core/atomic_file.h"
 #include "core/data_directory.h"
 #include "core/message_text.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
 #include "core/schema/access.h"
 #include "core/schema/reader.h"
@@ -465,7 +466,8 @@ std::vector<Machine> shipped_machines() {
 }
 
 Machine load_machine(const std::string& name_or_file, const InputLocation& where) {
-  if (fs::path(name_or_file).has_extension()) return parse_machine(read_file(name_or_file), name_or_file);
+  if (fs::path(name_or_file).has_extension())
+    return read_named(where, [&] { return parse_machine(read_file(name_or_file), name_or_file); });
   std::vector<std::string> names;
   for (Machine& machine : shipped_machines()) {
     if (machine.name == name_or_file) return std::move(machine);

@@ -10,6 +10,7 @@
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/message_text.h"
+#include "core/named_file.h"
 
 namespace retrace::studies {
 namespace {
@@ -52,7 +53,8 @@ struct Columns {
 
 std::size_t whole(const CsvReader& row, std::size_t column, const NumberRange& range) {
   const double value = row.number(column, range);
-  if (value != std::floor(value)) row.fail(column, fmt::format("must be a whole number, got {}", row[column]));
+  if (value != std::floor(value))
+    row.fail(column, fmt::format("must be a whole number, got {}", printable(row[column])));
   return static_cast<std::size_t>(value);
 }
 
@@ -113,7 +115,7 @@ class Reader {
     FabricationRequest request;
     request.job_file = folder_ / job;
     request.texts = texts_;
-    FabricationResult plan = fabricate(request);
+    FabricationResult plan = read_named({result_.file, table_.line(), "job"}, [&] { return fabricate(request); });
     if (!result_.plans.empty() && plan.machine.name != result_.plans.front().machine.name)
       table_.fail(columns_.job,
                   fmt::format("is a job for machine {}, those before are for {}", in_quotes(plan.machine.name),

@@ -21,6 +21,7 @@
 #include "core/error.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
 #include "fabrication/check/io/program_files.h"
 
@@ -168,7 +169,7 @@ class TimeReader {
     if (!column || table_[*column].empty()) return otherwise;
     const double value = table_.number(*column, kLine);
     if (value != std::floor(value))
-      table_.fail(*column, fmt::format("must be a whole number, got {}", table_[*column]));
+      table_.fail(*column, fmt::format("must be a whole number, got {}", printable(table_[*column])));
     return static_cast<int>(value);
   }
 
@@ -178,8 +179,9 @@ class TimeReader {
       table_.fail(columns_.program, "must be the name of a program, got " + in_quotes(name));
     if (const auto known = timelines_.find(name); known != timelines_.end()) return known->second.timeline;
     if (timelines_.size() == kMostPrograms) table_.fail(fmt::format("at most {} programs are allowed", kMostPrograms));
-    auto program = std::make_unique<NcProgram>(
-        std::move(read_programs({(folder_ / name).string()}, "auto", texts_of(machine_.control), texts_).front()));
+    auto program = std::make_unique<NcProgram>(read_named({result_.file, table_.line(), "program"}, [&] {
+      return std::move(read_programs({(folder_ / name).string()}, "auto", texts_of(machine_.control), texts_).front());
+    }));
     const NcProgram& read = *program;
     return timelines_.try_emplace(name, std::move(program), read).first->second.timeline;
   }

@@ -25,7 +25,8 @@ std::vector<std::string_view> names_of_standards() {
 
 fs::path limits_file_of(const std::string& standard) {
   if (find_standard(standard) != nullptr) return data_directory() / "photometry_limits.csv";
-  if (!fs::exists(standard))
+  std::error_code ignored;
+  if (!fs::exists(standard, ignored))
     throw InputError({"", 0, "--standard"}, fmt::format("must be {} or a file that exists, got {}",
                                                         fmt::join(names_of_standards(), ", "), in_quotes(standard)));
   return standard;
@@ -47,7 +48,8 @@ fs::path dye_file_of(const std::optional<std::string>& dye, bool design_is_colou
   const std::string name = dye ? *dye : (design_is_coloured ? "none" : colour);
   if (name == "red" || name == "amber") return data_directory() / ("dye_" + name + ".csv");
   if (name == "none" || !dye) return {};
-  if (!fs::exists(name))
+  std::error_code ignored;
+  if (!fs::exists(name, ignored))
     throw InputError({"", 0, "--dye"},
                      fmt::format("must be none, red, amber or a file that exists, got {}", in_quotes(name)));
   return name;

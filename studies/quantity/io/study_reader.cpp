@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "core/message_text.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
 #include "core/schema/reader.h"
 #include "core/toml_file.h"
@@ -228,20 +229,23 @@ std::vector<std::pair<std::string, std::string>> parts_of(const Study& study, co
 }
 
 void read_designs(const Document& document, const FileTexts& given, Study& study) {
-  const auto text_of = [&](const std::string& file) {
+  const auto text_of = [&](const std::string& file, const std::string& key) {
     const auto found = given.find(file);
-    return found == given.end() ? read_toml_text(file) : found->second;
+    if (found != given.end()) return found->second;
+    return read_named(document.where(key), [&] { return read_toml_text(file); });
   };
   const auto varied = std::find_if(study.parameters.begin(), study.parameters.end(),
                                    [](const Parameter& p) { return p.keys.front() == "design"; });
   if (varied != study.parameters.end()) {
     if (document.has("design")) document.fail("design", "a parameter names the designs");
-    for (const ParameterValue& value : varied->values) study.design_texts.emplace(value.toml, text_of(value.toml));
+    const auto number = static_cast<std::size_t>(varied - study.parameters.begin());
+    const std::string key = schema::path_of_entry("parameter", number) + ".values";
+    for (const ParameterValue& value : varied->values) study.design_texts.emplace(value.toml, text_of(value.toml, key));
     return;
   }
   if (!document.has("design")) document.fail("design", "missing, must be the name of a design file");
   study.design_file = document.file("design").string();
-  study.design_texts.emplace(study.design_file, text_of(study.design_file));
+  study.design_texts.emplace(study.design_file, text_of(study.design_file, "design"));
 }
 
 }  // namespace

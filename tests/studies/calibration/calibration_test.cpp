@@ -304,7 +304,7 @@ TEST(Calibration, RefusesTables) {
   starts(columns + "a.toml,0,1,up_arcsec,1,1,,,0.5\n", "m.csv:2: at: says where along the edge a cut ends");
   starts(columns + "a.toml,0,1,end_nm,1,1,,,2\n", "m.csv:2: at: must be");
   starts(columns + ",0,1,up_arcsec,1,1,,,\n", "m.csv:2: job: must name a job file");
-  starts(columns + "c.toml,0,1,up_arcsec,1,1,,,\n", "c.toml: cannot be read");
+  starts(columns + "c.toml,0,1,up_arcsec,1,1,,,\n", "m.csv:2: job: c.toml: cannot be read");
   starts(columns +
              "a.toml,0,1,up_arcsec,1e5,1,,,\na.toml,0,2,up_arcsec,-1e5,1,,,\na.toml,1,1,up_arcsec,9e5,1,,,\n"
              "a.toml,1,2,up_arcsec,1e5,1,,,\n",

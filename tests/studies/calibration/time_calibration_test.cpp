@@ -285,7 +285,7 @@ TEST(TimeTables, RefuseWhatIsWrongWithItsPlace) {
   EXPECT_EQ(message(head + "times-ways.ngc,,1,,\n"), "t.csv: must have a row with a time");
   EXPECT_EQ(message(head + ",1,1,,\n"), "t.csv:2: program: must name a program");
   EXPECT_EQ(message(head + "\x05,1,1,,\n"), "t.csv:2: program: must be the name of a program, got \"\\x05\"");
-  EXPECT_EQ(message(head + "no.ngc,1,1,,\n"), "no.ngc: cannot be read: No such file or directory");
+  EXPECT_EQ(message(head + "no.ngc,1,1,,\n"), "t.csv:2: program: no.ngc: cannot be read: No such file or directory");
   EXPECT_EQ(message(head + "times-ways.ngc,-1,1,,\n"),
             "t.csv:2: seconds: must be a number > 0 and <= 1e+08, got \"-1\"");
   EXPECT_EQ(message(head + "times-ways.ngc,nan,1,,\n"),
