@@ -10,7 +10,9 @@
 #include "app/commands.h"
 #include "app/output.h"
 #include "core/leading_number.h"
+#include "core/memory_budget.h"
 #include "core/message_text.h"
+#include "core/number_format.h"
 #include "core/text.h"
 #include "core/version.h"
 
@@ -128,6 +130,16 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
+/// \throw InputError for a size out of range
+void set_memory_budget(const CommonOptions& common) {
+  constexpr double kLeastGiB = 0.01, kMostGiB = 65536.0;
+  if (!common.memory_gib) return;
+  if (!(*common.memory_gib >= kLeastGiB && *common.memory_gib <= kMostGiB))
+    throw InputError({"", 0, "--memory-gib"}, fmt::format("must be a number from {} to {}, got {}", shortest(kLeastGiB),
+                                                          shortest(kMostGiB), shortest(*common.memory_gib)));
+  set_memory_budget_bytes(static_cast<std::uint64_t>(*common.memory_gib * 0x1p30));
+}
+
 /// Whether there is something to run; else what was requested is printed. \throw InputError
 bool parse(CLI::App& app, int argc, const char* const* argv) {
   try {
@@ -163,7 +175,7 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
     sub->fallthrough();
     sub->footer(
         "Options of every command, before or after it: --json FILE, -o/--out DIR, --threads N [all cores],\n"
-        "--seed S [1], --set KEY=VALUE (repeatable), --quiet, --version, --help");
+        "--memory-gib G [1], --seed S [1], --set KEY=VALUE (repeatable), --quiet, --version, --help");
   }
   if (!parse(app, argc, argv)) return {};
   for (std::size_t k = 0; k < invocations.size(); ++k) {
@@ -172,7 +184,10 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
     check_needs(*app.get_subcommand(command.name), invocations[k].arguments);
     if (!command.refuses_set.empty() && !common->overrides.empty())
       throw InputError({"", 0, "--set"}, command.refuses_set);
-    return [common, run = invocations[k].run] { return run(*common); };
+    return [common, run = invocations[k].run] {
+      set_memory_budget(*common);
+      return run(*common);
+    };
   }
   return {};
 }

@@ -96,14 +96,18 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
   std::vector<std::string> warnings = remarks_of(session);
   const std::vector<std::string> without_effect = studies::keys_without_effect(study);
   warnings.insert(warnings.end(), without_effect.begin(), without_effect.end());
+  if (optimum.ran_out > 0)
+    warnings.push_back(fmt::format("{} of {} designs are not judged because a budget ran out, the first of them: {}",
+                                   optimum.ran_out, optimum.evaluations, optimum.ran_out_because));
   if (made) warnings.insert(warnings.end(), made->warnings.begin(), made->warnings.end());
   const ExitCode code = files.write(studies::optimum_json(study, request, optimum, elapsed_s),
                                     studies::optimum_text(study, request, optimum), warnings,
                                     {.complete = optimum.complete,
                                      .interrupted = fmt::format("designs looked at: {}", optimum.evaluations),
                                      .is_yes = optimum.best.has_value()});
-  if (code == ExitCode::answer_is_no) say("retrace: no feasible design: " + optimum.none_because);
-  return code;
+  if (code != ExitCode::answer_is_no) return code;
+  say("retrace: no feasible design: " + optimum.none_because);
+  return optimum.ran_out > 0 ? ExitCode::failed : code;
 }
 
 ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
@@ -127,7 +131,8 @@ Command optimize_command() {
           .summary = "the best design within constraints, as a study file says",
           .manual =
               "Looks for the best design within constraints, and says why others lost. Designs that were looked at "
-              "are kept in `optimum.sqlite` in the output folder. Exits with 1 if no design is feasible. With "
+              "are kept in `optimum.sqlite` in the output folder. Exits with 1 if no design is feasible, and with 3 "
+              "if none is and a budget of memory or beams ran out for some. With "
               "`--job` the fabrication job of the chosen design is written, with the options of `job`.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.optimum/1", "retrace.job/1"},

@@ -1,7 +1,6 @@
 // What becomes of a beam where it meets a face: the members of BeamWalk that split, book and send on its light.
 #include <fmt/format.h>
 
-#include "core/error.h"
 #include "raytrace/exact/beam_walk.h"
 #include "raytrace/paths/textured_facet.h"
 
@@ -214,7 +213,7 @@ void BeamWalk::observe_front() const {
 }
 
 void BeamWalk::fail_on_budget() const {
-  throw BudgetError(
+  throw TraceBudgetError(
       fmt::format("the budget of {} beams ran out with {:.3g} of the power not accounted for; a larger "
                   "--cutoff follows fewer beams",
                   policy_.max_beams, open_power()));

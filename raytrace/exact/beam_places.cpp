@@ -8,6 +8,9 @@
 namespace retrace::raytrace {
 namespace {
 
+// Positions of a beam that are compared with the borders for one unit of work.
+constexpr std::size_t kPlacesPerWork = 16;
+
 /// A stretch of the entrance along an axis, and by what it is moved to be like others.
 struct Span {
   double from = 0.0;
@@ -45,10 +48,6 @@ Corners within(Corners corners, const geometry::Polygon& outline) {
     corners = cut(corners, {inward, inward.head<2>().dot(outline[k])});
   }
   return corners;
-}
-
-std::shared_ptr<const BeamPlaces> shared(BeamPlaces places) {
-  return places.size() > 1 ? std::make_shared<const BeamPlaces>(std::move(places)) : nullptr;
 }
 
 }  // namespace
@@ -157,6 +156,7 @@ PlanBox BeamWalk::sweep_of(const Beam& beam) const {
 /// alike.
 void BeamWalk::keep_equal_places(Beam& beam) {
   if (setup_.infinite()) return;
+  work_ += beam.places->size() / kPlacesPerWork;
   const PlanBox sweep = sweep_of(beam);
   std::vector<BeamPlaces> groups = equal_->divided(*beam.places, {sweep.lower, sweep.upper}, beam.region);
   if (groups.size() <= 1) return;

@@ -6,6 +6,7 @@
 
 #include "raytrace/exact/beam_generation.h"
 #include "raytrace/exact/beam_walk.h"
+#include "raytrace/exact/element_memory.h"
 #include "raytrace/sampling/entrance_sampler.h"
 #include "raytrace/sampling/replicate_means.h"
 
@@ -21,6 +22,12 @@ constexpr double kSlowestFall = 0.7;
 // Weak beams that wait to be resampled: some 30 MB.
 constexpr std::size_t kMostWaiting = 50'000;
 
+/// Returns the part. \throw BudgetError if its elements exceed the memory budget
+const geometry::Part& within_memory(const geometry::Part& part) {
+  require_element_memory(part);
+  return part;
+}
+
 }  // namespace
 
 geometry::Polygon entrance_outline(const geometry::Part& part) {
@@ -29,7 +36,7 @@ geometry::Polygon entrance_outline(const geometry::Part& part) {
 }
 
 BeamTracer::BeamTracer(const geometry::Part& part, Elements elements)
-    : part_(part), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {
+    : part_(within_memory(part)), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {
   if (elements == Elements::equal_at_once) equal_ = EqualPlaces::of(part, centre_mm_);
 }
 

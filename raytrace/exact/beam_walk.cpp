@@ -1,9 +1,12 @@
 #include "raytrace/exact/beam_walk.h"
-#include "core/infinity.h"
-#include "geometry/centroid.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <span>
+
+#include "core/infinity.h"
+#include "geometry/centroid.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -35,8 +38,15 @@ constexpr std::uint64_t kWorkOfCut = 30;
 constexpr std::uint64_t kWorkOfBeam = 50;
 // Work grows as the power that is left behind falls, to this power, before two passes have told.
 constexpr double kUsualSlope = 0.5;
-// Beams that are kept for a lower cut-off: some 100 MB.
+// Beams that are kept for a lower cut-off: some 150 MB, and at most three quarters of the memory of a trace.
 constexpr std::size_t kMostDeferred = 200'000;
+// Work of moving one copy of a beam from one list of positions to another.
+constexpr std::uint64_t kWorkOfPlace = 1;
+
+/// Memory of a waiting beam without its list of positions, in bytes.
+std::uint64_t bytes_of(const Beam& beam) {
+  return sizeof(Beam) + beam.hits.capacity() * sizeof(TexturedHit);
+}
 
 }  // namespace
 
@@ -84,16 +94,52 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
     pend(std::move(whole));
   else
     enter_in_pieces(whole, step_of_entrance(parts));
-  pass_ = {0.0, pending_power_};
+  pass_ = {0.0, pending_.power};
   // Where little is asked, the first pass is one of beams that are strong beside those that enter an element.
   if (approach_ == Approach::falling && policy_.truncated_goal > kFinestGoal)
-    cutoff_ *= pending_power_ / static_cast<double>(pending_.size());
+    cutoff_ *= pending_.power / static_cast<double>(pending_.beams.size());
 }
 
 void BeamWalk::pend(Beam&& beam) {
   beam.power = power_of(beam);
-  pending_power_ += beam.total_power();
-  pending_.push_back(std::move(beam));
+  pending_.power += beam.total_power();
+  pending_.bytes += bytes_of(beam);
+  memory_->add(bytes_of(beam));
+  pending_.beams.push_back(std::move(beam));
+}
+
+Beam BeamWalk::next_pending() {
+  Beam beam = std::move(pending_.beams.back());
+  pending_.beams.pop_back();
+  pending_.power -= beam.total_power();
+  pending_.bytes -= bytes_of(beam);
+  memory_->remove(bytes_of(beam));
+  return beam;
+}
+
+std::shared_ptr<const BeamPlaces> BeamWalk::shared(BeamPlaces places) const {
+  if (places.size() <= 1) return nullptr;
+  places.shrink_to_fit();
+  const std::uint64_t bytes = places.size() * sizeof(Vec2);
+  work_ += kWorkOfPlace * places.size();
+  memory_->add(bytes);
+  return {new BeamPlaces(std::move(places)), [memory = memory_, bytes](const BeamPlaces* gone) {
+            memory->remove(bytes);
+            delete gone;
+          }};
+}
+
+bool BeamWalk::has_many_deferred() const {
+  return deferred_.beams.size() > kMostDeferred || deferred_.bytes > beam_memory_bytes() / 4 * 3;
+}
+
+void BeamWalk::require_memory() const {
+  if (memory_->is_exceeded())
+    throw TraceBudgetError(fmt::format(
+        "beams exceed {} with {:.3g} of the power not accounted for: give a larger --cutoff, which follows fewer "
+        "beams, a larger budget, or --engine montecarlo",
+        memory_budget_text(), open_power()));
+  memory_->require_shared();
 }
 
 /// Into how many parts along either axis light that falls on an element is divided: what facets hide of each other
@@ -138,15 +184,14 @@ void BeamWalk::enter_in_pieces(const Beam& whole, const Vec2& step) {
 BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel) {
   cancel_ = cancel;
   for (;;) {
-    while (!pending_.empty() && !may_stop()) {
+    while (!pending_.beams.empty() && !may_stop()) {
       if (is_cancelled(cancel)) return End::cancelled;
       if (work_ >= most_work) return End::paused;
-      Beam beam = std::move(pending_.back());
-      pending_.pop_back();
-      pending_power_ -= beam.total_power();
+      require_memory();
+      Beam beam = next_pending();
       if (strength_of(beam) < cutoff_) {
         defer(std::move(beam));
-        if (deferred_.size() >= most_kept_) return End::paused;
+        if (deferred_.beams.size() >= most_kept_) return End::paused;
         continue;
       }
       if (++beams_ > policy_.max_beams) fail_on_budget();
@@ -156,7 +201,7 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
     if (approach_ == Approach::kept) return End::done;
     const bool is_enough = approach_ == Approach::fixed || open_power() <= policy_.truncated_goal;
     if ((is_enough && (may_stop() || policy_.spare_work <= work_)) || cutoff_ < kLastCutoff) break;
-    if (deferred_.size() > kMostDeferred) {
+    if (has_many_deferred()) {
       if (is_enough) break;
       return End::cutoff_too_high;
     }
@@ -169,8 +214,8 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
 /// Enough is settled, and work on more of it would cost something. Power that is open only ever falls, so that this may
 /// be asked at any time; sums of it that are kept up to date are too coarse for the finest goals.
 bool BeamWalk::may_stop() const {
-  if (approach_ != Approach::falling) return pending_.empty();
-  if (policy_.truncated_goal <= kFinestGoal) return pending_.empty() && deferred_power_ <= policy_.truncated_goal;
+  if (approach_ != Approach::falling) return pending_.beams.empty();
+  if (policy_.truncated_goal <= kFinestGoal) return pending_.beams.empty() && deferred_.power <= policy_.truncated_goal;
   return open_power() <= (work_ < policy_.spare_work ? kFinestGoal : policy_.truncated_goal);
 }
 
@@ -180,27 +225,27 @@ void BeamWalk::lower_cutoff() {
 
 void BeamWalk::lower_cutoff_to(double cutoff) {
   cutoff_ = cutoff;
-  pass_ = {static_cast<double>(work_), deferred_power_};
+  pass_ = {static_cast<double>(work_), deferred_.power};
   pending_.swap(deferred_);
-  pending_power_ = deferred_power_;
-  deferred_power_ = 0.0;
+  deferred_.power = 0.0;
 }
 
 /// What is open stays behind.
 void BeamWalk::close() {
-  for (const Beam& beam : pending_) deferred_power_ += beam.total_power();
-  pending_.clear();
-  pending_power_ = 0.0;
-  tally_.other[Account::truncated] += deferred_power_;
+  for (const Beam& beam : pending_.beams) deferred_.power += beam.total_power();
+  memory_->remove(pending_.bytes);
+  Waiting none;
+  pending_.swap(none);
+  tally_.other[Account::truncated] += deferred_.power;
 }
 
 /// Work and open power follow each other as powers do; within a pass both are taken in proportion to the power that it
 /// has been through.
 double BeamWalk::expected_work() const {
   const auto work = static_cast<double>(work_);
-  const double settled = 1.0 - pending_power_ / pass_.power;
+  const double settled = 1.0 - pending_.power / pass_.power;
   if (settled < 0.01) return 2.0 * work;
-  const Pass end{pass_.work + (work - pass_.work) / settled, std::max(deferred_power_ / settled, 1e-300)};
+  const Pass end{pass_.work + (work - pass_.work) / settled, std::max(deferred_.power / settled, 1e-300)};
   if (approach_ == Approach::fixed || end.power <= policy_.truncated_goal) return std::max(end.work, work);
   const bool tells = pass_.work > 0.0 && end.power < 0.9 * pass_.power;
   const double slope = tells ? std::log(end.work / pass_.work) / std::log(pass_.power / end.power) : kUsualSlope;
@@ -222,15 +267,18 @@ BeamResult BeamWalk::result() const {
 
 /// Beams below the cut-off are kept for a lower one, unless they are so many that they are better found again.
 void BeamWalk::defer(Beam&& beam) {
-  deferred_power_ += beam.total_power();
-  if (approach_ == Approach::kept || deferred_.size() <= kMostDeferred) deferred_.push_back(std::move(beam));
+  deferred_.power += beam.total_power();
+  if (approach_ != Approach::kept && has_many_deferred()) return;
+  deferred_.bytes += bytes_of(beam);
+  memory_->add(bytes_of(beam));
+  deferred_.beams.push_back(std::move(beam));
 }
 
 WaitingBeams BeamWalk::take_kept() {
-  deferred_power_ = 0.0;
-  WaitingBeams kept;
-  kept.swap(deferred_);
-  return kept;
+  memory_->remove(deferred_.bytes);
+  Waiting kept;
+  deferred_.swap(kept);
+  return std::move(kept.beams);
 }
 
 void BeamWalk::step(const Beam& beam, const Cancellation* cancel) {
@@ -240,8 +288,12 @@ void BeamWalk::step(const Beam& beam, const Cancellation* cancel) {
 }
 
 void BeamWalk::take_waiting(WaitingBeams& into) {
-  WaitingBeams().swap(into);  // clear() of an empty deque of boost adds to a null pointer
-  pending_.swap(into);
+  require_memory();
+  memory_->remove(pending_.bytes);
+  Waiting taken;  // clear() of an empty deque of boost would add to a null pointer
+  pending_.swap(taken);
+  WaitingBeams().swap(into);
+  taken.beams.swap(into);
 }
 
 void BeamWalk::advance(const Beam& beam) {

@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "raytrace/exact/beam.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/exact/equal_places.h"
@@ -75,7 +77,7 @@ class BeamWalk {
   End run(std::uint64_t most_work, const Cancellation* cancel);
 
   /// Beams below the cut-off, in the order in which they were found. \pre Approach::kept, and run() is done
-  const WaitingBeams& kept() const { return deferred_; }
+  const WaitingBeams& kept() const { return deferred_.beams; }
   /// From now on run() pauses where so many are kept, for take_kept().
   void pause_at_kept(std::size_t most) { most_kept_ = most; }
   WaitingBeams take_kept();
@@ -102,7 +104,7 @@ class BeamWalk {
   std::uint64_t beams() const { return beams_; }
   std::uint32_t depth() const { return depth_; }
   double cutoff() const { return cutoff_; }
-  double left_behind() const { return deferred_power_; }
+  double left_behind() const { return deferred_.power; }
   /// Done so far, in looks at a facet's bounding box: some 20 ns each. The same on every machine.
   std::uint64_t work() const { return work_; }
   /// Of all until the goal is reached, judged by what has been settled so far.
@@ -120,10 +122,16 @@ class BeamWalk {
   double enter_region(const Beam& whole, std::uint32_t region, const Vec2& most_step_mm);
   void enter_regions(const Beam& whole, double parts);
   void pend(Beam&& beam);
+  /// Removes the last waiting beam and returns it.
+  Beam next_pending();
   void keep_equal_places(Beam& beam);
+  /// Returns null for one position. The memory of the positions counts until the last beam with them is gone.
+  std::shared_ptr<const BeamPlaces> shared(BeamPlaces places) const;
+  /// Returns true if so many beams are below the cut-off that further ones are not kept, but found again.
+  bool has_many_deferred() const;
   void defer(Beam&& beam);
   /// Power of beams that wait, in this pass or below its cut-off.
-  double open_power() const { return pending_power_ + deferred_power_; }
+  double open_power() const { return pending_.power + deferred_.power; }
   bool may_stop() const;
   void lower_cutoff();
   void close();
@@ -167,6 +175,8 @@ class BeamWalk {
   double index_at(bool inside) const { return inside ? setup_.optics.index : setup_.optics.back_index; }
   void observe_front() const;
   [[noreturn]] void fail_on_budget() const;
+  /// \throw BudgetError if the beams of this walk exceed the memory budget \throw SharedMemoryShort
+  void require_memory() const;
 
   const geometry::Part& part_;
   const Vec2& centre_mm_;
@@ -179,10 +189,21 @@ class BeamWalk {
   std::vector<ScatterSite>* sites_ = nullptr;
   std::optional<std::uint32_t> replicate_;
   Tally tally_;
-  WaitingBeams pending_;
-  double pending_power_ = 0.0;
-  WaitingBeams deferred_;  ///< below the cut-off
-  double deferred_power_ = 0.0;
+  /// Beams that wait, with their total power and the memory that they occupy.
+  struct Waiting {
+    WaitingBeams beams;
+    double power = 0.0;
+    std::uint64_t bytes = 0;
+
+    void swap(Waiting& other) {
+      beams.swap(other.beams);
+      std::swap(power, other.power);
+      std::swap(bytes, other.bytes);
+    }
+  };
+  Waiting pending_;
+  Waiting deferred_;  ///< below the cut-off
+  std::shared_ptr<BeamMemory> memory_ = std::make_shared<BeamMemory>();
   std::size_t most_kept_ = std::numeric_limits<std::size_t>::max();
   double cutoff_ = 0.0;
   Approach approach_ = Approach::fixed;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/error.h"
 #include "core/random.h"
 #include "core/threads.h"
 #include "raytrace/exact/beam_generation.h"
@@ -70,7 +71,12 @@ StochasticBeams::StochasticBeams(const BeamTracer& tracer, const ScatteredLight*
 
 StochasticBeams::~StochasticBeams() = default;
 
-bool StochasticBeams::advance() {
+bool StochasticBeams::advance() try { return follow_round(); } catch (const BudgetError&) {
+  if (round_ == 0) throw;
+  return true;
+}
+
+bool StochasticBeams::follow_round() {
   if (round_ > 0) {
     ray_power_ = next_ray_power();
     threshold_ = next_threshold();

@@ -50,7 +50,8 @@ class StochasticBeams {
   ~StochasticBeams();
 
   /// One more round, at a lower threshold. \return whether that was the last one that is needed or possible; if it was
-  /// cancelled, it is the last as well
+  /// cancelled, it is the last as well. If a round exceeds the memory budget, the result is that of the round before.
+  /// \throw BudgetError if the first round exceeds the memory budget
   bool advance();
   /// Of the last round, without rays. 1.96 standard errors hold the truth in 95 of 100 cases.
   const MonteCarloResult& result() const { return result_; }
@@ -64,6 +65,7 @@ class StochasticBeams {
   struct Replicate;
 
   std::optional<Replicate> replicate(std::uint32_t number, const BeamGeneration& first) const;
+  bool follow_round();
   double next_threshold() const;
   double next_ray_power() const;
 

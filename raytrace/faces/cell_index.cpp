@@ -1,6 +1,7 @@
 #include "raytrace/faces/cell_index.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace retrace::raytrace {
 
@@ -22,24 +23,26 @@ CellIndex::CellIndex(const geometry::Part& part, const Vec2& centre_mm) : part_(
   for (const Eigen::Index axis : {0, 1})
     count_[axis] = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(box.size()[axis] / bucket_mm_)));
 
-  std::vector<std::vector<Entry>> buckets(static_cast<std::size_t>(count_[0] * count_[1]));
-  for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
-    const auto& cells = part.patches[part.placements[p].patch].cells;
-    for (std::uint32_t c = 0; c < cells.size(); ++c) {
-      const Vec2 offset = part.placements[p].offset_mm - centre_mm;
-      const Vec2 low = cells[c].lower.head<2>() + offset;
-      const Vec2 high = cells[c].upper.head<2>() + offset;
-      for (std::int64_t j = bucket(low.y(), 1); j <= bucket(high.y(), 1); ++j)
-        for (std::int64_t i = bucket(low.x(), 0); i <= bucket(high.x(), 0); ++i)
-          buckets[static_cast<std::size_t>(j * count_[0] + i)].push_back({p, c});
+  const auto visit_all = [&](const auto& visit) {
+    for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
+      const auto& cells = part.patches[part.placements[p].patch].cells;
+      for (std::uint32_t c = 0; c < cells.size(); ++c) {
+        const Vec2 offset = part.placements[p].offset_mm - centre_mm;
+        const Vec2 low = cells[c].lower.head<2>() + offset;
+        const Vec2 high = cells[c].upper.head<2>() + offset;
+        for (std::int64_t j = bucket(low.y(), 1); j <= bucket(high.y(), 1); ++j)
+          for (std::int64_t i = bucket(low.x(), 0); i <= bucket(high.x(), 0); ++i)
+            visit(static_cast<std::size_t>(j * count_[0] + i), Entry{p, c});
+      }
     }
-  }
-  first_.reserve(buckets.size() + 1);
-  for (const auto& bucket_entries : buckets) {
-    first_.push_back(static_cast<std::uint32_t>(entries_.size()));
-    entries_.insert(entries_.end(), bucket_entries.begin(), bucket_entries.end());
-  }
-  first_.push_back(static_cast<std::uint32_t>(entries_.size()));
+  };
+  // The entries are counted first, so that they are stored one time only.
+  first_.resize(static_cast<std::size_t>(count_[0] * count_[1]) + 1);
+  visit_all([&](std::size_t bucket, const Entry&) { ++first_[bucket + 1]; });
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  entries_.resize(first_.back());
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  visit_all([&](std::size_t bucket, const Entry& entry) { entries_[next[bucket]++] = entry; });
 }
 
 }  // namespace retrace::raytrace

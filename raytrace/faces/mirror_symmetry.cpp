@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "geometry/centroid.h"
 #include "raytrace/exact/point_lookup.h"
 
@@ -18,6 +19,16 @@ using geometry::Vec2, geometry::Vec3;
 // Places nearer than this share of an element are one, normals that differ by less are one.
 constexpr double kSamePlace = 1e-8;
 constexpr double kSameNormal = 1e-9;
+// Memory in bytes of a facet in FacetsByPlace.
+constexpr double kBytesPerFacet = 350.0;
+
+/// Returns true if the facets of the part, at all places, fit into the memory budget.
+bool fits_memory(const Part& part) {
+  double facets = 0.0;
+  for (const Placement& placement : part.placements)
+    facets += static_cast<double>(part.patches[placement.patch].facets.size());
+  return kBytesPerFacet * facets <= static_cast<double>(element_memory_bytes());
+}
 
 /// A facet where it stands.
 struct StandingFacet {
@@ -127,6 +138,7 @@ bool is_mirrored(const geometry::Polygon& outline, Eigen::Index axis, double abo
 }  // namespace
 
 bool is_its_own_mirror_image(const Part& part, Eigen::Index axis) {
+  if (!fits_memory(part)) return false;
   if (part.period_mm) return endless_is_mirrored(part, axis);
   const double about_mm = geometry::bounding_box(part.outline).middle()[axis];
   if (!is_mirrored(part.outline, axis, about_mm, kSamePlace * part.size_mm)) return false;

@@ -60,15 +60,20 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
     number[k] = found != stored_.end() ? found->second.point : free_number();
   }
   std::vector<std::optional<StoredPoint>> points(open.size());
+  std::vector<char> ran_out(open.size());  // not bool, as threads write next to each other
   for_each_in_parallel(open.size(), [&](std::size_t k) {
     const auto found = stored_.find(keys[k]);
     if (found != stored_.end()) {
       points[k] = found->second;
       return;
     }
-    points[k] = compute_point(study_, number[k], open[k], cancel_);
-    if (points[k]) store_.record(*points[k]);
+    bool has_run_out = false;
+    points[k] = compute_point(study_, number[k], open[k], cancel_, &has_run_out);
+    ran_out[k] = has_run_out ? 1 : 0;
+    if (points[k] && !has_run_out) store_.record(*points[k]);
   });
+  for (std::size_t k = 0; k < open.size(); ++k)
+    if (ran_out[k] != 0 && ran_out_++ == 0) ran_out_because_ = points[k]->reason;
   for (std::size_t k = 0; k < open.size(); ++k) {
     if (!points[k]) throw Interrupted{};
     numbers_[keys[k]] = seen_.size();

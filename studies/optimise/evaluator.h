@@ -28,6 +28,11 @@ class Evaluator {
 
   /// Everything looked at so far, in the order of its first look.
   const std::vector<Variant>& seen() const { return seen_; }
+  /// Number of designs that failed because a budget of memory or beams ran out. They are not stored, so that a resumed
+  /// search with a larger budget tries them again.
+  std::size_t ran_out() const { return ran_out_; }
+  /// Message of the first of them; empty if there is none.
+  const std::string& ran_out_because() const { return ran_out_because_; }
   /// What a quantity came to; nothing if it has no value.
   std::optional<double> value(const Variant& variant, const std::string& quantity) const;
   /// Slope of the objective by a parameter, where every quantity in it knows one.
@@ -48,6 +53,8 @@ class Evaluator {
   std::map<std::string, StoredPoint> stored_;   ///< of a run that is resumed
   std::vector<Variant> seen_;
   std::set<std::uint64_t> taken_;  ///< numbers of the points in the store
+  std::size_t ran_out_ = 0;
+  std::string ran_out_because_;
   std::uint64_t next_ = 0;
 };
 

@@ -424,6 +424,8 @@ Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& 
     optimum.complete = false;
   }
   optimum.evaluations = evaluator.seen().size();
+  optimum.ran_out = evaluator.ran_out();
+  optimum.ran_out_because = evaluator.ran_out_because();
   return optimum;
 }
 

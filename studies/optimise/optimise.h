@@ -75,6 +75,8 @@ struct Optimum {
   std::vector<ToleranceBand> bands;
   std::string method;  ///< of the refinement: "exact slopes" or "no slopes"
   std::size_t evaluations = 0;
+  std::size_t ran_out = 0;      ///< designs that failed because a budget of memory or beams ran out
+  std::string ran_out_because;  ///< message of the first of them
   bool complete = true;
 };
 

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "core/error.h"
-#include "core/threads.h"
+#include "core/within_memory.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/faces/mirror_symmetry.h"
 #include "raytrace/observers/coefficients.h"
@@ -87,11 +87,11 @@ Design dyed(Design design, const PhotometryRequest& request) {
   return design;
 }
 
-/// Calls work(k) for every k on the threads at hand and tells how far it is.
+/// Calls work(k) for every k on the threads at hand, within the memory budget, and tells how far it is.
 void for_each_told(std::size_t count, Progress* progress, const std::function<void(std::size_t)>& work) {
   std::mutex mutex;
   double done = 0.0;
-  for_each_in_parallel(count, [&](std::size_t k) {
+  for_each_within_memory(count, [&](std::size_t k) {
     work(k);
     const std::lock_guard lock(mutex);
     done += 1.0;

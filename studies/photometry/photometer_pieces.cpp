@@ -1,8 +1,11 @@
 // What one wavelength adds to a reading: the members of Photometer that trace it exactly.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/memory_budget.h"
 #include "raytrace/observers/small_angle.h"
 #include "studies/photometry/photometer.h"
 
@@ -34,6 +37,36 @@ constexpr double kMostLatticePoints = 300'000.0;
 // If the truncated power is at most this fraction of the incident power, it is neglected. Otherwise,
 // Piece::missing_per_sr is computed.
 constexpr double kLeastTruncated = 1e-9;
+// Memory in bytes of a cell of a finite part in FarFieldCollector, and of each of its beams.
+constexpr double kBytesPerCell = 200.0;
+constexpr double kBytesPerBeamOfCell = 8.0;
+// Minimum number of beams that a cell sends back, for the estimate before anything is traced.
+constexpr double kLeastBeamsOfCell = 10.0;
+
+[[noreturn]] void fail_on_memory() {
+  throw TraceBudgetError(fmt::format(
+      "the far field of so many elements exceeds {}: give a larger budget, --no-diffraction, or --engine montecarlo",
+      memory_budget_text()));
+}
+
+/// Memory of a far field while its beams are collected. Beams of equal elements count for each element.
+class FarFieldMemory {
+ public:
+  /// \throw TraceBudgetError if this far field exceeds the budget \throw SharedMemoryShort
+  void add(const raytrace::ReturnedBeam& beam) {
+    const double count = beam.place_count();
+    const double new_cells = std::max(0.0, count - cells_);
+    cells_ += new_cells;
+    memory_.add(static_cast<std::uint64_t>(kBytesPerCell * new_cells + kBytesPerBeamOfCell * count));
+    if (memory_.is_exceeded()) fail_on_memory();
+    memory_.require_shared();
+  }
+
+ private:
+  BeamMemory memory_;
+  double cells_ = 0.0;
+};
+
 // Maximum number of directions in which brightest_per_sr() evaluates the far field.
 constexpr std::size_t kMaxSpots = 2;
 
@@ -129,6 +162,9 @@ raytrace::BeamPolicy Photometer::beam_policy(std::size_t wavelength) const {
 }
 
 raytrace::BeamTracer Photometer::make_tracer() const {
+  const double cells = model_.part.period_mm ? 0.0 : static_cast<double>(model_.part.elements_full);
+  const double bytes = cells * (kBytesPerCell + kLeastBeamsOfCell * kBytesPerBeamOfCell);
+  if (request_.diffraction && bytes > static_cast<double>(beam_memory_bytes())) fail_on_memory();
   return raytrace::BeamTracer(model_.part, raytrace::BeamTracer::Elements::equal_at_once);
 }
 
@@ -140,10 +176,12 @@ std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_so
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
   raytrace::FarFieldCollector collector(model_.part, illumination, far_field_policy(light, cancel));
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
+  FarFieldMemory memory;
   Traced traced;
   traced.beams = tracer.trace(
       light.optics, illumination, cones, beam_policy(wavelength), cancel, [&](const raytrace::ReturnedBeam& beam) {
         const double trace = beam.entry_from_exit.linear().trace();
+        if (request_.diffraction && !model_.part.period_mm) memory.add(beam);
         if (trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
         if (beam.cone < cones.size())
           traced.scattered_from_cone +=

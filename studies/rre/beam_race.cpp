@@ -5,6 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "core/error.h"
+#include "raytrace/exact/element_memory.h"
+
 namespace retrace::studies {
 namespace {
 
@@ -38,6 +41,11 @@ double facets_of_cell(const geometry::Part& part) {
   return static_cast<double>(patch.facets.size()) / static_cast<double>(patch.cells.size());
 }
 
+double beam_tracer_ns(const geometry::Part& part) {
+  const raytrace::ElementCost cost = raytrace::element_cost(part);
+  return cost.fits_memory() ? kNsPerLook * cost.work : kNever;
+}
+
 BeamRace::BeamRace(const raytrace::BeamTracer& tracer, const raytrace::ScatteredLight* scattered,
                    const raytrace::Optics& optics, const raytrace::Illumination& illumination,
                    const std::vector<double>& cones_deg, const raytrace::BeamPolicy& policy,
@@ -65,13 +73,29 @@ double BeamRace::expected_ns() const {
 }
 
 bool BeamRace::advance() {
-  if (beams_ns() <= stochastic_ns()) {
-    const double look = std::max(kFirstLook, 1.1 * beams_->work());
-    return is_exact_ = beams_->advance(static_cast<std::uint64_t>(look), cancel_);
-  }
+  if (beams_ && beams_ns() <= stochastic_ns()) return advance_exact();
+  if (may_resample_) return advance_stochastic();
+  throw BudgetError("beams do not reach the target error within their budgets: give --engine montecarlo");
+}
+
+bool BeamRace::advance_exact() try {
+  const double look = std::max(kFirstLook, 1.1 * beams_->work());
+  return is_exact_ = beams_->advance(static_cast<std::uint64_t>(look), cancel_);
+} catch (const BudgetError&) {
+  if (!may_resample_) throw;
+  beams_.reset();
+  return false;
+}
+
+bool BeamRace::advance_stochastic() try {
   if (!stochastic_) stochastic_ = make_stochastic_();
   may_resample_ = !stochastic_->advance();
   return stochastic_->result().reached_target;
+} catch (const BudgetError&) {
+  if (!beams_) throw;
+  may_resample_ = false;
+  stochastic_.reset();
+  return false;
 }
 
 }  // namespace retrace::studies

@@ -16,6 +16,9 @@ namespace retrace::studies {
 /// Of a part's cells, in the mean.
 double facets_of_cell(const geometry::Part& part);
 
+/// Expected time of making the BeamTracer of a part, in nanoseconds; infinite if its elements exceed the memory budget.
+double beam_tracer_ns(const geometry::Part& part);
+
 /// One direction at one wavelength, traced until the exact engine's goal or the stochastic one's target error is
 /// reached. Each way goes on where it was left when the other turns out to be slower than expected. Choices rest on
 /// counts of work and not on clocks, so that they are the same on every machine. For one thread.
@@ -36,7 +39,8 @@ class BeamRace {
 
   /// What the quicker way is expected to take in all; infinite if neither may do.
   double expected_ns() const;
-  /// Takes the quicker way a step on. \return whether it has reached its end \throw BudgetError as BeamTrace::advance()
+  /// Takes the quicker way a step on. A way that exceeds a budget is given up if the other one is left.
+  /// \return whether it has reached its end \throw BudgetError if no way is left
   bool advance();
 
   /// Which way did. \pre advance() was true
@@ -47,6 +51,8 @@ class BeamRace {
  private:
   double beams_ns() const;
   double stochastic_ns() const;
+  bool advance_exact();
+  bool advance_stochastic();
 
   const Cancellation* cancel_;
   std::optional<raytrace::BeamTrace> beams_;  ///< none: facets scatter

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "core/error.h"
-#include "core/threads.h"
+#include "core/within_memory.h"
 #include "raytrace/balls/ball_tracer.h"
 #include "raytrace/exact/scattered_rays.h"
 #include "raytrace/exact/stochastic_beams.h"
@@ -29,6 +29,9 @@ constexpr SegmentCost kCellOfFinite{220.0, 25.0};
 constexpr SegmentCost kEmbree{350.0, 25.0};
 /// Straight pieces of a first round of Monte Carlo, before there was one.
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
+/// Maximum time of making the tracer of beams, as a fraction of the time that rays are expected to take from now on.
+/// With what BeamRace spends before it is given up, beams that turn out to be slower cost at most half as much as rays.
+constexpr double kMaxTracerShare = 0.3;
 /// What beams may take below the error that was requested: some 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
 
@@ -109,19 +112,21 @@ class DesignTracing {
   DesignTracing(const Design& design, const OpticalModel& model, const RreRequest& request, const Cancellation* cancel)
       : design_(design), model_(model), request_(request), cancel_(cancel), beams_(beam_policy(request)) {
     paths_.cutoff = request.cutoff.value_or(paths_.cutoff);
-    if (design.balls()) return;
-    if (!may_follow_beams(design, model, request)) return;
-    using Elements = raytrace::BeamTracer::Elements;
-    beam_tracer_.emplace(model.part, must_be_exact(request) ? Elements::each_by_itself : Elements::equal_at_once);
-    if (!model.optics.is_smooth()) scattering_.emplace(model.part, beam_tracer_->centre_mm());
+    follows_beams_ = may_follow_beams(design, model, request);
   }
 
   /// Whether directions are shared out among the threads; else each takes all of them.
-  bool takes_several() const { return beam_tracer_.has_value(); }
+  bool takes_several() const { return follows_beams_; }
+
+  /// Sets the number of directions and wavelengths that the cost of making the tracer of beams is divided by.
+  void expect(std::size_t units) {
+    if (follows_beams_ && !tracer_ns_) tracer_ns_ = beam_tracer_ns(model_.part) / static_cast<double>(units);
+  }
 
   /// False if it was cancelled: an unfinished point is no point.
+  /// \pre expect()
   bool trace(Direction& direction, std::size_t wavelength) {
-    if (!beam_tracer_) return trace_rays(direction, wavelength);
+    if (!follows_beams_) return trace_rays(direction, wavelength);
     if (must_be_exact(request_)) return trace_beams(direction, wavelength);
     if (request_.engine == Engine::stochastic) return trace_stochastic(direction, wavelength);
     return trace_fastest(direction, wavelength);
@@ -145,6 +150,16 @@ class DesignTracing {
   }
 
   /// Made when it is first needed, by whichever thread needs it.
+  const raytrace::BeamTracer& beam_tracer() {
+    using Elements = raytrace::BeamTracer::Elements;
+    std::call_once(beam_tracer_is_made_, [this] {
+      beam_tracer_.emplace(model_.part, must_be_exact(request_) ? Elements::each_by_itself : Elements::equal_at_once);
+      if (!model_.optics.is_smooth()) scattering_.emplace(model_.part, beam_tracer_->centre_mm());
+    });
+    return *beam_tracer_;
+  }
+
+  /// Made likewise.
   const raytrace::MonteCarlo& ray_tracer() {
     std::call_once(ray_tracer_is_made_, [this] {
       ray_tracer_.emplace(model_.part, ray_engine(), model_.entrance ? &*model_.entrance : nullptr);
@@ -183,13 +198,13 @@ class DesignTracing {
   bool trace_beams(Direction& direction, std::size_t wavelength) {
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     BeamAnswer answer =
-        follow_beams(*beam_tracer_, model_.part, light(wavelength).optics, illumination, cones(), beams_,
+        follow_beams(beam_tracer(), model_.part, light(wavelength).optics, illumination, cones(), beams_,
                      {.footprint = request_.footprint, .far_field = request_.far_field}, cancel_);
     if (!keep(direction, wavelength, answer.traced)) return false;
     direction.footprint = std::move(answer.footprint);
     direction.far_field = std::move(answer.far_field);
     return !request_.derivatives ||
-           add_derivatives({design_, model_, *beam_tracer_, illumination, beams_, answer.traced}, cancel_,
+           add_derivatives({design_, model_, beam_tracer(), illumination, beams_, answer.traced}, cancel_,
                            direction.spectral[wavelength]);
   }
 
@@ -206,20 +221,47 @@ class DesignTracing {
 
   /// Null where facets do not scatter.
   std::unique_ptr<raytrace::ScatteredLight> scattered_light(const raytrace::Optics& optics,
-                                                            const raytrace::Illumination& illumination) const {
+                                                            const raytrace::Illumination& illumination) {
+    const raytrace::BeamTracer& tracer = beam_tracer();
     if (!scattering_) return nullptr;
-    return std::make_unique<raytrace::ScatteredLightByRays>(*beam_tracer_, *scattering_, optics, illumination, cones());
+    return std::make_unique<raytrace::ScatteredLightByRays>(tracer, *scattering_, optics, illumination, cones());
   }
 
   bool trace_stochastic(Direction& direction, std::size_t wavelength) {
     const raytrace::Optics& optics = light(wavelength).optics;
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     const std::unique_ptr<raytrace::ScatteredLight> scattered = scattered_light(optics, illumination);
-    raytrace::StochasticBeams beams(*beam_tracer_, scattered.get(), optics, illumination, cones(),
+    raytrace::StochasticBeams beams(beam_tracer(), scattered.get(), optics, illumination, cones(),
                                     sampling_of(request_, light(wavelength).weight, wavelength), cancel_);
     while (!beams.advance())
       ;
     return keep(direction, wavelength, beams);
+  }
+
+  /// Both ways of beams for one direction, with the light that rough facets take from them.
+  struct Beams {
+    std::unique_ptr<raytrace::ScatteredLight> scattered;
+    std::optional<BeamRace> race;
+    bool is_given_up = false;
+  };
+
+  void begin(Beams& beams, const raytrace::Optics& optics, const raytrace::Illumination& illumination,
+             const raytrace::Sampling& sampling) {
+    beams.scattered = scattered_light(optics, illumination);
+    beams.race.emplace(beam_tracer(), beams.scattered.get(), optics, illumination, cones(), beams_, sampling,
+                       BeamRace::Options{.may_resample = !request_.cutoff}, cancel_);
+  }
+
+  /// Takes beams a step on. Beams that exceed a budget are given up, as rays have none.
+  /// \return whether they have reached their end
+  static bool advance(Beams& beams) {
+    try {
+      return beams.race->advance();
+    } catch (const BudgetError&) {
+      beams.race.reset();
+      beams.is_given_up = true;
+      return false;
+    }
   }
 
   /// By the engine that is expected to reach the goal first, round by round: each goes on where it was left when
@@ -229,20 +271,21 @@ class DesignTracing {
     const raytrace::Optics& optics = light(wavelength).optics;
     const raytrace::Sampling sampling = sampling_of(request_, light(wavelength).weight, wavelength);
     const double ns_per_segment = ns_of_segment();
-    const std::unique_ptr<raytrace::ScatteredLight> scattered = scattered_light(optics, illumination);
-    BeamRace beams(*beam_tracer_, scattered.get(), optics, illumination, cones(), beams_, sampling,
-                   {.may_resample = !request_.cutoff}, cancel_);
+    Beams beams;
     std::optional<raytrace::MonteCarlo::Run> rays;
-    for (;;) {
+    while (!is_cancelled(cancel_)) {
       const double rays_take = ns_per_segment * (rays ? rays->expected_segments() : kSegmentsOfFirstRound);
-      if (beams.expected_ns() <= rays_take) {
-        if (beams.advance()) return keep(direction, wavelength, beams);
+      const double rays_took = rays ? ns_per_segment * static_cast<double>(rays->result().segments) : 0.0;
+      const bool begins = !beams.race && !beams.is_given_up && *tracer_ns_ <= kMaxTracerShare * (rays_take - rays_took);
+      if (begins) begin(beams, optics, illumination, sampling);
+      if (beams.race && beams.race->expected_ns() <= rays_take) {
+        if (advance(beams)) return keep(direction, wavelength, *beams.race);
       } else {
         if (!rays) rays.emplace(ray_tracer(), optics, illumination, cones(), sampling, paths_, cancel_);
         if (rays->advance()) return keep(direction, wavelength, rays->result(), name_of(ray_engine()));
       }
-      if (is_cancelled(cancel_)) return false;
     }
+    return false;
   }
 
   const Design& design_;
@@ -251,7 +294,10 @@ class DesignTracing {
   const Cancellation* cancel_;
   raytrace::BeamPolicy beams_;
   raytrace::PathPolicy paths_;
-  std::optional<raytrace::BeamTracer> beam_tracer_;  ///< none: rays alone
+  bool follows_beams_ = false;       ///< otherwise rays only
+  std::optional<double> tracer_ns_;  ///< expected time of making `beam_tracer_`, for each direction and wavelength
+  std::once_flag beam_tracer_is_made_;
+  std::optional<raytrace::BeamTracer> beam_tracer_;
   std::optional<raytrace::BackSurface> scattering_;  ///< for what rough facets take from beams
   std::once_flag ray_tracer_is_made_;
   std::optional<raytrace::MonteCarlo> ray_tracer_;
@@ -293,7 +339,8 @@ void DirectionTracing::trace(std::vector<Direction>& directions, Progress* progr
       return is_traced;
     };
     const std::size_t units = static_cast<std::size_t>(last - first) * wavelengths;
-    if (tracing.takes_several()) for_each_in_parallel(units, trace_unit);
+    tracing.expect(units);
+    if (tracing.takes_several()) for_each_within_memory(units, trace_unit);
     for (std::size_t k = 0; !tracing.takes_several() && k < units; ++k)
       if (!trace_unit(k)) return;
     if (request_.incidence_spans.empty()) tracings_[d].reset();

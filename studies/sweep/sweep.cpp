@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/memory_budget.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/threads.h"
@@ -158,7 +159,7 @@ std::optional<std::vector<StoredOutput>> measure_all(const Study& study, const P
 }  // namespace
 
 std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
-                                         const Cancellation* cancel) {
+                                         const Cancellation* cancel, bool* ran_out) {
   const auto start = std::chrono::steady_clock::now();
   StoredPoint point;
   point.point = number;
@@ -171,6 +172,7 @@ std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t numbe
   } catch (const Error& error) {
     point.failed = true;
     point.reason = error.what();
+    if (ran_out != nullptr) *ran_out = dynamic_cast<const TraceBudgetError*>(&error) != nullptr;
   }
   point.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return point;

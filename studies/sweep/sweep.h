@@ -64,8 +64,9 @@ class Sweep {
 
 /// Computes one point of a study; what is wrong with it is recorded, not thrown. Nothing if it was cancelled.
 /// \throw std::bad_alloc: the same point may succeed when more memory is available
+/// \param ran_out set to true if the point failed because a budget of memory or beams ran out; null: not requested
 std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
-                                         const Cancellation* cancel);
+                                         const Cancellation* cancel, bool* ran_out = nullptr);
 
 /// Told how far a sweep has come. Calls come from one thread at a time.
 class SweepObserver {

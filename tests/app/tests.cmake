@@ -9,6 +9,7 @@ retrace_test(command_tests
     app/derivatives_test.cpp
     app/chiseling_command_test.cpp
     app/fabricate_test.cpp
+    app/memory_budget_test.cpp
     app/metrology_test.cpp
     app/modules_test.cpp
     app/number_list_test.cpp

@@ -1,0 +1,35 @@
+#pragma once
+
+// Loop over traces that run in parallel as long as all of them fit into the memory budget.
+
+#include <cstddef>
+#include <functional>
+#include <mutex>
+
+#include "core/memory_budget.h"
+#include "core/threads.h"
+
+namespace retrace {
+
+/// Calls work(0) .. work(count - 1) as for_each_in_parallel(). If calls that run side by side need too much memory
+/// together, the call that notices it is abandoned and repeated when no other such call is repeated. The results
+/// therefore do not depend on the number of threads.
+/// \pre a call of `work` that ends by SharedMemoryShort can be repeated
+inline void for_each_within_memory(std::size_t count, const std::function<void(std::size_t)>& work) {
+  const auto fits_beside_others = [&work](std::size_t k) {
+    const SharedMemoryScope scope;
+    try {
+      work(k);
+      return true;
+    } catch (const SharedMemoryShort&) {
+      return false;
+    }
+  };
+  for_each_in_parallel(count, [&](std::size_t k) {
+    if (fits_beside_others(k)) return;
+    const std::lock_guard alone(lone_trace_mutex());
+    work(k);
+  });
+}
+
+}  // namespace retrace

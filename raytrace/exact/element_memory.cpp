@@ -1,0 +1,48 @@
+#include "raytrace/exact/element_memory.h"
+
+#include <fmt/format.h>
+
+#include "core/memory_budget.h"
+
+namespace retrace::raytrace {
+namespace {
+
+/// Memory in bytes of a cell: in CellIndex, where it is listed in some five buckets, and in the lookup by which
+/// EqualPlaces finds like cells.
+constexpr double kBytesPerCell = 150.0;
+/// Memory in bytes of a bucket of CellIndex. Cells that are much longer than wide are listed in many buckets.
+constexpr double kBytesPerBucket = 24.0;
+/// Work of listing a cell and of searching its neighbours: some 1.2 us.
+constexpr double kWorkPerCell = 40.0;
+
+double bucket_count(const geometry::Part& part) {
+  if (part.period_mm) return 0.0;
+  const geometry::Vec2 size = geometry::bounding_box(part.outline).size() / part.size_mm;
+  return size.x() * size.y();
+}
+
+}  // namespace
+
+bool ElementCost::fits_memory() const {
+  return bytes <= static_cast<double>(element_memory_bytes());
+}
+
+ElementCost element_cost(const geometry::Part& part) {
+  ElementCost cost;
+  for (const geometry::Placement& placement : part.placements)
+    cost.cells += static_cast<double>(part.patches[placement.patch].cells.size());
+  cost.bytes = kBytesPerCell * cost.cells + kBytesPerBucket * bucket_count(part);
+  cost.work = kWorkPerCell * cost.cells;
+  return cost;
+}
+
+void require_element_memory(const geometry::Part& part) {
+  const ElementCost cost = element_cost(part);
+  if (cost.fits_memory()) return;
+  throw TraceBudgetError(fmt::format(
+      "beams through {:.3g} cells take some {:.3g} GiB, more than half of {}: give a larger budget, or --engine "
+      "montecarlo",
+      cost.cells, cost.bytes / static_cast<double>(1U << 30), memory_budget_text()));
+}
+
+}  // namespace retrace::raytrace

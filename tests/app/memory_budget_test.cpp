@@ -1,0 +1,156 @@
+// What retrace needs in memory and time for many elements, and where a budget ends its work.
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+#include "tests/app/program.h"
+
+namespace retrace::test::memory_budget_test {
+namespace {
+
+struct Measured {
+  int code = 0;
+  double peak_mib = 0.0;     ///< largest resident memory
+  double processor_s = 0.0;  ///< of all threads
+  std::string out, err;
+};
+
+/// Runs retrace as the only child of an interpreter, which reports what it needed.
+Measured measured(const TemporaryFolder& folder, const Arguments& arguments) {
+  const std::string script =
+      "import resource, subprocess, sys\n"
+      "run = subprocess.run(sys.argv[1:], capture_output=True, text=True)\n"
+      "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
+      "print(run.returncode, used.ru_maxrss / 1024, used.ru_utime + used.ru_stime)\n"
+      "print(run.stdout, end='')\n"
+      "print(run.stderr, end='', file=sys.stderr)\n";
+  const Outcome outcome =
+      Child(folder.path(), with({RETRACE_PYTHON, "-c", script, RETRACE_PROGRAM}, arguments)).wait(patient(120));
+  Measured result;
+  std::istringstream lines(outcome.out);
+  lines >> result.code >> result.peak_mib >> result.processor_s;
+  lines.ignore();
+  result.out.assign(std::istreambuf_iterator<char>(lines), {});
+  result.err = outcome.err;
+  return result;
+}
+
+std::string array(const std::string& element, double length_mm) {
+  return "[element]\n" + element + "\n[array]\nx_length_mm = " + std::to_string(length_mm) +
+         "\ny_length_mm = " + std::to_string(length_mm) + "\n[body]\nthickness_mm = 2\nrefractive_index = 1.49\n";
+}
+
+/// Hexagonal cube corners of 0.01 mm. \param length_mm 9.87: 1.5 million of them
+std::string small_cubes(double length_mm) {
+  return array("kind = \"hexagonal_icc\"\naperture_mm = 0.01", length_mm);
+}
+
+const std::string kInfiniteCubes =
+    "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 2.5\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = "
+    "2\nrefractive_index = 1.49\n";
+
+// Rays need neither an index of the elements nor beams: with very many elements, making these alone takes longer.
+TEST(MemoryBudget, AutoCostsNoMoreThanHalfAgainOfTheEngineThatItTakes) {
+  const TemporaryFolder folder;
+  folder.write("cubes.toml", small_cubes(9.87));
+  const Arguments arguments = {"rre", "cubes.toml", "--incidence=0", "--target-error=1e-3", "--json", "-", "--engine"};
+  const Measured by_rays = measured(folder, with(arguments, {"montecarlo"}));
+  const Measured automatic = measured(folder, with(arguments, {"auto"}));
+  ASSERT_EQ(by_rays.code, 0) << by_rays.err;
+  ASSERT_EQ(automatic.code, 0) << automatic.err;
+  EXPECT_EQ(Json::parse(automatic.out)["engine"], Json::parse(by_rays.out)["engine"]);
+  EXPECT_LE(automatic.processor_s, 1.5 * by_rays.processor_s + 0.3);
+  EXPECT_LE(automatic.peak_mib, by_rays.peak_mib + 50.0);
+}
+
+TEST(MemoryBudget, MoreElementsThanItHoldsAreRefusedBeforeTheyAreListed) {
+  const TemporaryFolder folder;
+  folder.write("cubes.toml", small_cubes(31.2));
+  const Measured exact = measured(folder, {"rre", "cubes.toml", "--engine", "exact", "--cutoff=1e-3"});
+  EXPECT_EQ(exact.code, 3);
+  EXPECT_TRUE(exact.err.starts_with("retrace: beams through 1.5e+07 cells take some ")) << exact.err;
+  EXPECT_NE(exact.err.find("the memory budget of 1 GiB (--memory-gib)"), std::string::npos) << exact.err;
+  EXPECT_LE(exact.peak_mib, 200.0);
+  EXPECT_LE(exact.processor_s, 5.0);
+}
+
+// Without a cut-off every beam splits again and again, and only a budget ends that.
+TEST(MemoryBudget, BeamsWithoutACutoffEndWithIt) {
+  const TemporaryFolder folder;
+  folder.write("cubes.toml", kInfiniteCubes);
+  for (const char* threads : {"1", "4"}) {
+    const Measured exact = measured(folder, {"rre", "cubes.toml", "--engine", "exact", "--cutoff", "0", "--incidence",
+                                             "10,20,30,40", "--memory-gib", "0.1", "--threads", threads});
+    EXPECT_EQ(exact.code, 3) << threads;
+    EXPECT_TRUE(exact.err.starts_with("retrace: beams exceed the memory budget of 0.1 GiB (--memory-gib) with "))
+        << exact.err;
+    EXPECT_LE(exact.peak_mib, 102.4 + 100.0) << threads;
+    EXPECT_EQ(exact.out, "");
+  }
+}
+
+// Rays then answer as if they had been requested, to the last digit.
+TEST(MemoryBudget, AutoGoesOnWithRaysWhereBeamsExceedIt) {
+  const TemporaryFolder folder;
+  folder.write("cubes.toml", kInfiniteCubes);
+  const Arguments arguments = {"rre",  "cubes.toml",   "--cutoff", "0",      "--incidence", "20",      "--target-error",
+                               "2e-4", "--memory-gib", "0.02",     "--json", "-",           "--engine"};
+  const Measured automatic = measured(folder, with(arguments, {"auto"}));
+  const Measured by_rays = measured(folder, with(arguments, {"montecarlo"}));
+  ASSERT_EQ(automatic.code, 0) << automatic.err;
+  EXPECT_EQ(Json::parse(automatic.out)["points"], Json::parse(by_rays.out)["points"]);
+  EXPECT_LE(automatic.peak_mib, by_rays.peak_mib + 60.0);
+}
+
+std::string study(const std::string& engine) {
+  return "schema = \"retrace.study/1\"\ndesign = \"cubes.toml\"\n[[parameter]]\nkey = \"element.aperture_mm\"\nvalues "
+         "= [1, 2, 3]\n[[quantity]]\nkind = \"rre\"\n[optimize]\nmaximize = \"rre\"\n[analysis]\nincidence_deg = "
+         "20\ncutoff = 0\ntarget_error = 1e-3\nengine = \"" +
+         engine + "\"\n";
+}
+
+TEST(MemoryBudget, ASearchWithoutAnAnswerBecauseOfItEndsWith3) {
+  const TemporaryFolder folder;
+  folder.write("cubes.toml", kInfiniteCubes);
+  folder.write("exact.toml", study("exact"));
+  const Measured ended = measured(folder, {"optimize", "exact.toml", "--memory-gib", "0.02", "-o", "out"});
+  EXPECT_EQ(ended.code, 3) << ended.out;
+  EXPECT_NE(ended.err.find("3 of 3 designs are not judged because a budget ran out"), std::string::npos) << ended.err;
+  // The designs are not stored as failed: a search that goes on with rays finds an answer.
+  folder.write("auto.toml", study("auto"));
+  const Measured found = measured(folder, {"optimize", "auto.toml", "--memory-gib", "0.02", "-o", "other"});
+  EXPECT_EQ(found.code, 0) << found.err;
+}
+
+// Beams of all elements with diffraction need memory for each element; rays need none.
+TEST(MemoryBudget, PhotometryOfAMillionElementsGoesOnWithRays) {
+  const TemporaryFolder folder;
+  folder.write("prisms.toml", array("kind = \"rtp\"\nbase_mm = 0.01\nwidth_mm = 0.01", 10.0));
+  const Arguments arguments = {"photometry", "prisms.toml", "--standard",  "r150",   "--class",   "IA",
+                               "--colour",   "white",       "--area-cm2",  "30",     "--samples", "1024",
+                               "--light",    "design",      "--no-advice", "--json", "-",         "--engine"};
+  const Measured automatic = measured(folder, with(arguments, {"auto"}));
+  const Measured by_rays = measured(folder, with(arguments, {"montecarlo"}));
+  EXPECT_EQ(automatic.code, 1) << automatic.err;  // without diffraction the verdict is undetermined
+  EXPECT_EQ(Json::parse(automatic.out)["engine"], "embree");
+  EXPECT_EQ(Json::parse(automatic.out)["points"].size(), Json::parse(by_rays.out)["points"].size());
+  EXPECT_LE(automatic.peak_mib, by_rays.peak_mib + 50.0);
+  EXPECT_LE(automatic.processor_s, 1.5 * by_rays.processor_s + 0.5);
+  const Measured exact = measured(folder, with(arguments, {"exact"}));
+  EXPECT_EQ(exact.code, 3);
+  EXPECT_NE(exact.err.find("exceeds the memory budget of 1 GiB (--memory-gib)"), std::string::npos) << exact.err;
+}
+
+TEST(MemoryBudget, SizesOutOfRangeAreRefused) {
+  const TemporaryFolder folder;
+  folder.write("cubes.toml", kInfiniteCubes);
+  expect_refused(folder,
+                 {{{"--memory-gib", "0"}, "--memory-gib: must be a number from 0.01 to 65536, got 0"},
+                  {{"--memory-gib=-1"}, "--memory-gib: must be a number from 0.01 to 65536, got -1"},
+                  {{"--memory-gib", "1e300"}, "--memory-gib: must be a number from 0.01 to 65536, got 1e+300"}},
+                 {"rre", "cubes.toml"});
+}
+
+}  // namespace
+}  // namespace retrace::test::memory_budget_test
