@@ -370,11 +370,15 @@ void add_keys(const Table& table, const std::string& path, std::vector<std::stri
   }
 }
 
+/// Returns true if an override can name the key or table. Keys of tables in a list cannot be named.
 bool has_key_or_table(const Table& root, std::string_view path) {
   const auto [around, name] = split_path(path);
   const Table* const table = table_at(root, around);
-  return table != nullptr &&
-         (table_at(*table, name) != nullptr || std::ranges::count(table->rows, name, &Row::key) > 0);
+  if (path == kId) return true;
+  if (path.starts_with('.') || name.empty() || table == nullptr) return false;
+  for (std::string_view outer = around; !outer.empty(); outer = split_path(outer).around)
+    if (table_at(root, outer)->presence == Presence::list) return false;
+  return table_at(*table, name) != nullptr || std::ranges::count(table->rows, name, &Row::key) > 0;
 }
 
 /// Checks that every key that the overrides unset is a key of the format. The key may be absent from the file.

@@ -18,9 +18,6 @@ using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
 
 // Share of a direction's power by which the budget of polygons may fall short.
 constexpr double kMostBeyondBudget = 1e-4;
-// Half-width, in standard errors, of a 95 % interval. The upper bound for missing light is divided by this number and
-// then added in quadrature to the standard error.
-constexpr double kErrorsOfABound = 1.96;
 
 Angle deg(double value) {
   return Angle::from_deg(value);
@@ -269,7 +266,7 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
     double per_sr = 0.0;
     double squares = 0.0;
-    double missing = 0.0;  // sum of the bounds of all wavelengths, whose errors are not independent
+    double missing = 0.0;  // sum over all wavelengths, because their missing light is similar
     for (std::size_t w = 0; w < pieces.size(); ++w) {
       per_sr += weights_[w] * pieces[w].per_sr[k];
       if (!pieces[w].missing_per_sr.empty()) missing += weights_[w] * pieces[w].missing_per_sr[k];
@@ -278,7 +275,7 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
     const PhotometricGeometry geometry = geometry_of(setting, setting.observation_deg[k]);
     reading.r_a.push_back(raytrace::coefficient_of_retroreflection(per_sr, source.incidence));
     reading.r_l.push_back(raytrace::coefficient_of_luminance(reading.r_a.back(), raytrace::viewing_angle(geometry)));
-    reading.r_a_error.push_back(cos_beta * std::hypot(std::sqrt(squares), missing / kErrorsOfABound));
+    reading.r_a_error.push_back(cos_beta * std::hypot(std::sqrt(squares), missing));
   }
   if (map.empty()) return reading;
   const double step_rad = 2.0 * deg(request_.window_deg).rad() / static_cast<double>(setting.map_columns);

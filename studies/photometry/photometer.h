@@ -116,8 +116,8 @@ class Photometer {
   struct Piece {
     std::vector<double> per_sr;
     std::vector<double> error_per_sr;
-    /// Upper bound of the intensity that is missing in `per_sr`, for each observation angle. Missing light is light in
-    /// truncated beams and scattered light of unknown direction. If the vector is empty, the bound is 0.
+    /// Estimate of the intensity that is missing in `per_sr`, for each observation angle. Missing light is light in
+    /// truncated beams and scattered light of unknown direction. If the vector is empty, no light is missing.
     std::vector<double> missing_per_sr;
     std::vector<double> map_per_sr;
     double rre = 0.0;
@@ -132,16 +132,19 @@ class Photometer {
   static constexpr double kWidthsWithoutDiffraction = 64.0;
 
   raytrace::FarFieldPolicy far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const;
-  raytrace::BeamPolicy beam_policy(std::size_t wavelength) const;
+  /// \param coarseness factor of the cut-off
+  raytrace::BeamPolicy beam_policy(std::size_t wavelength, double coarseness) const;
   /// What comes back of one wavelength.
   struct Traced {
     raytrace::BeamResult beams;
     raytrace::FarField field;
     double scattered_from_cone = 0.0;  ///< by textures, of the detector's widest
   };
-  /// Nothing if it was cancelled.
+  /// Traces the light of one wavelength. Returns nothing if the trace was cancelled.
+  /// \param coarseness factor of the cut-off
   std::optional<Traced> traced(const geometry::Vec3& to_source, std::size_t wavelength,
-                               const raytrace::BeamTracer& tracer, const Cancellation* cancel) const;
+                               const raytrace::BeamTracer& tracer, const Cancellation* cancel,
+                               double coarseness = 1.0) const;
   /// Of settings that share their light, in that order.
   std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
                                      std::size_t wavelength, const raytrace::BeamTracer& tracer,
@@ -149,8 +152,9 @@ class Photometer {
   /// Returns true if all light is traced, including light scattered by rough facets. Otherwise only the mean field is
   /// traced, and readings are lower bounds.
   bool traces_all_light() const { return model_.optics.is_smooth() || keeps_phases_; }
-  void bound_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike, const Traced& traced,
-                     std::vector<Piece>& pieces) const;
+  void estimate_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike, std::size_t wavelength,
+                        const Traced& traced, const raytrace::BeamTracer& tracer, const Cancellation* cancel,
+                        std::vector<Piece>& pieces) const;
   void look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
             std::size_t wavelength, Piece& piece) const;
   /// \param tracer null for balls, which have their own

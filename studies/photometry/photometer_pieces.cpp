@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "core/memory_budget.h"
@@ -37,6 +38,8 @@ constexpr double kMostLatticePoints = 300'000.0;
 // If the truncated power is at most this fraction of the incident power, it is neglected. Otherwise,
 // Piece::missing_per_sr is computed.
 constexpr double kLeastTruncated = 1e-9;
+// Ratio of the cut-off of the coarse trace in estimate_missing() to the cut-off of the trace itself.
+constexpr double kCoarseness = 20.0;
 // Memory in bytes of a cell of a finite part in FarFieldCollector, and of each of its beams.
 constexpr double kBytesPerCell = 200.0;
 constexpr double kBytesPerBeamOfCell = 8.0;
@@ -67,9 +70,6 @@ class FarFieldMemory {
   double cells_ = 0.0;
 };
 
-// Maximum number of directions in which brightest_per_sr() evaluates the far field.
-constexpr std::size_t kMaxSpots = 2;
-
 /// Returns the frame of a setting in the coordinates of the traced light. Settings whose directions are mirror images
 /// of each other use the same traced light. The frame is therefore mirrored for some of them.
 ReturnFrame shared_frame(const PhotometerSetting& setting, const SharedDirection& shared) {
@@ -80,36 +80,6 @@ ReturnFrame shared_frame(const PhotometerSetting& setting, const SharedDirection
 
 geometry::Vec3 receiver_in(const ReturnFrame& frame, double observation_deg) {
   return frame.direction({0.0, Angle::from_deg(observation_deg).rad()});
-}
-
-/// Returns the maximum intensity of the far field in the directions of the strongest beams.
-/// \param window_rad Maximum angle between an undiffracted beam and the direction towards the source. Undiffracted
-///        beams outside it are ignored.
-double brightest_per_sr(const raytrace::FarField& field, const geometry::Vec3& to_source, double window_rad,
-                        const raytrace::ApertureKernel& kernel) {
-  std::vector<std::pair<double, geometry::Vec3>> beams;
-  for (const raytrace::CoherentGroup& group : field.groups())
-    for (const raytrace::FieldPolygon& p : group.polygons) {
-      const double height = std::sqrt(std::max(0.0, 1.0 - p.cosines.squaredNorm()));
-      beams.emplace_back(group.copies * p.power, geometry::Vec3(p.cosines.x(), p.cosines.y(), height));
-    }
-  for (const raytrace::FarFieldRay& ray : field.rays())
-    if (raytrace::small_angle_between(ray.direction, to_source) <= window_rad)
-      beams.emplace_back(ray.power, ray.direction);
-  std::stable_sort(beams.begin(), beams.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<geometry::Vec3> spots;
-  double brightest = 0.0;
-  for (const auto& beam : beams) {
-    if (spots.size() >= kMaxSpots) break;
-    const geometry::Vec3& direction = beam.second;
-    const bool is_known = std::ranges::any_of(spots, [&](const geometry::Vec3& spot) {
-      return raytrace::small_angle_between(spot, direction) < 0.1 * kernel.reach_rad();
-    });
-    if (is_known) continue;
-    spots.push_back(direction);
-    brightest = std::max(brightest, field.intensity(direction, kernel).per_sr);
-  }
-  return brightest;
 }
 
 /// Of a beam that keeps its phases.
@@ -151,10 +121,10 @@ raytrace::FarFieldPolicy Photometer::far_field_policy(const SpectralOptics& ligh
   return policy;
 }
 
-raytrace::BeamPolicy Photometer::beam_policy(std::size_t wavelength) const {
+raytrace::BeamPolicy Photometer::beam_policy(std::size_t wavelength, double coarseness) const {
   raytrace::BeamPolicy beams;
   if (resamples_weak()) beams.weak = raytrace::WeakBeams{.seed = seed_of(wavelength), .replicates = replicates()};
-  beams.cutoff = cutoff();
+  beams.cutoff = coarseness * cutoff();
   beams.by_cell = request_.diffraction;
   beams.keeps_phases = keeps_phases_;
   if (request_.engine != Engine::exact) beams.max_beams = kMostBeams;
@@ -169,8 +139,8 @@ raytrace::BeamTracer Photometer::make_tracer() const {
 }
 
 std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_source, std::size_t wavelength,
-                                                     const raytrace::BeamTracer& tracer,
-                                                     const Cancellation* cancel) const {
+                                                     const raytrace::BeamTracer& tracer, const Cancellation* cancel,
+                                                     double coarseness) const {
   const SpectralOptics& light = model_.spectral[wavelength];
   const raytrace::SourceAngles source = raytrace::source_angles(to_source);
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
@@ -178,15 +148,15 @@ std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_so
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
   FarFieldMemory memory;
   Traced traced;
-  traced.beams = tracer.trace(
-      light.optics, illumination, cones, beam_policy(wavelength), cancel, [&](const raytrace::ReturnedBeam& beam) {
-        const double trace = beam.entry_from_exit.linear().trace();
-        if (request_.diffraction && !model_.part.period_mm) memory.add(beam);
-        if (trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
-        if (beam.cone < cones.size())
-          traced.scattered_from_cone +=
-              beam.place_count() * scattered_power(beam) / (beam.replicate ? replicates() : 1.0);
-      });
+  traced.beams = tracer.trace(light.optics, illumination, cones, beam_policy(wavelength, coarseness), cancel,
+                              [&](const raytrace::ReturnedBeam& beam) {
+                                const double trace = beam.entry_from_exit.linear().trace();
+                                if (request_.diffraction && !model_.part.period_mm) memory.add(beam);
+                                if (trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
+                                if (beam.cone < cones.size())
+                                  traced.scattered_from_cone += beam.place_count() * scattered_power(beam) /
+                                                                (beam.replicate ? replicates() : 1.0);
+                              });
   if (!traced.beams.complete) return std::nullopt;
   traced.field = collector.finish();
   return traced;
@@ -226,35 +196,46 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
   std::vector<Piece> pieces(alike.size(), common);
   for (std::size_t k = 0; k < alike.size() && !is_cancelled(cancel); ++k)
     look(settings[alike[k].index], alike[k], field, wavelength, pieces[k]);
-  if (traces_all_light()) bound_missing(settings, alike, *traced, pieces);
+  if (traces_all_light()) estimate_missing(settings, alike, wavelength, *traced, tracer, cancel, pieces);
   for (Piece& piece : pieces) piece.complete = !is_cancelled(cancel);
   return pieces;
 }
 
-/// Sets Piece::missing_per_sr. Truncated beams are assumed to leave in the same directions as the traced beams. Their
-/// intensity is then at most their power times the maximum intensity per unit of incident power. Scattered light of
-/// unknown direction is assumed to have the angular distribution of the other scattered light.
-void Photometer::bound_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
-                               const Traced& traced, std::vector<Piece>& pieces) const {
+/// Sets Piece::missing_per_sr. It is the sum of three estimates. First, truncated light is assumed to return with the
+/// angular distribution of the other returned light. Second, the intensity that truncated beams would add is
+/// extrapolated from a coarse trace with a greater cut-off. This estimate is made at the middle wavelength for all
+/// wavelengths, and not if weak beams are resampled, because hardly any light is then truncated. Third, scattered light
+/// of unknown direction is assumed to have the angular distribution of the other scattered light.
+void Photometer::estimate_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
+                                  std::size_t wavelength, const Traced& traced, const raytrace::BeamTracer& tracer,
+                                  const Cancellation* cancel, std::vector<Piece>& pieces) const {
+  const auto truncated_in = [](const Traced& t) { return t.beams.ledgers.back()[raytrace::Account::truncated]; };
   const raytrace::FarField& field = traced.field;
-  const double truncated = traced.beams.ledgers.back()[raytrace::Account::truncated];
+  const double truncated = truncated_in(traced);
   const double unplaced = field.scattered_power() > 0.0 ? field.unplaced_power() / field.scattered_power() : 0.0;
   if (truncated <= kLeastTruncated && unplaced <= kLeastTruncated) return;
-  const geometry::Vec3 to_source = frame_of(settings[alike.front().index]).to_source;
-  const double window_rad = 1.5 * Angle::from_deg(request_.window_deg).rad();
-  double from_beams = 0.0;
-  if (truncated > kLeastTruncated) {
-    double brightest = brightest_per_sr(field, to_source, window_rad, kernel_);
-    for (const Piece& piece : pieces)
-      for (const double per_sr : piece.per_sr) brightest = std::max(brightest, per_sr);
-    from_beams = truncated * brightest;
+  std::optional<Traced> coarse;
+  if (truncated > kLeastTruncated && !resamples_weak() && wavelength == middle_wavelength()) {
+    coarse = this->traced(frame_of(settings[alike.front().index]).to_source, wavelength, tracer, cancel, kCoarseness);
+    if (!coarse) return;
   }
+  const double difference = coarse ? truncated_in(*coarse) - truncated : 0.0;
+  const double all_weights = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+  const double returned = pieces.front().rre;
   for (std::size_t k = 0; k < alike.size(); ++k) {
     const PhotometerSetting& setting = settings[alike[k].index];
     const ReturnFrame frame = shared_frame(setting, alike[k]);
-    for (const double observation_deg : setting.observation_deg)
-      pieces[k].missing_per_sr.push_back(
-          from_beams + unplaced * field.scattered_per_sr(receiver_in(frame, observation_deg), kernel_));
+    for (std::size_t angle = 0; angle < setting.observation_deg.size(); ++angle) {
+      const geometry::Vec3 receiver = receiver_in(frame, setting.observation_deg[angle]);
+      const double seen = pieces[k].per_sr[angle];
+      double missing = unplaced * field.scattered_per_sr(receiver, kernel_);
+      if (returned > 0.0) missing += truncated / returned * seen;
+      if (difference > 0.0) {
+        const double change = std::abs(seen - coarse->field.intensity(receiver, kernel_).per_sr);
+        missing += truncated / difference * change * all_weights / weights_[wavelength];
+      }
+      pieces[k].missing_per_sr.push_back(missing);
+    }
   }
 }
 

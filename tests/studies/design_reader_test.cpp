@@ -338,6 +338,9 @@ TEST(DesignReader, KeysAreUnset) {
   EXPECT_EQ(read({"light.spectrum="}).light.wavelength_nm(), read({}).light.wavelength_nm())
       << "a key that the file does not have";
   EXPECT_EQ(set_complaint({"element.base_mm="}), "d.toml:1: element.base_mm: missing, must be > 0");
+  EXPECT_EQ(read({"schema="}).substance.refractive_index, 1.6);
+  for (const std::string key : {".", "body.", ".body", "body..material", "zone.share", "coating.facets.thickness_nm"})
+    EXPECT_EQ(set_complaint({key + "="}).find("--set " + key + "=: \"" + key + "\" is no key of a design"), 0U) << key;
   EXPECT_EQ(set_complaint({"body.refractve_index="}),
             "--set body.refractve_index=: \"body.refractve_index\" is no key of a design, did you mean "
             "\"body.refractive_index\"?");

@@ -94,8 +94,8 @@ TEST(GlassOfDesign, DoubtsAreWarnings) {
   fs::create_directories(folder);
   const auto read = [&](const std::string& name, const std::string& text, const Overrides& more) {
     std::ofstream(folder / name) << text;
-    Overrides overrides = more;
-    overrides.push_back("body.catalogue=" + (folder / name).string());
+    Overrides overrides = {"body.catalogue=" + (folder / name).string()};
+    overrides.insert(overrides.end(), more.begin(), more.end());
     return inspected(overrides);
   };
   const std::string record =

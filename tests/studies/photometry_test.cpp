@@ -11,6 +11,7 @@
 #include "core/number_format.h"
 #include "core/threads.h"
 #include "materials/io/spectrum_reader.h"
+#include "studies/design/io/design_reader.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/standards.h"
 #include "tests/studies/photometric_requests.h"
@@ -226,6 +227,23 @@ TEST(Photometry, ResampledBeamsOfRoughFacetsScatterAsFollowedOnesDo) {
                 student_bound(4, 16) * std::hypot(point.std_error_mcd_per_lx, further.points[k].std_error_mcd_per_lx) +
                     2e-3 * point.r_i_mcd_per_lx)
         << k;
+  }
+}
+
+// Beams of facets with a form are not resampled but truncated. The standard errors cover the truncated light, and are
+// small enough for a verdict.
+TEST(Photometry, StandardErrorsOfFormsCoverTruncatedLight) {
+  const Design design = read_design(std::string(RETRACE_SOURCE_DIR) + "/examples/sunk_reflector.toml",
+                                    std::vector<std::string>{"light.wavelength_nm=620"});
+  PhotometryRequest request = diffracted(Engine::automatic);
+  const PhotometryResult found = run(design, request);
+  request.cutoff = 1e-7;
+  const PhotometryResult further = run(design, request);
+  for (std::size_t k = 0; k < found.points.size(); ++k) {
+    const PhotometricPoint& point = found.points[k];
+    EXPECT_GT(point.std_error_mcd_per_lx, 0.0) << k;
+    EXPECT_LT(point.std_error_mcd_per_lx, 0.1 * point.r_i_mcd_per_lx) << k;
+    EXPECT_NEAR(point.r_i_mcd_per_lx, further.points[k].r_i_mcd_per_lx, 1.96 * point.std_error_mcd_per_lx) << k;
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/csv.h"
 #include "core/json_text.h"
+#include "core/message_text.h"
 #include "core/number_format.h"
 
 namespace retrace::studies {
@@ -57,9 +58,9 @@ std::string forces_csv(const ForcesResult& result) {
 std::string forces_table(const ForcesResult& result) {
   const CutConditions& cut = result.cut;
   const ForceEvents& e = result.events;
-  std::string text =
-      fmt::format("{}: {} cut of {} um over {} mm, {} mm deep\n", result.request.job, result.request.configuration,
-                  shortest(cut.depth_of_cut_um), shortest(cut.width_mm), fixed(cut.plunge_mm, 4));
+  std::string text = fmt::format("{}: {} cut of {} um over {} mm, {} mm deep\n",
+                                 printable(result.request.job, std::string::npos), result.request.configuration,
+                                 shortest(cut.depth_of_cut_um), shortest(cut.width_mm), fixed(cut.plunge_mm, 4));
   const auto row = [&](const char* name, double force) {
     text += fmt::format("  {:<26} {:>8} N\n", name, fixed(force, 3));
   };
