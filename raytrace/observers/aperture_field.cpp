@@ -25,12 +25,6 @@ std::vector<std::int64_t> wave_key(const FieldPolygon& polygon, double same_mm) 
   return key;
 }
 
-field_lanes::Outline outline_of(const PolygonTransform& transform) {
-  field_lanes::Outline outline{{}, transform.centroid_mm(), transform.area_mm2(), transform.size_mm()};
-  for (const Vec2& corner : transform.polygon()) outline.corners_mm.push_back(corner - outline.centroid_mm);
-  return outline;
-}
-
 field_lanes::Use use_of(std::size_t wave, const FieldPolygon& polygon) {
   field_lanes::Use use{wave, {}};
   for (Eigen::Index row = 0; row < 2; ++row)
@@ -57,7 +51,7 @@ ApertureField::ApertureField(const std::vector<CoherentGroup>& groups, double wa
     if (group.replicate) field.column = 1 + *group.replicate;
     for (const FieldPolygon& polygon : group.polygons) {
       const auto [it, is_new] = known.try_emplace(wave_key(polygon, same_mm), waves_.size());
-      if (is_new) waves_.push_back({outline_of(polygon.transform), polygon.cosines});
+      if (is_new) waves_.push_back({field_lanes::Outline(polygon.transform), polygon.cosines});
       field.uses.push_back(use_of(it->second, polygon));
     }
   }

@@ -83,8 +83,8 @@ double FarField::detail_rad() const {
 /// that are not much larger than the wavelength.
 Eigen::ArrayXXd FarField::by_replicate(const std::vector<Vec2>& cosines, const ApertureField& field) const {
   Eigen::ArrayXXd power = field.per_cosines(cosines, cancel_);
-  for (std::size_t k = 0; k < cosines.size(); ++k)
-    power(static_cast<Eigen::Index>(k), 0) += scattered_.fringes_per_cosines(cosines[k]);
+  const std::vector<double> fringes = scattered_.fringes_per_cosines(cosines, cancel_);
+  for (std::size_t k = 0; k < cosines.size(); ++k) power(static_cast<Eigen::Index>(k), 0) += fringes[k];
   return power;
 }
 

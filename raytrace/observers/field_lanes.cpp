@@ -14,6 +14,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 
+// Fringes are neglected where the lobe of the scattered light is lower than this, relative to its peak.
+constexpr double kLeastLobe = 1e-12;
+
 HWY_INLINE V splat(double value) {
   return hn::Set(D(), value);
 }
@@ -113,6 +116,61 @@ void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& tr
   }
 }
 
+/// Components of a vector in the plane, for several directions.
+struct Plane {
+  V x, y;
+};
+
+HWY_INLINE V dot(const Plane& a, const Plane& b) {
+  return hn::MulAdd(a.x, b.x, hn::Mul(a.y, b.y));
+}
+
+HWY_INLINE Plane product(const Eigen::Matrix2d& matrix, const Plane& a) {
+  return {hn::MulAdd(splat(matrix(0, 0)), a.x, hn::Mul(splat(matrix(0, 1)), a.y)),
+          hn::MulAdd(splat(matrix(1, 0)), a.x, hn::Mul(splat(matrix(1, 1)), a.y))};
+}
+
+/// Returns exp(-a . moments a / 2).
+HWY_INLINE V gaussian(const Eigen::Matrix2d& moments, const Plane& a) {
+  return hn::Exp(D(), hn::Mul(splat(-0.5), dot(a, product(moments, a))));
+}
+
+void add_fringes(const Fringes& fringes, double wave_number, const Block& x, const Block& y, Block& sum) {
+  const auto difference = [&](const geometry::Vec2& cosines, std::size_t k) {
+    return Plane{hn::Mul(splat(wave_number), hn::Sub(hn::LoadU(D(), x.data() + k), splat(cosines.x()))),
+                 hn::Mul(splat(wave_number), hn::Sub(hn::LoadU(D(), y.data() + k), splat(cosines.y())))};
+  };
+  Block kx, ky, lobe, phase;
+  bool is_dark = true;
+  for (std::size_t k = 0; k < kBlock; k += hn::Lanes(D())) {
+    const Plane here = difference(fringes.cosines_here, k);
+    const Plane there = difference(fringes.cosines_there, k);
+    const Plane back = product(fringes.turn.transpose(), there);
+    const V height = gaussian(fringes.spread_mm2, there);
+    is_dark = is_dark && hn::AllTrue(D(), hn::Lt(height, splat(kLeastLobe)));
+    hn::StoreU(hn::Sub(here.x, back.x), D(), kx.data() + k);
+    hn::StoreU(hn::Sub(here.y, back.y), D(), ky.data() + k);
+    hn::StoreU(height, D(), lobe.data() + k);
+    hn::StoreU(dot(there, {splat(fringes.shift_mm.x()), splat(fringes.shift_mm.y())}), D(), phase.data() + k);
+  }
+  ComplexBlock places{};
+  if (!is_dark) HWY_NAMESPACE::transform(fringes.outline, kx, ky, places);
+  for (std::size_t k = 0; k < kBlock; k += hn::Lanes(D())) {
+    const Plane here = difference(fringes.cosines_here, k);
+    const Plane there = difference(fringes.cosines_there, k);
+    const Plane between{hn::Mul(splat(0.5), hn::Add(here.x, there.x)), hn::Mul(splat(0.5), hn::Add(here.y, there.y))};
+    const V dip = hn::Mul(splat(fringes.dip_mm2_of_places), gaussian(fringes.dip_mm2, between));
+    const V height = hn::LoadU(D(), lobe.data() + k);
+    const Complex wave = unit(hn::LoadU(D(), phase.data() + k));
+    const V re = hn::LoadU(D(), places.re.data() + k);
+    const V im = hn::LoadU(D(), places.im.data() + k);
+    const V real = hn::MulSub(height, hn::MulSub(wave.re, re, hn::Mul(wave.im, im)), dip);
+    const V imaginary = hn::Mul(height, hn::MulAdd(wave.re, im, hn::Mul(wave.im, re)));
+    const V power = hn::MulSub(splat(fringes.coefficient[0]), real, hn::Mul(splat(fringes.coefficient[1]), imaginary));
+    hn::StoreU(hn::Add(hn::LoadU(D(), sum.data() + k), power), D(), sum.data() + k);
+  }
+}
+
 }  // namespace retrace::raytrace::field_lanes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -121,6 +179,12 @@ namespace retrace::raytrace::field_lanes {
 
 HWY_EXPORT(transform);
 HWY_EXPORT(add_power);
+HWY_EXPORT(add_fringes);
+
+Outline::Outline(const PolygonTransform& transform)
+    : centroid_mm(transform.centroid_mm()), area_mm2(transform.area_mm2()), size_mm(transform.size_mm()) {
+  for (const geometry::Vec2& corner : transform.polygon()) corners_mm.push_back(corner - centroid_mm);
+}
 
 void transform(const Outline& outline, const Block& kx, const Block& ky, ComplexBlock& result) {
   HWY_DYNAMIC_DISPATCH(transform)(outline, kx, ky, result);
@@ -129,6 +193,10 @@ void transform(const Outline& outline, const Block& kx, const Block& ky, Complex
 void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& transforms,
                const std::array<double, 4>& coherency, double copies, Block& sum) {
   HWY_DYNAMIC_DISPATCH(add_power)(uses, transforms, coherency, copies, sum);
+}
+
+void add_fringes(const Fringes& fringes, double wave_number, const Block& x, const Block& y, Block& sum) {
+  HWY_DYNAMIC_DISPATCH(add_fringes)(fringes, wave_number, x, y, sum);
 }
 
 }  // namespace retrace::raytrace::field_lanes

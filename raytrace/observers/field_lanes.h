@@ -1,12 +1,14 @@
 #pragma once
 
-// Internal to the far field: transforms of polygons, and what fields made of them carry, in SIMD lanes over directions.
+// Internal to the far field: transforms of polygons and sums over them, computed for many directions at once by SIMD.
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <vector>
 
 #include "geometry/vec.h"
+#include "raytrace/observers/polygon_transform.h"
 
 namespace retrace::raytrace::field_lanes {
 
@@ -19,8 +21,10 @@ struct ComplexBlock {
   Block re, im;
 };
 
-/// A polygon, as PolygonTransform has it.
+/// The polygon of a PolygonTransform.
 struct Outline {
+  explicit Outline(const PolygonTransform& transform);
+
   std::vector<geometry::Vec2> corners_mm;  ///< relative to the centroid
   geometry::Vec2 centroid_mm;
   double area_mm2 = 0.0;
@@ -40,5 +44,22 @@ struct Use {
 /// real and imaginary part of the upper one beside them
 void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& transforms,
                const std::array<double, 4>& coherency, double copies, Block& sum);
+
+/// Interference fringes of scattered light: two paths meet the same places of a facet. Light that has met a place
+/// leaves the entrance face at r along one path, and at turn r + shift along the other (docs/theory/photometry.md).
+struct Fringes {
+  Outline outline;  ///< polygon of all r
+  Eigen::Matrix2d turn;
+  geometry::Vec2 shift_mm;
+  geometry::Vec2 cosines_here, cosines_there;  ///< direction cosines of the specular light of both paths
+  std::array<double, 2> coefficient;           ///< real and imaginary part
+  Eigen::Matrix2d spread_mm2;                  ///< second moments of the covariance; symmetric
+  Eigen::Matrix2d dip_mm2;   ///< second moments of what is subtracted where both places coincide; symmetric
+  double dip_mm2_of_places;  ///< area of the places for which it is subtracted
+};
+
+/// Adds the power of fringes per unit area of direction cosines.
+/// \param wave_number in radians per mm \param x, y direction cosines
+void add_fringes(const Fringes& fringes, double wave_number, const Block& x, const Block& y, Block& sum);
 
 }  // namespace retrace::raytrace::field_lanes

@@ -315,9 +315,17 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
   if (!(dip_mm2_of_places < 0.5 * common_mm2)) return;
   const Amplitude field = copies * (shared.here->amplitude * coherency_ * shared.there->amplitude.adjoint()).trace() *
                           std::pow(wave_number_ / (2.0 * pi), 2.0);
-  fringes_.push_back({PolygonTransform({common.begin(), common.end()}), shared.turn, shared.shift_mm,
-                      shared.here->cosines, shared.there->cosines,
-                      strength_mm4 / (common_mm2 - dip_mm2_of_places) * field, spread_mm2, dip_mm2, dip_mm2_of_places});
+  const Amplitude coefficient = strength_mm4 / (common_mm2 - dip_mm2_of_places) * field;
+  const PolygonTransform places({common.begin(), common.end()});
+  fringes_.push_back({field_lanes::Outline(places),
+                      shared.turn,
+                      shared.shift_mm,
+                      shared.here->cosines,
+                      shared.there->cosines,
+                      {coefficient.real(), coefficient.imag()},
+                      spread_mm2,
+                      dip_mm2,
+                      dip_mm2_of_places});
 }
 
 double ScatteredField::lobes_per_cosines(const Vec2& cosines) const {
@@ -353,19 +361,22 @@ double ScatteredField::lobes_within(const Vec2& middle, const Eigen::Matrix2d& a
   return pi * std::abs(axes.determinant()) * sum;
 }
 
-double ScatteredField::fringes_per_cosines(const Vec2& cosines) const {
-  double sum = 0.0;
-  for (const Fringes& f : fringes_) {
-    const Vec2 here = wave_number_ * (cosines - f.cosines_here);
-    const Vec2 there = wave_number_ * (cosines - f.cosines_there);
-    const Vec2 between = 0.5 * (here + there);
-    const double lobe = std::exp(-0.5 * there.dot(f.spread_mm2 * there));
-    const double dip = f.dip_mm2_of_places * std::exp(-0.5 * between.dot(f.dip_mm2 * between));
-    const Amplitude places =
-        lobe < 1e-12 ? 0.0 : lobe * phasor(there.dot(f.shift_mm)) * f.transform.at(here - f.turn.transpose() * there);
-    sum += (f.coefficient * (places - dip)).real();
+std::vector<double> ScatteredField::fringes_per_cosines(std::span<const Vec2> cosines,
+                                                        const Cancellation* cancel) const {
+  std::vector<double> power(cosines.size(), 0.0);
+  for (std::size_t first = 0; first < cosines.size(); first += field_lanes::kBlock) {
+    if (is_cancelled(cancel)) break;
+    const std::size_t count = std::min(field_lanes::kBlock, cosines.size() - first);
+    field_lanes::Block x, y, sum{};
+    for (std::size_t k = 0; k < field_lanes::kBlock; ++k) {
+      const Vec2& at = cosines[first + std::min(k, count - 1)];
+      x[k] = at.x();
+      y[k] = at.y();
+    }
+    for (const field_lanes::Fringes& fringes : fringes_) field_lanes::add_fringes(fringes, wave_number_, x, y, sum);
+    std::copy_n(sum.begin(), count, power.begin() + static_cast<std::ptrdiff_t>(first));
   }
-  return sum;
+  return power;
 }
 
 }  // namespace retrace::raytrace

@@ -5,10 +5,13 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <span>
 #include <vector>
 
+#include "core/progress.h"
 #include "raytrace/observers/aperture_kernel.h"
 #include "raytrace/observers/coherent_group.h"
+#include "raytrace/observers/field_lanes.h"
 
 namespace retrace::raytrace {
 
@@ -44,9 +47,9 @@ class ScatteredField {
                                     const ApertureKernel& kernel) const;
   /// Power of the lobes within an ellipse of cosines: the image of the unit disc.
   double lobes_within(const geometry::Vec2& middle, const Eigen::Matrix2d& axes) const;
-  /// Power of the fringes by the cosines of directions: below 0 between them. Over all directions it adds up to
-  /// nothing.
-  double fringes_per_cosines(const geometry::Vec2& cosines) const;
+  /// Returns the power of the fringes per unit area of direction cosines. It is negative between bright fringes, and
+  /// its integral over all directions is 0. The result contains zeros if the calculation was cancelled.
+  std::vector<double> fringes_per_cosines(std::span<const geometry::Vec2> cosines, const Cancellation* cancel) const;
   /// Of the lobes over all directions.
   double power() const { return power_; }
 
@@ -62,17 +65,6 @@ class ScatteredField {
     double weight_mm = 0.0;
     std::size_t angles = 0;
   };
-  /// Places r and turn r + shift that are correlated.
-  struct Fringes {
-    PolygonTransform transform;  ///< of the places r
-    Eigen::Matrix2d turn;
-    geometry::Vec2 shift_mm;
-    geometry::Vec2 cosines_here, cosines_there;
-    std::complex<double> coefficient;
-    Eigen::Matrix2d spread_mm2;  ///< second moments of the covariance
-    Eigen::Matrix2d dip_mm2;     ///< of what is taken out where places and partners are one
-    double dip_mm2_of_places;    ///< its share of the places
-  };
   struct Shared;
   struct Moves;
 
@@ -85,7 +77,7 @@ class ScatteredField {
   std::vector<Ring> rings_, coarse_rings_;
   std::vector<Distance> distances_;
   Eigen::ArrayXXcd replicate_weights_;  ///< weights of distances_ (rows) by replicate (columns)
-  std::vector<Fringes> fringes_;
+  std::vector<field_lanes::Fringes> fringes_;
   double power_ = 0.0;
 };
 

@@ -45,7 +45,10 @@ std::vector<IndexAt> index_table(const Design& design, const materials::Spectrum
   }
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   std::vector<std::string> told_before;
-  const OpticsOfDesign optics(design, library, told_before);
+  // Roughness does not change indices, and its scatter model takes most of the time.
+  Design smooth = design;
+  smooth.surface.texture = SmoothTexture{};
+  const OpticsOfDesign optics(smooth, library, told_before);
   const auto steps = static_cast<int>(std::ceil((high_nm - low_nm) / kIndexStepNm));
   std::vector<IndexAt> table;
   for (int k = 0; k <= steps; ++k) try {
