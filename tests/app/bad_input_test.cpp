@@ -245,7 +245,7 @@ TEST(BadInput, NamesThatTheSystemRefusesAreReportedInOneLine) {
   const TemporaryFolder folder;
   folder.write("d.toml", design_with(0, ""));
   fs::create_symlink("loop", folder.path() / "loop");
-  for (const std::string name :
+  for (const std::string& name :
        {std::string(300, 'n'), std::string("loop"), std::string("loop/x"), std::string("d.toml/x")}) {
     SCOPED_TRACE(name);
     const std::vector<std::pair<int, Arguments>> cases = {
