@@ -31,8 +31,8 @@ struct ResultFolder {
   std::vector<ResultPicture> pictures;    ///< by name; drawings (SVG), and PNG where there is no drawing of that name
   /// The only files and folders that may be opened for the page: the folder itself, and those that the user names.
   /// Without symbolic links.
-  std::vector<std::filesystem::path> readable;
-  std::vector<std::string> warnings;  ///< about results that were left out
+  std::vector<std::filesystem::path> readable{};
+  std::vector<std::string> warnings{};  ///< about results that were left out
 };
 
 /// Longest document that is read.
