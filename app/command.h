@@ -32,6 +32,24 @@ struct CommonOptions {
 /// Words, in the order to list them.
 using Words = std::vector<std::string>;
 
+/// A condition on another option, which the command line must meet for an option to have an effect.
+struct Condition {
+  enum class Kind { given, absent, value };
+
+  Kind kind = Kind::given;  ///< the other option is given, is absent, or has one of the values (given or default)
+  std::string option;
+  Words values = {};
+};
+/// Conditions of which at least one must hold.
+using Need = std::vector<Condition>;
+
+/// Returns the need that one of the options is given.
+Need any_given(const Words& options);
+/// Returns the need that the option is absent.
+Need absent(const std::string& option);
+/// Returns the text of a need, such as "--camera or --road", "no --lamp" or "--engine auto or exact".
+std::string text_of(const Need& need);
+
 /// What an argument is beside its name, its help and its place.
 struct Traits {
   std::function<Words()> words = {};            ///< that it may be, for completion; what ends with "=" goes on
@@ -40,7 +58,7 @@ struct Traits {
   std::uint64_t most = std::uint64_t{1} << 36;  ///< of a whole number
   bool required = false;                        ///< of an option; what has a place is, unless it is a std::optional
   std::string excludes = {};                    ///< the option that it cannot go with
-  Words needs = {};                             ///< options of which one must be given for it to mean something
+  std::vector<Need> needs = {};                 ///< conditions that must all hold for the option to have an effect
 };
 
 /// Traits of what is one of a set of words. \param files ending of files that it may be as well; none: it is no file

@@ -60,10 +60,17 @@ void add_check(CLI::Option& option, const Traits& traits) {
     option.check(not_empty());
 }
 
+/// Returns the help of an argument with the conditions for it to have an effect.
+std::string help_of(const Argument& argument) {
+  Words needs;
+  for (const Need& need : argument.traits.needs) needs.push_back(text_of(need));
+  return needs.empty() ? argument.help : fmt::format("{} Needs: {}", argument.help, fmt::join(needs, ", "));
+}
+
 template <class Value>
 void add_value(CLI::App& app, const Argument& argument, Value& value) {
   const bool has_place = option_names(argument).empty();
-  CLI::Option& option = *app.add_option(argument.name.substr(0, argument.name.find(' ')), value, argument.help);
+  CLI::Option& option = *app.add_option(argument.name.substr(0, argument.name.find(' ')), value, help_of(argument));
   if (!has_place) option.type_name(value_word(argument));
   if (may_be_repeated(argument) && !has_place) option.take_all()->allow_extra_args(false);
   add_check<Value>(option, argument.traits);
@@ -77,7 +84,7 @@ void add(CLI::App& app, const Argument& argument) {
       argument.name == "--version" ? app.set_version_flag("--version", kVersionText, argument.help)
                                    : app.set_help_flag(argument.name, argument.help);
     else if constexpr (std::is_same_v<decltype(value), bool*>)
-      app.add_flag(argument.name, *value, argument.help);
+      app.add_flag(argument.name, *value, help_of(argument));
     else
       add_value(app, argument, *value);
   };
@@ -87,21 +94,71 @@ void add(CLI::App& app, const Argument& argument) {
 void add(CLI::App& app, const std::vector<Argument>& arguments) {
   for (const Argument& argument : arguments) add(app, argument);
   for (const Argument& argument : arguments) {
-    const auto [excludes, needs] = std::pair(argument.traits.excludes, argument.traits.needs);
+    const std::string& excludes = argument.traits.excludes;
     if (!excludes.empty()) app.get_option(option_names(argument).back())->excludes(app.get_option(excludes));
-    if (needs.size() == 1) app.get_option(option_names(argument).back())->needs(app.get_option(needs[0]));
   }
 }
 
-/// Refuses an option whose meaning depends on others of which none was given. CLI11 checks those that depend on one.
-/// \throw InputError
-void check_needs(const CLI::App& app, const std::vector<Argument>& arguments) {
-  const auto is_given = [&](const std::string& option) { return app.get_option(option)->count() > 0; };
+/// The options of a command line and their values.
+class GivenOptions {
+ public:
+  /// \param command the part of the command line parser that belongs to the command
+  /// \param arguments arguments of the command
+  GivenOptions(const CLI::App& command, const std::vector<Argument>& arguments)
+      : command_(command), arguments_(arguments) {}
+
+  bool is_given(const std::string& name) const { return option(name).count() > 0; }
+
+  /// Returns the given value of an option or its default; an empty text if it has neither.
+  std::string value(const std::string& name) const {
+    if (is_given(name)) return option(name).results().back();
+    for (const Argument& argument : arguments_)
+      if (std::ranges::count(option_names(argument), name) > 0) return default_of(argument);
+    return "";
+  }
+
+  bool holds(const Condition& condition) const {
+    switch (condition.kind) {
+      case Condition::Kind::given: return is_given(condition.option);
+      case Condition::Kind::absent: return !is_given(condition.option);
+      case Condition::Kind::value: return std::ranges::count(condition.values, value(condition.option)) > 0;
+    }
+    return false;
+  }
+
+ private:
+  const CLI::Option& option(const std::string& name) const {
+    const CLI::Option* const own = command_.get_option_no_throw(name);
+    return own != nullptr ? *own : *command_.get_parent()->get_option(name);
+  }
+
+  const CLI::App& command_;
+  const std::vector<Argument>& arguments_;
+};
+
+/// Refuses options that have no effect with the other options of the command line. A value that the command does not
+/// have, such as an unknown engine, is left to the command. \throw InputError
+void check_needs(const GivenOptions& options, const std::vector<Argument>& arguments) {
+  const auto has_unknown_value = [&](const Condition& condition) {
+    if (condition.kind != Condition::Kind::value) return false;
+    const auto found = std::ranges::find_if(arguments, [&](const Argument& argument) {
+      return std::ranges::count(option_names(argument), condition.option) > 0;
+    });
+    return std::ranges::count(found->traits.words(), options.value(condition.option)) == 0;
+  };
   for (const Argument& argument : arguments) {
-    const Words& needs = argument.traits.needs;
-    if (needs.size() < 2 || !is_given(option_names(argument).back()) || std::ranges::any_of(needs, is_given)) continue;
-    throw InputError(
-        fmt::format("{} requires {}; see retrace --help", option_names(argument).back(), fmt::join(needs, " or ")));
+    if (argument.traits.needs.empty() || !options.is_given(option_names(argument).back())) continue;
+    for (const Need& need : argument.traits.needs) {
+      const auto holds = [&](const Condition& condition) {
+        return options.holds(condition) || has_unknown_value(condition);
+      };
+      if (std::ranges::any_of(need, holds)) continue;
+      const Condition& first = need.front();
+      const bool is_of_value = first.kind == Condition::Kind::value;
+      throw InputError({"", 0, option_names(argument).back()},
+                       fmt::format("needs {}{}", text_of(need),
+                                   is_of_value ? ", got " + printable(options.value(first.option)) : ""));
+    }
   }
 }
 
@@ -181,7 +238,7 @@ std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
   for (std::size_t k = 0; k < invocations.size(); ++k) {
     const Command& command = commands()[k];
     if (!app.got_subcommand(command.name)) continue;
-    check_needs(*app.get_subcommand(command.name), invocations[k].arguments);
+    check_needs({*app.get_subcommand(command.name), invocations[k].arguments}, invocations[k].arguments);
     if (!command.refuses_set.empty() && !common->overrides.empty())
       throw InputError({"", 0, "--set"}, command.refuses_set);
     return [common, run = invocations[k].run] {

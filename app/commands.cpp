@@ -1,6 +1,7 @@
 #include "app/commands.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/schema/reader.h"
 #include "studies/design/io/design_format.h"
@@ -36,6 +37,27 @@ Traits whole(std::uint64_t least, std::uint64_t most) {
 
 Traits not_with(const std::string& option) {
   return {.excludes = option};
+}
+
+Need any_given(const Words& options) {
+  Need need;
+  for (const std::string& option : options) need.push_back({Condition::Kind::given, option});
+  return need;
+}
+
+Need absent(const std::string& option) {
+  return {{Condition::Kind::absent, option}};
+}
+
+std::string text_of(const Need& need) {
+  const auto text_of_one = [](const Condition& condition) -> std::string {
+    if (condition.kind == Condition::Kind::absent) return "no " + condition.option;
+    if (condition.kind == Condition::Kind::given) return condition.option;
+    return fmt::format("{} {}", condition.option, fmt::join(condition.values, " or "));
+  };
+  Words texts;
+  for (const Condition& condition : need) texts.push_back(text_of_one(condition));
+  return fmt::format("{}", fmt::join(texts, " or "));
 }
 
 Words option_names(const Argument& argument) {

@@ -27,7 +27,7 @@ std::vector<Argument> making_arguments(MakingOptions& options, const std::string
        one_of(words_of(fabrication::kWorkpieceWords))},
       {"--shrinkage-percent S", "by which the mould is larger than the part", &options.request.shrinkage_percent}};
   if (!needs.empty())
-    for (Argument& argument : all) argument.traits.needs = {needs};
+    for (Argument& argument : all) argument.traits.needs = {any_given({needs})};
   return all;
 }
 

@@ -78,7 +78,6 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
 }  // namespace
 
 ExitCode run_points(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command) {
-  check_study_options(options, common);
   return run_on_ranks(
       common, slots(common), [&](studies::MpiSession* session) { return compute(options, common, command, session); },
       [&]() -> ComputeTask {

@@ -52,6 +52,12 @@ Argument engine_argument(std::string& engine, const std::string& help) {
   return {"--engine ENGINE", help, &engine, one_of([] { return engine_words(false); })};
 }
 
+Need engine_need(std::span<const studies::Engine> engines) {
+  Condition condition{Condition::Kind::value, "--engine"};
+  for (const studies::Engine engine : engines) condition.values.emplace_back(studies::engine_name(engine));
+  return {condition};
+}
+
 Words engine_words(bool of_rre) {
   Words words;
   using studies::Engine;
@@ -64,13 +70,14 @@ Words engine_words(bool of_rre) {
 
 std::vector<Argument> study_arguments(StudyOptions& options) {
   return {{"STUDY", "study file; - is standard input", &options.study, files(".toml")},
-          {"--resume", "go on with the store that is in the output folder", &options.resume},
-          {"--overwrite", "replace the store that is in the output folder", &options.overwrite, not_with("--resume")}};
-}
-
-void check_study_options(const StudyOptions& options, const CommonOptions& common) {
-  for (const auto& [given, option] : {std::pair{options.resume, "--resume"}, {options.overwrite, "--overwrite"}})
-    if (given && common.out.empty()) throw InputError({"", 0, option}, "needs --out DIR, where the store is");
+          {"--resume",
+           "go on with the store that is in the output folder",
+           &options.resume,
+           {.needs = {any_given({"--out"})}}},
+          {"--overwrite",
+           "replace the store that is in the output folder",
+           &options.overwrite,
+           {.excludes = "--resume", .needs = {any_given({"--out"})}}}};
 }
 
 studies::IfExists if_exists_of(const StudyOptions& options) {

@@ -4,10 +4,12 @@
 // and how a study treats an existing store.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "app/command.h"
+#include "studies/rre/rre.h"
 #include "studies/store/store.h"
 #include "surface_models/io/height_map_reader.h"
 
@@ -25,6 +27,8 @@ Argument dialect_argument(std::string& dialect);
 Traits machine_traits();
 /// --engine of commands whose engines are auto, exact, montecarlo and embree.
 Argument engine_argument(std::string& engine, const std::string& help);
+/// Returns the need that --engine is one of `engines`.
+Need engine_need(std::span<const studies::Engine> engines);
 /// --dye: none, a shipped dye, or a file.
 template <class Name>
 Argument dye_argument(Name& dye, const std::string& help) {
@@ -54,9 +58,6 @@ struct StudyOptions {
 
 /// STUDY and what is done with a store that is there.
 std::vector<Argument> study_arguments(StudyOptions& options);
-
-/// \throw InputError for --resume or --overwrite without a folder
-void check_study_options(const StudyOptions& options, const CommonOptions& common);
 
 /// What is done with a store that is there.
 studies::IfExists if_exists_of(const StudyOptions& options);

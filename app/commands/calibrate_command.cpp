@@ -32,7 +32,8 @@ std::vector<Argument> arguments(CalibrateOptions& options) {
                                 "settle; without a table: write programs to be timed",
                                 &options.times, machine_traits()}};
   all.push_back(dialect_argument(options.dialect));
-  all.back().traits.needs = {"--times"};
+  // Only programs to be timed are written in a dialect; a table of times names the programs that were run.
+  all.back().traits.needs = {any_given({"--times"}), absent("MEASUREMENTS")};
   return all;
 }
 

@@ -58,18 +58,19 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
       {"--design FILE", "write the design of the whole part, with its zones", &options.design, files(".toml")});
   all.push_back({"--layout WORD", "how its zones lie: stripes, blocks or rows", &options.layout,
                  one_of(words_of(studies::kZoneLayouts))});
-  all.back().traits.needs = {"--design"};
+  all.back().traits.needs = {any_given({"--design"})};
   all.push_back({"--for-worst", "write the zones that are best for the worst parts, as worst_share of the study asks",
-                 &options.for_worst});
+                 &options.for_worst,
+                 {.needs = {any_given({"--out", "--design"})}}});
   for (const auto& [name, help, length] :
        {std::tuple{"--x-length-mm L", "of that part, with the other one [those of the study's design]",
                    &options.x_length_mm},
         {"--y-length-mm L", "likewise", &options.y_length_mm}}) {
     all.push_back({name, help, length});
-    all.back().traits.needs = {"--design"};
+    all.back().traits.needs = {any_given({"--design"})};
   }
   all.push_back({"--job FILE", "write the fabrication job of that part", &options.job, files(".toml")});
-  all.back().traits.needs = {"--design"};
+  all.back().traits.needs = {any_given({"--design"})};
   for (Argument& argument : making_arguments(options.making, "--job")) all.push_back(std::move(argument));
   return all;
 }
@@ -173,7 +174,6 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
 }
 
 ExitCode run_compose(const ComposeOptions& options, const CommonOptions& common) {
-  check_study_options(options, common);
   return run_on_ranks(
       common, slots(common), [&](studies::MpiSession* session) { return compose_part(options, common, session); },
       [&]() -> ComputeTask {

@@ -28,6 +28,8 @@ struct FabricateOptions {
 
 std::vector<Argument> arguments(FabricateOptions& options) {
   constexpr std::uint64_t most = std::numeric_limits<std::int32_t>::max();
+  Traits from_pass = whole(1, most);
+  from_pass.needs = {any_given({"--from-element"})};
   const Words phases = {"all", "roughing", "finishing"};
   return {
       job_argument(options.job, "job file, as retrace job writes it"),
@@ -37,7 +39,7 @@ std::vector<Argument> arguments(FabricateOptions& options) {
        &options.phase, one_of(phases)},
       {"--from-element N", "start at that element's first visit [the first]", &options.from_element, whole(0, most)},
       {"--from-pass K", "of that visit start at its K-th pass, where the tool is narrower than the element [1]",
-       &options.from_pass, whole(1, most)},
+       &options.from_pass, from_pass},
       {"--stop-every N", "optional stop after every N visits [none]", &options.stop_every, whole(1, most)},
       {"--split-hours H", "programs of at most so many hours [one program]", &options.split_hours}};
 }

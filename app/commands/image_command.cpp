@@ -61,23 +61,37 @@ struct ImageOptions {
 constexpr std::uint64_t kMostWhole = std::numeric_limits<std::uint32_t>::max();
 
 std::vector<Argument> detector_arguments(ImageOptions& o) {
+  Traits samples = whole(0, kMostWhole);
+  samples.needs = {engine_need(studies::kRayEnginesOfParts)};
   return {{"--detector", "maps of the light that comes back, by place and by direction", &o.detector},
           {"--incidence T", "detector: angle of incidence in degrees", &o.detected.incidence_deg},
           {"--azimuth P", "detector: azimuth of the source in degrees", &o.detected.azimuth_deg},
           engine_argument(o.engine, "detector: exact, montecarlo (embree), or auto: exact where it serves"),
           {"--cutoff W",
            "detector, exact: least power that is followed, as a share of the incident [what leaves 1e-5 truncated]",
-           &o.detected.cutoff},
-          {"--samples N", "detector: rays, by Monte Carlo", &o.detected.rays, whole(0, kMostWhole)},
+           &o.detected.cutoff,
+           {.needs = {engine_need(studies::kExactEngines)}}},
+          {"--samples N", fmt::format("detector: rays, by Monte Carlo [{}]", studies::kUsualDetectorRays),
+           &o.detected.rays, samples},
           {"--window-deg W", "detector: half width of the angular map", &o.detected.window_deg},
           {"--angle-pixels N", "detector: pixels along a side of the angular map", &o.detected.angle_pixels,
            whole(0, kMostWhole)}};
 }
 
 std::vector<Argument> camera_arguments(ImageOptions& o) {
+  Need eye_or_lamp = absent("--eye-mm");
+  eye_or_lamp.push_back(absent("--lamp-mm").front());
+  Traits passes = whole(0, kMostWhole);
+  passes.needs = {absent("--noise")};
   return {{"--camera", "the part in the light of a lamp, as a camera sees it", &o.camera},
-          {"--distance-m D", "camera: distance of lamp and eye", &o.photographed.distance_m},
-          {"--observation-deg A", "camera: angle by which the eye is above the lamp", &o.photographed.observation_deg},
+          {"--distance-m D",
+           "camera: distance of lamp and eye",
+           &o.photographed.distance_m,
+           {.needs = {eye_or_lamp}}},
+          {"--observation-deg A",
+           "camera: angle by which the eye is above the lamp",
+           &o.photographed.observation_deg,
+           {.needs = {absent("--eye-mm")}}},
           {"--v-deg V", "camera: vertical angle of the lamp", &o.photographed.v_deg},
           {"--h-deg H", "camera: horizontal angle of the lamp", &o.photographed.h_deg},
           {"--rotation-deg E", "camera: turn of the part about its normal", &o.photographed.rotation_deg},
@@ -85,7 +99,10 @@ std::vector<Argument> camera_arguments(ImageOptions& o) {
           {"--lamp-mm X,Y,Z", "camera: place of the lamp [by distance and angles]", &o.lamp_mm},
           {"--lamp-arcmin D", "camera: diameter of the lamp's disc", &o.photographed.lamp_arcmin},
           {"--pupil-arcmin D", "camera: diameter of the eye's disc", &o.photographed.pupil_arcmin},
-          {"--illuminance-lx E", "camera: of the lamp, across its beam at the part", &o.photographed.illuminance_lx},
+          {"--illuminance-lx E",
+           "camera: of the lamp, across its beam at the part",
+           &o.photographed.illuminance_lx,
+           {.needs = {absent("--lamp")}}},
           {"--ambient-lx E", "camera: even light from in front, on the face", &o.photographed.ambient_lx},
           {"--backlight-lx E", "camera: even light from behind and round the part", &o.photographed.backlight_lx},
           {"--field-mm W", "camera: width shown at the part [the part and a margin]", &o.photographed.field_mm},
@@ -94,37 +111,46 @@ std::vector<Argument> camera_arguments(ImageOptions& o) {
            &o.photographed.cylinder_mm},
           {"--noise E", "camera: relative noise of pixels to reach", &o.photographed.noise},
           {"--passes N", "camera: passes of four paths a pixel, in place of --noise", &o.photographed.passes,
-           whole(0, kMostWhole)},
-          {"--false-colour", "camera: luminance as colours too", &o.false_colour}};
+           passes},
+          {"--false-colour",
+           "camera: luminance as colours too",
+           &o.false_colour,
+           {.needs = {any_given({"--out"})}}}};
 }
 
 std::vector<Argument> road_arguments(ImageOptions& o) {
   return {{"--road", "two such reflectors on a car ahead at night, from a driver's eye", &o.road},
           {"--road-distance-m LIST", "road: distances of the car ahead", &o.road_distance_m},
-          {"--lamp-cd I", "road: intensity of each headlamp towards the reflectors", &o.driven.lamp_cd},
+          {"--lamp-cd I",
+           "road: intensity of each headlamp towards the reflectors",
+           &o.driven.lamp_cd,
+           {.needs = {absent("--lamp")}}},
           {"--lamp-height-m H", "road: of the headlamps' middles", &o.driven.lamp_height_m},
           dye_argument(o.dye, "road: none, red, amber (illustrative) or a file")};
 }
 
 std::vector<Argument> arguments(ImageOptions& options) {
   Traits lamp_file = files("");
-  lamp_file.needs = {"--camera", "--road"};
+  lamp_file.needs = {any_given({"--camera", "--road"})};
   std::vector<Argument> all = {
       design_argument(options.design),
       {"--pixels N|CxR",
        "detector: along the longer side of the face [400]; camera: columns and rows [400x300]",
        &options.pixels,
-       {.needs = {"--detector", "--camera"}}},
+       {.needs = {any_given({"--detector", "--camera"})}}},
       {"--lamp FILE",
        "camera, road: the lamp or each headlamp, an IES or EULUMDAT file (.ies, .ldt) [--illuminance-lx; --lamp-cd]",
        &options.lamp, lamp_file},
       {"--lamp-aim-deg D",
        "camera, road: by which the axis of a lamp from a file points down",
        &options.lamp_aim_deg,
-       {.needs = {"--lamp"}}}};
+       {.needs = {any_given({"--lamp"})}}}};
   for (std::vector<Argument> some : {detector_arguments(options), camera_arguments(options), road_arguments(options)}) {
     // The first option chooses the kind of picture; the others mean something for that kind only.
-    for (std::size_t k = 1; k < some.size(); ++k) some[k].traits.needs = {some.front().name};
+    for (std::size_t k = 1; k < some.size(); ++k) {
+      std::vector<Need>& needs = some[k].traits.needs;
+      needs.insert(needs.begin(), any_given({some.front().name}));
+    }
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;

@@ -141,12 +141,27 @@ std::string manual_page() {
   return text + kTail;
 }
 
+/// Conditions of which one must hold.
+nlohmann::ordered_json json_of(const Need& need) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Condition& condition : need) {
+    nlohmann::ordered_json one = {{"option", condition.option}};
+    if (condition.kind == Condition::Kind::value)
+      one["values"] = condition.values;
+    else
+      one["given"] = condition.kind == Condition::Kind::given;
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 nlohmann::ordered_json json_of(const Argument& argument) {
   nlohmann::ordered_json json = {
       {"names", option_names(argument)}, {"value", value_word(argument)}, {"help", argument.help}};
   if (const std::string value = default_of(argument); !value.empty()) json["default"] = value;
   if (argument.traits.words) json["words"] = argument.traits.words();
   if (argument.traits.files) json["files"] = *argument.traits.files;
+  for (const Need& need : argument.traits.needs) json["needs"].push_back(json_of(need));
   return json;
 }
 

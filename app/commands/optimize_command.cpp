@@ -111,7 +111,6 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
 }
 
 ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
-  check_study_options(options, common);
   return run_on_ranks(
       common, slots(common), [&](studies::MpiSession* session) { return look(options, common, session); },
       [&]() -> ComputeTask {

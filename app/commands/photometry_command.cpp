@@ -33,7 +33,7 @@ struct PhotometryOptions {
   double window_deg = 2.0;
   std::string light = "a";
   std::string engine = "auto";
-  std::uint64_t samples = 1U << 20;
+  std::optional<std::uint64_t> samples;
   std::optional<double> cutoff;
   bool no_diffraction = false;
   bool window_power = false;
@@ -65,6 +65,9 @@ Words colours() {
 }
 
 std::vector<Argument> arguments(PhotometryOptions& options) {
+  const Traits of_beams = {.needs = {engine_need(studies::kExactEngines)}};
+  Traits of_rays = whole(1);
+  of_rays.needs = {engine_need(studies::kRayEnginesOfParts)};
   return {
       design_argument(options.design),
       {"--standard NAME|FILE",
@@ -85,14 +88,15 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
       {"--light LIGHT", "a, d65: a CIE illuminant as the eye sees it; design: what the design says", &options.light,
        one_of(Words{"a", "d65", "design"})},
       engine_argument(options.engine, "exact, montecarlo (embree), or auto: beams where they serve"),
-      {"--samples N", "rays for each direction, by Monte Carlo", &options.samples, whole(1)},
+      {"--samples N", fmt::format("rays for each direction, by Monte Carlo [{}]", studies::kUsualRaysOfDirection),
+       &options.samples, of_rays},
       {"--cutoff W",
        "least power of beams that are followed exactly, as a share of what falls on an element; weaker ones are "
        "resampled, with exact given up [1e-5; resampled, of finite parts: 5e-5, or 5e-7 of all light if that is more]",
-       &options.cutoff},
+       &options.cutoff, of_beams},
       {"--no-diffraction", "geometric far field alone", &options.no_diffraction},
       {"--window-power", "integrate the power in the far field's window and outside of it, as a check",
-       &options.window_power},
+       &options.window_power, of_beams},
       {"--no-advice", "do not look for what to change if a point fails", &options.no_advice}};
 }
 

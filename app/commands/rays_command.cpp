@@ -36,9 +36,10 @@ constexpr std::uint64_t kUsualRays = 1'000'000;
 std::vector<Argument> arguments(RaysOptions& o) {
   const Words emitters(studies::kEmitterNames.begin(), studies::kEmitterNames.end());
   const auto of_emitter = [](Traits traits = {}) {
-    traits.needs = {"--emitter"};
+    traits.needs = {any_given({"--emitter"})};
     return traits;
   };
+  const Traits of_file = {.needs = {any_given({"--out"})}};
   Traits no_file = one_of(emitters);
   no_file.excludes = "--source";
   return {
@@ -65,8 +66,8 @@ std::vector<Argument> arguments(RaysOptions& o) {
       {"--split W", "least share of a ray's power for which both branches of an interface are followed; 1: never",
        &o.request.split},
       {"--cutoff W", "share of a ray's power below which it is followed no further", &o.request.cutoff},
-      {"--stokes", "write polarisation even if the source has none", &o.request.stokes},
-      {"--keep-missed", "write rays that miss the part too", &o.request.keep_missed}};
+      {"--stokes", "write polarisation even if the source has none", &o.request.stokes, of_file},
+      {"--keep-missed", "write rays that miss the part too", &o.request.keep_missed, of_file}};
 }
 
 std::optional<std::array<double, 3>> place_of(const std::optional<std::string>& text, const char* option) {

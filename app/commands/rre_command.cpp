@@ -26,31 +26,42 @@ struct RreOptions {
 
 std::vector<Argument> arguments(RreOptions& options) {
   studies::RreRequest& request = options.request;
+  const Need of_rays = engine_need(studies::kRayEngines);
+  const Need of_beams = engine_need(studies::kExactEngines);
+  Traits samples = whole(1), sampling = one_of(Words{"stratified", "plain"}), target = not_with("--samples");
+  samples.needs = sampling.needs = {of_rays};
+  // With a cut-off the exact engine has no target.
+  Need cutoff_or_target = engine_need(studies::kTargetEngines);
+  cutoff_or_target.push_back(absent("--cutoff").front());
+  target.needs = {cutoff_or_target};
+  for (const char* const option : {"--derivatives", "--footprint", "--far-field"})
+    target.needs.push_back({absent("--cutoff").front(), absent(option).front()});
+  const Traits files_of_beams = {.needs = {of_beams, any_given({"--out"})}};
   return {{"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
           {"--incidence LIST", "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
            &options.incidence},
           {"--azimuth LIST", "azimuths of the source in degrees: a,b,c and start:stop:step", &options.azimuth},
           {"--engine ENGINE", "exact, stochastic, montecarlo (cell or embree), or auto: the fastest for each direction",
            &options.engine, one_of([] { return engine_words(true); })},
-          {"--samples N", "rays for each point [until the target error is reached]", &request.rays, whole(1)},
+          {"--samples N", "rays for each point [until the target error is reached]", &request.rays, samples},
           {"--sampling KIND", "stratified, or plain: random points and no splitting, to compare with",
-           &options.sampling, one_of(Words{"stratified", "plain"})},
+           &options.sampling, sampling},
           {"--target-error E",
            "standard error of RRE to reach, and most that exact may leave truncated, as a fraction "
            "[0.0001; --engine exact: 1e-10]",
-           &request.target_error, not_with("--samples")},
+           &request.target_error, target},
           {"--cutoff W",
            "least power that is followed, as a share of the incident power [1e-10; exact: as the target error asks]",
-           &request.cutoff},
-          {"--derivatives", "of RRE by the parameters of the design (--engine exact)", &request.derivatives},
+           &request.cutoff,
+           {.needs = {engine_need(studies::kCutoffEngines)}}},
+          {"--derivatives",
+           "of RRE by the parameters of the design (--engine exact)",
+           &request.derivatives,
+           {.needs = {of_beams}}},
           {"--footprint", "which regions of the entrance face send light back, as polygons (--engine exact, --out)",
-           &request.footprint},
+           &request.footprint, files_of_beams},
           {"--far-field", "the directions in which light leaves the entrance face (--engine exact, --out)",
-           &request.far_field}};
-}
-
-void check_has_folder(const CommonOptions& common, bool asked, const char* option) {
-  if (asked && common.out.empty()) throw InputError({"", 0, option}, "needs --out DIR for its files");
+           &request.far_field, files_of_beams}};
 }
 
 studies::RreRequest request_of(const RreOptions& options, const CommonOptions& common) {
@@ -62,8 +73,6 @@ studies::RreRequest request_of(const RreOptions& options, const CommonOptions& c
   request.engine = studies::engine_from_name(options.engine);
   request.sampling = studies::sampling_from_name(options.sampling);
   request.seed = common.seed;
-  check_has_folder(common, request.footprint, "--footprint");
-  check_has_folder(common, request.far_field, "--far-field");
   return request;
 }
 

@@ -26,7 +26,7 @@ struct DetectorRequest {
   double window_deg = 1.0;            ///< half width of the angular map
   std::string engine = "auto";        ///< auto, exact, montecarlo or embree
   std::optional<double> cutoff = {};  ///< exact: least power that is followed, as a share of the incident power
-  std::uint64_t samples = 1U << 22;   ///< Monte Carlo
+  std::optional<std::uint64_t> samples = {};  ///< rays, by Monte Carlo; by default 2^22
   std::uint32_t seed = 1;
 };
 

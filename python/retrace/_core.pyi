@@ -65,7 +65,7 @@ class DetectorRequest:
     window_deg: float
     engine: str
     cutoff: float | None
-    samples: int
+    samples: int | None
     seed: int
 
 class Drawing:
@@ -209,7 +209,7 @@ class PhotometryRequest:
     light: str
     engine: str
     cutoff: float | None
-    samples: int
+    samples: int | None
     seed: int
     diffraction: bool
     window_power: bool

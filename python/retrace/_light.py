@@ -289,7 +289,7 @@ def photometry(
     window_deg: float = 2.0,
     light: str = "a",
     engine: str = "auto",
-    samples: int = 1 << 20,
+    samples: int | None = None,
     cutoff: float | None = None,
     diffraction: bool = True,
     window_power: bool = False,
@@ -314,7 +314,6 @@ def photometry(
         window_deg=number("window_deg", window_deg, 0.05, 10),
         light=word("light", light, ("a", "d65", "design")),
         engine=word("engine", engine, ("auto", "exact", "montecarlo", "embree")),
-        samples=whole("samples", samples, 1),
         diffraction=flag("diffraction", diffraction),
         window_power=flag("window_power", window_power),
         advice=flag("advice", advice),
@@ -333,6 +332,8 @@ def photometry(
             raise InputError(
                 f"must be at most 720 turns, got {len(request.rotation_deg)}", key="rotation_deg"
             )
+    if samples is not None:
+        request.samples = whole("samples", samples, 1)
     if cutoff is not None:
         request.cutoff = number("cutoff", cutoff, 0, 1, low_included=False, high_included=False)
     count = thread_count(threads)

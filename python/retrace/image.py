@@ -105,7 +105,7 @@ def detector(
     window_deg: float = 1.0,
     engine: str = "auto",
     cutoff: float | None = None,
-    samples: int = 1 << 22,
+    samples: int | None = None,
     seed: int = 1,
     threads: int | None = None,
     progress: Progress = None,
@@ -122,9 +122,10 @@ def detector(
         angle_pixels=whole("angle_pixels", angle_pixels, 1, 2049),
         window_deg=number("window_deg", window_deg, 0, 90, low_included=False),
         engine=word("engine", engine, ("auto", "exact", "montecarlo", "embree")),
-        samples=whole("samples", samples, 1, _MOST),
         seed=whole("seed", seed, 0, _MOST),
     )
+    if samples is not None:
+        request.samples = whole("samples", samples, 1, _MOST)
     _cutoff(request, cutoff)
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "tracing") as tell:

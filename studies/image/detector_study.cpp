@@ -35,8 +35,10 @@ void check(const DetectorRequest& request) {
   if (!(request.window_deg > 0.0 && request.window_deg <= 90.0))
     throw InputError({"", 0, "--window-deg"},
                      fmt::format("must be above 0 and at most 90 degrees, got {}", shortest(request.window_deg)));
+  check_has_effect("--cutoff", request.cutoff.has_value(), request.engine, kExactEngines);
+  check_has_effect("--samples", request.rays.has_value(), request.engine, kRayEnginesOfParts);
   if (request.cutoff) check_share(*request.cutoff, false, "--cutoff");
-  check_rays(request.rays);
+  if (request.rays) check_rays(*request.rays);
   check_azimuth(request.azimuth_deg);
   if (request.engine == Engine::cell || request.engine == Engine::stochastic)
     throw InputError({"", 0, "--engine"}, fmt::format("must be auto, exact, montecarlo or embree for pictures, got {}",
@@ -116,7 +118,7 @@ raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const r
   const raytrace::Illumination illumination = illumination_of(design_, request_);
   if (!exact)
     return raytrace::sampled_detector_maps(model_.part, light.optics, illumination, setting,
-                                           std::max<std::uint64_t>(1, request_.rays / model_.spectral.size()),
+                                           std::max<std::uint64_t>(1, request_.rays.value_or(kUsualDetectorRays) / model_.spectral.size()),
                                            request_.seed + kGolden * static_cast<std::uint32_t>(number), {}, progress,
                                            cancel);
   raytrace::BeamPolicy policy;

@@ -14,6 +14,9 @@
 
 namespace retrace::studies {
 
+/// Number of rays of a detector if a request gives none.
+inline constexpr std::uint64_t kUsualDetectorRays = std::uint64_t{1} << 22;
+
 /// What is asked of a detector: maps of the light that comes back, for one direction of incidence.
 struct DetectorRequest {
   double incidence_deg = 0.0;  ///< in (-90, 90)
@@ -23,7 +26,7 @@ struct DetectorRequest {
   double window_deg = 1.0;            ///< half width of the angular map; > 0, up to 90
   Engine engine = Engine::automatic;  ///< neither stochastic nor cell
   std::optional<double> cutoff;       ///< exact engine: least power of a beam, as a share of the incident
-  std::uint64_t rays = 1U << 22;      ///< Monte Carlo
+  std::optional<std::uint64_t> rays;  ///< Monte Carlo; by default kUsualDetectorRays
   std::uint32_t seed = 1;
 };
 

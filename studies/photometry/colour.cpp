@@ -99,7 +99,7 @@ std::string reason_of(const PhotometricColour& colour, const PhotometryRequest& 
 
 PhotometryRequest request_of_response(const PhotometryRequest& request, std::size_t response) {
   PhotometryRequest one = request;
-  one.rays = std::max<std::uint64_t>(1, request.rays / 3);
+  one.rays = std::max<std::uint64_t>(1, request.rays.value_or(kUsualRaysOfDirection) / 3);
   one.seed = request.seed + kSeedStep * static_cast<std::uint32_t>(response + 1);
   return one;
 }

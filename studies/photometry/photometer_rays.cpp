@@ -20,7 +20,7 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
                        setting.map_columns, setting.map_columns);
   raytrace::Sampling sampling;
   sampling.seed = seed_of(wavelength);
-  sampling.rays = std::max<std::uint64_t>(1, request_.rays / model_.spectral.size());
+  sampling.rays = std::max<std::uint64_t>(1, request_.rays.value_or(kUsualRaysOfDirection) / model_.spectral.size());
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
   const raytrace::MonteCarloResult traced =

@@ -65,8 +65,11 @@ void check(const PhotometryRequest& request) {
   if (request.engine == Engine::cell || request.engine == Engine::stochastic)
     throw InputError({"", 0, "--engine"},
                      fmt::format("must be auto, exact, montecarlo or embree, got {}", engine_name(request.engine)));
+  check_has_effect("--cutoff", request.cutoff.has_value(), request.engine, kExactEngines);
+  check_has_effect("--window-power", request.window_power, request.engine, kExactEngines);
+  check_has_effect("--samples", request.rays.has_value(), request.engine, kRayEnginesOfParts);
   if (request.cutoff) check_share(*request.cutoff, false, "--cutoff");
-  check_rays(request.rays);
+  if (request.rays) check_rays(*request.rays);
   if (request.rotation_deg.empty() || request.rotation_deg.size() > kMostRotations)
     throw InputError({"", 0, "--rotation"},
                      fmt::format("must be 1 to {} turns, got {}", kMostRotations, request.rotation_deg.size()));

@@ -30,6 +30,9 @@ std::string_view light_name(PhotometricLight light);
 /// \throw InputError for a name that is none of them
 PhotometricLight light_from_name(std::string_view name);
 
+/// Number of rays of a direction if a request gives none.
+inline constexpr std::uint64_t kUsualRaysOfDirection = std::uint64_t{1} << 20;
+
 /// What is asked: the coefficients of retroreflection of a part at the test points of a standard.
 struct PhotometryRequest {
   TestProgramme programme;
@@ -44,7 +47,7 @@ struct PhotometryRequest {
   bool diffraction = true;
   Engine engine = Engine::automatic;  ///< neither stochastic nor cell
   std::optional<double> cutoff;       ///< least power of beams that are followed exactly, as a share of an element's
-  std::uint64_t rays = 1U << 20;      ///< of a direction, by Monte Carlo
+  std::optional<std::uint64_t> rays;  ///< of a direction, by Monte Carlo; by default kUsualRaysOfDirection
   std::uint32_t seed = 1;
   bool pictures = false;      ///< maps and curves
   bool window_power = false;  ///< power in the window and outside of it, by integrations: a check that takes long

@@ -69,8 +69,9 @@ class PhotometricQuantity final : public Quantity {
     PhotometryRequest request = table_->request;
     const AnalysisSettings& analysis = candidate.analysis();
     request.engine = analysis.engine;
-    request.cutoff = analysis.cutoff;
-    if (analysis.rays) request.rays = *analysis.rays;
+    // Quantities of RRE share these settings, and their rays have a cut-off.
+    if (is_one_of(request.engine, kExactEngines)) request.cutoff = analysis.cutoff;
+    request.rays = analysis.rays;
     request.seed = analysis.seed;
     for (double& turn_deg : request.rotation_deg) turn_deg += analysis.rotation_deg;
     if (table_->dye_unless_coloured && candidate.design().substance.is_coloured()) {

@@ -98,6 +98,9 @@ class ShareQuantity final : public Quantity {
     if (request.engine != Engine::automatic && request.engine != Engine::exact) return std::nullopt;
     request.engine = Engine::exact;
     request.derivatives = true;
+    // Settings of the engine `auto` that the exact engine does not use.
+    request.rays.reset();
+    if (request.cutoff) request.target_error.reset();
     const RreResult result = RreStudy({design_of(candidate)}, request).run(nullptr, cancel);
     if (!result.complete) return std::nullopt;
     std::vector<Share> slopes;

@@ -109,8 +109,8 @@ RoughnessStudy::RoughnessStudy(Design design, RoughnessRequest request) : prepar
   }
   RreRequest asked = direction_of(request);
   p.smooth_study = std::make_unique<RreStudy>(std::vector{design}, asked);
-  asked.target_error = request.target_error;
   asked.rays = request.rays;
+  if (!request.rays) asked.target_error = request.target_error;
   if (!rough.empty()) p.rough_study = std::make_unique<RreStudy>(std::move(rough), asked);
   p.design = std::move(design);
   p.request = std::move(request);

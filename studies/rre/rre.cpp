@@ -30,9 +30,16 @@ void check(const RreRequest& request) {
                        fmt::format("plain needs --engine montecarlo or embree, got {}", engine_name(request.engine)));
   for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
                                       {request.far_field, "--far-field"},
-                                      {request.derivatives, "--derivatives"}})
-    if (asked && (!may_follow_beams(request) || request.engine == Engine::stochastic))
-      throw InputError({"", 0, option}, "needs --engine exact");
+                                      {request.derivatives, "--derivatives"}}) {
+    check_has_effect(option, asked, request.engine, kExactEngines);
+    if (asked && !may_follow_beams(request)) throw InputError({"", 0, option}, "needs --engine exact");
+  }
+  check_has_effect("--samples", request.rays.has_value(), request.engine, kRayEngines);
+  check_has_effect("--cutoff", request.cutoff.has_value(), request.engine, kCutoffEngines);
+  if (request.target_error && request.rays)
+    throw InputError({"", 0, "--target-error"}, "not together with --samples");
+  if (request.target_error && request.cutoff && must_be_exact(request))
+    throw InputError({"", 0, "--target-error"}, "not together with --cutoff where only the exact engine is used");
   if (request.target_error) check_share(*request.target_error, false, "--target-error");
   if (request.cutoff) check_share(*request.cutoff, true, "--cutoff");
   if (request.rays) check_rays(*request.rays);
