@@ -161,6 +161,7 @@ nlohmann::ordered_json json_of(const Argument& argument) {
   if (const std::string value = default_of(argument); !value.empty()) json["default"] = value;
   if (argument.traits.words) json["words"] = argument.traits.words();
   if (argument.traits.files) json["files"] = *argument.traits.files;
+  if (argument.traits.required) json["required"] = true;
   for (const Need& need : argument.traits.needs) json["needs"].push_back(json_of(need));
   return json;
 }

@@ -90,8 +90,8 @@ TEST(ReturnedLight, ManyDirectionsAreWrittenButNotAllDrawn) {
 
 TEST(ReturnedLight, NeedsAnOutputFolder) {
   expect_refused(TemporaryFolder(),
-                 {{{"--footprint"}, "--footprint: needs --out DIR"},
-                  {{"--far-field", "--json", "-"}, "--far-field: needs --out DIR"}},
+                 {{{"--footprint"}, "--footprint: needs --out"},
+                  {{"--far-field", "--json", "-"}, "--far-field: needs --out"}},
                  exact({}), {});
 }
 

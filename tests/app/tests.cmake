@@ -13,6 +13,7 @@ retrace_test(command_tests
     app/metrology_test.cpp
     app/modules_test.cpp
     app/number_list_test.cpp
+    app/option_needs_test.cpp
     app/photometry_test.cpp
     app/plane_test.cpp
     app/program.cpp

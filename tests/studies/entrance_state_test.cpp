@@ -132,7 +132,7 @@ RreResult rre(const Design& design, Engine engine = Engine::automatic) {
   RreRequest request;
   request.engine = engine;
   request.incidence_deg = {5.0};
-  request.rays = 1U << 12;
+  if (engine != Engine::exact) request.rays = 1U << 12;
   return RreStudy({design}, request).run();
 }
 

@@ -73,7 +73,7 @@ TEST(Temperature, IsTheSameIndexInEveryEngine) {
     RreRequest request;
     request.incidence_deg = {12.0};
     request.engine = engine;
-    request.rays = 1U << 11;
+    if (engine != Engine::exact) request.rays = 1U << 11;
     const RreStudy study({design(warm, text), design(given, text), design({"body.material=PC"}, text)}, request);
     const std::vector<RrePoint> points = study.run().points;
     ASSERT_EQ(points.size(), 3U);

@@ -131,6 +131,10 @@ constexpr Row kQuantityRows[] = {
 // How it is computed.
 
 constexpr Words kEngines = {"auto", "exact", "stochastic", "montecarlo", "cell", "embree"};
+constexpr Words kRayEngineWords = {"auto", "montecarlo", "cell", "embree"};
+constexpr Words kCutoffEngineWords = {"auto", "exact", "montecarlo", "cell", "embree"};
+constexpr Condition kOfRays[] = {is("engine", kRayEngineWords)};
+constexpr Condition kOfCutoff[] = {is("engine", kCutoffEngineWords)};
 constexpr Row kAnalysisRows[] = {
     {"incidence_deg", Number{kIncidence}, 0.0, "For quantities that name none."},
     {"azimuth_deg", Number{}, 0.0, "For quantities that name none."},
@@ -139,8 +143,9 @@ constexpr Row kAnalysisRows[] = {
     {"engine", Word{kEngines}, "auto", "As `retrace rre --engine`."},
     {"target_error", Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}}, Computed{"1e-4"},
      "As `retrace rre --target-error`."},
-    {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Rays, as `retrace rre --samples`."},
-    {"cutoff", Number{{.low = 0.0, .high = 1.0, .high_included = false}}, kNone, "As `retrace rre --cutoff`."}};
+    {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Rays, as `retrace rre --samples`.", kOfRays},
+    {"cutoff", Number{{.low = 0.0, .high = 1.0, .high_included = false}}, kNone, "As `retrace rre --cutoff`.",
+     kOfCutoff}};
 
 constexpr Words kStrategies = {"two-step", "unidirectional"};
 constexpr Words kUnidirectional = {"unidirectional"};

@@ -184,7 +184,7 @@ TEST_F(Image, OptionsOfAnotherKindOfPictureAreRefused) {
         const Outcome outcome = retrace(folder_, arguments);
         EXPECT_EQ(outcome.code, 2);
         const std::string needed = kinds.size() == 1 ? kinds[0] : kinds[0] + " or " + kinds[1];
-        EXPECT_NE(outcome.err.find(name + " requires " + needed), std::string::npos) << outcome.err;
+        EXPECT_NE(outcome.err.find(name + ": needs " + needed), std::string::npos) << outcome.err;
       }
 }
 

@@ -251,7 +251,7 @@ TEST(SweepCommand, AnExistingStoreNeedsAWord) {
   EXPECT_EQ(run({"--resume", "--seed", "2"}).code, 2);
   const Outcome without = retrace(folder, {"sweep", "study.toml", "--resume"});
   EXPECT_EQ(without.code, 2);
-  EXPECT_EQ(without.err, "retrace: --resume: needs --out DIR, where the store is\n");
+  EXPECT_EQ(without.err, "retrace: --resume: needs --out\n");
 }
 
 TEST(SweepCommand, AFullDiskLosesNothing) {
