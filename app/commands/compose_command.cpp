@@ -59,7 +59,8 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
   all.push_back({"--layout WORD", "how its zones lie: stripes, blocks or rows", &options.layout,
                  one_of(words_of(studies::kZoneLayouts))});
   all.back().traits.needs = {any_given({"--design"})};
-  all.push_back({"--for-worst", "write the zones that are best for the worst parts, as worst_share of the study asks",
+  all.push_back({"--for-worst",
+                 "write the zones that are best for the worst parts, as worst_share of the study asks",
                  &options.for_worst,
                  {.needs = {any_given({"--out", "--design"})}}});
   for (const auto& [name, help, length] :

@@ -34,23 +34,23 @@ std::vector<Argument> arguments(ExportOptions& options) {
       words.push_back(studies::name_of(kind));
     return words;
   };
-  return {
-      design_argument(options.design),
-      {"FILE",
-       "file to write: .stl, .obj, .glb, .step or .stp; a material: .json, .xml or .glsl; the same as --out FILE",
-       &options.file, files("")},
-      {"--what WHAT", "solid: element, array or mould: the block behind the part's back [array]", &options.what, one_of(kinds)},
-      {"--block-mm T", "of a mould, below its deepest point [the plate's thickness]", &options.block_mm},
-      {"--entrance-deg B", fmt::format("material: largest entrance angle [{:g}]", kUsual.entrance_deg),
-       &options.entrance_deg},
-      {"--window-deg W", fmt::format("material: how far views lie from the source [{:g}]", kUsual.window_deg),
-       &options.window_deg},
-      {"--source-arcmin D", "material: diameter of the source [10]", &options.source_arcmin},
-      {"--receiver-arcmin D", "material: diameter of the receiver [10]", &options.receiver_arcmin},
-      {"--error E", fmt::format("material: relative error that is aimed at [{:g}]", kUsual.error), &options.error},
-      {"--most-directions N",
-       fmt::format("material: directions of light that are computed, at most [{}]", kUsual.most_directions),
-       &options.most_directions}};
+  return {design_argument(options.design),
+          {"FILE",
+           "file to write: .stl, .obj, .glb, .step or .stp; a material: .json, .xml or .glsl; the same as --out FILE",
+           &options.file, files("")},
+          {"--what WHAT", "solid: element, array or mould: the block behind the part's back [array]", &options.what,
+           one_of(kinds)},
+          {"--block-mm T", "of a mould, below its deepest point [the plate's thickness]", &options.block_mm},
+          {"--entrance-deg B", fmt::format("material: largest entrance angle [{:g}]", kUsual.entrance_deg),
+           &options.entrance_deg},
+          {"--window-deg W", fmt::format("material: how far views lie from the source [{:g}]", kUsual.window_deg),
+           &options.window_deg},
+          {"--source-arcmin D", "material: diameter of the source [10]", &options.source_arcmin},
+          {"--receiver-arcmin D", "material: diameter of the receiver [10]", &options.receiver_arcmin},
+          {"--error E", fmt::format("material: relative error that is aimed at [{:g}]", kUsual.error), &options.error},
+          {"--most-directions N",
+           fmt::format("material: directions of light that are computed, at most [{}]", kUsual.most_directions),
+           &options.most_directions}};
 }
 
 /// Refuses options of the other kind of file.

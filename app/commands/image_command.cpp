@@ -84,10 +84,7 @@ std::vector<Argument> camera_arguments(ImageOptions& o) {
   Traits passes = whole(0, kMostWhole);
   passes.needs = {absent("--noise")};
   return {{"--camera", "the part in the light of a lamp, as a camera sees it", &o.camera},
-          {"--distance-m D",
-           "camera: distance of lamp and eye",
-           &o.photographed.distance_m,
-           {.needs = {eye_or_lamp}}},
+          {"--distance-m D", "camera: distance of lamp and eye", &o.photographed.distance_m, {.needs = {eye_or_lamp}}},
           {"--observation-deg A",
            "camera: angle by which the eye is above the lamp",
            &o.photographed.observation_deg,
@@ -110,12 +107,8 @@ std::vector<Argument> camera_arguments(ImageOptions& o) {
           {"--cylinder-mm R", "camera: radius of the cylinder that the sheet is bent over; negative: inside it [plane]",
            &o.photographed.cylinder_mm},
           {"--noise E", "camera: relative noise of pixels to reach", &o.photographed.noise},
-          {"--passes N", "camera: passes of four paths a pixel, in place of --noise", &o.photographed.passes,
-           passes},
-          {"--false-colour",
-           "camera: luminance as colours too",
-           &o.false_colour,
-           {.needs = {any_given({"--out"})}}}};
+          {"--passes N", "camera: passes of four paths a pixel, in place of --noise", &o.photographed.passes, passes},
+          {"--false-colour", "camera: luminance as colours too", &o.false_colour, {.needs = {any_given({"--out"})}}}};
 }
 
 std::vector<Argument> road_arguments(ImageOptions& o) {

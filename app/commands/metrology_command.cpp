@@ -29,8 +29,7 @@ std::vector<Argument> arguments(MetrologyOptions& options) {
   form.needs = {absent("--edge")};
   std::vector<Argument> all = {
       {"FILE", "height map or profile: text, SDF, GSF or GWY", &request.file, files("")},
-      {"--form FORM", "form to remove: none, plane or poly2 to poly8", &options.form,
-       form},
+      {"--form FORM", "form to remove: none, plane or poly2 to poly8", &options.form, form},
       {"--cutoff-um L", "cut-off of the Gaussian filter between roughness and waviness", &request.cutoff_um},
       {"--feed-mm-per-min F", "feed of the cut, for waves in Hz", &request.feed_mm_per_min},
       {"--edge", "rows are profiles across an edge: fit its radius and chamfer", &request.edge}};

@@ -117,10 +117,10 @@ raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const r
   constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
   const raytrace::Illumination illumination = illumination_of(design_, request_);
   if (!exact)
-    return raytrace::sampled_detector_maps(model_.part, light.optics, illumination, setting,
-                                           std::max<std::uint64_t>(1, request_.rays.value_or(kUsualDetectorRays) / model_.spectral.size()),
-                                           request_.seed + kGolden * static_cast<std::uint32_t>(number), {}, progress,
-                                           cancel);
+    return raytrace::sampled_detector_maps(
+        model_.part, light.optics, illumination, setting,
+        std::max<std::uint64_t>(1, request_.rays.value_or(kUsualDetectorRays) / model_.spectral.size()),
+        request_.seed + kGolden * static_cast<std::uint32_t>(number), {}, progress, cancel);
   raytrace::BeamPolicy policy;
   policy.cutoff = request_.cutoff;
   policy.truncated_goal = kTruncatedGoal;

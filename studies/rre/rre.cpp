@@ -36,8 +36,7 @@ void check(const RreRequest& request) {
   }
   check_has_effect("--samples", request.rays.has_value(), request.engine, kRayEngines);
   check_has_effect("--cutoff", request.cutoff.has_value(), request.engine, kCutoffEngines);
-  if (request.target_error && request.rays)
-    throw InputError({"", 0, "--target-error"}, "not together with --samples");
+  if (request.target_error && request.rays) throw InputError({"", 0, "--target-error"}, "not together with --samples");
   if (request.target_error && request.cutoff && must_be_exact(request))
     throw InputError({"", 0, "--target-error"}, "not together with --cutoff where only the exact engine is used");
   if (request.target_error) check_share(*request.target_error, false, "--target-error");

@@ -23,8 +23,8 @@ class Line {
       for (const Json& argument : arguments) arguments_[name_of(argument)] = argument;
     const std::string synopsis = command["synopsis"];
     for (const auto& [name, argument] : arguments_) {
-      const bool is_required =
-          argument["names"].empty() ? synopsis.find("[" + name + "]") == std::string::npos : argument.contains("required");
+      const bool is_required = argument["names"].empty() ? synopsis.find("[" + name + "]") == std::string::npos
+                                                         : argument.contains("required");
       if (is_required) give(name);
     }
   }
@@ -32,8 +32,8 @@ class Line {
   void give(const std::string& name) {
     const Json& argument = arguments_.at(name);
     const std::string word = argument["value"];
-    given_[name] = word.empty()                ? ""
-                   : argument["names"].empty() ? "missing.toml"
+    given_[name] = word.empty()                 ? ""
+                   : argument["names"].empty()  ? "missing.toml"
                    : argument.contains("words") ? argument["words"].front().get<std::string>()
                                                 : "1";
   }

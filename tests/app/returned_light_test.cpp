@@ -89,10 +89,10 @@ TEST(ReturnedLight, ManyDirectionsAreWrittenButNotAllDrawn) {
 }
 
 TEST(ReturnedLight, NeedsAnOutputFolder) {
-  expect_refused(TemporaryFolder(),
-                 {{{"--footprint"}, "--footprint: needs --out"},
-                  {{"--far-field", "--json", "-"}, "--far-field: needs --out"}},
-                 exact({}), {});
+  expect_refused(
+      TemporaryFolder(),
+      {{{"--footprint"}, "--footprint: needs --out"}, {{"--far-field", "--json", "-"}, "--far-field: needs --out"}},
+      exact({}), {});
 }
 
 TEST(ReturnedLight, NeedsTheExactEngine) {

@@ -158,6 +158,7 @@ TEST(BallStudies, BallsAndPrismsStandInOneTable) {
 
 TEST(BallStudies, OtherEnginesAreRefused) {
   RreRequest request = some_rays();
+  request.rays.reset();
   request.engine = Engine::exact;
   EXPECT_THROW(RreStudy({balls()}, request), InputError);
   request.engine = Engine::automatic;
