@@ -46,7 +46,7 @@ class Line {
       if (condition.contains("values")) {
         const Json& values = condition["values"];
         for (const Json& word : arguments_.at(option)["words"])
-          if (std::ranges::count(values, word) == 0) given_[option] = word;
+          if (std::count(values.begin(), values.end(), word) == 0) given_[option] = word;
       } else if (!condition["given"].get<bool>()) {
         give(option);
       }
@@ -73,12 +73,13 @@ class Line {
 
  private:
   bool holds(const Json& need) const {
-    return std::ranges::any_of(need, [&](const Json& condition) {
+    return std::any_of(need.begin(), need.end(), [&](const Json& condition) {
       const std::string option = condition["option"];
       const bool is_given = given_.contains(option);
       if (!condition.contains("values")) return is_given == condition["given"].get<bool>();
       const Json value = is_given ? Json(given_.at(option)) : arguments_.at(option)["default"];
-      return std::ranges::count(condition["values"], value) > 0;
+      const Json& values = condition["values"];
+      return std::count(values.begin(), values.end(), value) > 0;
     });
   }
 
