@@ -15,11 +15,11 @@ namespace {
 
 constexpr std::uint8_t kZBit = 0b100;
 constexpr std::uint8_t kLinearBits = 0b111;
-/// Errors of floating-point sums, in mm or degrees.
+/// Allowance for the rounding errors of floating-point sums, in mm or degrees.
 constexpr double kSlack = 1e-9;
-/// A limit that is written in another unit, or as a time, is rounded to the printed digits. Half of the last decimal is
-/// therefore allowed beyond a limit. Numbers with fewer digits than these count as exact: half of 1e-4 inch is 1.3e-3
-/// mm.
+/// Maximum allowance for the rounding of a printed position (in mm or degrees) and of a printed feed (relative). A word
+/// in inches or an inverse time is rounded, so it may exceed a limit by half of its last decimal. If half of the last
+/// decimal is larger than these values, the number counts as exact: half of 1e-4 inch is 1.3e-3 mm.
 constexpr double kMaxRounding = 2e-3;
 constexpr double kMaxRelativeRounding = 1e-3;
 

@@ -16,7 +16,7 @@
 
 namespace retrace::fabrication {
 
-/// Returns how far an axis may be beyond a limit because its word is rounded, in mm or degrees
+/// Returns the distance, in mm or degrees, by which an axis may exceed a limit because its word is rounded
 /// (docs/theory/verification.md).
 double rounding_slack(const NcMotion& motion, char axis);
 
@@ -88,7 +88,7 @@ class ControlCheck {
   bool has_moved_ = false;       ///< since the program began or stopped
   std::uint8_t known_ = 0;       ///< axes whose place was said since then
   double rested_s_ = 0.0;        ///< in the material, since the last move
-  double z_slack_mm_ = 0.0;      ///< rounding of the word that brought Z to where it is
+  double z_slack_mm_ = 0.0;      ///< allowance for the rounding of the last Z word
   std::set<std::string> wrong_;  ///< kinds of settings that are wrong now
 };
 

@@ -32,7 +32,7 @@ void ProgramTime::add(const Machine& machine, const NcMotion& motion) {
     path.speed = motion.feed_mm_per_min / 60.0;
     linear_s = rest_to_rest_s(distance, path);
   }
-  // Rotary axes that move with linear ones arrive together with them. A feed of rotary axes only is in degrees.
+  // Rotary and linear axes of one move arrive together. If only rotary axes move, the feed is in degrees per minute.
   const bool is_turn_fed = is_fed && distance == 0.0 && turns;
   const double turning_s = is_turn_fed ? fed_rotary_motion_s(machine, tilt_deg, c_deg, motion.feed_mm_per_min)
                                        : rotary_motion_s(machine, tilt_deg, c_deg);

@@ -18,9 +18,9 @@ struct ProgramTime {
     return {feed_s - other.feed_s, rapid_s - other.rapid_s, rotary_s - other.rotary_s, dwell_s - other.dwell_s};
   }
 
-  /// Adds a move; one that says its time takes that. All axes move at the same time. Feeds of moves of rotary axes only
-  /// are in degrees per minute. Ways of linear axes whose position is not known yet count nothing;
-  /// rotary axes start at 0.
+  /// Adds the time of a move. All axes move at the same time. If the program gives the time of the move, this time is
+  /// added. If only rotary axes move, the feed is in degrees per minute. A linear axis whose position is not yet known
+  /// adds no time. Rotary axes start at 0.
   void add(const Machine& machine, const NcMotion& motion);
 };
 

@@ -41,7 +41,7 @@ void check_increments(const Job& job, const Machine& machine) {
   if (has_finishing_cuts(job)) check("process.finishing_depth_um", job.process.finishing_depth_um);
 }
 
-/// Refuses a V whose cuts, as the control rounds them, may leave a fin that is wider than the strip along an edge.
+/// Refuses a V-shaped tool if rounding of positions may leave a fin that is higher than the edge strip.
 void check_fin(const Job& job, const Machine& machine) {
   const double step_mm = 1e-6 * static_cast<double>(machine.increments.linear_nm);
   const double limit_mm = max_fin_mm(step_mm);
@@ -52,8 +52,8 @@ void check_fin(const Job& job, const Machine& machine) {
     throw InputError(
         job.where("tool.wedge_deg"),
         fmt::format(
-            "must be larger, or the increments of the control smaller: machine {} rounds positions to {} um, so "
-            "that a fin of {} um may stay along dihedral edges, at most {} um are allowed, got {}",
+            "must be larger, or the increments of the control smaller: machine {} rounds positions to {} um, which "
+            "may leave a fin of {} um along dihedral edges; at most {} um are allowed, got {}",
             machine.name, shortest(1e3 * step_mm), fixed(1e3 * fin_mm, 3), shortest(1e3 * limit_mm),
             shortest(job.tool.wedge_deg)));
   }

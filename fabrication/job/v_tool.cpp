@@ -58,8 +58,8 @@ double nose_strip_mm(const Tool& tool) {
 double rounded_fin_mm(Angle first, Angle second, Angle between, double step_mm) {
   const double overlap_rad = first.rad() + second.rad() - between.rad();
   if (overlap_rad <= 0.0) return std::numeric_limits<double>::infinity();
-  // A position is the sum of a start and a path, each rounded within a box of increments and, along the facet's normal,
-  // by half an increment at most.
+  // A position is the sum of a start and a path. Each is rounded by at most sqrt(3) increments in any direction, and by
+  // at most half an increment along the facet's normal.
   const double along_mm = 2.0 * std::numbers::sqrt3 * step_mm;
   const double across_mm = step_mm;
   const auto height_mm = [&](Angle own, Angle other) {
@@ -84,7 +84,7 @@ double rounded_fin_mm(const Tool& tool, Angle error, double step_mm) {
 
 void check_v_tool(const geometry::Element& element, const geometry::AngleErrors& errors, const Tool& tool,
                   const schema::Refuse& refuse) {
-  // Facets and edges lie closer together by this, or farther apart.
+  // Maximum difference between an angle of the element and 90 degrees.
   double error_deg = 0.0;
   double edge_mm = cavity_edge_mm(element);
   if (errors != geometry::AngleErrors{}) {

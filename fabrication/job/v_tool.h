@@ -22,31 +22,34 @@ struct VToolEdges {
 };
 VToolEdges v_tool_edges(const Tool& tool);
 
-/// Length of the facets' edges from the apex to the blank's face, but for errors of angle: of full cubes twice the
-/// cube's edge. \pre the element is a cube corner
+/// Returns the length of the dihedral edges from the apex to the blank's face, without errors of angle. For hexagonal
+/// cube corners this is twice the cube's edge. \pre the element is a cube corner
 double cavity_edge_mm(const geometry::Element& element);
 
 /// Width that a nose of the tool's radius leaves uncut on either facet along a dihedral edge.
 double nose_strip_mm(const Tool& tool);
 
-/// Width of the strip along a dihedral edge in which remaining material counts for the edge and not for a facet.
+/// Width of the strip on either side of a dihedral edge. Remaining material in this strip is reported for the edge and
+/// not for a facet.
 inline constexpr double kEdgeStripMm = 1e-3;
-/// Distances from a dihedral edge at which the strip is measured, in least increments of the control. Rounding moves a
-/// facet by one increment at most.
+/// Distances from a dihedral edge at which the material in the strip is measured, in least increments of the control.
+/// They are larger than 1 because rounding moves a facet by up to one increment.
 inline constexpr double kEdgeLineSteps[] = {1.5, 8.0};
 
-/// Returns the height over either facet of the fin that two cuts along a dihedral edge may leave between them because
-/// positions are rounded (docs/theory/micro_chiseling.md, section "Fins"); infinity if the cuts do not overlap.
-/// \param first angle over the first facet up to which the cut along it reaches, seen along the edge
-/// \param second likewise for the second facet
+/// Returns the maximum height of the fin that the cuts of two facets may leave at their dihedral edge because positions
+/// are rounded (docs/theory/micro_chiseling.md, section "Fins"). The height is measured normal to either facet; it is
+/// infinity if the cuts do not overlap.
+/// \param first angle at the dihedral edge between the first facet and the upper boundary of its cut
+/// \param second angle at the dihedral edge between the second facet and the upper boundary of its cut
 /// \param between angle between the facets
 /// \param step_mm least increment of the control
 double rounded_fin_mm(Angle first, Angle second, Angle between, double step_mm);
 
-/// Returns the greatest fin that stays within the strip along the edge, measured beyond all lines of the strip.
+/// Returns the maximum height of a fin that stays inside the strip, for all measured distances from the edge.
 double max_fin_mm(double step_mm);
 
-/// Returns the fin of a tool that stands in all facets as it should. \param error largest error of angle of the element
+/// Returns the maximum height of the fin for an ideally aligned tool. \param error largest error of angle of the
+/// element
 double rounded_fin_mm(const Tool& tool, Angle error, double step_mm);
 
 /// That the tool reaches the apex of a cube corner, and every place of its facets.

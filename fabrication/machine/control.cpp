@@ -14,19 +14,19 @@ namespace {
 
 constexpr std::size_t kLongestLine = 200;
 
-/// A line that neither moves an axis nor waits. Blanks do not count; # stands for a whole number, ~ for a number, @ for
-/// the name of an axis.
+/// Pattern of a program line that neither moves an axis nor waits. # stands for a whole number, ~ for a number and @
+/// for the name of an axis. Blanks are ignored.
 struct LineForm {
   std::string_view dialect;
   LineUse use;
   std::string_view form;
 };
 
-/// M codes of program flow; the others are those of the machine's builder (ISO 6983-1).
+/// M codes that control the program flow. The builder of the machine defines the other M codes (ISO 6983-1).
 constexpr int kFlowCodes[] = {0, 1, 2, 30, 47, 48, 49, 96, 97, 98, 99};
 
 constexpr LineForm kLineForms[] = {
-    // Power PMAC Software Reference: variables, and the codes whose subprograms the builder writes.
+    // Source: Power PMAC Software Reference, variables and M codes.
     {"pmac", LineUse::output, "M#"},
     {"pmac", LineUse::output, "P#=~"},
     {"pmac", LineUse::output, "Q#=~"},
@@ -35,14 +35,14 @@ constexpr LineForm kLineForms[] = {
     {"pmac", LineUse::output, "GateIo[#].DataReg[#].#=#"},
     {"pmac", LineUse::stop, "M0"},
     {"pmac", LineUse::stop, "M1"},
-    // Programs for the A3200 in public repositories: outputs and variables of the control.
+    // Source: public A3200 programs, outputs and variables.
     {"a3200", LineUse::output, "M#"},
     {"a3200", LineUse::output, "$DO[#].@=#"},
     {"a3200", LineUse::output, "$AO[#].@=~"},
     {"a3200", LineUse::output, "$global[#]=~"},
     {"a3200", LineUse::stop, "M0"},
     {"a3200", LineUse::stop, "M1"},
-    // help.aerotech.com/automation1: I/O Functions, Variables.
+    // Source: help.aerotech.com/automation1, I/O Functions and Variables.
     {"automation1", LineUse::output, "M#"},
     {"automation1", LineUse::output, "DigitalOutputSet(@,#,#)"},
     {"automation1", LineUse::output, "AnalogOutputSet(@,#,~)"},
@@ -57,7 +57,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Takes what a sign of a form stands for off the front of `text`. \return whether it is there
+/// Removes from the front of `text` the number or name that a sign (#, ~ or @) stands for. \return false if it is
+/// absent
 bool take_part(char sign, std::string_view& text) {
   const std::size_t before = text.size();
   if (sign == '@') {

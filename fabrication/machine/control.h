@@ -31,24 +31,24 @@ struct Control {
   std::string mist_off;
   std::string optional_stop;
   std::string stop;
-  bool has_unchecked_lines = false;  ///< those lines may be any text
+  bool has_unchecked_lines = false;  ///< the four lines above may be any text
   bool rapids_are_straight = false;  ///< axes arrive together; otherwise each goes at its own speed
 };
 
-/// What a line is for that an integrator has given a meaning: an output such as mist or the spindle, or a stop.
+/// Purpose of a program line that the machine's builder defines: an output, such as mist or the spindle, or a stop.
 enum class LineUse : std::uint8_t { output, stop };
 
-/// Checks the form of a line of a Power PMAC's or an Aerotech control's program that an integrator has given a meaning.
-/// Such lines are written and read letter by letter.
-/// \return what is wrong with it: not 1 to 200 printable ASCII characters without // and blanks at its ends; empty if
-/// nothing is
+/// Checks the characters of a program line that the machine's builder defines, on a Power PMAC or an Aerotech control.
+/// \return an error message unless the line has 1 to 200 printable ASCII characters, no // and no blanks at its ends;
+/// otherwise an empty text
 std::string unfit_line(std::string_view text);
 
-/// Whether a line only sets an output or a variable, calls a code of the machine's builder, or, as a stop, is M0 or M1.
-/// \param dialect of the program; empty: any
+/// Returns true if a line only sets an output or a variable or calls an M code of the machine's builder. A line for a
+/// stop may also be M0 or M1.
+/// \param dialect dialect of the program; empty: any dialect
 bool is_harmless_line(std::string_view text, LineUse use, std::string_view dialect = {});
 
-/// Returns what a line must be that is_harmless_line() does not know; empty for one that it knows.
+/// Returns an error message with the allowed forms if is_harmless_line() is false; otherwise an empty text.
 std::string unknown_line(std::string_view text, LineUse use, std::string_view dialect = {});
 
 /// Those of a Fanuc's increment system.

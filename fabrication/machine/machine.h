@@ -128,7 +128,7 @@ struct Machine {
   Sourced<double> warm_up_s = {0.0, Basis::assumed, "cuts may begin cold, as for every machine that names none"};
   Control control;
   Increments increments;  ///< to which positions are rounded when programs are planned
-  /// Letters of the rotary axes that take the shortest path to a word when programs of the dialect run.
+  /// Letters of the rotary axes that move to a programmed angle along the shortest path in the chosen dialect.
   std::string shortest_axes;
 
   double first_z_mm() const { return std::min(safe_z_mm.value, z.limits_mm.value.high); }

@@ -22,12 +22,12 @@ MotionLimits limits_along(const Machine& machine, const geometry::Vec3& by_mm);
 /// where jerk has no limit (docs/theory/cutting.md). \pre distance >= 0, limits > 0
 double rest_to_rest_s(double distance, const MotionLimits& limits);
 
-/// Returns the time of a rapid move by (x, y, z) mm in s, without settling: of the axis that arrives last, or of the
-/// straight line if Control::rapids_are_straight.
+/// Returns the time, in s, of a rapid move by (x, y, z) mm, without settling. This is the time of the slowest axis, or
+/// the time along the straight line if Control::rapids_are_straight is true.
 double rapid_motion_s(const Machine& machine, const geometry::Vec3& by_mm);
 
-/// Returns the time in s that A or B and C take together at a feed along their path in degrees per minute, without
-/// settling.
+/// Returns the time, in s, of a simultaneous move of the tilting axis (A or B) and C, without settling.
+/// \param deg_per_min feed along the common path of both axes
 double fed_rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg, double deg_per_min);
 
 /// By A or B and by C, in degrees, each as fast as it goes and both to be waited for; without settling.

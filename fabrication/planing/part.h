@@ -50,10 +50,10 @@ struct PlaningLathe {
   double nose_radius_mm = 0.0;  ///< of the tool
   std::int32_t spindle_rpm = 0;
   SpindleDirection spindle_direction = SpindleDirection::clockwise;
-  std::string spindle_start;         ///< lines of a program, for dialects without words; empty: none
-  std::string spindle_stop;          ///< given if spindle_start is
-  InputLocation spindle_start_at;    ///< where it is given, or would be
-  bool has_unchecked_lines = false;  ///< those lines may be any text
+  std::string spindle_start;         ///< program line for dialects without spindle words; empty: none
+  std::string spindle_stop;          ///< given if and only if spindle_start is given
+  InputLocation spindle_start_at;    ///< location of spindle_start in the file
+  bool has_unchecked_lines = false;  ///< spindle_start and spindle_stop may be any text
 };
 
 /// A flat optical element that is to be planed or turned.

@@ -23,7 +23,7 @@ std::string for_control(std::string_view format, const Control& control) {
                      kIncrementSystemWords[static_cast<std::size_t>(control.increment_system)], codes);
 }
 
-/// A line of a program that the file of the machine or of the part gives, and its key there.
+/// A program line that the machine file or the part file gives, and the key of this line.
 struct OwnLine {
   std::string_view key;
   std::string text;
@@ -46,10 +46,11 @@ bool is_unchecked(const OwnLine& line, std::string_view dialect) {
 }
 
 std::string unchecked_text(const OwnLine& line) {
-  return fmt::format("Not checked: the line {} gives, which may move axes or wait", line.key);
+  return fmt::format("Not checked: the line of {}, which may move axes or wait", line.key);
 }
 
-/// \throw InputError for a line that retrace does not know, unless the file permits it
+/// Checks that a line is harmless or that the file permits any line.
+/// \throw InputError if neither is true
 void check_line(const OwnLine& line, std::string_view dialect, std::string_view table, bool may_be_any) {
   if (may_be_any || !is_unchecked(line, dialect)) return;
   throw InputError({"", 0, "--dialect"},

@@ -38,7 +38,8 @@ void check_words(const Program& program, std::string_view dialect);
 /// \throw InputError likewise
 Increments word_increments(std::string_view dialect, const Control& control);
 
-/// Letters of the rotary axes whose words lead along the shortest path in that dialect. \throw InputError likewise
+/// Returns the letters of the rotary axes that move along the shortest path in a dialect.
+/// \throw InputError for an unknown dialect
 std::string shortest_axes(std::string_view dialect, const Control& control);
 
 /// Whether paths may have velocities at the ends of their moves in that dialect. \throw InputError likewise

@@ -103,8 +103,8 @@ struct Visit {
   std::int32_t element = 0;
   std::uint32_t subroutine = 0;  ///< index in Program::subroutines
   Place start = Place::Zero();
-  int pass = 1;    ///< number of the pass, from 1, in the order in which the program makes them
-  int passes = 1;  ///< number of passes side by side that the element needs
+  int pass = 1;    ///< number of the pass, from 1, in the order of cutting
+  int passes = 1;  ///< number of parallel passes that the width of the element needs
 };
 /// Velocities of axes, in mm/s and degrees/s.
 using Velocities = std::array<double, kAxes>;
@@ -132,10 +132,10 @@ using Item = std::variant<Comment, Message, OptionalStop, Stop, Move, Visit, Pat
 /// How the spindle turns while a program cuts.
 struct Spindle {
   std::int32_t rpm = 0;
-  bool is_clockwise = true;  ///< M3 of ISO 6983-1, otherwise M4
-  std::string start_text;    ///< lines for a dialect that has no words of its own for it; empty: none
-  std::string stop_text;
-  bool has_unchecked_lines = false;  ///< those may be any text
+  bool is_clockwise = true;          ///< M3 of ISO 6983-1, otherwise M4
+  std::string start_text;            ///< program line that starts it in a dialect without spindle words; empty: none
+  std::string stop_text;             ///< program line that stops it
+  bool has_unchecked_lines = false;  ///< start_text and stop_text may be any text
 };
 
 /// A program that runs alone: preparation, `items` in their order, end. Texts are one line of ASCII without brackets,

@@ -49,7 +49,8 @@ class A3200Reader {
   NcProgram run() {
     std::string_view line;
     while (lines_.next(line))
-      if (!take_text(trimmed(line), texts_, is_over_ ? "stands behind the end of the program" : "", lines_, program_))
+      if (!take_text(trimmed(line), texts_, is_over_ ? "a line must not follow the end of the program" : "", lines_,
+                     program_))
         read_line_that_may_be_cut(lines_, program_, [&] { read(with_single_blanks(without_a3200_comment(line))); });
     program_.lines = lines_.number();
     if (!is_over_) program_.main_last = program_.blocks.size();
@@ -66,7 +67,7 @@ class A3200Reader {
     if (text == "END PROGRAM") return end_program();
     if (text == "ENDDFS") return end_subroutine();
     if (starts_with_word(text, "DFS")) return begin_subroutine(trimmed(text.substr(3)));
-    if (is_over_ && !table_.is_open()) lines_.fail("stands behind the end of the program");
+    if (is_over_ && !table_.is_open()) lines_.fail("a line must not follow the end of the program");
     NcBlock block;
     block.line = lines_.number();
     if (starts_with_word(text, "CALL"))
@@ -137,7 +138,7 @@ class A3200Reader {
 
   void begin_subroutine(std::string_view text) {
     if (table_.is_open()) lines_.fail("a subroutine must end before another begins");
-    if (!is_over_) lines_.fail("a subroutine must stand behind END PROGRAM");
+    if (!is_over_) lines_.fail("a subroutine must follow END PROGRAM");
     const std::string name = name_in(text);
     if (!table_.begin(name)) lines_.fail("there is a subroutine of that name already: " + name);
   }

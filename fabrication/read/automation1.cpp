@@ -37,7 +37,8 @@ class Automation1Reader {
   NcProgram run() {
     std::string_view line;
     while (lines_.next(line))
-      if (!take_text(trimmed(line), texts_, is_in_main_ ? "" : "stands outside of program ... end", lines_, program_))
+      if (!take_text(trimmed(line), texts_, is_in_main_ ? "" : "a line must be inside of program ... end", lines_,
+                     program_))
         read_line_that_may_be_cut(lines_, program_, [&] { read(trimmed(line.substr(0, line.find("//")))); });
     program_.lines = lines_.number();
     if (is_in_main_) program_.main_last = program_.blocks.size();
@@ -52,7 +53,7 @@ class Automation1Reader {
     if (text == "program") return begin_main();
     if (starts_with_word(text, "function")) return begin_function(trimmed(text.substr(8)));
     if (text == "end") return end();
-    if (!is_in_main_ && !table_.is_open()) lines_.fail("stands outside of program ... end and function ... end");
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("a line must be inside of program ... end or function ... end");
     NcBlock block;
     block.line = lines_.number();
     const std::size_t bracket = text.find('(');
@@ -118,7 +119,7 @@ class Automation1Reader {
   void read_axes(std::string_view& text, IsoBlock& iso) {
     const bool is_list = text.starts_with('[');
     const std::size_t end = is_list ? text.find("],[") : text.find(',');
-    if (end == std::string_view::npos) lines_.fail("needs axes and as many places");
+    if (end == std::string_view::npos) lines_.fail("needs a list of axes and a list of as many positions");
     std::string_view axes = text.substr(is_list ? 1 : 0, end - (is_list ? 1 : 0));
     text.remove_prefix(end + (is_list ? 3 : 1));
     for (; !axes.empty(); axes.remove_prefix(axes.size() > 1 ? 2 : 1)) {
@@ -126,10 +127,11 @@ class Automation1Reader {
       const bool is_one = axes.size() == 1 || axes[1] == ',';
       if (axis == kNcAxes || !is_one) lines_.fail("has an axis that is not understood, " + in_quotes(axes));
       iso.set_axis(axis, take_number(text, lines_));
-      if (axes.size() > 1 && !text.starts_with(',')) lines_.fail("needs axes and as many places");
+      if (axes.size() > 1 && !text.starts_with(','))
+        lines_.fail("needs a list of axes and a list of as many positions");
       if (axes.size() > 1) text.remove_prefix(1);
     }
-    if (is_list && !text.starts_with(']')) lines_.fail("needs axes and as many places");
+    if (is_list && !text.starts_with(']')) lines_.fail("needs a list of axes and a list of as many positions");
     if (is_list) text.remove_prefix(1);
   }
 

@@ -85,7 +85,7 @@ class FanucReader {
       ++percent_signs_;
       return;
     }
-    if (text.front() == '/') lines_.fail("a line that a switch of the controller may leave out is not understood");
+    if (text.front() == '/') lines_.fail("a line with block delete (/) is not understood");
     if (text.front() == 'O') return begin_program(text.substr(1));
     if (!has_main_) lines_.fail("stands before the program's number: O1, say, must come first");
     Line line;

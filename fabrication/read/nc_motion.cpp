@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kTurnDeg = 360.0;
 
-/// Returns the maximum number of nested calls: LinuxCNC 2.9 refuses the tenth (tried with its rs274), a Fanuc 30i the
-/// eleventh (operator's manual B-63944), and 16 are more than the other controls allow.
+/// Returns the maximum number of nested calls. LinuxCNC 2.9 refuses the tenth call (tested with rs274) and a Fanuc 30i
+/// the eleventh (operator's manual B-63944). The other controls allow fewer than 16.
 std::size_t max_nested_calls(NcDialect dialect) {
   if (dialect == NcDialect::rs274ngc) return 9;
   return dialect == NcDialect::fanuc ? 10 : 16;
@@ -165,11 +165,11 @@ class Runner {
   }
 
   void set_rate(const NcBlock& block) {
-    // No control keeps a feed per minute when the mode changes to inverse time and back.
+    // Controls clear the feed when the mode changes between feed per minute and inverse time.
     const bool changes_mode = block.inverse_time && inverse_time_ && block.inverse_time != inverse_time_;
     if (block.clears_feed || changes_mode) feed_ = 0.0;
     take_over(inverse_time_, block.inverse_time);
-    // Under inverse time F belongs to its line alone.
+    // In inverse time mode an F word is valid only in its own block.
     const bool is_feed = block.feed && !inverse_time_.value_or(false);
     if (is_feed) feed_ = *block.feed;
     if (is_feed) move_time_s_ = 0.0;
@@ -177,7 +177,7 @@ class Runner {
     if (block.feed || block.move_time_s) rate_rounding_ = block.rate_rounding;
     const bool is_empty_g1 = block.move == NcMove::linear && block.axes == 0 && program_.dialect == NcDialect::rs274ngc;
     if (is_empty_g1 && !(inverse_time_.value_or(false) ? block.feed.value_or(0.0) > 0.0 : feed_ > 0.0))
-      fail(block, "G1 needs a feed, also where no axis moves");
+      fail(block, "G1 needs a feed, even if no axis moves");
   }
 
   void stop(const NcBlock& block) {
@@ -323,8 +323,8 @@ class Runner {
     return feed > 0.0 ? 60.0 * way / feed : 0.0;
   }
 
-  /// Returns how much longer a timed move may be than intended, relative to its length: both ends of each axis are
-  /// rounded. A feed does not depend on the length.
+  /// Returns the maximum relative error of the length of a move whose time is given. Both end positions of each axis
+  /// are rounded. The result is 0 for a move with a feed, because the feed does not depend on the length.
   static double length_rounding(const NcMotion& motion) {
     const double length = motion.path_length();
     if (motion.duration_s == 0.0 || length == 0.0) return 0.0;
@@ -364,7 +364,7 @@ class Runner {
   double feed_ = 0.0;
   std::optional<bool> inverse_time_;
   double move_time_s_ = 0.0;
-  double rate_rounding_ = 0.0;  ///< of the last F or time of a move
+  double rate_rounding_ = 0.0;  ///< relative rounding of the last F word or time word
   std::array<double, kNcAxes> position_{};
   std::array<double, kNcAxes> rounding_{};
   std::array<double, kNcAxes> velocities_{};  ///< at the end of a move by them, per second

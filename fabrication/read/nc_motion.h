@@ -26,20 +26,20 @@ struct NcMotion {
   std::uint8_t known = 0;  ///< bit i: the position of axis i before the move is known; 0 is assumed where it is not
   AxisPositions from;
   AxisPositions to;
-  double feed_mm_per_min = 0.0;  ///< of a linear move; 0: none was given, or its time was
+  double feed_mm_per_min = 0.0;  ///< feed of a linear move; 0 if it has no feed or if its time is given
   double duration_s = 0.0;       ///< of a linear move whose time is given instead of a feed; 0: by the feed
   bool is_exact_stop = true;     ///< the move ends in its end point
   bool goes_on = false;          ///< a piece of a move by a cubic, and not its last
   std::uint8_t shortest = 0;     ///< bit i: axis i goes the shortest way to a place within a turn
   std::uint8_t absolute = 0;     ///< bit i: axis i goes to the place that its word counts
   std::uint8_t decimals = 0;     ///< NcBlock::decimals
-  /// Half of the last decimal of the word that brought each axis to `to`, in mm or degrees.
+  /// Half of the last decimal of the word that gave the position `to` of each axis, in mm or degrees.
   std::array<double, kNcAxes> rounding{};
-  double rate_rounding = 0.0;  ///< relative error of path_speed_per_min() that the printed digits leave open
+  double rate_rounding = 0.0;  ///< maximum relative error of path_speed_per_min() from rounded numbers of the program
 
-  /// Returns the length of the move of X, Y and Z in mm; if only rotary axes move, that of their words in degrees.
+  /// Returns the length of the move of X, Y and Z in mm. If only rotary axes move, returns their path in degrees.
   double path_length() const;
-  /// Returns the speed along that path in mm or degrees per minute: the given feed, or the length over the given time.
+  /// Returns the given feed, or path_length() divided by the given time, in mm or degrees per minute.
   double path_speed_per_min() const { return duration_s > 0.0 ? 60.0 * path_length() / duration_s : feed_mm_per_min; }
 };
 
@@ -81,7 +81,7 @@ struct NcEnd {
 inline constexpr double kCubicPieceMm = 2e-7;
 inline constexpr double kCubicPieceDeg = 2e-7;
 
-/// Maximum number of blocks that are carried out.
+/// Maximum number of blocks of a program that are executed.
 inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
 
 /// Carries out a program: calls, modal settings, absolute and incremental words. A move by places, velocities and time

@@ -79,7 +79,7 @@ inline constexpr std::uint16_t kFeedMode = 1U << 13U;     ///< feeds are speeds,
 inline constexpr std::uint16_t kRoundingOff = 1U << 14U;  ///< no arcs between lines
 }  // namespace nc_said
 
-/// Returns half of the last decimal of a number with that many decimals: how far it may be from what was rounded.
+/// Returns half of the last decimal of a number with `decimals` decimals. This is its maximum rounding error.
 double half_decimal(std::uint8_t decimals);
 
 /// A setting that a block may make. Nothing: the block does not say.
@@ -98,14 +98,14 @@ struct NcBlock {
   std::int32_t line = 0;  ///< in the file, from 1
   std::uint8_t axes = 0;  ///< bit i: the block has a word for axis i
   std::array<double, kNcAxes> words{};
-  std::array<std::uint8_t, kNcAxes> axis_decimals{};  ///< number of decimals of each word
+  std::array<std::uint8_t, kNcAxes> axis_decimals{};  ///< number of decimals of the word of each axis
   Setting<NcMove> move;
-  bool cancels_move = false;  ///< axis words are an error until a later block sets `move`
+  bool cancels_move = false;  ///< no motion mode: axis words are an error until a block sets `move`
   Setting<bool> absolute;
   Setting<double> unit_mm;      ///< of linear words: 1 or 25.4
   Setting<double> feed;         ///< as written
   bool clears_feed = false;     ///< the control forgets the feed of earlier blocks
-  double rate_rounding = 0.0;   ///< half of the last decimal of `feed` or `move_time_s`, relative to it
+  double rate_rounding = 0.0;   ///< half of the last decimal of `feed` or `move_time_s`, divided by the value
   Setting<double> feed_time_s;  ///< time that a feed is per: 60 for mm/min
   Setting<bool> inverse_time;   ///< feeds are one over the time of their move, per minute
   Setting<double> move_time_s;  ///< time of this and the following moves, until a feed says otherwise

@@ -36,7 +36,8 @@ constexpr NcCode kMCodes[] = {{0, 28, [](NcBlock& b) { b.stop = NcStop::always; 
                               {9, 30, [](NcBlock& b) { b.mist_on = false; }},
                               {30, 28, [](NcBlock& b) { b.ends = true; }}};
 
-/// Whether `line` and `rest`, which has capitals, no blanks and marks for comments, are the same text up to a comment.
+/// Returns true if `line` begins with the text of `rest` up to the next comment. `rest` has been changed to capitals,
+/// has no blanks, and has marks in place of comments.
 bool is_same_text(std::string_view line, std::string_view rest) {
   if (line.empty() || line.front() == ' ' || line.front() == '\t') return false;
   for (;; line.remove_prefix(1), rest.remove_prefix(1)) {
@@ -47,8 +48,8 @@ bool is_same_text(std::string_view line, std::string_view rest) {
   }
 }
 
-/// Returns the word at the front: its letters, and the number, value or list in brackets behind them; a text that
-/// begins with anything else up to the next blank.
+/// Returns the first word of `text`: letters and the number, value or bracketed list that follows them. If `text` does
+/// not begin with a letter, returns the text up to the next blank.
 std::string_view whole_word(std::string_view text) {
   constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
   const std::size_t blank = std::min(text.find_first_of(" \t"), text.size());
@@ -293,7 +294,7 @@ void IsoBlock::set_dwell(double seconds) {
 
 void IsoBlock::finish() {
   if (wants_dwell_ != block_.dwell_s.has_value())
-    lines_.fail(wants_dwell_ ? "G4 needs a time" : "has a time of dwell without G4");
+    lines_.fail(wants_dwell_ ? "G4 needs a time" : "has a dwell time without G4");
   if (wants_dwell_ && (block_.axes != 0 || block_.move)) lines_.fail("G4 must stand alone in its line");
 }
 

@@ -25,15 +25,16 @@ class NcLines {
   /// The line just handed out is the last one, and nothing ends it: the text may have been cut in it.
   bool is_open_end() const { return rest_.empty() && !ended_by_newline_; }
   const std::string& file() const { return file_; }
-  /// \throw InputError with the file, the line's number, `text` and the whole line
+  /// Reports an error in the current line. \throw InputError with the file, the line number, `text` and the whole line
   [[noreturn]] void fail(std::string_view text) const;
-  /// Says of the word at the front of `rest` that it is not understood. \param rest of the line, perhaps in capitals,
-  /// without blanks and with marks for comments \throw InputError as fail()
+  /// Reports that the first word of `rest` is not understood.
+  /// \param rest rest of the current line, perhaps in capitals, without blanks and with marks in place of comments
+  /// \throw InputError as fail()
   [[noreturn]] void fail_word(std::string_view rest) const;
 
  private:
   std::string file_;
-  std::string_view line_;  ///< that was handed out last
+  std::string_view line_;  ///< line that next() returned last
   std::string_view rest_;
   std::int32_t number_ = 0;
   bool ended_by_newline_ = true;
@@ -45,11 +46,11 @@ struct NcNumber {
   bool has_point = false;
   std::uint8_t decimals = 0;
   bool is_whole() const;
-  /// Returns half of the last decimal relative to the number; 0 for the number 0.
+  /// Returns half of the last decimal divided by the number; 0 for the number 0.
   double relative_rounding() const;
 };
 
-/// Whether `text` begins with a number: digits behind an optional sign and point.
+/// Returns true if `text` begins with a number: an optional sign, an optional decimal point, then digits.
 bool begins_with_number(std::string_view text);
 
 /// Takes a number off the front of `text`. \throw InputError if there is none
@@ -59,10 +60,10 @@ NcNumber take_number(std::string_view& text, const NcLines& lines);
 struct NcWord {
   char letter = ' ';
   NcNumber number;
-  std::string_view rest = {};  ///< of the line, from the letter on
+  std::string_view rest = {};  ///< rest of the line, beginning with the letter
 };
 
-/// Checks the number of a word N. \throw InputError if it is negative or not whole
+/// Checks a line number (word N). \throw InputError if it is negative or not a whole number
 void check_line_number(const NcNumber& number, const NcLines& lines);
 
 /// Takes a word such as off the front, its letter as a capital. \throw InputError if there is none

@@ -8,12 +8,13 @@ namespace {
 
 using namespace nc_effects;
 
-/// Effects that LinuxCNC's interpreter has and other controls do not: each G94 sets the feed to 0, also where G94 holds
-/// already, and G80 leaves no motion mode (interp_convert.cc, convert_feed_mode and convert_motion).
+/// G94 on LinuxCNC. Unlike on other controls, each G94 sets the feed to 0, even if G94 is already active
+/// (interp_convert.cc, convert_feed_mode).
 constexpr auto kFeedPerMinuteFromZero = [](NcBlock& b) {
   kFeedPerMinute(b);
   b.clears_feed = true;
 };
+/// G80 on LinuxCNC: no motion mode is active afterwards (interp_convert.cc, convert_motion).
 constexpr auto kNoMotion = [](NcBlock& b) { b.cancels_move = true; };
 
 /// Modal groups of NISTIR 6556, table 4.
@@ -95,8 +96,8 @@ class Rs274Reader {
     skip_comment_marks(text);
     if (text.empty()) return;
     if (has_comment_first && (text.front() == 'N' || text.front() == 'O'))
-      lines_.fail("a comment must not stand before a word N or O");
-    if (text.front() == '/') lines_.fail("a line that a switch of the controller may leave out is not understood");
+      lines_.fail("a comment must not precede a word N or O");
+    if (text.front() == '/') lines_.fail("a line with block delete (/) is not understood");
     skip_line_number(text);
     if (text.empty()) return;
     if (text.front() == 'O')
@@ -105,7 +106,7 @@ class Rs274Reader {
       read_words(text);
   }
 
-  /// A program has two lines % around it, or none.
+  /// Reads a line %. A program has none, or begins and ends with one.
   void read_percent() {
     if (percent_signs_ == 0 && has_text_)
       lines_.fail("% must be the first line with text, or be left out; there is text above it");
@@ -184,7 +185,7 @@ class Rs274Reader {
     if (block.axes != 0 && (block.says & nc_said::kShiftOff) != 0) lines_.fail("G92.1 takes no axis words");
     const bool is_negative = words_.p.value_or(0.0) < 0.0 || words_.q.value_or(0.0) < 0.0;
     if (blends && is_negative) lines_.fail("P and Q of G64 must be >= 0");
-    // Without Q blocks are merged as far as P allows, so that both errors may add up.
+    // P limits the rounding of corners, and Q the merging of blocks; both deviations may add up. Q defaults to P.
     if (words_.p && blends) block.blend_mm = *words_.p + words_.q.value_or(*words_.p);
     iso.finish();
   }
@@ -198,7 +199,7 @@ class Rs274Reader {
   NcProgram program_;
   SubroutineTable table_;
   int percent_signs_ = 0;
-  bool has_text_ = false;  ///< of the lines so far
+  bool has_text_ = false;  ///< true if a line before the current one has text
   bool is_over_ = false;
   Words words_;  ///< of the line
 };

@@ -81,7 +81,7 @@ class SinumerikReader {
     skip_block_number(text);
     read_label(text);
     if (text.empty()) return;
-    if (text.front() == '/') lines_.fail("a line that a switch of the controller may leave out is not understood");
+    if (text.front() == '/') lines_.fail("a line with block delete (/) is not understood");
     if (text.starts_with("MSG(")) return check_message(text);
     if (starts_with_word(text, "REPEAT")) return read_repeat(trimmed(text.substr(6)));
     if (starts_with_word(text, "CALL")) return read_call(trimmed(text.substr(4)));

@@ -13,15 +13,15 @@ using geometry::Vec3;
 
 namespace {
 
-/// Returns the highest fin that rounding may leave along the three dihedral edges, at most the strip that is measured.
-/// \pre all poses are known
+/// Returns the maximum height of the fins that rounding of positions may leave along the three dihedral edges. The
+/// height is limited to max_fin_mm(). \pre the poses of `prediction` are set
 double highest_fin_mm(const Machine& machine, const Groove& cavity, const ToolWedge& wedge,
                       const Prediction& prediction) {
   double highest_mm = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
     const Vec3& edge = cavity.edges[next];
-    // Directions in the facets on either side of the edge, away from it.
+    // Unit vectors in the two facets at this edge, perpendicular to the edge and pointing away from it.
     const auto away = [&](const Vec3& other) -> Vec3 { return (other - other.dot(edge) * edge).normalized(); };
     const Vec3 along_first = away(cavity.edges[k]);
     const Vec3 along_second = away(cavity.edges[(k + 2) % 3]);

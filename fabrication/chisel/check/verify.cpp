@@ -61,7 +61,7 @@ void refuse_other_machine(const Job& job, const Machine& machine, const std::vec
   }
 }
 
-/// By how much a dihedral angle of a cube corner misses the design's, where that is the most.
+/// Returns the largest difference between a dihedral angle of the cut cube corner and the design, in arc minutes.
 double dihedral_error_arcmin(const Groove& cavity, const ElementFigures& figures) {
   std::vector<Vec3> normals;
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
@@ -155,7 +155,7 @@ class Judge {
   Verification& result_;
 };
 
-/// Volume of the material that an element of a zone takes; of hexagonal cube corners without what overlaps.
+/// Returns the volume of one element of a zone below the blank's face. Overlaps of hexagonal cavities are not included.
 double design_volume_mm3(const Job& job, std::size_t zone) {
   const geometry::Cell cell = geometry::element_cell(blank_element(job, zone), angle_errors_of(job, zone));
   double volume_mm3 = 0.0;
@@ -192,7 +192,7 @@ double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<Elemen
   return edge_mm * edge_mm * edge_mm * static_cast<double>(static_cast<std::int64_t>(corners.size()) - cut) / 6.0;
 }
 
-/// What triangular cavities of hexagonal elements take beyond these.
+/// Computes the material that the triangular cavities of hexagonal elements remove outside of their hexagons.
 void find_overcut(const Workpiece3d& workpiece, Verification& result) {
   if (workpiece.job->zones.empty()) {
     result.border_overcut_mm3 = border_overcut_mm3(workpiece, result.elements);
@@ -270,7 +270,7 @@ std::string_view Verification::verdict() const {
 
 namespace {
 
-/// Returns the increments to which the words of the programs are rounded.
+/// Returns the increments to which the control rounds the positions of the programs.
 Increments increments_in(const Machine& machine, const std::vector<NcProgram>& programs) {
   const auto is_fanuc = [](const NcProgram& program) { return program.dialect == NcDialect::fanuc; };
   return std::any_of(programs.begin(), programs.end(), is_fanuc) ? increments_of(machine.control.increment_system)

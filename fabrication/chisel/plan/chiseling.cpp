@@ -42,7 +42,7 @@ double chiseling_allowance_mm(const Job& job) {
 }
 
 double chiseling_across_mm(const Job& job, std::size_t zone, double stock_mm) {
-  // A layer's apex comes to the blank's face before its facets do.
+  // The thickness of all layers along the facet normals follows from the depth of the apex.
   const CubeCorner corner = blank_corner(job, zone);
   const double across_mm = (corner.depth_mm + stock_mm) / corner.layer_rise() - chiseling_allowance_mm(job);
   check_allowance(job, across_mm);
@@ -60,7 +60,7 @@ CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetCh
   pose.corner = blank_corner(job, facet.zone, facet.rotated);
   const Vec3& upright = pose.corner.normals[static_cast<std::size_t>(facet.facet - 1)];
   const Vec3 normal = stance.turn * upright;
-  // In the middle between its edges, but for errors and the lean of a base.
+  // Azimuth of the facet, without errors of angle and without the slope of a substrate.
   const double azimuth_deg = 120.0 * facet.facet - 150.0 + (facet.rotated ? 180.0 : 0.0) +
                              (job.zones.empty() ? 0.0 : job.zones[facet.zone].rotation_deg);
   pose.facet = facet;
@@ -141,16 +141,15 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
     const double covered_deg = first.deg() + second.deg();
     if (covered_deg < 90.0 + error_deg)
       throw InputError(where,
-                       fmt::format("{}the tool stands so in facets {} and {} that a fin of {} degrees would stay "
-                                   "between its cuts, 0 are allowed: tool.wedge_deg must be larger",
+                       fmt::format("{}the cuts along facets {} and {} would leave a fin of {} degrees between them, "
+                                   "0 are allowed: tool.wedge_deg must be larger",
                                    stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 + error_deg - covered_deg, 3)));
     const double step_mm = 1e-6 * static_cast<double>(poses[k].section.step_nm);
     const double fin_mm = rounded_fin_mm(first, second, Angle::from_deg(90.0 + error_deg), step_mm);
     if (fin_mm > max_fin_mm(step_mm))
       throw InputError(
-          where, fmt::format("{}the tool stands so in facets {} and {} that a fin of {} um may stay between its "
-                             "cuts as positions are rounded to {} um, at most {} um are allowed: tool.wedge_deg "
-                             "must be larger",
+          where, fmt::format("{}the cuts along facets {} and {} may leave a fin of {} um between them, because "
+                             "positions are rounded to {} um; at most {} um are allowed: tool.wedge_deg must be larger",
                              stance.who(), k + 1, (k + 1) % 3 + 1, fixed(1e3 * fin_mm, 3), shortest(1e3 * step_mm),
                              shortest(1e3 * max_fin_mm(step_mm))));
   }
@@ -175,7 +174,7 @@ std::string errors_text(const char* what, const std::array<double, 3>& arcmin) {
   return fmt::format(", {} {} {} {} arcmin", what, shortest(arcmin[0]), shortest(arcmin[1]), shortest(arcmin[2]));
 }
 
-/// What is cut of a zone, for people.
+/// Describes the elements of a zone for the header of a program.
 std::string elements_text(const Job& job, std::size_t zone, std::size_t elements) {
   const geometry::Element element = blank_element(job, zone);
   const geometry::AngleErrors errors = angle_errors_of(job, zone);

@@ -14,7 +14,7 @@ namespace retrace::fabrication {
 
 /// What layers of roughing leave on all facets for the finishing layers.
 double chiseling_allowance_mm(const Job& job);
-/// What all layers of roughing take along the normal of each facet of a zone's elements.
+/// Returns the total thickness of all roughing layers, in mm, along the normal of each facet of a zone's elements.
 /// \throw InputError if finishing leaves nothing
 double chiseling_across_mm(const Job& job, std::size_t zone, double stock_mm);
 /// Roughing layers: nested cube corners, each `roughing_depth_um` further along the normals of all three facets.
@@ -35,7 +35,7 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
                           double feed_mm_per_min);
 
-/// What is cut of a zone, for people. \pre a job of zones
+/// Describes a zone for the header of a program. \pre the job has zones
 std::string zone_description(const Job& job, std::size_t zone);
 
 /// Words in whole steps: each rounded by itself where `along` is 0, else that of the eight neighbours with the least

@@ -7,8 +7,8 @@
 
 namespace retrace::fabrication {
 
-/// Time of a linear move of the machine by (x, y, z) mm until all axes stand still: exact stop after every block, as
-/// the programs ask for. \param feed_mm_per_min along the path; nothing: a rapid move
+/// Returns the time, in s, of a linear move by (x, y, z) mm that ends with an exact stop, as in all planned programs.
+/// \param feed_mm_per_min feed along the path; empty: a rapid move
 double linear_move_s(const Machine& machine, const geometry::Vec3& by_mm, std::optional<double> feed_mm_per_min);
 
 /// Time of a rotary move by (a, c) degrees, both axes together, until they stand still.

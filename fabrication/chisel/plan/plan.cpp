@@ -61,8 +61,9 @@ bool is_named(const Stage& stage, std::string_view name) {
                   fmt::join(names, ", "), option == "--phase" ? " (with + for all after it too)" : "", plain(name)));
 }
 
-/// Leaves the stages that were requested in `plan`.
-/// \return the stages of the job before them \throw InputError for a phase that the job does not have
+/// Removes all stages from `plan` except the requested ones.
+/// \return the stages of the job before the requested ones
+/// \throw InputError for a phase that the job does not have
 std::vector<Stage> choose_stages(Plan& plan, const PlanOptions& options) {
   if (!options.before.empty()) {
     const auto first = std::find_if(plan.stages.begin(), plan.stages.end(),
@@ -221,7 +222,7 @@ class ProgramMaker {
     just_turned_ = true;
   }
 
-  /// Returns by how much an axis turns when its word changes by `units`.
+  /// Returns the rotation of a rotary axis when its word changes by `units`. The axis may take the shortest path.
   RotaryUnits rotation(char axis, RotaryUnits units) const {
     if (machine_.shortest_axes.find(axis) == std::string::npos) return units;
     return rotary_units(std::remainder(degrees(units), 360.0));
@@ -282,7 +283,7 @@ class ProgramMaker {
     go_to(at_, move.to);
   }
 
-  /// Counts visits that the job makes and this plan does not: the direction of passes alternates from visit to visit.
+  /// Sets the direction of the next pass as if `visits` visits had been made. The direction alternates between visits.
   void skip(std::ptrdiff_t visits) { forth_ = forth_ != (visits % 2 != 0); }
 
   /// The passes of an element side by side, to and fro.
@@ -423,7 +424,8 @@ class ProgramMaker {
     return used_.size() >= kMostSubroutines && !used_.contains(stage.subroutine);
   }
 
-  /// The subroutines that the program calls alone: there are some for each tilt of elements on a base, and each zone.
+  /// Adds only those subroutines that the program calls. Each tilt of elements on a substrate and each zone has its
+  /// own.
   void add_used_subroutines() {
     std::vector<Subroutine> left;
     std::map<std::uint32_t, std::uint32_t> places;
@@ -525,7 +527,7 @@ class ProgramMaker {
   const PlanOptions& options_;
   const ProcessFacts& facts_;
   const std::vector<RoutineStart>& starts_;
-  const std::vector<Stage>& stages_before_;  ///< of the job before those of the plan
+  const std::vector<Stage>& stages_before_;  ///< stages of the job before the stages of the plan
   Plan& plan_;
   std::vector<TimeShares> routine_times_;
   Program program_;
@@ -539,7 +541,7 @@ class ProgramMaker {
   bool has_visits_ = false;   ///< of the program
   bool has_roughed_ = false;  ///< the visit before, since the program began or stopped
   int stops_ = 0;             ///< of the program
-  bool has_kinds_ = false;    ///< elements stand on a base or in zones, in poses and by subroutines of their own
+  bool has_kinds_ = false;    ///< elements on a substrate or in zones: each kind has its own poses and subroutines
   ClearWay way_;
   EdgeAccount account_;
   std::set<std::uint32_t> used_;  ///< subroutines that the program calls

@@ -33,10 +33,11 @@ Vec3 in_words(const Machine& machine, const Vec3& normal) {
           normal.dot(machine.z.direction.value)};
 }
 
-/// Returns the widest strip, in mm, that the tilted edge of a plunge may leave at the root. A plunge frees its chip
-/// only if it passes the last surface of the other facet, so the strip must be narrower than the depth of cut, less the
-/// tolerance of verification and the rounding of two positions. On a substrate it is at most a finishing cut besides.
-/// Ploughs free chips of any facet: infinity.
+/// Returns the maximum width, in mm, of the strip that a tilted edge may leave at the root after a plunge. The plunge
+/// separates its chip only if it passes the surface that the previous cut left on the other facet. The strip must
+/// therefore be narrower than the depth of cut, less the tolerance of verification and the rounding of two positions.
+/// On a substrate it must also be at most as wide as a finishing cut is deep. There is no limit for `unidirectional`
+/// jobs on flat blanks, because a ploughing cut always separates its chip.
 double max_strip_mm(const Job& job, const Machine& machine, bool is_on_substrate) {
   constexpr double kToleranceNm = 10.0;
   const Process& process = job.process;
@@ -50,21 +51,21 @@ double max_strip_mm(const Job& job, const Machine& machine, bool is_on_substrate
   return strip_mm;
 }
 
-/// Refuses a pose in which the root stands oblique to the tool's edge by too much. A and C lay a facet's normal where
-/// the tool plunges it, and no axis is left to lay its root along the edge.
+/// Refuses a pose with too large an angle between the root and the tool's edge. A and C align the normal of the facet
+/// with the tool. No axis remains that could align the root with the edge.
 void check_root(const Job& job, const Machine& machine, const CuttingPose& pose, const InputLocation& where,
                 const Stance& stance) {
   const double strip_mm = max_strip_mm(job, machine, stance.element >= 0);
   const double tangent = std::abs(std::tan(pose.root_tilt.rad()));
   if (job.tool.width_mm * tangent <= strip_mm) return;
   throw InputError(
-      where, fmt::format(
-                 "{}its root would stand at {} degrees to the tool's edge, which A and C cannot turn in the facet; at "
-                 "most {} degrees are allowed, at which the edge leaves a strip of {} um, less than a depth of cut (or "
-                 "tool.width_mm at most {})",
-                 stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4),
-                 fixed(Angle::from_rad(std::atan(strip_mm / job.tool.width_mm)).deg(), 4), fixed(1e3 * strip_mm, 3),
-                 fixed(strip_mm / tangent, 4)));
+      where,
+      fmt::format("{}the root is at {} degrees to the tool's edge, and A and C cannot correct this angle; at most {} "
+                  "degrees are allowed, so that the strip that the edge leaves is at most {} um wide, less than the "
+                  "depth of cut (or tool.width_mm at most {})",
+                  stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4),
+                  fixed(Angle::from_rad(std::atan(strip_mm / job.tool.width_mm)).deg(), 4), fixed(1e3 * strip_mm, 3),
+                  fixed(strip_mm / tangent, 4)));
 }
 
 }  // namespace
@@ -142,8 +143,8 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   Section& section = pose.section;
   const Vec3 wall = in_words(machine, motion.direction(normal));
   section.wall_y = 1.0 / wall.y();
-  // Y and Z move the tool along the floor's design, which the root's tilt turns against the edge: its deeper end
-  // touches the floor.
+  // Y and Z move the tool parallel to the design's floor. The tilt of the root rotates the floor relative to the edge,
+  // so only the deeper end of the edge touches the floor.
   const FacetChoice other{facet.rotated, 3 - facet.facet};
   const Vec3 design_floor = motion.direction(pose.turn * facet_normal(element, other));
   const Vec3 floor = in_words(machine, design_floor);

@@ -21,7 +21,7 @@ namespace retrace::fabrication {
 struct FacetChoice {
   bool rotated = false;
   int facet = 1;
-  std::size_t zone = 0;  ///< of the job
+  std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 };
 
 /// What the tool sees of an element in a pose: the section across the root line at its middle, in words of the linear
@@ -55,7 +55,7 @@ struct CuttingPose {
   FacetChoice facet;
   std::int32_t orientation = 0;                        ///< of the elements that are cut in it
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< theirs
-  CubeCorner corner;                                   ///< that is cut, unturned; of micro chiseling
+  CubeCorner corner;                                   ///< cube corner that is cut, at C = 0; micro chiseling only
   RotaryUnits a = 0;                                   ///< as written, after rounding
   RotaryUnits c = 0;
   RotaryPose rounded;   ///< the same in degrees: what positions are computed from

@@ -128,8 +128,9 @@ class StageMaker {
     }
   }
 
-  /// C turns one way from pose to pose, over all but the widest gap between two, so that the facets of every element
-  /// follow each other as those of a single zone do: chips at dihedral edges would be thicker else.
+  /// Adds the poses in the order of their angle C, starting after the widest gap between two poses. C therefore always
+  /// rotates in one direction, and the facets of each element are cut in the same cyclic order in every layer. Any
+  /// other order would make chips at dihedral edges thicker.
   void add_poses_by_turn() {
     std::vector<CuttingPose> poses;
     for (const auto& [group, stance] : groups_)
@@ -150,7 +151,7 @@ class StageMaker {
         first = k;
       }
     std::rotate(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(first), poses.end());
-    // As near to 0 as all of them have room between the limits of C.
+    // Choose the number of full turns for which C stays as near to 0 as its limits allow.
     const double begin_deg = poses.front().rounded.c_deg;
     const double span_deg = -sense * (360.0 - widest_deg);
     double farthest_deg = std::numeric_limits<double>::infinity();
@@ -168,7 +169,7 @@ class StageMaker {
       plan_.poses.push_back(next_pose({pose.facet.rotated, pose.orientation}, pose.facet.facet));
   }
 
-  /// Zones, of which one may need more cuts than another, all end together.
+  /// Adds the layers of all poses. A zone that needs fewer layers starts later, so that all zones end together.
   void add_layers(std::string_view what, int cuts, double feed_mm_per_min) {
     for (int cut = 1; cut <= cuts; ++cut)
       for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {

@@ -174,21 +174,25 @@ constexpr Row kElementRows[] = {
     {"aperture_mm", kSize, kRequired, "Diameter of the circle round the aperture, of the part.",
      access_by<get_aperture, set_aperture>, kOfCubes},
     {"dihedral_error_arcmin", kThreeErrors, kNone,
-     "By how much the angles between facets exceed 90 degrees, on purpose: three, as in a [design](design_file.md).",
+     "Intended errors of the three dihedral angles; positive if larger than 90 degrees, as in a "
+     "[design](design_file.md).",
      access_by<get_errors<&AngleErrors::dihedral_error_arcmin>, set_errors<&AngleErrors::dihedral_error_arcmin>>,
      kOfCubes},
-    {"facet_tilt_arcmin", kThreeErrors, kNone, "By how much each facet is turned open besides, likewise.",
+    {"facet_tilt_arcmin", kThreeErrors, kNone,
+     "Additional intended tilts of the three facets, as in a [design](design_file.md).",
      access_by<get_errors<&AngleErrors::facet_tilt_arcmin>, set_errors<&AngleErrors::facet_tilt_arcmin>>, kOfCubes}};
 constexpr Row kZoneRows[] = {
-    {"aperture_mm", kSize, kNone, "Where it is not that of `[element]`.", access_given<&CutZone::aperture_mm>},
-    {"dihedral_error_arcmin", kThreeErrors, kNone, "Where they are not those of `[element]`.",
+    {"aperture_mm", kSize, kNone, "Aperture of the elements of this zone. Without it: that of `[element]`.",
+     access_given<&CutZone::aperture_mm>},
+    {"dihedral_error_arcmin", kThreeErrors, kNone,
+     "Errors of the dihedral angles in this zone. Without them: those of `[element]`.",
      access_by<get_own_errors<&CutZone::dihedral_error_arcmin>, set_own_errors<&CutZone::dihedral_error_arcmin>>},
-    {"facet_tilt_arcmin", kThreeErrors, kNone, "Likewise.",
+    {"facet_tilt_arcmin", kThreeErrors, kNone, "Tilts of the facets in this zone. Without them: those of `[element]`.",
      access_by<get_own_errors<&CutZone::facet_tilt_arcmin>, set_own_errors<&CutZone::facet_tilt_arcmin>>},
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
-     "Of each element about its axis, counter-clockwise seen from the light.", access<&CutZone::rotation_deg>},
+     "Rotation of each element about its axis, counter-clockwise seen from the light.", access<&CutZone::rotation_deg>},
     {"apexes_mm", NumberRows{2, {.low = 0.0, .high = 1e4}, 1, kMostZoneElements, "places"}, kRequired,
-     "`[[x, y], ...]`: where its elements have their apexes, in the plan of the part from its lower left corner.",
+     "`[[x, y], ...]`: positions of the apexes of its elements in plan, from the lower left corner of the part.",
      access_by<get_apexes, set_apexes>}};
 constexpr Row kArrayRows[] = {
     {"arrangement", Word{kArrangements}, kRequired, "Of prisms, as in a [design](design_file.md).",
@@ -278,8 +282,9 @@ const Table kJobTables[] = {
      .rows = kArrayRows,
      .child = child<&Job::array>},
     {.name = "zone",
-     .meaning = "What is cut in place of the array, of cube corners: elements of one kind at places of their own. Of "
-                "`[array]` the lengths alone count then.",
+     .meaning =
+         "Cube corners of one kind at the given positions, cut instead of the array. With zones, only the lengths of "
+         "`[array]` count.",
      .rows = kZoneRows,
      .child = children<&Job::zones>,
      .presence = Presence::list,
@@ -487,8 +492,8 @@ constexpr Rule kJobRules[] = {
     Check{kArrayOnSubstrateKeys, "On a `[base]` stand moulds of arrays without margins and pattern, not `single`.",
           check_by<check_array_on_substrate>},
     Check{kZoneKeys,
-          "Zones have no margins, pattern and base. All their elements, at most 2,000,000, lie within the array's "
-          "lengths and beside each other.",
+          "Zones have no margins, no pattern and no substrate. Their elements, at most 2,000,000 in all, lie within "
+          "the array's lengths and do not overlap.",
           check_by<check_zones>},
     Check{kArrayKeys, "There is room for one element between the margins, and for at most 2,000,000.",
           check_by<check_room>},

@@ -302,12 +302,11 @@ constexpr ValueTable kMountTurn = {kMountTurnRows, kPointRules};
 constexpr Table kMountTables[] = {
     value("offset_mm", kMountOffset, child<&ToolMount::offset_mm>,
           "The tool reference point from where programs would take it, along X, Y and Z; of a head at B = 0.", "0"),
-    value(
-        "turn_deg", kMountTurn, child<&ToolMount::turn_deg>,
-        "How the tool is turned as it is mounted: a vector along the axis of the turn, by the right hand. The tool is "
-        "touched off after that, so a turn leaves its reference point where it is. About X: other clearance; about Y: "
-        "the edge is not level; about Z: the edge is not along X.",
-        "0")};
+    value("turn_deg", kMountTurn, child<&ToolMount::turn_deg>,
+          "Orientation of the mounted tool: a rotation vector by the right-hand rule. The tool is touched off after "
+          "mounting, so the rotation does not move its reference point. A rotation about X changes the clearance, one "
+          "about Y tilts the edge, and one about Z turns the edge away from X.",
+          "0")};
 
 bool is_mounted_askew(const Machine& m) {
   return m.mount.offset_mm.value != Vec3::Zero() || m.mount.turn_deg.value != Vec3::Zero();
@@ -356,8 +355,8 @@ constexpr Row kControlRows[] = {
      "Of a Power PMAC or an Aerotech control: the line at which a program waits until the operator lets it go on.",
      access<&Control::stop>},
     {"has_unchecked_lines", Flag{}, false,
-     "Of a Power PMAC or an Aerotech control: whether the lines of mist and stops may be any text, also one that moves "
-     "axes or waits. The headers of programs name such lines.",
+     "Of a Power PMAC or an Aerotech control: whether the lines for mist and stops may be any text, even text that "
+     "moves axes or waits. The header of each program names such lines.",
      access<&Control::has_unchecked_lines>},
     {"rapids_are_straight", Flag{}, false,
      "Whether the axes of a rapid move arrive together (Fanuc 1401#1, 840D `RTLIOF`), on a straight line; otherwise "
@@ -370,14 +369,18 @@ constexpr std::string_view kOptionalStopKeys[] = {"optional_stop"};
 constexpr std::string_view kStopKeys[] = {"stop"};
 constexpr std::string_view kModuloKeys[] = {"modulo_axes"};
 constexpr Rule kControlRules[] = {
-    Check{kMistOnKeys,
-          "`mist_on` is a line of 1 to 200 printable ASCII characters. It sets an output or a variable, or is an M "
-          "code of "
-          "the machine's builder, as `docs/nc_dialects.md` lists, unless `has_unchecked_lines` is true.",
-          check_by<unfit_text<&Control::mist_on>>},
-    Check{kMistOffKeys, "So is `mist_off`, another one.", check_by<unfit_text<&Control::mist_off>>},
-    Check{kOptionalStopKeys, "So is `optional_stop`, another one.", check_by<unfit_text<&Control::optional_stop>>},
-    Check{kStopKeys, "So is `stop`, another one.", check_by<unfit_text<&Control::stop>>},
+    Check{
+        kMistOnKeys,
+        "`mist_on` is a line of 1 to 200 printable ASCII characters. Unless `has_unchecked_lines` is true, it sets an "
+        "output or a variable, or is an M code of the machine's builder (see `docs/nc_dialects.md`).",
+        check_by<unfit_text<&Control::mist_on>>},
+    Check{kMistOffKeys, "`mist_off` follows the rule for `mist_on`, and differs from the other lines.",
+          check_by<unfit_text<&Control::mist_off>>},
+    Check{kOptionalStopKeys,
+          "`optional_stop` follows the rule for `mist_on` or is `M0` or `M1`, and differs from the other lines.",
+          check_by<unfit_text<&Control::optional_stop>>},
+    Check{kStopKeys, "`stop` follows the rule for `mist_on` or is `M0` or `M1`, and differs from the other lines.",
+          check_by<unfit_text<&Control::stop>>},
     Check{kModuloKeys, "`modulo_axes` holds letters of rotary axes.", check_by<unknown_modulo_axes>}};
 
 bool has_safe_z(const Machine& m) {

@@ -72,8 +72,8 @@ constexpr Row kLatheRows[] = {
     {"spindle_start", Text{}, kNone, kSpindleText, kWithStop},
     {"spindle_stop", Text{}, kNone, kSpindleText, kWithStart},
     {"has_unchecked_lines", Flag{}, false,
-     "Whether `spindle_start` and `spindle_stop` may be any text, also one that moves axes or waits. The headers of "
-     "programs name such lines."}};
+     "Whether `spindle_start` and `spindle_stop` may be any text, even text that moves axes or waits. The header of "
+     "each program names such lines."}};
 constexpr Table kTables[] = {
     {.name = "element", .meaning = "The lens.", .rows = kElementRows},
     {.name = "tolerance", .meaning = "How near to its form it must be.", .rows = kToleranceRows},
@@ -201,8 +201,8 @@ constexpr Words kZoneKeys = {"element.focal_length_mm", "element.width_mm", "lat
 constexpr Rule kRules[] = {
     Check{kClearKeys, "The clearance is at least the least move of Z.", check_by<check_clearance>},
     Check{kSpindleKeys,
-          "The lines differ. Each sets an output or a variable, or is an M code of the machine's builder, as "
-          "`docs/nc_dialects.md` lists, unless `has_unchecked_lines` is true.",
+          "The two lines differ. Unless `has_unchecked_lines` is true, each sets an output or a variable, or is an M "
+          "code of the machine's builder (see `docs/nc_dialects.md`).",
           check_by<check_spindle_texts>},
     Check{kSizeKeys,
           "The tolerance is at most half the depth of a zone and, of a mill, 2 to 200 steps of its grid; the width at "

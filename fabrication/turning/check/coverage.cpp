@@ -159,8 +159,8 @@ class CoverageCheck {
     return std::min_element(line.begin(), line.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); })->x();
   }
 
-  /// Checks the distance between a border of the part and the line next to it. A cusp ends half a feed from a line, so
-  /// that a wider strip at the border would be higher than the cusps.
+  /// Checks that the outermost line is at most half a feed inside the border of the part. The cusps between lines are
+  /// highest at half a feed from a line, so a wider strip at the border would be higher than the cusps.
   void check_edge(const CutPass& pass, std::int32_t line, double inside_mm, const char* what) {
     const double limit_mm = 0.5 * path_.feed_mm;
     if (inside_mm <= limit_mm + kPlacesMm) return;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint8_t kAxesXyzc = 0b10111;
 constexpr std::uint8_t kXyc = 0b10011;
-/// Words of a length have six decimals.
+/// Last decimal of the words of X, Y and Z, in mm.
 constexpr double kWordMm = 1e-6;
 
 ControlRule rule_of_c_axis() {

@@ -121,7 +121,7 @@ std::vector<std::pair<Vec2, Vec2>> profile_places(const InspectedRegion& region)
         const double r = centre + share * (region.radius_mm - centre - 2.0 * rim);
         const double angle = 2.0 * std::numbers::pi * (k + 0.31 * i) / kAround;
         const Vec2 outward(std::cos(angle), std::sin(angle));
-        // Parts of few turns have room for few profiles; within a turn from the axis cuts turn on the spot.
+        // No profiles are taken within one feed of the axis, where the part rotates under a nearly fixed edge.
         if (r > region.feed_mm) places.emplace_back(r * outward, outward);
       } else {
         const double x = (2.0 * share - 1.0) * (region.half_height_mm - 2.0 * rim);

@@ -19,9 +19,9 @@ using geometry::FreeformSurface;
 using geometry::Vec2;
 
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
-/// Findings of one kind that are told each by itself; farther ones are counted with the last.
+/// Maximum number of findings of one kind that are listed separately. Further ones are counted with the last one.
 constexpr std::size_t kMostStretches = 200;
-/// Distance beyond the border that still counts as inside the region: words are rounded to whole nanometres.
+/// Distance beyond the border that still counts as inside the region, because words are rounded to whole nanometres.
 constexpr double kBorderMm = 1e-6;
 
 struct Pose {
@@ -100,8 +100,8 @@ class EdgeProbe {
     stand.angle_within_rad = angle;
   }
 
-  /// Returns the angle at the middle of the part of the arc that is inside the region. Takes the arc as straight in
-  /// plan, which it is without rake.
+  /// Returns the angle at the center of that portion of the arc that is inside the region. The arc is assumed to be
+  /// straight in plan, which is exact without rake.
   double inner_angle(const Pose& at) const {
     const Vec2 tip = place(at, 0.0);
     const Vec2 across(std::cos(at.c_rad), -std::sin(at.c_rad));
@@ -124,8 +124,8 @@ class EdgeProbe {
     return std::asin(std::clamp(0.5 * (low + high), -reach, reach) / radius_mm_);
   }
 
-  /// Adds both places in which the arc crosses the border of the region. If the arc is lowest over the surface beyond
-  /// the region, it is lowest within the region at one of them.
+  /// Takes into account both points at which the arc crosses the border of the region. If the arc is closest to the
+  /// surface outside of the region, then its closest point inside the region is one of these two points.
   void look_at_border(const Pose& at, Stand& stand) const {
     const double inner = inner_angle(at);
     if (!is_within(at, inner)) return;
@@ -219,13 +219,13 @@ class EdgeProbe {
 struct Standing {
   double low_nm = 0.0;
   double high_nm = 0.0;
-  double beyond_nm = 0.0;  ///< distance by which it stays off where it is to touch beyond the region
+  double beyond_nm = 0.0;  ///< distance between edge and surface at a point of contact outside of the region
   double touches_mm = kNowhere;
-  double angle_rad = 0.0;  ///< on the arc, of the place that is to touch at the end of the block
-  bool is_within = false;  ///< true if that place is inside the region
+  double angle_rad = 0.0;  ///< angle, on the arc, of the point of contact at the end of the block
+  bool is_within = false;  ///< true if this point of contact is inside the region
 };
 
-/// Joins findings of blocks that follow each other into one, with the worst value.
+/// Joins the findings of consecutive blocks into one finding with the worst value.
 class Stretch {
  public:
   Stretch(const char* kind, const TurningCuts& cuts, FindingList& findings)
@@ -233,7 +233,7 @@ class Stretch {
     now_.count = 0;
   }
 
-  /// \param message makes the text of the finding
+  /// Adds the finding of one block. \param message function that returns the text of the finding
   template <typename Message>
   void add(std::size_t program, std::int32_t line, double nm, double limit_nm, const Message& message) {
     if (now_.count == 0 || nm > now_.value)
@@ -241,11 +241,11 @@ class Stretch {
     ++now_.count;
   }
 
-  /// Ends the stretch. Blocks after the 200th stretch are counted with the last one.
+  /// Ends the current finding. From the last allowed finding on, all further blocks are counted with it.
   void end() {
     if (told_ < kMostStretches) close();
   }
-  /// Ends the stretch, and the last one as well.
+  /// Ends the current finding, even if it is the last allowed one.
   void close() {
     if (now_.count > 0) {
       findings_.add(now_);
@@ -305,7 +305,8 @@ class TouchCheck {
   TouchFigures take_figures() { return std::move(figures_); }
 
  private:
-  /// Returns the pose within the block that ends at point `i`. \param share 0 at its beginning, 1 at its end
+  /// Returns the pose within the block that ends at point `i`.
+  /// \param share fraction of the block: 0 at its beginning, 1 at its end
   static Pose pose_at(const CutPass& pass, std::size_t i, double share) {
     const auto at = [i, share](const std::vector<double>& v) {
       return share == 1.0 ? v[i] : v[i - 1] + share * (v[i] - v[i - 1]);
@@ -331,7 +332,7 @@ class TouchCheck {
       standing.beyond_nm = std::max(standing.beyond_nm, probe_.square(at, s.angle_rad, 1e6 * (at.z_mm - s.touches_mm)));
   }
 
-  /// Judges the pose in which the place that is to touch crosses the border of the region.
+  /// Evaluates the pose in which the point of contact crosses the border of the region.
   void stand_at_border(const CutPass& pass, std::size_t i, Standing& standing) const {
     double inside = standing.is_within ? 1.0 : 0.0;
     double outside = 1.0 - inside;
@@ -424,7 +425,7 @@ void check_border(const TurnedPart& part, const TurningCuts& cuts, const Envelop
     excess.add(place.program, place.line, left_nm, limit_nm, [&] {
       return fmt::format(
           "the edge stays off the surface: {} nm of material are left at the border of the part, at most {} nm are "
-          "allowed (the tolerance of {} nm above what a cut that touches would leave)",
+          "allowed (the tolerance of {} nm plus the material that a cut with contact would leave)",
           fixed_apart(left_nm, limit_nm, 2), fixed(limit_nm, 2), shortest(part.form_tolerance_nm));
     });
   }

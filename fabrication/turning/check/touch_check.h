@@ -10,11 +10,12 @@
 
 namespace retrace::fabrication::turning {
 
-/// A place on the border of the region, under a cut that stays off the surface and is to touch it beyond the region.
+/// A point on the border of the region, below a block with its intended point of contact outside of the region. The
+/// edge does not reach the surface in this block.
 struct BorderPlace {
   geometry::Vec2 at_mm = geometry::Vec2::Zero();
-  double edge_nm = 0.0;      ///< height of the edge over the surface there, square to it
-  double touching_nm = 0.0;  ///< likewise, if the edge touched where it is to touch
+  double edge_nm = 0.0;      ///< height of the edge above the surface at this point, normal to the surface
+  double touching_nm = 0.0;  ///< the same height if the edge reached the surface at its intended point of contact
   std::size_t program = 0;
   std::int32_t line = 0;
 };
@@ -24,21 +25,22 @@ struct TouchFigures {
   double high_nm = 0.0;  ///< farthest that it stays off where it is to touch
   /// Highest Z word at which a block would touch the surface; nothing without blocks.
   std::optional<double> highest_mm;
-  std::vector<BorderPlace> border;  ///< to be judged by `check_border`
+  std::vector<BorderPlace> border;  ///< input for check_border()
 };
 
 /// The region of a part that is judged.
 InspectedRegion region_of(const PathOptions& path);
 
-/// Stands the edge in every block, at its end, half-way and where the place that is to touch crosses the border of the
-/// region. Looks for the place along its sharp arc that is lowest over the surface. A block that goes below the surface
-/// within the region by more than the part's tolerance, or stays off it there, is a finding `gouge` or `excess`. Blocks
-/// that follow each other make one finding. Moves down by Z alone are judged for gouges.
+/// Computes the distance between the cutting edge and the surface for every block: at its end, half-way, and where the
+/// point of contact crosses the border of the region. The point of contact is the point of the edge that is closest to
+/// the surface. If the edge is below the surface inside the region by more than the part's tolerance, the finding is
+/// `gouge`. If it is above the surface by more than the tolerance, the finding is `excess`. Consecutive blocks give one
+/// finding. Moves of only Z downwards are checked only for `gouge`.
 TouchFigures check_touch(const TurnedPart& part, const TurningCuts& cuts, FindingList& findings);
 
-/// Judges the border of the region under blocks that are to touch beyond it and do not. The material that all cuts
-/// together leave there may exceed what the block would leave if it touched by the tolerance; more is a finding
-/// `excess`.
+/// Checks the material at the border of the region below blocks whose intended point of contact is outside of the
+/// region and that do not reach the surface. The height of the material that all cuts leave is compared with the height
+/// that the block would leave with contact. If the difference is larger than the tolerance, the finding is `excess`.
 void check_border(const TurnedPart& part, const TurningCuts& cuts, const Envelope& envelope, TouchFigures& figures,
                   FindingList& findings);
 

@@ -77,7 +77,7 @@ Pass spiral(const FreeformSurface& surface, const TurningTool& tool, const PathO
 
 std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o,
                          const InputLocation& where) {
-  // The last line lies within half a feed of the border, so that the strip beside it is no higher than the cusps.
+  // The last line is at most half a feed inside the border, so that the remaining strip is not higher than the cusps.
   const double lines = std::ceil(o.height_mm / o.feed_mm - 0.5 - 1e-9) + 1.0;
   const double points = std::max(1.0, std::ceil(o.width_mm / o.arc_mm - 1e-9));
   if (!(lines * points < static_cast<double>(kMostPathPoints)))

@@ -26,8 +26,8 @@ constexpr double kBesideLeadingRad = 1e-5;
 /// Places of a facet: along its two dihedral edges, from the apex.
 class Places {
  public:
-  /// \param edges_mm lengths of the two
-  /// \param turn of the facet in the tool's view
+  /// \param edges_mm lengths of the two dihedral edges
+  /// \param turn rotation of the facet in its plane, relative to the tool
   /// \param step_mm least increment of the control
   Places(const Vec2& edges_mm, bool is_hexagonal, double nose_angle_deg, Angle turn, double step_mm)
       : edges_mm_(edges_mm),
@@ -66,7 +66,7 @@ class Places {
     const Vec2 shares = unit.cwiseQuotient(edges_mm_);
     return is_hexagonal_ ? 0.5 / shares.maxCoeff() : 1.0 / shares.sum();
   }
-  /// Along one of the edges, at a distance from it.
+  /// Returns the length of the facet along one of its dihedral edges, at the distance `off_mm` from this edge.
   double along(Eigen::Index edge, double off_mm) const {
     return is_hexagonal_ ? 0.5 * edges_mm_[edge] : edges_mm_[edge] - off_mm;
   }
@@ -87,10 +87,10 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
   return surface_along(spans, exit);
 }
 
-/// Returns where a line normal to a facet leaves what says something of that facet: at the blank's face, close to a
-/// dihedral edge where the edge's residue ends, and before another facet that includes less than 90 degrees with it. A
-/// line close to both other facets runs along their dihedral edge and ends before the fin that rounding may leave
-/// there.
+/// Returns the height, along the normal of a facet, up to which material counts as material on this facet. The height
+/// ends at the blank's face, and before another facet that includes less than 90 degrees with this one. For a point
+/// close to a dihedral edge it ends at the upper limit of the edge strip. A normal that starts close to both other
+/// facets runs along their dihedral edge; it ends before the fin that rounding may leave there.
 double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge, double fin_mm) {
   constexpr double kParallel = 1e-9;
   const Vec3& normal = cavity.facets[facet].normal;
