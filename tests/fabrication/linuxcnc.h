@@ -25,7 +25,7 @@ struct CanonicalMove {
   double dwell_s = 0.0;  ///< after it
 };
 
-/// What the interpreter printed, and its exit status: 0 for a program that it takes.
+/// Output of the interpreter and its exit status, which is 0 for an accepted program.
 struct Interpretation {
   int status = 0;
   std::string out;

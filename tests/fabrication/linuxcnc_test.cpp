@@ -95,7 +95,7 @@ TEST(LinuxCnc, MovesAsPlannedForElementsOnBases) {
                  "hexagons");
 }
 
-/// Why the reader or the rules of every process refuse a program; empty: they do not.
+/// Returns the reason why retrace refuses a program, or an empty text.
 std::string our_refusal(const std::string& text) {
   std::string fault;
   const std::string refused = refusal_of([&] {
@@ -112,23 +112,22 @@ TEST(LinuxCnc, WhatItRefusesIsRefused) {
   for (int k = 1; k <= 10; ++k)
     nested += fmt::format("o{0} sub\n{1}o{0} endsub\n", k, k > 1 ? fmt::format("o{} call\n", k - 1) : "");
   const std::string begin = "%\nG21 G90 G94\n";
-  const std::vector<std::string> refused = {
-      begin + "F50\nG94\nG1 X1\nM2\n%\n",       // G94 clears F
-      begin + "G1 F50 X1\nG80\nX2\nM2\n%\n",    // axis words after G80
-      begin + "G80 X2\nM2\n%\n",                //
-      "G0 X1\n" + begin + "G0 X1\nM2\n%\n",     // text above the first %
-      "(text)\n" + begin + "G0 X1\nM2\n%\n",    //
-      "%(text)\nG0 X1\nM2\n%\n",                // a % that is not alone
-      begin + "M7 M8\nM2\n%\n",                 // two codes of one group
-      begin + "M8 M9\nM2\n%\n",                 //
-      begin + "N-5 G0 X1\nM2\n%\n",             // negative line number
-      begin + "G1\nM2\n%\n",                    // G1 without a feed
-      begin + "F5\nG93 G1\nM2\n%\n",            //
-      begin + "G93 G1 F5 X1\nG94 X2\nM2\n%\n",  // the feed of G93 is none under G94
-      begin + "F5 G1 X1\nG93\nX2\nM2\n%\n",     //
-      begin + "G92.1 X1\nM2\n%\n",              //
-      begin + "(text) N5 G0 X1\nM2\n%\n",       // a comment before N
-      nested + "o10 call\nM2\n%\n"};
+  const std::vector<std::string> refused = {begin + "F50\nG94\nG1 X1\nM2\n%\n",       // G94 clears the feed
+                                            begin + "G1 F50 X1\nG80\nX2\nM2\n%\n",    // axis words after G80
+                                            begin + "G80 X2\nM2\n%\n",                //
+                                            "G0 X1\n" + begin + "G0 X1\nM2\n%\n",     // text above the first %
+                                            "(text)\n" + begin + "G0 X1\nM2\n%\n",    //
+                                            "%(text)\nG0 X1\nM2\n%\n",                // text after % in its line
+                                            begin + "M7 M8\nM2\n%\n",                 // two codes of one group
+                                            begin + "M8 M9\nM2\n%\n",                 //
+                                            begin + "N-5 G0 X1\nM2\n%\n",             // negative line number
+                                            begin + "G1\nM2\n%\n",                    // G1 without a feed
+                                            begin + "F5\nG93 G1\nM2\n%\n",            //
+                                            begin + "G93 G1 F5 X1\nG94 X2\nM2\n%\n",  // G94 clears the F word of G93
+                                            begin + "F5 G1 X1\nG93\nX2\nM2\n%\n",     //
+                                            begin + "G92.1 X1\nM2\n%\n",              //
+                                            begin + "(text) N5 G0 X1\nM2\n%\n",       // a comment before N
+                                            nested + "o10 call\nM2\n%\n"};
   for (const std::string& text : refused) {
     EXPECT_NE(interpretation_of(text).status, 0) << text;
     EXPECT_NE(our_refusal(text), "") << text;
@@ -140,7 +139,7 @@ TEST(LinuxCnc, WhatItRefusesIsRefused) {
   }
 }
 
-/// LinuxCNC takes every randomly edited program that we take.
+/// Every randomly edited program that retrace accepts is also accepted by LinuxCNC.
 TEST(LinuxCnc, TakesEveryEditedProgramThatIsRead) {
   const std::vector<std::string> lines_put_in = {
       "G94",       "G93",       "F50.000",     "G80",         "G80 G90",
@@ -248,7 +247,8 @@ TEST(Dialects, AreComplete) {
   EXPECT_THROW(text("kugler"), InputError);
 }
 
-/// A line of the machine file is known in one dialect and not in another; permission is printed in the header.
+/// A line of the machine file may be harmless in one dialect and unknown in another. If the machine file permits
+/// unknown lines, the header of the program names them.
 TEST(Dialects, NameLinesThatNobodyChecked) {
   Machine on = for_dialect(machine("ideal"), "a3200");
   const auto text = [&](std::string_view dialect) {
@@ -262,10 +262,10 @@ TEST(Dialects, NameLinesThatNobodyChecked) {
       refused.starts_with("--dialect: control.mist_on must set an output or a variable, such as M#, $DO[#].@=#"))
       << refused;
   on.control.has_unchecked_lines = true;
-  EXPECT_NE(text("a3200").find("' Not checked: the line control.mist_on gives, which may move axes or wait\n"),
+  EXPECT_NE(text("a3200").find("' Not checked: the line of control.mist_on, which may move axes or wait\n"),
             std::string::npos);
   EXPECT_EQ(text("automation1").find("Not checked"), std::string::npos);
-  EXPECT_EQ(text("rs274ngc").find("Not checked"), std::string::npos) << "it has words of its own";
+  EXPECT_EQ(text("rs274ngc").find("Not checked"), std::string::npos) << "RS-274/NGC has its own words for mist";
 }
 
 TEST(Dialects, WriteNumbersInFixedPoint) {

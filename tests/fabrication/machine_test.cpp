@@ -154,8 +154,8 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
             "m.toml:3: schema: must be \"retrace.machine/1\", got \"retrace.machine/2\"");
 }
 
-/// Lines of an integrator are written as they are: only those of which retrace knows that they neither move an axis nor
-/// wait need no permission.
+/// Programs contain the lines of the machine's builder unchanged. A line needs the permission of the machine file
+/// unless retrace recognizes it as harmless: it neither moves an axis nor waits.
 TEST(MachineFile, LinesOfAnIntegratorAreKnownOrPermitted) {
   const auto file_with = [](const std::string& lines) { return refusal("[z]", "[control]\n" + lines + "[z]"); };
   for (const char* line : {"linear Z-3 F100",
@@ -205,7 +205,7 @@ TEST(MachineFile, LinesOfAnIntegratorAreKnownOrPermitted) {
   }
   EXPECT_NE(file_with("stop = \"linear X1\"\n"), "accepted");
   EXPECT_NE(file_with("stop = \"M2\"\n"), "accepted");
-  EXPECT_NE(file_with("mist_on = \" M7\"\nhas_unchecked_lines = true\n"), "accepted") << "no line";
+  EXPECT_NE(file_with("mist_on = \" M7\"\nhas_unchecked_lines = true\n"), "accepted") << "blank at the beginning";
   EXPECT_TRUE(refusal("[x]", "warm_up_s = { value = -1, assumed = \"a test\" }\n[x]")
                   .ends_with(": warm_up_s.value: must be >= 0 and <= 36000, got -1"));
   EXPECT_EQ(file_with("mist_on = \"P1=1\"\noptional_stop = \"P1=1\"\n"),

@@ -204,8 +204,7 @@ TEST(NcReader, WhatIsNotUnderstoodIsAnErrorWithItsLine) {
   EXPECT_EQ(rs274("G0 Z5.", "G0 Z5. Z6."), "p:14: has two words for Z, in \"G0 Z5. Z6.\"");
   EXPECT_EQ(rs274("G0 Z5.", "G0 Z"), "p:14: \"Z\" is not understood, in \"G0 Z\"");
   EXPECT_EQ(rs274("G0 Z5.", "G0 Z#1"), "p:14: \"Z\" is not understood, in \"G0 Z#1\"");
-  EXPECT_EQ(rs274("G0 Z5.", "/G0 Z5."),
-            "p:14: a line that a switch of the controller may leave out is not understood, in \"/G0 Z5.\"");
+  EXPECT_EQ(rs274("G0 Z5.", "/G0 Z5."), "p:14: a line with block delete (/) is not understood, in \"/G0 Z5.\"");
   EXPECT_EQ(rs274("G0 Z5.", "G53 G0 Z5."), "p:14: \"G53\" is not understood, in \"G53 G0 Z5.\"");
   EXPECT_EQ(rs274("M7", "M6"), "p:13: \"M6\" is not understood, in \"M6\"");
   EXPECT_EQ(rs274("(a sample)", "(a sample"),
@@ -241,10 +240,10 @@ TEST(NcReader, WhatIsNotUnderstoodOfAnA3200) {
   EXPECT_EQ(read("RAPID Z5.", "RAPID Z5. ZF25"), "p:10: \"ZF25\" is not understood, in \"RAPID Z5. ZF25\"");
   EXPECT_EQ(read("RAPID Z5.", "G1 Z5. E10"), "p:10: \"E10\" is not understood, in \"G1 Z5. E10\"");
   EXPECT_EQ(read("DWELL 0.1", "G4"), "p:24: G4 needs a time, in \"G4\"");
-  EXPECT_EQ(read("DWELL 0.1", "G1 P0.1"), "p:24: has a time of dwell without G4, in \"G1 P0.1\"");
-  EXPECT_EQ(read("END PROGRAM\n", ""), "p:20: a subroutine must stand behind END PROGRAM, in \"DFS PLUNGE\"");
+  EXPECT_EQ(read("DWELL 0.1", "G1 P0.1"), "p:24: has a dwell time without G4, in \"G1 P0.1\"");
+  EXPECT_EQ(read("END PROGRAM\n", ""), "p:20: a subroutine must follow END PROGRAM, in \"DFS PLUNGE\"");
   EXPECT_EQ(read("END PROGRAM\n", "M2\nEND PROGRAM\n"), "accepted");
-  EXPECT_EQ(read("ENDDFS\n", "ENDDFS\nG0 Z9.\n"), "p:29: stands behind the end of the program, in \"G0 Z9.\"");
+  EXPECT_EQ(read("ENDDFS\n", "ENDDFS\nG0 Z9.\n"), "p:29: a line must not follow the end of the program, in \"G0 Z9.\"");
   EXPECT_EQ(read("ENDDFS\n", ""), "cut off at 15: the file does not hold the whole of subroutine PLUNGE");
   EXPECT_EQ(refusal("G90\nG0 Z5.\n", NcDialect::a3200), "cut off at 2: END PROGRAM is missing");
   EXPECT_EQ(refusal("END PROGRAM\nDFS A\n", NcDialect::a3200), "cut off at 2: a subroutine has no ENDDFS");
@@ -269,7 +268,7 @@ TEST(NcReader, WhatIsNotUnderstoodOfAeroScript) {
   EXPECT_EQ(read("MoveLinear([Z], [-0.25])", "MoveLinear([Z], [-0.25], 5)"),
             "p:22: \"MoveLinear([Z],[-0.25],5)\" is not understood, in \"MoveLinear([Z], [-0.25], 5)\"");
   EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([Z, Y], [0.2])"),
-            "p:12: needs axes and as many places, in \"MoveRapid([Z, Y], [0.2])\"");
+            "p:12: needs a list of axes and a list of as many positions, in \"MoveRapid([Z, Y], [0.2])\"");
   EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([S], [0.2])"),
             "p:12: has an axis that is not understood, \"S\", in \"MoveRapid([S], [0.2])\"");
   EXPECT_EQ(read("Plunge()\n  N10", "Plunge(1)\n  N10"), "p:13: \"Plunge(1)\" is not understood, in \"Plunge(1)\"");
@@ -279,7 +278,7 @@ TEST(NcReader, WhatIsNotUnderstoodOfAeroScript) {
   EXPECT_EQ(read("function Plunge()", "function Plunge($z as real)"),
             "p:19: must be function NAME(), without arguments, in \"function Plunge($z as real)\"");
   EXPECT_EQ(read("program\n", ""),
-            "p:2: stands outside of program ... end and function ... end, in "
+            "p:2: a line must be inside of program ... end or function ... end, in "
             "\"SetupTaskDistanceUnits(DistanceUnits.Primary)\"");
   EXPECT_EQ(read("// half way", "/* half way */"),
             "p:11: a comment /* ... */ is not understood, in \"G0 X 1.5 Y-2.25 /* half way */\"");
@@ -340,8 +339,8 @@ TEST(NcReader, APmacsSpindleIsTakenLetterByLetter) {
   EXPECT_THROW(settings_after("M105\n" + text, NcDialect::pmac, texts), InputError) << "outside of the program";
 }
 
-/// LinuxCNC leaves the path by up to P where blocks meet, and by Q more where it merges them; Q is P where it is left
-/// out, and both are in the unit of the program.
+/// LinuxCNC may leave the path by P at corners, and by a further Q where it merges blocks. Q defaults to P. Both are in
+/// the unit of the program.
 TEST(NcReader, BlendingOfLinuxCncIsPAndQ) {
   const auto blend_mm = [](const std::string& words) {
     return settings_after("G21\n" + words + "\nM2\n", NcDialect::rs274ngc).blend_mm;

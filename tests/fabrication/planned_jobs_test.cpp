@@ -264,7 +264,7 @@ TEST(PlannedJobs, RootsAreAsPredictedAtEveryApex) {
   }
 }
 
-/// A machine whose axis A is oblique, so that roots stand at `slope` to the edge; slopes are proportional to the angle.
+/// Returns a machine with an oblique axis A. The tangent of the largest angle between a root and the edge is `slope`.
 Machine with_root_slope(const Job& job, double slope) {
   Machine m = machine("ideal");
   const auto lean = [&](double angle) {
@@ -283,8 +283,8 @@ Machine with_root_slope(const Job& job, double slope) {
   return m;
 }
 
-/// A plunge frees its chip only if the strip that its tilted edge leaves at the root is narrower than the cut is deep.
-/// Wider strips are refused, narrower ones cut right.
+/// A plunge separates its chip only if the strip that the tilted edge leaves at the root is narrower than the depth of
+/// cut. Jobs with wider strips are refused, and programs of all other jobs pass.
 TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
   for (const Strategy strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step})
     for (const double share : {0.3, 0.9, 0.99, 1.01, 1.3, 2.5}) {
@@ -300,8 +300,7 @@ TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
         EXPECT_TRUE(share < 1.0 || strategy == Strategy::unidirectional) << static_cast<int>(strategy) << ' ' << share;
       } catch (const InputError& error) {
         EXPECT_TRUE(share > 1.0 && strategy != Strategy::unidirectional) << share << ' ' << error.what();
-        EXPECT_NE(std::string(error.what()).find("machine: its root would stand at"), std::string::npos)
-            << error.what();
+        EXPECT_NE(std::string(error.what()).find("machine: the root is at"), std::string::npos) << error.what();
       }
     }
 }

@@ -24,8 +24,8 @@
 #include "tests/fabrication/nc_record.h"
 #include "tests/fabrication/substrate_jobs.h"
 
-// Feeds and times: the same moves said by feeds per minute, by inverse times and in inches are judged alike, and the
-// time of a plan is that of its program and that of its moves by closed forms.
+// Tests of feeds and times. The verifier gives the same result for feeds per minute, inverse times and inches. The time
+// of a plan equals the time of its program, and the closed-form time of its moves.
 
 namespace retrace::fabrication::test::rates_test {
 namespace {
@@ -57,7 +57,7 @@ Verification verified(const Job& job, const Machine& machine, const std::string&
   return verify_programs(job, machine, {parse_nc(text, "p", dialect, control_texts())}, {}, {});
 }
 
-/// Changes the numbers of the words of moves G0 and G1. \param change gets letter and number and returns the new text
+/// Replaces the words of all G0 and G1 blocks. \param change function of letter and number that returns the new word
 std::string with_words(const std::string& text, const std::function<std::string(char, double)>& change) {
   std::vector<std::string> lines = lines_of_text(text);
   for (std::string& line : lines) {
@@ -76,7 +76,7 @@ std::string with_words(const std::string& text, const std::function<std::string(
   return text_of_lines(lines);
 }
 
-/// The program with an inverse time for each feed, which a factor changes.
+/// Returns the program with inverse times instead of feeds. \param factor factor on all speeds
 std::string by_inverse_times(const std::string& text, double factor = 1.0) {
   double length = 0.0;
   std::vector<std::string> lines = lines_of_text(text);
@@ -109,7 +109,7 @@ TEST(Rates, InverseTimesAreFeedsOverLengths) {
   }
 }
 
-/// Limits hold to the digits that are printed, and not beyond a thousandth.
+/// Limits allow for the rounding of printed numbers, but for at most 0.1 % of a feed.
 TEST(Rates, ProgramsInInchesPass) {
   const Machine machine = shipped("ideal");
   const auto in_inches = [](const std::string& text, int decimals, int decimals_of_feeds, double factor) {
@@ -129,7 +129,7 @@ TEST(Rates, ProgramsInInchesPass) {
     }
   const Verification fast = verified(small_job(), machine, in_inches(text, 8, 6, 1.002), NcDialect::rs274ngc);
   EXPECT_NE(listed(fast).find("feed_too_high"), std::string::npos) << listed(fast);
-  // A feed without decimals is no rounding of another one.
+  // A feed without decimals counts as exact, so that a feed 0.4 mm/min too high is found.
   Job slower = small_job();
   slower.process.roughing_feed_mm_per_min -= 0.4;
   const std::string whole = with_words(
@@ -144,7 +144,7 @@ double trapezoid_s(double distance, double speed, double acceleration) {
                                                  : 2.0 * std::sqrt(distance / acceleration);
 }
 
-/// A move of rotary axes only has its feed in degrees per minute along their common path.
+/// If only rotary axes move, the feed is in degrees per minute along their common path.
 TEST(Rates, FeedsOfRotaryAxesAreDegrees) {
   Machine machine = shipped("ideal");
   machine.settling_s.value = 0.0;
@@ -165,11 +165,11 @@ TEST(Rates, FeedsOfRotaryAxesAreDegrees) {
   EXPECT_EQ(
       record_of("G90\nG0 Z5\nG0 C90\nG93 G1 C0 F2\nM2\n", NcDialect::rs274ngc).motions.back().path_speed_per_min(),
       180.0);
-  // Axes that move at the same time take the longest of their times.
+  // The time of a simultaneous move is the time of its slowest axis.
   EXPECT_NEAR(seconds("G0 Z5.5 C0").total_s(), seconds("G0 C0").total_s(), 1e-9);
 }
 
-/// Sums up the moves of a program: by closed forms here, and by ProgramTime.
+/// Adds up the times of the moves of a program, by closed forms and by ProgramTime.
 class TimeSink : public NcSink {
  public:
   explicit TimeSink(const Machine& machine) : machine_(machine) {}

@@ -13,21 +13,21 @@
 #include "tests/fabrication/chiseling_programs.h"
 #include "tests/fabrication/findings_text.h"
 
-// Cuts of V-shaped tools as controls round them: the fin that they may leave along dihedral edges against displaced
-// cuts, and right jobs of random tools, which pass.
+// Tests of cuts with V-shaped tools at rounded positions. The bound on the fin along a dihedral edge is compared with
+// randomly displaced cuts, and correct jobs with random tools pass.
 
 namespace retrace::fabrication::test::rounded_cuts_test {
 namespace {
 
 using namespace chiseling;
 
-/// Height over the first facet up to which material stands between two cuts. Each removes an angle over its facet, from
-/// its tip. The facets lie at the angles 0 and `between`.
+/// Returns the height, above the first facet, of the material that remains between two cuts. Each cut removes a wedge
+/// with the given angle above its facet, starting at its tip. The facets are at the angles 0 and `between`.
 double fin_between(double first, double second, double between, const geometry::Vec2& tip,
                    const geometry::Vec2& other_tip) {
   const geometry::Vec2 up(std::cos(first), std::sin(first));
   const geometry::Vec2 other_up(std::cos(between - second), std::sin(between - second));
-  // Where the upper ends of both cuts cross.
+  // Intersection of the upper boundaries of both cuts.
   const geometry::Vec2 apart = other_tip - tip;
   const double along =
       (apart.x() * other_up.y() - apart.y() * other_up.x()) / (up.x() * other_up.y() - up.y() * other_up.x());
@@ -45,7 +45,7 @@ TEST(RoundedCuts, FinsAreNoHigherThanTheFormula) {
     const double bound = rounded_fin_mm(Angle::from_rad(first), Angle::from_rad(second), Angle::from_rad(between), 1.0);
     double highest = 0.0;
     for (int k = 0; k < 20'000; ++k) {
-      // Along and across their facets, in increments: the corners of what rounding does are the worst.
+      // Rounding errors along and normal to the facets, in increments. Half of the samples are at the extreme values.
       const auto corner = [&](double size) {
         return k % 2 == 0 ? std::copysign(size, uniform(-1, 1)) : uniform(-size, size);
       };
@@ -63,7 +63,7 @@ TEST(RoundedCuts, FinsAreNoHigherThanTheFormula) {
   }
 }
 
-/// One cube corner with errors of angle, in a zone that is turned.
+/// Returns a job of one cube corner with errors of angle, in a rotated zone.
 Job one_corner(double aperture_mm, const std::array<double, 3>& errors_arcmin, double rotation_deg,
                const geometry::Vec2& apex_mm) {
   Job job = cube_job(true, aperture_mm);
@@ -87,7 +87,8 @@ bool fits(const Job& job) {
   return true;
 }
 
-/// Lines near the apex that run along an edge between two other facets, and edges with a fin of 10 nm.
+/// Correct jobs with a blunt nose pass, even if rounding leaves a fin of 10 nm. Measuring lines near the apex run along
+/// the dihedral edge of the two other facets and must end before its fin.
 TEST(RoundedCuts, RightCutsOfABluntNosePass) {
   for (const auto& [clearance_deg, apex] :
        {std::pair{3.0, geometry::Vec2(0.844313, 0.5911)}, {2.0, geometry::Vec2(0.51237, 0.5031)}}) {
@@ -105,7 +106,7 @@ TEST(RoundedCuts, RightCutsOfABluntNosePass) {
   }
 }
 
-/// Random tools, sizes, errors and places.
+/// Returns a job of one cube corner with a random tool, size, position and errors of angle.
 Job random_corner(std::mt19937& bits) {
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
   const double error = uniform(0.0, 40.0);
@@ -140,7 +141,8 @@ TEST(RoundedCuts, RandomNosesPass) {
   EXPECT_EQ(cut, 40);
 }
 
-/// A Fanuc rounds positions to its increments. Cube corners are either refused, with the key, or cut right.
+/// A Fanuc rounds positions to its increments. A job of cube corners is either refused with the key to change, or
+/// passes.
 TEST(RoundedCuts, CubeCornersOfEveryIncrementSystemPassOrAreRefused) {
   for (const IncrementSystem system : {IncrementSystem::b, IncrementSystem::c, IncrementSystem::d, IncrementSystem::e})
     for (const bool is_hexagonal : {false, true})

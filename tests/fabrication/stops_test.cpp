@@ -273,7 +273,7 @@ std::int32_t line_of_visit(const Lines& lines, std::int64_t n) {
   return 0;
 }
 
-/// Whatever pass of an element the operator stopped behind, the next pass begins a program that cuts nothing again.
+/// After a stop behind any pass of an element, a program that restarts at the next pass cuts nothing twice.
 TEST_P(Stops, RestartsFromAnyVisit) {
   for (Case c : cases()) {
     const Machine machine = machine_of(c, 5.0);

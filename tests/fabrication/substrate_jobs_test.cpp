@@ -444,9 +444,9 @@ TEST(OnSubstrate, TiltsThatTheMachineCannotReachAreNamed) {
       planned(prisms_on(cylinder_substrate(20.0, true, ElementAxes::normal)), machine("ideal"));
   EXPECT_EQ(
       along_roofs,
-      "machine: element 0, tilted by 1.2920 degrees: its root would stand at 1.8269 degrees to the tool's edge, "
-      "which A and C cannot turn in the facet; at most 0.6337 degrees are allowed, at which the edge leaves a strip "
-      "of 4.988 um, less than a depth of cut (or tool.width_mm at most 0.1564)");
+      "machine: element 0, tilted by 1.2920 degrees: the root is at 1.8269 degrees to the tool's edge, and A "
+      "and C cannot correct this angle; at most 0.6337 degrees are allowed, so that the strip that the edge leaves is "
+      "at most 4.988 um wide, less than the depth of cut (or tool.width_mm at most 0.1564)");
   Machine stiff = machine("ideal");
   stiff.a.limits_deg.value = {0.0, 50.0};
   EXPECT_EQ(

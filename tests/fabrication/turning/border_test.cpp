@@ -1,4 +1,5 @@
-// The border of turned parts: cuts that are too high there, told by the edge laid over places of the border.
+// Tests of the border of turned parts. Cuts that are too high at the border are found; the reference is PlainCut, which
+// computes the cut surface at points on the border.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -20,7 +21,7 @@ using fabrication::test::border_places;
 using fabrication::test::deviations;
 using fabrication::test::PlainCut;
 
-/// A bowl with a cubic term, which the nose touches beyond its lowest point, outwards.
+/// A bowl with a cubic term. Its slope moves the point of contact from the lowest point of the nose outwards.
 const std::string kHead =
     "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"xy_polynomial\"\nterms = [[2, 0, 0.05], [0, 2, 0.03], [3, 0, "
     "0.02]]\n[tool]\nnose_radius_mm = 0.5\nclearance_deg = 15\n";
@@ -47,7 +48,7 @@ struct Planned {
   TurnedPart part;
   std::vector<std::string> lines;
 
-  /// Lines of the blocks of the cut that begins with the `number`th approach.
+  /// Returns the line indices of the blocks of a cut. \param number index of the cut, from 0
   std::vector<std::size_t> blocks(std::size_t number) const {
     std::vector<std::size_t> result;
     std::size_t cuts = 0;
@@ -61,7 +62,7 @@ struct Planned {
     return result;
   }
 
-  /// The program with Z of some lines raised.
+  /// Returns the program with the Z words of the lines `which` raised.
   std::string raised(const std::vector<std::size_t>& which, double by_mm) const {
     std::vector<std::string> changed = lines;
     for (const std::size_t i : which) {
@@ -74,14 +75,14 @@ struct Planned {
   }
 
   std::vector<Finding> findings(const std::string& text) const {
-    // Each is so small that handing it out would take longer.
+    // Use one thread: the programs are so small that parallel loops would be slower.
     const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
     FindingList list;
     check_turning(part, read_cuts(part, {parse_nc(text, "p", NcDialect::rs274ngc)}, list), std::nullopt, list);
     return list.take();
   }
 
-  /// Deviations at places of the border, nm.
+  /// Returns the deviations from the design at points on the border, in nm.
   std::vector<double> border_nm(const std::string& text, int places) const {
     std::vector<fabrication::test::PlainMove> cuts;
     for (const fabrication::test::PlainMove& m : fabrication::test::plain_program(text).moves)
@@ -112,8 +113,7 @@ TEST(TurningBorder, ARaisedFirstLineOfARasterIsFound) {
     for (const Finding& f : found) told_nm = std::max(told_nm, f.kind == "excess" ? f.value : 0.0);
     const std::vector<double> border = plan.border_nm(high, 200);
     EXPECT_NEAR(told_nm, *std::max_element(border.begin(), border.end()), 1.0) << by_mm;
-    // The circle of the nose over the second line, 10 um away, stands 80.4 nm over the border; words are whole
-    // nanometres.
+    // The nose on the second line, 10 um away, is 80.4 nm above the surface at the border. Words are rounded to 1 nm.
     EXPECT_NEAR(told_nm, 80.4, 1.5) << by_mm;
   }
   EXPECT_TRUE(plan.findings(plan.raised(first, 1e-5)).empty()) << "less than the tolerance";
@@ -137,8 +137,8 @@ TEST(TurningBorder, AMissingOuterLineOfARasterIsFound) {
   }
 }
 
-/// Some blocks near the border are raised. More material at the border than the right program leaves is found; less
-/// than that is none where nothing else is touched.
+/// Raises random blocks near the border. The verifier must report every program that leaves more material at the border
+/// than the correct program, by 1.05 times the tolerance.
 void judge_raised(const Planned& plan, std::size_t first_cut, std::size_t last_cut, std::size_t outer_blocks) {
   EXPECT_TRUE(plan.findings(fabrication::test::text_of_lines(plan.lines)).empty());
   const std::vector<double> right = plan.border_nm(fabrication::test::text_of_lines(plan.lines), 60);
@@ -175,7 +175,7 @@ TEST(TurningBorder, RaisedBlocksOfASpiralThatBeginsBeyondThePartAreFound) {
   judge_raised(Planned(spiral(0.006)), 0, 0, 90);
 }
 
-/// Blocks that are far enough beyond the border to leave nothing on the part may be anywhere above it.
+/// Blocks that are too far outside of the border to cut the part may be raised without a finding.
 TEST(TurningBorder, CutsBeyondThePartAreFree) {
   const Planned plan(spiral(0.04));
   std::vector<std::size_t> blocks = plan.blocks(0);
@@ -185,7 +185,7 @@ TEST(TurningBorder, CutsBeyondThePartAreFree) {
   for (const Finding& finding : plan.findings(text)) ADD_FAILURE() << text_of(finding);
 }
 
-/// A cut that is too deep beyond the border reaches into the part.
+/// A cut that is too deep outside of the border can gouge the part, because the nose is wider than the feed.
 TEST(TurningBorder, LoweredOuterCutsAreFound) {
   for (const std::string& file : {kRaster, spiral(0.0)}) {
     const Planned plan(file);

@@ -200,7 +200,7 @@ TEST(CubicPath, TextOfEveryDialectStaysAsNearAsAsked) {
   }
 }
 
-/// Deviations at places of the border, by curves of the test's own.
+/// Returns the deviations at points on the border, from the cubic curves that this test evaluates.
 std::vector<double> border_of(const TurnedPart& part, const std::vector<Knot>& knots) {
   std::vector<std::array<double, 4>> points = {knots.front().at};
   for (std::size_t i = 1; i < knots.size(); ++i)
@@ -344,7 +344,7 @@ TEST(CubicPath, NoFaultOfAMovePasses) {
       try {
         const std::vector<Knot> knots = knots_in(mutant.text, dialect, start);
         left_nm = worst_nm(knots);
-        // Where X, Y and C are as they were, the border is no worse than the right program leaves it.
+        // If only Z differs, the correct program is the reference for the deviations at the border.
         if (differ_in_z_only(knots, right_knots)) {
           const std::vector<double> border = border_of(plan.part, knots);
           for (std::size_t i = 0; i < border.size(); ++i)

@@ -96,9 +96,9 @@ std::string form_fault(const PlainProgram& program) {
   return "";
 }
 
-/// The first fault; empty: none.
-/// \param border deviations at the border, which must be no larger where other cuts are not higher than cusps; empty:
-/// to be filled
+/// Returns a description of the first fault of a program, or an empty text.
+/// \param border deviations of the correct program at the border. They are the reference for `program`. If `border` is
+/// empty, it is filled with the deviations of `program`.
 std::string fault_of(const TurnedPart& part, const PlainProgram& program, std::vector<double>& border) {
   if (const std::string fault = form_fault(program); !fault.empty()) return fault;
   const bool is_spiral = part.path.strategy == Strategy::spiral;
@@ -384,7 +384,7 @@ TEST(TurningCheck, StrokesOfAFastServoBelongToTheirPoints) {
   EXPECT_THROW(found("c_deg,stroke_mm\nx,1\n"), InputError);
 }
 
-// Within a turn from the axis, where cuts turn on the spot, nothing is judged.
+// Nothing is checked within one feed of the axis, where the part rotates under a nearly fixed edge.
 TEST(TurningCheck, PartsOfFewTurnsAreNotJudgedAtTheirAxis) {
   for (const double radius_mm : {0.04, 0.08, 0.12, 0.135, 0.15, 0.2}) {
     const Planned plan = planned(fmt::format(

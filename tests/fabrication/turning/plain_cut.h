@@ -1,7 +1,8 @@
 #pragma once
 
-// What a turning program leaves, place by place: every block cut into small steps, the edge laid over the place as it
-// passes. Shares nothing with the checks of the program. Tools without rake.
+// Independent simulation of turning programs: computes the height of the cut surface at single points. It divides each
+// block into small steps and evaluates the edge where it passes over the point. It shares no code with the verifier,
+// and is valid for tools without rake.
 
 #include <array>
 #include <cmath>
@@ -27,12 +28,12 @@ class PlainCut {
       add(points);
     }
   }
-  /// \param points X, Y, Z and C (degrees) along the only cut
+  /// \param points positions X, Y, Z (mm) and C (degrees) along a program with one cut
   PlainCut(const turning::TurnedPart& part, const std::vector<std::array<double, 4>>& points) : part_(part) {
     add(points);
   }
 
-  /// Height of the cut surface over the design, along Z; large where no edge passes.
+  /// Returns the height of the cut surface above the design, along Z, in mm; a huge value if no edge passes the point.
   double deviation(double x, double y) const {
     const double r = part_.tool.nose_radius_mm;
     const double reach = r * std::sin(0.5 * part_.tool.window_deg * kRad);
@@ -77,7 +78,7 @@ class PlainCut {
   std::vector<Pose> poses_;
 };
 
-/// Places on the border of a part, a little inside of it.
+/// Returns points just inside the border of a part.
 inline std::vector<std::array<double, 2>> border_places(const turning::TurnedPart& part, int count) {
   constexpr double kInside = 1.0 - 1e-6;
   const turning::PathOptions& path = part.path;
@@ -97,7 +98,7 @@ inline std::vector<std::array<double, 2>> border_places(const turning::TurnedPar
   return places;
 }
 
-/// Deviations at places, mm.
+/// Returns the deviations of the cut surface from the design at given points, in mm.
 inline std::vector<double> deviations(const PlainCut& cut, const std::vector<std::array<double, 2>>& places) {
   std::vector<double> result;
   for (const auto& [x, y] : places) result.push_back(cut.deviation(x, y));
