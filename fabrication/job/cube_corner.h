@@ -1,6 +1,6 @@
 #pragma once
 
-// Cube corners as a job cuts them: the planes of their facets and the dihedral edges, errors of angle included.
+// Planes of the facets and dihedral edges of the cube corners of a job, with errors of angle.
 
 #include <array>
 #include <cstddef>
@@ -10,27 +10,29 @@
 
 namespace retrace::fabrication {
 
-/// A cube corner in a flat blank, in the workpiece frame, from its apex. Edge k lies at 120 k - 90 degrees but for
-/// errors (rotated: at 120 k + 90), facet k between edges k and k + 1.
+/// A cube corner in a flat blank, in the workpiece frame with the origin at its apex. Without errors, edge k has the
+/// azimuth 120 k - 90 degrees (rotated: 120 k + 90). Facet k is between edges k and k + 1.
 struct CubeCorner {
-  double depth_mm = 0.0;  ///< of the apex below the blank's face
-  /// Of the facets, out of the material, of length 1.
+  double depth_mm = 0.0;  ///< depth of the apex below the blank's face
+  /// Unit normals of the facets, pointing out of the material.
   std::array<geometry::Vec3, 3> normals = {geometry::Vec3::Zero(), geometry::Vec3::Zero(), geometry::Vec3::Zero()};
-  /// Upwards, of length 1.
+  /// Unit vectors along the dihedral edges, upwards.
   std::array<geometry::Vec3, 3> edges = {geometry::Vec3::Zero(), geometry::Vec3::Zero(), geometry::Vec3::Zero()};
 
-  /// Where the planes meet that lie so far over the facets, along their normals.
+  /// Returns the intersection of the three planes that are parallel to the facets at the given heights above them.
   geometry::Vec3 apex_over(const geometry::Vec3& facets_mm) const;
-  /// How far the apex of a layer that leaves 1 mm on all facets lies over this one: sqrt(3) without errors.
+  /// Returns the height of the apex of a layer that leaves 1 mm on all facets, per mm: sqrt(3) without errors.
   double layer_rise() const { return apex_over(geometry::Vec3::Ones()).z(); }
-  /// By how much an angle between two facets, or between two edges, misses 90 degrees at most.
+  /// Returns the largest difference between 90 degrees and an angle between two facets or two edges.
   double largest_error_deg() const;
 };
 
-/// \param zone of the job; 0 without zones \pre the job cuts cube corners
+/// Returns the cube corner of a job or of one of its zones.
+/// \param zone index of the zone; 0 without zones
+/// \pre the job cuts cube corners
 CubeCorner blank_corner(const Job& job, std::size_t zone = 0, bool rotated = false);
 
-/// The same of an element as it is. \pre it is a cube corner, without cant
+/// Returns the cube corner of an element. \pre the element is a cube corner without cant
 CubeCorner cube_corner(const geometry::Element& element, const geometry::AngleErrors& errors = {},
                        bool rotated = false);
 

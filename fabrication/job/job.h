@@ -102,13 +102,13 @@ struct Process {
   double finishing_plunge_sa_nm = 48.9;
 };
 
-/// Cube corners that are cut alike, at places of their own. What is not given is as the job's element has it.
+/// A group of equal cube corners at given positions. A value that is not given is that of the job's element.
 struct CutZone {
   std::optional<double> aperture_mm;
   std::optional<std::array<double, 3>> dihedral_error_arcmin;
   std::optional<std::array<double, 3>> facet_tilt_arcmin;
-  double rotation_deg = 0.0;              ///< of each in the plane, counter-clockwise seen from +z of the part
-  std::vector<geometry::Vec2> apexes_mm;  ///< in the part frame
+  double rotation_deg = 0.0;              ///< rotation of each element, counter-clockwise seen from +z of the part
+  std::vector<geometry::Vec2> apexes_mm;  ///< positions of the apexes in the part frame
 };
 
 /// A fabrication job: all that a planner or a verifier needs to know, and nothing about light.
@@ -118,9 +118,9 @@ struct Job {
   std::string design;  ///< file that the job was made from, for people
   Workpiece workpiece;
   geometry::Element element;           ///< of the part, without cant
-  geometry::AngleErrors angle_errors;  ///< of cube corners
+  geometry::AngleErrors angle_errors;  ///< intended errors of angle; cube corners only
   geometry::ArrayLayout array;         ///< finite; x and y lengths of `single` are those of the element's aperture
-  /// What is cut in place of the array, of which the extent alone counts then; none: the array.
+  /// Zones that are cut instead of the array; then only the extent of `array` is used. Empty: the array is cut.
   std::vector<CutZone> zones;
   /// What the elements stand on, of moulds and of arrays without offsets and patterns; its highest place over the part
   /// is z = 0, and the blank's face has its shape. None: the plane z = 0.
@@ -148,28 +148,28 @@ struct CutElement {
   geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< on the blank: the middle of the aperture, or over the apex
   /// Turns directions of an element on a flat blank into those of this one: the third column is its axis.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  std::int32_t orientation = 0;  ///< elements with the same `turn` have the same; of a job of zones: those of one
-  std::size_t zone = 0;          ///< of the job; 0 without zones
+  std::int32_t orientation = 0;  ///< equal for elements with the same `turn`; in a job of zones, for those of one zone
+  std::size_t zone = 0;          ///< index of the zone in the job; 0 without zones
 };
 
 /// The prism that a job cuts. \throw InputError if it cuts cube corners
 const geometry::RtpElement& prism_of(const Job& job);
 geometry::RtpElement& prism_of(Job& job);
 
-/// The elements of the job, row by row from y = 0, x rising, of zones one after the other as they are listed, in the
-/// frame of the blank (a direct workpiece's is mirrored). Partial elements are left out. Their place in the list is
-/// their number everywhere. Sizes are the blank's, shrinkage included.
+/// Returns the elements of the job in the workpiece frame, row by row from y = 0 with x rising, or zone by zone. The
+/// frame of a direct workpiece is mirrored. Partial elements are omitted. The index in the list is the element's number
+/// everywhere. Sizes include shrinkage.
 std::vector<CutElement> cut_elements(const Job& job);
 
 /// By how much the blank is larger than the part: 1 + shrinkage_percent / 100.
 double blank_scale(const Workpiece& workpiece);
 
-/// How many kinds of elements it has: its zones, or 1.
+/// Returns the number of zones of the job, or 1 if it has none.
 std::size_t zone_count(const Job& job);
 
-/// The element of the job, or of one of its zones, as it is cut into the blank, shrinkage included.
+/// Returns the element of the job, or of one of its zones, with the sizes in the blank, which include shrinkage.
 geometry::Element blank_element(const Job& job, std::size_t zone = 0);
-/// Errors of angle that it is cut with, on purpose; none of prisms.
+/// Returns the intended errors of angle of the element; 0 for prisms.
 geometry::AngleErrors angle_errors_of(const Job& job, std::size_t zone = 0);
 /// The same of prisms. \throw InputError if the job cuts cube corners
 geometry::RtpElement blank_prism(const Job& job);

@@ -22,7 +22,8 @@ using geometry::Polygon;
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Numbers values from the least; those that differ by rounding alone are one.
+/// Returns the rank of each value, from 0 for the smallest. Neighbouring values that differ by at most `same` share a
+/// rank.
 std::vector<std::int32_t> ranks_of(const std::vector<double>& values, double same) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -40,7 +41,7 @@ Eigen::Matrix3d turn_of(const CutZone& zone) {
   return Eigen::AngleAxisd(Angle::from_deg(zone.rotation_deg).rad(), Vec3::UnitZ()).toRotationMatrix();
 }
 
-/// Of an element of the zone round its apex, in the part frame.
+/// Returns the outline of an element of the zone, relative to its apex, in the part frame.
 Polygon outline_of(const Job& job, std::size_t zone) {
   const Eigen::Matrix2d turn = turn_of(job.zones[zone]).topLeftCorner<2, 2>();
   Polygon outline = geometry::element_cell(blank_element(job, zone)).outline;
@@ -52,7 +53,7 @@ std::string place_text(const Vec2& apex) {
   return fmt::format("the element at x = {}, y = {} mm", shortest(apex.x()), shortest(apex.y()));
 }
 
-/// The elements of a zone by the squares that their apexes lie in, of which one is as wide as an element.
+/// Spatial index of the elements of a zone: apexes by squares that are as wide as an element.
 class PlacedZone {
  public:
   explicit PlacedZone(Polygon round_apex)
@@ -61,7 +62,8 @@ class PlacedZone {
   double radius_mm() const { return radius_mm_; }
   Polygon outline_at(const Vec2& apex) const { return geometry::moved(round_apex_, apex); }
   void add(const Vec2& apex) { squares_[square_of(apex)].push_back(apex); }
-  /// The first element that an outline overlaps; null if there is none. \param radius_mm of the outline round `apex`
+  /// Returns the apex of the first element that an outline overlaps, or null.
+  /// \param radius_mm radius of the outline round `apex`
   const Vec2* overlapped_by(const Polygon& outline, const Vec2& apex, double radius_mm, double near_mm) const {
     const double reach_mm = radius_mm + radius_mm_;
     const auto [left, low] = square_of(apex - Vec2(reach_mm, reach_mm));
@@ -132,7 +134,7 @@ std::vector<CutElement> elements_of_zones(const Job& job) {
 
 std::optional<ZoneMisfit> misfit_of_zones(const Job& job) {
   const geometry::Rectangle part{Vec2::Zero(), {job.array.x_length_mm, job.array.y_length_mm}};
-  // Places that files say are rounded.
+  // Relative tolerance for positions that are rounded in files.
   constexpr double kSameShare = 2e-5;
   std::vector<PlacedZone> placed;
   for (std::size_t z = 0; z < job.zones.size(); ++z) {
@@ -145,7 +147,7 @@ std::optional<ZoneMisfit> misfit_of_zones(const Job& job) {
       for (std::size_t other = 0; other <= z; ++other) {
         const double near_mm = kSameShare * std::min(radius_mm, placed[other].radius_mm());
         if (const Vec2* const met = placed[other].overlapped_by(outline, apex, radius_mm, near_mm))
-          return ZoneMisfit{z, fmt::format("{} overlaps that at x = {}, y = {} mm of zone {}", place_text(apex),
+          return ZoneMisfit{z, fmt::format("{} overlaps the element at x = {}, y = {} mm of zone {}", place_text(apex),
                                            shortest(met->x()), shortest(met->y()), other + 1)};
       }
       placed.back().add(apex);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Jobs of zones: where their elements stand, and whether these have room.
+// Elements of the zones of a job, and the check that they do not overlap.
 
 #include <optional>
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace retrace::fabrication {
 
-/// The elements of a job's zones, zone by zone as they are listed; rows and columns are those of each zone's own frame.
-/// \pre job.zones are there, a mould
+/// Returns the elements of all zones, in the order of the job. Rows and columns are counted in the frame of each zone.
+/// \pre the job has zones and is a mould
 std::vector<CutElement> elements_of_zones(const Job& job);
 
-/// What is wrong with an element of a zone.
+/// An error in the position of an element of a zone.
 struct ZoneMisfit {
   std::size_t zone = 0;
-  std::string text;  ///< of a message, which begins with the element's place
+  std::string text;  ///< error message, which begins with the position of the element
 };
-/// The first element that reaches beyond the extent, or into another one; none if all have room.
+/// Returns the error of the first element that is not inside the extent or overlaps another element.
 std::optional<ZoneMisfit> misfit_of_zones(const Job& job);
 
 }  // namespace retrace::fabrication

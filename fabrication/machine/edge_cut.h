@@ -29,7 +29,7 @@ struct CutPlane {
 };
 
 /// Returns the axes of the mounted tool as columns in the machine frame. Positions of points of the tool, relative to
-/// its reference point, are given in these axes. Those of a chisel are the edge, the direction across it, and the
+/// its reference point, are given in these axes. The axes of a chisel are the edge, the direction across it, and the
 /// upward direction in the plane of plunging. The tool is touched off after mounting. A rotation about the edge
 /// therefore does not change these axes.
 Eigen::Matrix3d edge_frame(const Machine& machine);

@@ -10,8 +10,8 @@ namespace {
 
 using geometry::Vec3;
 
-/// What a V takes beside a dihedral edge, for each mm of a layer: how thick it is at most, between the flank and what
-/// stands on the neighbouring facet, and how far from the edge that reaches.
+/// Chip of a V-shaped tool at a dihedral edge, for a layer of 1 mm: its maximum thickness between the flank and the
+/// material on the neighbouring facet, and the maximum distance of the chip from the edge.
 struct BesideEdge {
   double thickness = 1.0;
   double reach = 1.0;
@@ -28,7 +28,8 @@ BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spi
     const double away = spine.dot(across.normalized());
     if (away <= 0.0) continue;
     const double slope = spine.dot(normal) / away;
-    // How far what stands on the neighbour leans over the facet, square to the edge and in the plane of the two others.
+    // Cosine of the angle between the facet and the material on the neighbouring facet: the larger of its values normal
+    // to the edge and in the plane of the two other edges.
     const Vec3& third = cavity.edges[(facet + 2) % 3];
     const double cosine =
         std::max(-normal.dot(cavity.facets[is_second ? next : (facet + 2) % 3].normal), other.dot(third));
@@ -36,7 +37,7 @@ BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spi
     constexpr double kLeast = 1e-3;
     const double thickness = slope / std::max(kLeast, sine - slope * cosine);
     most.thickness = std::max(most.thickness, thickness);
-    // Told along the other edge, as sections are.
+    // The distance is measured along the other edge, as in sections.
     most.reach = std::max(most.reach, (1.0 + thickness * cosine) / (sine * across.norm()));
   }
   return most;

@@ -34,8 +34,8 @@ class ChipLimit {
   double slack_mm_ = 0.0;    ///< tolerance, and what tilted edges make unavoidable
   double rake_slope_ = 0.0;  ///< of the rake face against the plunged facet
   Angle apex_;
-  double share_ = 0.0;     ///< limit over depth, of kinds where it is one number
-  double reach_mm_ = 0.0;  ///< of a V: up to so far from an edge the share holds
+  double share_ = 0.0;     ///< ratio of limit and depth, for kinds with a constant ratio
+  double reach_mm_ = 0.0;  ///< V-shaped tool: distance from an edge up to which the ratio is valid
   std::array<double, 2> bends_mm_{};
 };
 

@@ -17,7 +17,7 @@ ChiselingCheck::ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& we
     : CutCheck(workpiece, wedge, control, findings) {
   for (const Groove& cavity : workpiece.grooves) {
     State state;
-    // What a layer leaves whose apex lies in the blank's face.
+    // Material that a layer leaves if its apex is in the blank's face.
     state.left_mm.fill((cavity.face_mm - cavity.axis.dot(cavity.root_mm)) / cavity.layer_rise);
     states_.push_back(state);
   }

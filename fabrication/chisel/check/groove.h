@@ -41,15 +41,15 @@ struct Groove {
   /// between dihedral edges k - 1 and k, of which edge 0 lies along -y_w (of a turned element +y_w).
   std::vector<DesignFacet> facets;
   double half_width_mm = 0.0;  ///< along the root; of a cube corner the radius of its aperture
-  double half_base_mm = 0.0;   ///< likewise
-  /// From the root to the rim; of a cube corner from the apex along a dihedral edge to the plane of its rims, but for
-  /// errors of angle.
+  double half_base_mm = 0.0;   ///< across the root; of a cube corner the radius of its aperture
+  /// Length of a facet from the root to the rim. For a cube corner: length of a dihedral edge from the apex to the
+  /// plane of the rims, without errors of angle.
   double facet_length_mm = 0.0;
-  std::size_t group = 0;  ///< of elements that stand alike: index of Workpiece3d::predictions
-  std::size_t zone = 0;   ///< of the job
+  std::size_t group = 0;  ///< index in Workpiece3d::predictions; equal for elements of one kind and orientation
+  std::size_t zone = 0;   ///< index of the zone in the job; 0 without zones
   /// Of a cube corner: the three dihedral edges, of length 1, from the apex. Facet k lies between k - 1 and k.
   std::vector<geometry::Vec3> edges;
-  /// Of a cube corner: how far up its axis the apex of a layer lies that leaves 1 mm on all facets.
+  /// Cube corner: distance, along its axis, of the apex of a layer that leaves 1 mm on all facets, per mm.
   double layer_rise = 0.0;
 
   bool is_cube() const { return !edges.empty(); }
@@ -60,9 +60,10 @@ struct Groove {
   double to_face_mm(const geometry::Vec3& p, const geometry::Vec3& direction) const {
     return -over_face_mm(p) / axis.dot(direction);
   }
-  /// Of a cube corner: along a dihedral edge, from its apex to the plane of its rims.
+  /// Returns the length of a dihedral edge of a cube corner from the apex to the plane of the rims.
   double edge_length_mm(std::size_t edge) const { return depth_mm / axis.dot(edges[edge]); }
-  /// Of a cube corner on a flat blank: how high its cavity lies in a place, which may lie beside it, along z.
+  /// Returns the height, along z, of the planes of a cube corner on a flat blank at a point. The point may be outside
+  /// of the aperture.
   double cavity_height_mm(const geometry::Vec2& place) const;
   /// Along the root, from its middle.
   double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }
@@ -79,7 +80,7 @@ Groove groove_of(const CutElement& element, const geometry::RtpElement& size, do
 /// The cavity of a cube corner. \pre size is one
 Groove cavity_of(const CutElement& element, const geometry::Element& size, const geometry::AngleErrors& errors = {},
                  double stock_mm = 0.0);
-/// One element of a job.
+/// Returns the groove or cavity of one element of a job.
 Groove groove_of(const CutElement& element, const Job& job, double stock_mm = 0.0);
 /// All elements of a job on blanks that do not stand over their rims, in the order of cut_elements().
 std::vector<Groove> designed_grooves(const Job& job);

@@ -16,7 +16,7 @@ namespace {
 
 using geometry::Vec2;
 
-/// Triangles of a side, into which half a corner of a cavity is divided.
+/// Number of parts into which each side of a triangle is divided. The triangle is half a corner of a cavity.
 constexpr int kDivisions = 32;
 constexpr double kDeg = std::numbers::pi / 180.0;
 
@@ -50,7 +50,7 @@ class Overcutter {
     return {static_cast<std::int64_t>(std::floor(p.x() / width_mm_)),
             static_cast<std::int64_t>(std::floor(p.y() / width_mm_))};
   }
-  /// Cavities reach as far as an element is wide.
+  /// Calls `take` for all elements near a point. No cavity extends farther from its apex than an element is wide.
   template <class Take>
   void for_each_near(const Vec2& p, const Take& take) const {
     const auto [column, row] = square_of(p);
@@ -60,10 +60,11 @@ class Overcutter {
           for (const std::size_t element : square->second) take(element);
   }
 
-  /// How deep a cavity is under a place of the blank's face; 0 beside it.
+  /// Returns the depth of a cavity below a point of the blank's face; 0 outside of the cavity.
   double depth_mm(std::size_t i, const Vec2& p) const { return std::max(0.0, -grooves_[i].cavity_height_mm(p)); }
 
-  /// The hexagon has corners at the dihedral edges of the cavity without errors of angle, and between them.
+  /// Returns true if a point is inside the hexagon of an element. The hexagon is that of an element without errors of
+  /// angle.
   bool is_in_hexagon(std::size_t i, const Vec2& p) const {
     const Vec2 v = elements_[i].turn.topLeftCorner<2, 2>().transpose() * (p - apex_of(i));
     const double inner_mm = 0.5 * std::numbers::sqrt3 * grooves_[i].half_base_mm;
@@ -81,7 +82,8 @@ class Overcutter {
     return is_there;
   }
 
-  /// The half of the cavity's corner at dihedral edge k that lies in one neighbour's hexagon: an equilateral triangle.
+  /// Adds one half of the cavity's corner at dihedral edge k. It is an equilateral triangle inside the hexagon of one
+  /// neighbour.
   void add_half_corner(std::size_t i, int k, double side) {
     const double radius_mm = grooves_[i].half_base_mm;
     const double edge_deg = 120.0 * k - 90.0;
@@ -98,12 +100,13 @@ class Overcutter {
         take(i, a + (m + 1.0 / 3.0) * u + (n + 1.0 / 3.0) * v, area_mm2);
         if (m + n + 1 < kDivisions) take(i, a + (m + 2.0 / 3.0) * u + (n + 2.0 / 3.0) * v, area_mm2);
       }
-    // The deepest places lie on borders.
+    // The deepest points are on the sides of the triangles, so their corners are evaluated without area.
     for (int m = 0; m <= kDivisions; ++m)
       for (int n = 0; m + n <= kDivisions; ++n) take(i, a + m * u + n * v, 0.0);
   }
 
-  /// A place in a neighbour's hexagon that is not cut; counts where this cavity is the deepest of those without one.
+  /// Adds the material that cavity i removes at a point outside of its hexagon. Only the deepest cavity is counted, of
+  /// those whose hexagon does not contain the point.
   void take(std::size_t i, const Vec2& p, double area_mm2) {
     const double own_mm = depth_mm(i, p);
     if (own_mm <= 0.0) return;
@@ -121,7 +124,7 @@ class Overcutter {
     const double held_mm = holder ? depth_mm(*holder, p) : 0.0;
     if (!is_deepest || held_mm >= own_mm) return;
     result_.volume_mm3 += area_mm2 * (own_mm - held_mm);
-    // On their common border neighbours of one zone differ by what errors of angle make.
+    // On the common border of two elements of one zone, errors of angle cause a small difference in height.
     const bool is_on_border = area_mm2 == 0.0;
     if (!holder || (is_on_border && elements_[*holder].zone == elements_[i].zone)) return;
     result_.area_mm2 += area_mm2;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What triangular cavities of hexagonal cube corners take beside the hexagons of their zone, where zones meet.
+// Material that the triangular cavities of hexagonal cube corners remove outside of the hexagons of their zone.
 
 #include <cstdint>
 #include <vector>
@@ -10,16 +10,16 @@
 namespace retrace::fabrication {
 
 struct ZoneOvercut {
-  double volume_mm3 = 0.0;    ///< that cavities take beyond all hexagons, or deeper than the facets of other zones
-  double area_mm2 = 0.0;      ///< of other zones' apertures, in plan, whose facets they take
-  double deepest_mm = 0.0;    ///< below one of these facets, along z
-  std::int64_t elements = 0;  ///< of which something is taken
+  double volume_mm3 = 0.0;    ///< volume removed outside of all hexagons or below the facets of other zones
+  double area_mm2 = 0.0;      ///< area, in plan, in which facets of other zones are removed
+  double deepest_mm = 0.0;    ///< maximum depth of the removed material below these facets, along z
+  std::int64_t elements = 0;  ///< number of elements that lose material
 };
 
-/// By the lowest of all cavities at places that lie densely over what each opens beside the hexagons of its zone: a
-/// cavity's corner at a dihedral edge is the half of two neighbouring hexagons, which the neighbours take where they
-/// are cut. Areas and volumes are those of the sums to some thousandths.
-/// \param is_cut of each element \pre a job of zones of hexagonal cube corners
+/// Computes the overcut from the lowest of all cavities on a dense grid of points. The grid covers the corner of each
+/// cavity at each dihedral edge, outside of its hexagon. Each half of a corner lies in the hexagon of one neighbour and
+/// is omitted if this neighbour is a cut element of the same zone. The relative error of areas and volumes is some
+/// thousandths. \param is_cut true for each element that is cut \pre the job has zones of hexagonal cube corners
 ZoneOvercut zone_overcut(const Workpiece3d& workpiece, const std::vector<bool>& is_cut);
 
 }  // namespace retrace::fabrication

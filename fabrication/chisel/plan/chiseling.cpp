@@ -203,7 +203,7 @@ ProcessFacts chiseling_facts(const Job& job, double stock_mm, std::size_t elemen
   for (std::size_t zone = 0; zone < job.zones.size(); ++zone) facts.description.push_back(zone_description(job, zone));
   facts.description.push_back(
       fmt::format("{}, dihedral edges along -Y and 120 deg apart at B0 C0{}. Controller transformation off",
-                  zero_text(job), job.zones.empty() ? "" : " but for turns of zones"));
+                  zero_text(job), job.zones.empty() ? "" : ", plus the rotation of each zone"));
   facts.description.push_back(
       fmt::format("Tool: V of {} deg, width {} mm, wedge {} deg, clearance {} deg as mounted. Reference: the tip",
                   shortest(job.tool.nose_angle_deg), shortest(job.tool.width_mm), shortest(job.tool.wedge_deg),

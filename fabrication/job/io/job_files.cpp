@@ -90,7 +90,7 @@ void set_tiled(ArrayLayout& array, const Value& value) {
   array.arrangement = std::get<double>(value) == 0.0 ? Arrangement::single : tiled;
 }
 
-// Errors of angle, which a file names where there are some.
+// Errors of angle, which files contain only if they are not 0.
 
 using Three = std::array<double, 3>;
 
@@ -358,7 +358,7 @@ void check_zones(const Job& job, const Refuse& refuse) {
   if (job.zones.empty()) return;
   const ArrayLayout& array = job.array;
   if (array.arrangement == Arrangement::single)
-    refuse("array.arrangement", "must not be \"single\" where [[zone]] says what is cut, got \"single\"");
+    refuse("array.arrangement", "must not be \"single\" together with [[zone]], got \"single\"");
   for (const auto& [key, is_given] : {std::pair("array.x_offset_mm", array.x_offset_mm != 0.0),
                                       {"array.y_offset_mm", array.y_offset_mm != 0.0},
                                       {"array.pattern", !array.pattern.empty()},

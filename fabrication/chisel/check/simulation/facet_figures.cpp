@@ -118,7 +118,8 @@ class Measurer {
     burr_height_mm_ = strip_mm_ + end_mm * slope;
   }
 
-  /// Position along the root line where the plane in which the middle of the edge moves meets that line.
+  /// Returns the position, along the root line, of its intersection with the plane in which the center of the edge
+  /// moves.
   double middle_of(const SweptVolume& sweep) const {
     const Vec3& normal = prediction_.pass_normal;
     const RigidMotion& pose = poses_[sweep.pose];
