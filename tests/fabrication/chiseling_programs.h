@@ -19,7 +19,7 @@ inline Machine machine(const std::string& name = "ideal-dmc") {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
 }
 
-/// A machine whose axes are off by minutes of arc and whose pivots by tenths of a millimetre.
+/// Returns a machine with errors of its axes by arc minutes and of its pivots by tenths of a millimetre.
 inline Machine crooked_machine() {
   Machine m = machine();
   m.name = "crooked";

@@ -20,8 +20,8 @@
 #include "tests/fabrication/chiseling_jobs.h"
 #include "tests/fabrication/findings_text.h"
 
-// Machines whose slides and rotary axes lean and whose tool is mounted askew: what is planned for them passes, and what
-// such a machine makes unavoidable has a closed form.
+// Tests with machines whose slides, rotary axes and tool are tilted. Programs that are planned for such a machine pass,
+// and the unavoidable errors agree with closed forms.
 
 namespace retrace::fabrication::test::random_machines_test {
 namespace {
@@ -63,10 +63,11 @@ struct Lean {
   double least_share;  ///< minimum ratio of the simulated to the predicted cut into a wall
 };
 
-/// An edge along the root moves along it by the slide's lean times the way along the slide: Z goes up facet 1, and Y
-/// goes along facet 2. An edge that is not level stands across the tool's side, which leans over the wall by the same
-/// angle. First cuts of roughing begin below the rim, so that a slide's lean along Y is not used up. The clearance face
-/// is 3 degrees off the wall and leaves the blank before the rim, after cos 3 sin 45 / sin 48 = 0.95 of its length.
+/// The depth of cut into a wall is the tilt of the slide times the travel along the slide: Z moves up facet 1, and Y
+/// moves along facet 2. If the edge is tilted, the side of the tool is tilted towards the wall by the same angle. The
+/// simulated depth is less than the prediction in two cases. The first roughing cuts begin below the rim, which
+/// shortens the travel of Y. The clearance face is 3 degrees off the wall, so only cos 3 sin 45 / sin 48 = 0.95 of its
+/// length is in the blank.
 TEST(RandomMachines, WhatGoesIntoWallsIsTheDirectionOfTravel) {
   const double facet_nm = 1e6 * 0.451 / std::numbers::sqrt2;
   for (const auto& [key, strategy, least_share] :
@@ -84,7 +85,7 @@ TEST(RandomMachines, WhatGoesIntoWallsIsTheDirectionOfTravel) {
     }
 }
 
-/// The prediction excuses no more than it must: 15 nm farther into the wall to which the slide leans are found.
+/// The verifier allows only the predicted cut into a wall: a further shift of 15 nm towards the wall is found.
 TEST(RandomMachines, AnEdgeTooFarInAWallIsFound) {
   for (const double arcsec : {-200.0, 200.0}) {
     const Machine m = machine_with("z_lean_x_arcsec", arcsec);
@@ -95,8 +96,8 @@ TEST(RandomMachines, AnEdgeTooFarInAWallIsFound) {
   }
 }
 
-/// Facets that are ploughed by a tilted edge while the slides lean along it: the edge stays on the design's facet, and
-/// moves along the root as predicted.
+/// If a tilted edge ploughs while the slides are tilted along the edge, the edge stays on the design's facet and moves
+/// along the root as predicted.
 TEST(RandomMachines, PloughsKeepToTheFacetWhereSlidesLeanAlongATiltedEdge) {
   for (const double tilt_arcsec : {-1000.0, 1000.0})
     for (const double lean_arcsec : {-1000.0, 1000.0}) {
@@ -143,7 +144,8 @@ Job any_job(std::mt19937_64& bits, bool is_prism) {
   return job;
 }
 
-/// Machines of all sizes of error: of arcseconds, which are as large as the tolerance, and of a tenth of a degree.
+/// Correct programs pass on machines with errors from an arc second, comparable to the tolerance, to a tenth of a
+/// degree.
 TEST(RandomMachines, RightProgramsOfAnyMachinePass) {
   constexpr int kMachines = 500;
   std::mt19937_64 bits(59);
@@ -165,9 +167,8 @@ TEST(RandomMachines, RightProgramsOfAnyMachinePass) {
   }
 }
 
-/// The tool is touched off as it is mounted. Its edge is a circle that touches the plane of the plunge and the line of
-/// its lowest points in the reference point's axes, however the diamond is turned; the tip is where the tangents along
-/// both facets cross.
+/// The tool is touched off after mounting. Its rounded edge therefore touches the same two planes at the reference
+/// point for every rotation of the diamond. The tip of the wedge is the intersection of the tangents along both facets.
 TEST(RandomMachines, ATurnedToolCutsWhereItWasTouchedOff) {
   std::mt19937_64 bits(8);
   std::uniform_real_distribution<double> share(-1.0, 1.0);
@@ -190,8 +191,8 @@ TEST(RandomMachines, ATurnedToolCutsWhereItWasTouchedOff) {
   }
 }
 
-/// So a known turn about the edge changes the clearance only: facets of any apex angle are cut by a blunt edge as
-/// designed.
+/// A known rotation of the tool about its edge changes only the clearance. A rounded edge then cuts facets of any apex
+/// angle as designed.
 TEST(RandomMachines, ATurnAboutTheEdgeMovesNoFacet) {
   for (const double turn_deg : {-1.0, 1.0})
     for (const double apex_deg : {80.0, 90.0, 100.0}) {

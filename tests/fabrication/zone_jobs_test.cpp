@@ -22,8 +22,8 @@
 #include "tests/fabrication/chiseling_programs.h"
 #include "tests/fabrication/findings_text.h"
 
-// Cube corners that are cut with errors of angle on purpose, and in zones: against closed forms, against what the
-// tool's own way says, and with every number of a job changed.
+// Tests of cube corners with intended errors of angle, and in zones. The references are closed forms and the path of
+// the tool. A change of any number of a job must be found.
 
 namespace retrace::fabrication::test::zone_jobs_test {
 namespace {
@@ -36,7 +36,7 @@ constexpr double kRadPerArcmin = std::numbers::pi / (180.0 * 60.0);
 
 using namespace chiseling;
 
-/// Whole hexagons of an array about a place, as many as are listed in its own frame.
+/// Returns the apexes of a rotated honeycomb. \param middle apex of the first element
 std::vector<Vec2> honeycomb(const Vec2& middle, double turn_deg, double aperture_mm, int columns, int rows) {
   const double turn = turn_deg * std::numbers::pi / 180.0;
   const Eigen::Rotation2Dd turned(turn);
@@ -49,7 +49,7 @@ std::vector<Vec2> honeycomb(const Vec2& middle, double turn_deg, double aperture
   return apexes;
 }
 
-/// Three zones of unlike sizes, errors and turns.
+/// Returns a job with three zones of different sizes, errors of angle and rotations.
 Job zoned_job() {
   Job job = cube_job(true, 0.3);
   job.array.pattern.clear();
@@ -84,7 +84,7 @@ TEST(CubeCorners, HaveTheAnglesThatTheirErrorsSay) {
         EXPECT_NEAR(corner.edges[k].dot(before), 0.0, 1e-15);
         EXPECT_NEAR(corner.edges[k].dot(corner.normals[k]), 0.0, 1e-15);
         EXPECT_GT(corner.edges[k].z(), 0.5);
-        // Along y of the part the workpiece has x, along x it has -y.
+        // y of the part is x of the workpiece, and x of the part is -y of the workpiece.
         const double azimuth = (120.0 * static_cast<double>(k) + (rotated ? 90.0 : -90.0)) * std::numbers::pi / 180.0;
         const Vec2 along(std::cos(azimuth), std::sin(azimuth));
         EXPECT_GT(corner.edges[k].head<2>().normalized().dot(along), std::cos(0.03));
@@ -160,7 +160,7 @@ TEST(ZoneJobs, EveryDialectCutsTheSame) {
   }
 }
 
-/// The ways of the tip at a feed, in the workpiece frame.
+/// Records the fed moves of the tip, in the workpiece frame.
 struct TipWays : NcSink {
   explicit TipWays(const Machine& m) : machine_of(m) {}
   void motion(const NcMotion& motion, const NcSettings&) override {
@@ -174,7 +174,8 @@ struct TipWays : NcSink {
   std::vector<std::pair<Vec3, Vec3>> ways;
 };
 
-/// Nothing of planner and verifier: the deepest way down and up of each facet spans its plane.
+/// Independent of planner and verifier: the deepest moves of the tip down and up each facet span the plane of the
+/// facet.
 TEST(ZoneJobs, TheTipSpansPlanesWithTheAnglesOfEachZone) {
   const Job job = zoned_job();
   const Machine m = machine();
@@ -186,7 +187,7 @@ TEST(ZoneJobs, TheTipSpansPlanesWithTheAnglesOfEachZone) {
   for (std::size_t z = 0; z < 3; ++z)
     for (const Vec2& apex : job.zones[z].apexes_mm) {
       const Vec3 root(apex.y() - 0.75, 1.5 - apex.x(), -0.5 * apertures_mm[z] * std::numbers::sqrt2);
-      std::vector<std::pair<double, Vec3>> planes;  // by the azimuth that they face from the apex
+      std::vector<std::pair<double, Vec3>> planes;  // azimuth of the normal, and the normal
       for (std::size_t k = 0; k + 1 < tip.ways.size(); ++k) {
         const auto& [from, down_to] = tip.ways[k];
         const auto& [up_from, to] = tip.ways[k + 1];
@@ -196,7 +197,7 @@ TEST(ZoneJobs, TheTipSpansPlanesWithTheAnglesOfEachZone) {
         planes.emplace_back(std::atan2(normal.y(), normal.x()), normal);
       }
       ASSERT_EQ(planes.size(), 3U) << z;
-      // Facet k lies between edges k and k + 1, of which edge 0 runs along -y of the workpiece and the zone's turn.
+      // Facet k is between edges k and k + 1. Edge 0 runs along -y of the workpiece, rotated with the zone.
       for (std::size_t k = 0; k < 3; ++k) {
         const auto plane_of = [&](double facet) {
           const double faces = (120.0 * facet - 90.0 + 60.0 + 180.0 + turns_deg[z]) * std::numbers::pi / 180.0;
@@ -204,13 +205,13 @@ TEST(ZoneJobs, TheTipSpansPlanesWithTheAnglesOfEachZone) {
         };
         const Vec3 first = plane_of(static_cast<double>(k) + 2.0).second;
         const Vec3 second = plane_of(static_cast<double>(k)).second;
-        if (z == 1) continue;  // its facets are tilted besides
+        if (z == 1) continue;  // its facets also have tilts
         EXPECT_NEAR(first.dot(second), std::sin(errors[z][k] * kRadPerArcmin), 2e-5) << z << " " << k;
       }
     }
 }
 
-/// A program for a job that differs in one number of one zone is not one for this job.
+/// A program fails the verification of a job that differs from its own job in one number of one zone.
 TEST(ZoneJobs, EveryNumberOfEveryZoneMatters) {
   const Job job = zoned_job();
   const Machine m = machine();
@@ -246,8 +247,8 @@ TEST(ZoneJobs, EveryNumberOfEveryZoneMatters) {
   }
 }
 
-/// C turns one way over all but the widest gap between two poses, and the facets of each zone follow each other as
-/// those of a single one do.
+/// C rotates in one direction and omits only the widest gap between two poses. The facets of each zone are cut in the
+/// order 1, 2, 3.
 TEST(ZoneJobs, PosesTurnAsLittleAsTheyCan) {
   const Plan plan = make_plan(zoned_job(), machine());
   ASSERT_EQ(plan.poses.size(), 9U);
@@ -262,7 +263,7 @@ TEST(ZoneJobs, PosesTurnAsLittleAsTheyCan) {
     EXPECT_LT(plan.poses[k].rounded.c_deg, plan.poses[k - 1].rounded.c_deg);
     way_deg += plan.poses[k - 1].rounded.c_deg - plan.poses[k].rounded.c_deg;
   }
-  EXPECT_NEAR(way_deg, 360.0 - widest_deg, 1.0);  // errors of angle turn facets by minutes of arc
+  EXPECT_NEAR(way_deg, 360.0 - widest_deg, 1.0);  // errors of angle rotate facets by arc minutes
   std::array<int, 3> last{};
   for (const CuttingPose& pose : plan.poses) {
     int& before = last[pose.facet.zone];
@@ -273,7 +274,7 @@ TEST(ZoneJobs, PosesTurnAsLittleAsTheyCan) {
   }
 }
 
-/// What all cavities take together, from their planes at the middles of small squares.
+/// Returns the volume that all cavities remove together, from their planes at the centers of small squares.
 double removed_by_squares_mm3(const Job& job, double step_mm) {
   struct Cavity {
     Vec3 root;
@@ -304,7 +305,7 @@ double removed_by_squares_mm3(const Job& job, double step_mm) {
 
 TEST(ZoneJobs, TakeWhatAllCavitiesTakeTogether) {
   Job job = zoned_job();
-  // Zones so close that cavities of one reach into another's hexagons.
+  // The zones are so close that cavities of one zone extend into hexagons of another zone.
   job.zones[1].rotation_deg = 180.0;
   job.zones[1].apexes_mm = {{0.76, 0.4}, {0.76, 0.66}, {0.76, 0.92}};
   const Verification v = verified(job, machine(), text_of(job, machine()));
@@ -316,7 +317,8 @@ TEST(ZoneJobs, TakeWhatAllCavitiesTakeTogether) {
   EXPECT_NEAR(v.removed_volume_mm3, expected_mm3, 2e-3 * expected_mm3);
 }
 
-/// One honeycomb told as two zones, cell by cell in turn, is the honeycomb: nothing is taken of the other zone.
+/// A honeycomb whose cells belong alternately to two zones is equal to the array: no material of the other zone is
+/// removed.
 TEST(ZoneJobs, OneArrayInTwoZonesIsTheArray) {
   Job array = cube_job(true, 0.3);
   Job zones = array;
@@ -348,7 +350,7 @@ TEST(ZoneJobs, WhatIsWrongIsRefusedWithItsKey) {
        },
        "zone[2].apexes_mm: the element at x = 2.95, y = 0.7 mm reaches beyond the array's lengths"},
       {"twice", [](Job& j) { j.zones[2].apexes_mm[1] = j.zones[0].apexes_mm[0] + Vec2(0.1, 0.0); },
-       "overlaps that at x = 0.2, y = 0.2 mm of zone 1"},
+       "overlaps the element at x = 0.2, y = 0.2 mm of zone 1"},
       {"itself", [](Job& j) { j.zones[0].apexes_mm[1] = j.zones[0].apexes_mm[0]; }, "of zone 1"},
       {"none", [](Job& j) { j.zones[0].apexes_mm.clear(); }, "zone[1].apexes_mm: must"},
       {"size", [](Job& j) { j.zones[0].aperture_mm = 0.0; }, "zone[1].aperture_mm: must be"},
