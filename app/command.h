@@ -23,7 +23,7 @@ struct CommonOptions {
   std::string json;  ///< file for the JSON document; "-" is standard output; empty: none
   std::string out;   ///< output folder; empty: none
   std::optional<std::uint32_t> threads;
-  std::optional<double> memory_gib;  ///< memory budget of beams and elements
+  std::optional<double> memory_gib;  ///< memory budget in GiB of beams and elements; none: the default
   std::uint32_t seed = 1;
   std::vector<std::string> overrides;  ///< --set key=value
   bool quiet = false;

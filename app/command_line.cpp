@@ -180,14 +180,15 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
          ": there are " + in_words(commands());
 }
 
-/// Returns an error of CLI11 on one line, with long words clipped.
+/// Returns an error message of CLI11 on one line. Long words are shortened.
 std::string one_line(const std::string& text) {
   std::string line;
   for (const std::string_view word : words_in(text)) line += (line.empty() ? "" : " ") + printable(word);
   return line;
 }
 
-/// \throw InputError for a size out of range
+/// Sets the memory budget to the value of --memory-gib if it is given.
+/// \throw InputError if the value is out of range
 void set_memory_budget(const CommonOptions& common) {
   constexpr double kLeastGiB = 0.01, kMostGiB = 65536.0;
   if (!common.memory_gib) return;

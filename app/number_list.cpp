@@ -52,7 +52,8 @@ class ListReader {
   void add_range(double start, double stop, double step, std::string_view item) {
     if (step == 0.0) fail(fmt::format("the step of a range must not be 0, got {}", in_quotes(item)));
     const double steps = (stop - start) / step;
-    if (steps < 0.0) fail(fmt::format("the range runs away from its stop, got {}", in_quotes(item)));
+    if (steps < 0.0)
+      fail(fmt::format("the step of a range must lead from start towards stop, got {}", in_quotes(item)));
     if (steps > static_cast<double>(kMostValues))
       fail(fmt::format("a range may have at most {} values, got {}", kMostValues, in_quotes(item)));
     // The stop belongs to the range although start + i * step may miss it by rounding.

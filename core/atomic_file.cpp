@@ -141,8 +141,8 @@ class TemporaryFile {
   int descriptor_ = -1;
 };
 
-/// Through a symbolic link the file it points to is replaced or made, not the link.
-/// \throw OutputError for a link that points to itself
+/// Returns the target of a symbolic link, and any other path unchanged. The target is written instead of the link.
+/// \throw OutputError if the link points to itself
 fs::path followed(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;

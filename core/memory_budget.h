@@ -11,7 +11,7 @@
 
 namespace retrace {
 
-/// A budget of memory or beams that ran out. The same work may succeed with a larger budget.
+/// Error: the budget of memory or of beams is exhausted. The same work may succeed with a larger budget.
 class TraceBudgetError : public BudgetError {
  public:
   using BudgetError::BudgetError;
@@ -24,14 +24,14 @@ void set_memory_budget_bytes(std::uint64_t bytes);
 
 /// Maximum memory in bytes of the structures that find the elements of one part: half of the budget.
 std::uint64_t element_memory_bytes();
-/// Maximum memory in bytes of the beams of one trace: a quarter of the budget. Traces that run side by side have
-/// another quarter together, see for_each_within_memory().
+/// Maximum memory in bytes of the beams of one trace: a quarter of the budget. Traces that run in parallel share
+/// another quarter, see for_each_within_memory().
 std::uint64_t beam_memory_bytes();
 
 /// Returns the size of the budget and the option that changes it, for messages.
 std::string memory_budget_text();
 
-/// Thrown if traces that run side by side exceed their common memory, although this trace alone does not.
+/// Thrown if parallel traces together exceed the memory that they share, although this trace by itself does not.
 struct SharedMemoryShort {};
 
 /// Makes the traces of the current thread share their memory with those of other threads.
@@ -56,19 +56,20 @@ class BeamMemory {
 
   void add(std::uint64_t bytes);
   void remove(std::uint64_t bytes);
-  /// Returns true if this trace exceeds beam_memory_bytes(), whatever other traces do.
+  /// Returns true if this trace by itself exceeds beam_memory_bytes().
   bool is_exceeded() const;
-  /// \throw SharedMemoryShort in the scope of a SharedMemoryScope, if all traces in such scopes exceed their common
-  ///        memory
+  /// Checks the memory that parallel traces share. Does nothing outside of a SharedMemoryScope.
+  /// \throw SharedMemoryShort if all traces within a SharedMemoryScope together exceed beam_memory_bytes()
   void require_shared();
 
  private:
   bool is_shared_;
   std::atomic<std::uint64_t> bytes_{0};
-  std::uint64_t reported_bytes_ = 0;  ///< part of `bytes_` that the common sum contains
+  std::uint64_t reported_bytes_ = 0;  ///< part of `bytes_` that was added to the total of all threads
 };
 
-/// Held by the only trace that may run outside of SharedMemoryScope while others run inside.
+/// Returns the mutex that a trace outside of any SharedMemoryScope locks while other traces run within such scopes. At
+/// most one such trace runs at a time.
 std::mutex& lone_trace_mutex();
 
 }  // namespace retrace

@@ -1,13 +1,16 @@
 #pragma once
 
-// Files that a key, an option or a column of a table names: messages about them begin with the place of that name.
+// Reads files that are named by a key, an option or a column of a table. Error messages begin with the position at
+// which the file is named.
 
 #include "core/error.h"
 
 namespace retrace {
 
-/// Calls `read`, which reads a file that a key names. \param key place where the file is named
-/// \return the value of `read` \throw InputError of `read`, with the place of the key in front
+/// Calls `read`, which reads a file that is named by a key.
+/// \param key position at which the file is named
+/// \return the return value of `read`
+/// \throw InputError if `read` throws one; its message is preceded by the position of the key
 template <class Read>
 auto read_named(const InputLocation& key, const Read& read) {
   try {

@@ -11,10 +11,10 @@
 
 namespace retrace {
 
-/// Calls work(0) .. work(count - 1) as for_each_in_parallel(). If calls that run side by side need too much memory
-/// together, the call that notices it is abandoned and repeated when no other such call is repeated. The results
-/// therefore do not depend on the number of threads.
-/// \pre a call of `work` that ends by SharedMemoryShort can be repeated
+/// Calls work(0), ..., work(count - 1) in parallel, like for_each_in_parallel(). If parallel calls together exceed
+/// their shared memory, the call that detects it is aborted and repeated. Only one call is repeated at a time. The
+/// results therefore do not depend on the number of threads. \pre `work` can be called again after it has thrown
+/// SharedMemoryShort
 inline void for_each_within_memory(std::size_t count, const std::function<void(std::size_t)>& work) {
   const auto fits_beside_others = [&work](std::size_t k) {
     const SharedMemoryScope scope;

@@ -38,7 +38,7 @@ std::vector<Argument> arguments(FabricateOptions& options) {
        "roughing, finishing, one stage such as finishing-1-facet-2, or that stage and all after it with a +",
        &options.phase, one_of(phases)},
       {"--from-element N", "start at that element's first visit [the first]", &options.from_element, whole(0, most)},
-      {"--from-pass K", "start that visit at its K-th pass, if the tool is narrower than the element [1]",
+      {"--from-pass K", "start at the K-th pass of that visit; a narrow tool needs several passes per element [1]",
        &options.from_pass, from_pass},
       {"--stop-every N", "optional stop after every N visits [none]", &options.stop_every, whole(1, most)},
       {"--split-hours H", "programs of at most so many hours [one program]", &options.split_hours}};

@@ -128,7 +128,7 @@ std::vector<Argument> arguments(ImageOptions& options) {
   std::vector<Argument> all = {
       design_argument(options.design),
       {"--pixels N|CxR",
-       "detector: along the longer side of the face [400]; camera: columns and rows [400x300]",
+       "detector: number along the longer side of the face [400]; camera: columns and rows [400x300]",
        &options.pixels,
        {.needs = {any_given({"--detector", "--camera"})}}},
       {"--lamp FILE",
@@ -139,7 +139,7 @@ std::vector<Argument> arguments(ImageOptions& options) {
        &options.lamp_aim_deg,
        {.needs = {any_given({"--lamp"})}}}};
   for (std::vector<Argument> some : {detector_arguments(options), camera_arguments(options), road_arguments(options)}) {
-    // The first option chooses the kind of picture; the others mean something for that kind only.
+    // The first option selects the kind of picture. The other options require it.
     for (std::size_t k = 1; k < some.size(); ++k) {
       std::vector<Need>& needs = some[k].traits.needs;
       needs.insert(needs.begin(), any_given({some.front().name}));

@@ -97,8 +97,9 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
   const std::vector<std::string> without_effect = studies::keys_without_effect(study);
   warnings.insert(warnings.end(), without_effect.begin(), without_effect.end());
   if (optimum.ran_out > 0)
-    warnings.push_back(fmt::format("{} of {} designs are not judged because a budget ran out, the first of them: {}",
-                                   optimum.ran_out, optimum.evaluations, optimum.ran_out_because));
+    warnings.push_back(
+        fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
+                    optimum.ran_out, optimum.evaluations, optimum.ran_out_because));
   if (made) warnings.insert(warnings.end(), made->warnings.begin(), made->warnings.end());
   const ExitCode code = files.write(studies::optimum_json(study, request, optimum, elapsed_s),
                                     studies::optimum_text(study, request, optimum), warnings,
@@ -131,7 +132,7 @@ Command optimize_command() {
           .manual =
               "Looks for the best design within constraints, and says why others lost. Designs that were looked at "
               "are kept in `optimum.sqlite` in the output folder. Exits with 1 if no design is feasible, and with 3 "
-              "if none is and a budget of memory or beams ran out for some. With "
+              "if no design is feasible and some were not evaluated because the memory or beam budget ran out. With "
               "`--job` the fabrication job of the chosen design is written, with the options of `job`.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.optimum/1", "retrace.job/1"},

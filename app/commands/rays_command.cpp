@@ -46,7 +46,7 @@ std::vector<Argument> arguments(RaysOptions& o) {
       design_argument(o.design),
       {"--source FILE", "rays to trace: IES TM-25 (.tm25ray) or a table (.csv)", &o.source, files("")},
       {"--emitter KIND", "in place of a file: a disc that sends out rays", &o.emitter, no_file},
-      {"--rays N", fmt::format("emitter: how many [{}]", kUsualRays), &o.rays,
+      {"--rays N", fmt::format("emitter: number of rays [{}]", kUsualRays), &o.rays,
        of_emitter(whole(1, studies::kMaxEmitterRays))},
       {"--disc-mm D",
        "diameter of the emitter [default: 0, a point; collimated light: the size of the part or of one period]",

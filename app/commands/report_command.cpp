@@ -20,12 +20,12 @@ using Json = nlohmann::ordered_json;
 struct ReportOptions {
   std::string folder;
   std::string title;  ///< empty: that of the design
-  Words read;         ///< files and folders outside the folder that may be read
+  Words read;         ///< files and folders outside the result folder that may be read
 };
 
 std::vector<Argument> arguments(ReportOptions& options) {
   return {{"DIR", "folder that other commands wrote with --out", &options.folder, files("/")},
-          {"--title TEXT", "of the page [that of the design]", &options.title},
+          {"--title TEXT", "title of the page [title of the design]", &options.title},
           {"--read PATH", "file or folder outside DIR that may be read, such as the mesh of a design; repeatable",
            &options.read, files("")}};
 }

@@ -93,7 +93,8 @@ class Welder {
   std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> known_;
 };
 
-/// Number of triangles that a binary file gives. \pre the text has a header and a count
+/// Returns the number of triangles that is stored after the header of a binary file.
+/// \pre the text contains a header and this number
 std::size_t binary_count(std::string_view text) {
   return value_at<std::uint32_t>(text, kHeaderBytes);
 }
@@ -106,20 +107,21 @@ bool is_binary(std::string_view text) {
   return text.size() >= binary_length(0) && text.size() == binary_length(binary_count(text));
 }
 
-/// Whether a file begins with bytes that no text has: a binary file has a zero in its header or its count.
+/// Returns true if there is a zero byte in the header or in the number of triangles. Binary files have one, text files
+/// do not.
 bool begins_as_binary(std::string_view text) {
   return text.substr(0, binary_length(0)).find('\0') != std::string_view::npos;
 }
 
 /// \throw InputError for a binary file whose length does not fit its number of triangles
 [[noreturn]] void refuse_length(std::string_view text, const std::string& name) {
-  constexpr std::string_view what = "not an STL file: binary STL has 84 bytes and 50 for each triangle";
+  constexpr std::string_view what = "not an STL file: binary STL must have 84 bytes plus 50 for each triangle";
   if (text.size() < binary_length(0)) throw InputError({name, 0, ""}, fmt::format("{}, got {}", what, text.size()));
   const std::size_t wanted = binary_length(binary_count(text));
   const std::string remedy = text.size() > wanted
-                                 ? fmt::format("remove the {} bytes behind the last triangle", text.size() - wanted)
+                                 ? fmt::format("remove the {} bytes after the last triangle", text.size() - wanted)
                                  : "the end of the file is missing, or it has another format";
-  throw InputError({name, 0, ""}, fmt::format("{}, {} for the {} that it gives, got {}: {}", what, wanted,
+  throw InputError({name, 0, ""}, fmt::format("{}, which is {} for its {} triangles, got {}: {}", what, wanted,
                                               binary_count(text), text.size(), remedy));
 }
 
@@ -156,7 +158,7 @@ class Words {
     while (at_ < text_.size() && text_[at_] != '\n') ++at_;
   }
 
-  /// Whether a word is a keyword, in small letters or capitals.
+  /// Returns true if `got` is the keyword `word`, in upper or lower case.
   static bool is(std::string_view got, std::string_view word) {
     return got.size() == word.size() && lower_case(got) == word;
   }

@@ -18,14 +18,13 @@ inline constexpr std::size_t kMostStlTriangles = 10'000'000;
 /// header, up to 80 bytes
 std::string stl_text(const BoundaryMesh& mesh, std::string_view title);
 
-/// Reads binary and ASCII STL. A file whose length fits the number of triangles that a binary file gives is binary,
-/// whatever its header begins with. Words of ASCII files may have capitals. Normals are passed over: the order of the
-/// vertices says which side is out. Vertices with equal coordinates become one, triangles of which two corners are one
-/// are dropped.
-/// \param name stands for the file in messages
-/// \param scale factor from the unit of the file to mm
-/// \throw InputError for text that is neither, coordinates that are no finite number below 1e6 mm, no triangle, or more
-/// than kMostStlTriangles. The message shows no text of a file that does not begin as STL does.
+/// Reads binary and ASCII STL. A file counts as binary if its length matches the number of triangles stored after its
+/// header, whatever the header begins with. Keywords of ASCII files may be in upper or lower case. Normals are ignored:
+/// the vertices of a triangle are counter-clockwise as seen from outside. Vertices with equal coordinates are merged,
+/// and triangles with two equal corners are dropped. \param name name of the file, for messages \param scale factor
+/// from the unit of the file to mm \throw InputError if the text is neither binary nor ASCII STL, if a coordinate is
+/// not a finite number below 1e6 mm, or if there is no triangle or more than kMostStlTriangles. If the file does not
+/// begin like an STL file, the message contains no text of the file.
 TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale = 1.0);
 
 }  // namespace retrace::geometry

@@ -24,8 +24,8 @@ ClosedMesh with_openings_closed(const TriangleMesh& mesh);
 /// The mesh as a boundary, all of one role: for check_boundary().
 BoundaryMesh boundary_of(const TriangleMesh& mesh);
 
-/// Returns the middle of an edge along which neighbouring triangles have opposite orientations: triangles on both sides
-/// pass it in the same direction. Returns nothing if there is no such edge; openings do not count.
+/// Returns the midpoint of an edge between two triangles with opposite orientations. Both triangles run along such an
+/// edge in the same direction. Returns nothing if there is no such edge; openings do not count.
 std::optional<Vec3> mixed_winding(const TriangleMesh& mesh);
 
 /// The mesh with every triangle turned over.

@@ -41,7 +41,7 @@ class RETRACE_API Design {
   std::vector<std::string> warnings() const;
 
   struct Content;
-  /// \throw InputError for null
+  /// \throw InputError if `content` is null
   explicit Design(std::shared_ptr<const Content> content);
   const Content& content() const { return *content_; }
 

@@ -20,9 +20,11 @@ struct ReportPage {
   std::vector<std::string> warnings;
 };
 
-/// \param title empty: that of the design
+/// Returns an HTML page of results.
+/// \param title title of the page; if it is empty, the title of the design is used
 /// \param readable files and folders that may be read for the page, such as the mesh of a design; nothing else is read
-/// \throw InputError for no documents, one that is no document of retrace, or a missing file of `readable`
+/// \throw InputError if there are no documents, if one is not a document of retrace, or if a file of `readable` is
+/// missing
 RETRACE_API ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& title = {},
                                    const std::vector<std::string>& readable = {});
 

@@ -52,8 +52,8 @@ def report(
     """Makes one self-contained HTML page of results, as `retrace report`, and writes it if a file
     is given.
 
-    title: of the page [that of the design]
-    read: files and folders that may be read, such as the mesh of a design; no others are read"""
+    title: title of the page [title of the design]
+    read: files and folders that may be read, such as the mesh of a design; other files are not read"""
     listed = [results] if isinstance(results, Result) else results
     if not isinstance(listed, (list, tuple)) or not all(isinstance(one, Result) for one in listed):
         raise refuse("results", "a result or a list of results", results)

@@ -59,7 +59,7 @@ void add_document(ResultFolder& result, const fs::path& file, const std::string&
   result.documents.push_back(std::move(document));
 }
 
-/// Returns the path without symbolic links. The file need not exist. \return an empty path if that fails
+/// Returns the path without symbolic links. The file need not exist. Returns an empty path on failure.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   const fs::path found = fs::weakly_canonical(fs::absolute(path, error), error);

@@ -29,8 +29,8 @@ struct ResultFolder {
   std::string path;
   std::vector<ResultDocument> documents;  ///< by name
   std::vector<ResultPicture> pictures;    ///< by name; drawings (SVG), and PNG where there is no drawing of that name
-  /// The only files and folders that may be opened for the page: the folder itself, and those that the user names.
-  /// Without symbolic links.
+  /// Paths without symbolic links of all files and folders that may be read for the page: the result folder, and files
+  /// and folders that the user names.
   std::vector<std::filesystem::path> readable{};
   std::vector<std::string> warnings{};  ///< about results that were left out
 };
@@ -42,7 +42,8 @@ inline constexpr std::size_t kLongestDocumentBytes = std::size_t{256} << 20;
 /// neither is passed over. \throw InputError for JSON that cannot be read
 void add_result(ResultFolder& result, const std::string& name, const std::string& text);
 
-/// Allows the page to read a file, or all files in a folder. \param option for messages
+/// Allows the page to read a file, or all files in a folder.
+/// \param option name of the command-line option, for messages
 /// \throw InputError if there is no such file or folder
 void allow_reading(ResultFolder& result, const std::filesystem::path& path, const std::string& option);
 
@@ -52,8 +53,8 @@ bool may_read(const ResultFolder& result, const std::filesystem::path& file);
 
 /// Reads all documents of retrace (JSON with a `schema` of its own) in a folder and in the folders in it; other files
 /// are passed over. Links to files that may not be read are left out with a warning.
-/// \param named files and folders elsewhere that may be read, too
-/// \throw InputError if it is no folder, if there is no result in it, or if one is no JSON
+/// \param named files and folders outside `folder` that may also be read
+/// \throw InputError if `folder` is not a folder or contains no result, or if a result is not valid JSON
 ResultFolder read_result_folder(const std::filesystem::path& folder, const std::vector<std::string>& named = {});
 
 }  // namespace retrace::report

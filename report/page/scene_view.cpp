@@ -21,8 +21,8 @@ std::array<double, 3> numbers(const geometry::Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-/// Checks that the page may read every file that a design names: designs of documents come from anywhere.
-/// \throw InputError at the first key whose file it may not read
+/// Checks that the page may read every file that a design names. Result documents may come from untrusted sources.
+/// \throw InputError at the first key that names a file which the page may not read
 void check_files(const studies::Design& design, const ResultFolder& folder) {
   for (const std::string& key : design.document->keys_of_files())
     if (const std::filesystem::path file = design.document->file(key); !may_read(folder, file))

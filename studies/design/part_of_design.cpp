@@ -86,9 +86,9 @@ geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh
   return mesh;
 }
 
-/// Warns about a mesh whose size shows that its unit is not the mm. STL files do not name their unit.
+/// Warns about a mesh whose size suggests that its unit is not mm. STL files do not contain their unit.
 void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, std::vector<std::string>* warnings) {
-  // A part smaller than the first size is probably in metres, and one larger than the second in micrometres.
+  // The unit is probably the metre for a part below kSmallestMm, and the micrometre for a part above kLargestMm.
   constexpr double kSmallestMm = 0.1;
   constexpr double kLargestMm = 1000.0;
   geometry::Vec3 lower = mesh.vertices.front();

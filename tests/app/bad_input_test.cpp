@@ -158,8 +158,7 @@ TEST(BadInput, FilesThatCannotBeReadAreRefused) {
   }
 }
 
-/// Whatever names a file that is missing, the message begins with the place of the name: file, line and key, or the
-/// option.
+/// If a named file is missing, the message begins with the position of its name: file, line and key, or the option.
 TEST(BadInput, MissingFilesAreReportedWithWhatNamesThem) {
   const TemporaryFolder folder;
   const std::string missing = "none.toml: cannot be read: No such file or directory\n";
@@ -197,7 +196,7 @@ TEST(BadInput, MissingFilesAreReportedWithWhatNamesThem) {
   expect_refused(folder, cases, {}, {});
 }
 
-/// A value that is longer than 80 characters is cut, wherever it is given.
+/// Messages shorten every value that is longer than 80 characters.
 TEST(BadInput, LongValuesAreClipped) {
   const std::string value(5000, 'q');
   const TemporaryFolder folder;
@@ -240,7 +239,8 @@ TEST(BadInput, LongValuesAreClipped) {
   }
 }
 
-/// What the system reports of a name is in the words of retrace, with the exit code of an input or of an output.
+/// If the operating system refuses a file name, retrace reports it in its own one-line format. The exit code is 2 for
+/// input files and 3 for output files.
 TEST(BadInput, NamesThatTheSystemRefusesAreReportedInOneLine) {
   const TemporaryFolder folder;
   folder.write("d.toml", design_with(0, ""));

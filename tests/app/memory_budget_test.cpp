@@ -1,4 +1,4 @@
-// What retrace needs in memory and time for many elements, and where a budget ends its work.
+// Tests of the memory and the time that retrace needs for many elements, and of runs that exceed the memory budget.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -11,12 +11,13 @@ namespace {
 
 struct Measured {
   int code = 0;
-  double peak_mib = 0.0;     ///< largest resident memory
-  double processor_s = 0.0;  ///< of all threads
+  double peak_mib = 0.0;     ///< peak resident memory
+  double processor_s = 0.0;  ///< CPU time of all threads
   std::string out, err;
 };
 
-/// Runs retrace as the only child of an interpreter, which reports what it needed.
+/// Runs retrace and measures its memory and time. retrace is the only child process of a Python interpreter, which
+/// reads the resource usage of its children.
 Measured measured(const TemporaryFolder& folder, const Arguments& arguments) {
   const std::string script =
       "import resource, subprocess, sys\n"
@@ -41,7 +42,8 @@ std::string array(const std::string& element, double length_mm) {
          "\ny_length_mm = " + std::to_string(length_mm) + "\n[body]\nthickness_mm = 2\nrefractive_index = 1.49\n";
 }
 
-/// Hexagonal cube corners of 0.01 mm. \param length_mm 9.87: 1.5 million of them
+/// Returns a design with hexagonal cube corners of 0.01 mm.
+/// \param length_mm length of both sides of the array; 9.87 mm gives 1.5 million elements
 std::string small_cubes(double length_mm) {
   return array("kind = \"hexagonal_icc\"\naperture_mm = 0.01", length_mm);
 }
@@ -50,7 +52,8 @@ const std::string kInfiniteCubes =
     "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 2.5\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = "
     "2\nrefractive_index = 1.49\n";
 
-// Rays need neither an index of the elements nor beams: with very many elements, making these alone takes longer.
+// Beams need a list of all elements, rays do not. With very many elements, it takes longer to make this list than to
+// trace the rays.
 TEST(MemoryBudget, AutoCostsNoMoreThanHalfAgainOfTheEngineThatItTakes) {
   const TemporaryFolder folder;
   folder.write("cubes.toml", small_cubes(9.87));
@@ -75,7 +78,7 @@ TEST(MemoryBudget, MoreElementsThanItHoldsAreRefusedBeforeTheyAreListed) {
   EXPECT_LE(exact.processor_s, 5.0);
 }
 
-// Without a cut-off every beam splits again and again, and only a budget ends that.
+// Without a cut-off, beams split without end. Only the memory budget ends the run.
 TEST(MemoryBudget, BeamsWithoutACutoffEndWithIt) {
   const TemporaryFolder folder;
   folder.write("cubes.toml", kInfiniteCubes);
@@ -90,7 +93,7 @@ TEST(MemoryBudget, BeamsWithoutACutoffEndWithIt) {
   }
 }
 
-// Rays then answer as if they had been requested, to the last digit.
+// If beams exceed the memory budget, `auto` gives exactly the same result as `montecarlo`.
 TEST(MemoryBudget, AutoGoesOnWithRaysWhereBeamsExceedIt) {
   const TemporaryFolder folder;
   folder.write("cubes.toml", kInfiniteCubes);
@@ -116,14 +119,15 @@ TEST(MemoryBudget, ASearchWithoutAnAnswerBecauseOfItEndsWith3) {
   folder.write("exact.toml", study("exact"));
   const Measured ended = measured(folder, {"optimize", "exact.toml", "--memory-gib", "0.02", "-o", "out"});
   EXPECT_EQ(ended.code, 3) << ended.out;
-  EXPECT_NE(ended.err.find("3 of 3 designs are not judged because a budget ran out"), std::string::npos) << ended.err;
-  // The designs are not stored as failed: a search that goes on with rays finds an answer.
+  EXPECT_NE(ended.err.find("3 of 3 designs are not evaluated because a budget ran out"), std::string::npos)
+      << ended.err;
+  // The designs are not stored as failed. A resumed search that uses rays therefore finds an optimum.
   folder.write("auto.toml", study("auto"));
   const Measured found = measured(folder, {"optimize", "auto.toml", "--memory-gib", "0.02", "-o", "other"});
   EXPECT_EQ(found.code, 0) << found.err;
 }
 
-// Beams of all elements with diffraction need memory for each element; rays need none.
+// The far field of beams with diffraction needs memory for each element. Rays need no memory for elements.
 TEST(MemoryBudget, PhotometryOfAMillionElementsGoesOnWithRays) {
   const TemporaryFolder folder;
   folder.write("prisms.toml", array("kind = \"rtp\"\nbase_mm = 0.01\nwidth_mm = 0.01", 10.0));

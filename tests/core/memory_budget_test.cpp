@@ -1,4 +1,4 @@
-// The memory budget, and loops over work that shares it.
+// Tests of the memory budget and of parallel loops that share it.
 #include "core/memory_budget.h"
 
 #include <gtest/gtest.h>
@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
-/// Sets the budget, and the default again in the end.
+/// Sets the memory budget; the destructor restores the default.
 struct Budget {
   explicit Budget(std::uint64_t bytes) { set_memory_budget_bytes(bytes); }
   ~Budget() { set_memory_budget_bytes(1024 * kMiB); }
 };
 
-/// Adds to a sum and takes its share back in the end, however that comes.
+/// Adds bytes to a sum; the destructor subtracts them again, also after an exception.
 struct Share {
   std::atomic<std::uint64_t>& sum;
   std::uint64_t own = 0;
@@ -31,15 +31,15 @@ struct Share {
   }
 };
 
-/// Raises `most` to `value` if that is more.
+/// Sets `most` to the maximum of `most` and `value`.
 void raise(std::atomic<std::uint64_t>& most, std::uint64_t value) {
   std::uint64_t seen = most.load();
   while (seen < value && !most.compare_exchange_weak(seen, value)) {
   }
 }
 
-// Each of 64 pieces of work fits into the quarter of the budget that a trace may take; eight side by side do not. All
-// must be done, within the half that traces may take together, whatever the number of threads.
+// Each of 64 tasks fits into the quarter of the budget that one trace may use, but eight parallel tasks do not fit.
+// With any number of threads, all tasks must be completed within half of the budget.
 TEST(MemoryBudget, WorkThatDoesNotFitSideBySideIsDoneAllTheSame) {
   const Budget budget(400 * kMiB);
   for (const unsigned threads : {1U, 8U}) {
@@ -60,7 +60,7 @@ TEST(MemoryBudget, WorkThatDoesNotFitSideBySideIsDoneAllTheSame) {
       });
     });
     EXPECT_EQ(done, std::vector<int>(64, 1)) << threads;
-    // Each thread may be one step and one report of 1 MiB ahead.
+    // Each thread may have added one step and one unreported change of 1 MiB.
     EXPECT_LE(most.load(), (200 + 2 * 8) * kMiB) << threads;
     EXPECT_GE(most.load(), 90 * kMiB) << threads;
   }

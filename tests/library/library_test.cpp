@@ -385,7 +385,7 @@ TEST(Library, OnePageHasSeveralResults) {
   EXPECT_THROW(report_page({{"rre.json", "{\"schema\": \"retrace.rre/1\""}}), InputError);
 }
 
-/// A page reads the files that the caller names and no others.
+/// A report page reads only files that the caller names.
 TEST(Library, APageReadsNamedFilesOnly) {
   const test::TemporaryFolder folder;
   const std::string file = (folder.path() / "part.stl").string();

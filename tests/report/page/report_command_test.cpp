@@ -157,7 +157,7 @@ TEST(Report, DesignsThatCannotBeShownAreLeftOutWithAWarning) {
   EXPECT_NE(folder.read("d/report.html").find("cannot be shown here"), std::string::npos);
 }
 
-/// A result document whose design names a file under a key.
+/// Returns a result document whose design names `file` in `key` of `table`.
 std::string document_naming(const std::string& table, const std::string& key, const std::string& file) {
   Json design = {{"source", "d.toml"},
                  {"element", {{"kind", "rtp"}, {"base_mm", 1}, {"width_mm", 1}}},
@@ -173,8 +173,8 @@ std::string document_naming(const std::string& table, const std::string& key, co
   return Json{{"schema", "retrace.rre/1"}, {"designs", {design}}, {"points", Json::array()}}.dump();
 }
 
-/// Whatever key of a design names a file outside the folder, by whatever path: it is not opened, and nothing of it is
-/// in the page, in the document or on the terminal.
+/// A file outside the folder is not opened if only a design names it, whatever the key and the path. Its content
+/// appears neither in the page nor in the document nor on the terminal.
 TEST(Report, ReadsNoFileThatOnlyADocumentNames) {
   const TemporaryFolder folder;
   const std::string secret = "swordfish";

@@ -214,7 +214,7 @@ TEST(MeshPart, BodiesThatCrossAreUnitedOnRequest) {
   EXPECT_NE(refused.err.find("cannot be united"), std::string::npos) << refused.err;
 }
 
-/// Whichever triangles are turned over, the message names the winding, not an opening, and `allow_open` does not help.
+/// If some triangles are reversed, the message names their orientation and not an opening. `allow_open` has no effect.
 TEST(MeshPart, MixedWindingIsNamed) {
   const TemporaryFolder folder;
   folder.write("mesh.toml", kMesh);
@@ -240,8 +240,8 @@ TEST(MeshPart, MixedWindingIsNamed) {
   }
 }
 
-/// A part in metres or micrometres is read as one in mm with a warning, and traced as one in mm with the scale that the
-/// warning names.
+/// A part in metres or micrometres is read as if it were in mm, and a warning suggests a scale. With this scale, the
+/// result is that of the same part in mm.
 TEST(MeshPart, ImplausibleSizesGiveAWarningThatNamesTheScale) {
   const TemporaryFolder folder;
   folder.write("mesh.toml", kMesh);

@@ -73,7 +73,7 @@ TEST(Stl, TrianglesWithoutAreaInTheirVerticesAreDropped) {
 }
 
 TEST(Stl, WrongFilesAreRefusedWithTheirLine) {
-  // Nothing of a file that does not begin as STL does is shown.
+  // The message shows no content of a file that does not begin like an STL file.
   for (const std::string text : {"", "hello", "root:x:0:0:root:/root:/bin/bash\n"})
     EXPECT_EQ(complaint(text), "a.stl: not an STL file: must begin with \"solid\", or be binary STL");
   EXPECT_EQ(complaint("solid\nendsolid\n"), "a.stl: must have at least one triangle, got none");
@@ -87,26 +87,26 @@ TEST(Stl, WrongFilesAreRefusedWithTheirLine) {
       << complaint(kTriangle.substr(0, 60));
 }
 
-/// A binary file is one whatever its header says, and each message gives its true length and the right one.
+/// A file is recognized as binary whatever its header contains. Messages give the actual and the required length.
 TEST(Stl, BinaryFilesOfAWrongLengthAreRefusedAsBinary) {
   for (const std::string title : {"x", "solid", "solid facet normal", "SOLID x"}) {
     const std::string binary = stl_text(prism(), title);
     const std::size_t triangles = prism().triangles.size();
     EXPECT_EQ(parse_stl(binary, "a.stl").triangles.size(), triangles) << title;
-    const std::string rule = "a.stl: not an STL file: binary STL has 84 bytes and 50 for each triangle";
-    const std::string wanted = std::to_string(84 + 50 * triangles) + " for the " + std::to_string(triangles);
+    const std::string rule = "a.stl: not an STL file: binary STL must have 84 bytes plus 50 for each triangle";
+    const std::string wanted =
+        "which is " + std::to_string(84 + 50 * triangles) + " for its " + std::to_string(triangles) + " triangles";
     for (const std::size_t more : {1U, 2U, 50U, 1000U})
       for (const char byte : {'\0', '\n', 'x'})
         EXPECT_EQ(complaint(binary + std::string(more, byte)),
-                  rule + ", " + wanted + " that it gives, got " + std::to_string(binary.size() + more) +
-                      ": remove the " + std::to_string(more) + " bytes behind the last triangle");
+                  rule + ", " + wanted + ", got " + std::to_string(binary.size() + more) + ": remove the " +
+                      std::to_string(more) + " bytes after the last triangle");
     for (const std::size_t length : {binary.size() - 1, binary.size() - 50, std::size_t{84}})
-      EXPECT_EQ(complaint(binary.substr(0, length)), rule + ", " + wanted + " that it gives, got " +
-                                                         std::to_string(length) +
+      EXPECT_EQ(complaint(binary.substr(0, length)), rule + ", " + wanted + ", got " + std::to_string(length) +
                                                          ": the end of the file is missing, or it has another format");
   }
   EXPECT_EQ(complaint(std::string("\x89PNG\0", 5)),
-            "a.stl: not an STL file: binary STL has 84 bytes and 50 for each triangle, got 5");
+            "a.stl: not an STL file: binary STL must have 84 bytes plus 50 for each triangle, got 5");
 }
 
 TEST(Stl, WordsMayHaveCapitals) {
