@@ -13,11 +13,11 @@ double mean_exp(double a, double b) {
   return width > 0.0 ? std::exp(-a) * -std::expm1(-width) / width : std::exp(-a);
 }
 
-// Triangles over which x changes by this or less have a series of kTerms terms, exact to rounding.
+// Maximum change of x over a triangle for which the series is used. With kTerms terms, it is exact except for rounding.
 constexpr double kNarrow = 0.5;
 constexpr std::size_t kTerms = 14;
 
-/// (-1)^k 2 / (k + 2)!
+/// Returns the coefficients (-1)^k 2 / (k + 2)! of the series for narrow triangles.
 constexpr std::array<double, kTerms> series_of_triangle() {
   std::array<double, kTerms> factors{1.0};
   for (std::size_t k = 1; k < kTerms; ++k) factors[k] = -factors[k - 1] / (static_cast<double>(k) + 2.0);
@@ -25,9 +25,9 @@ constexpr std::array<double, kTerms> series_of_triangle() {
 }
 
 /// Mean of exp(-x) over a triangle on which x is linear with the values given at its corners: twice the divided
-/// difference of exp(-x) (Hermite-Genocchi). Wide ones by the recursion of divided differences, which cancels little
-/// there; narrow ones as a series in h_k(u, v) = u h_(k-1) + v^k, the complete homogeneous symmetric polynomials of the
-/// differences from the first corner.
+/// difference of exp(-x) (Hermite-Genocchi). If x changes by more than kNarrow, the recursion of divided differences is
+/// used, which then has little cancellation. Otherwise a series in h_k(u, v) = u h_(k-1) + v^k is used, the complete
+/// homogeneous symmetric polynomials of the differences from the first corner.
 double mean_exp(double a, double b, double c) {
   const double u = b - a;
   const double v = c - a;

@@ -32,7 +32,7 @@ std::uint64_t interleaved(std::uint32_t a, std::uint32_t b) {
   return spread(a) | (spread(b) << 1);
 }
 
-/// What beams are sorted by first: where they go.
+/// First sorting key of beams: their direction, rounded.
 using Heading = std::tuple<bool, std::int64_t, std::int64_t, std::int64_t>;
 
 Heading heading_of(const Beam& beam) {
@@ -40,7 +40,7 @@ Heading heading_of(const Beam& beam) {
   return {beam.inside, rounded(beam.direction.x()), rounded(beam.direction.y()), rounded(beam.direction.z())};
 }
 
-/// Of each beam, how many different headings come before its own.
+/// Returns, for each beam, the number of different headings that are sorted before its own heading.
 std::vector<std::uint32_t> ranks_of_headings(const WaitingBeams& beams) {
   std::vector<std::pair<Heading, std::size_t>> sorted;
   sorted.reserve(beams.size());
@@ -67,13 +67,14 @@ Vec2 centroid_of(const Beam& beam) {
   return geometry::centroid(std::span<const Vec3>(beam.corners.data(), beam.corners.size())).head<2>();
 }
 
-/// Where it starts in the period or outline: neighbours there mostly have numbers that are near.
+/// Returns the Morton code of a position in the period or outline. Neighbouring positions usually have similar codes.
 std::uint64_t number_of_place(const Vec2& at, const Vec2& scale) {
   const auto share = [](double x) { return static_cast<std::uint32_t>((x - std::floor(x)) * 65535.0); };
   return interleaved(share(at.x() * scale.x()), share(at.y() * scale.y()));
 }
 
-/// The first from `at` on for which `holds`, which does for all behind it; mostly near.
+/// Returns the first position from `at` on for which `holds` is true. If `holds` is true for a position, it is true for
+/// all later positions. The search is fast if the result is near `at`.
 template <typename Iterator, typename Predicate>
 Iterator first_that(Iterator at, Iterator end, const Predicate& holds) {
   std::ptrdiff_t step = 1;

@@ -16,8 +16,9 @@ class BeamWalk;
 
 /// Beams that are as many interfaces away from where they were first too weak, in the order in which survivors are
 /// chosen: sorted by direction and place, as alike beams have alike ends (Array-RQMC: L'Ecuyer, Lecot and Tuffin,
-/// Operations Research 56, 958, 2008). Beams that stand for several places (Beam::places) count at each, one place
-/// after the other, and survivors are alone; of an endless part's, at the first for all.
+/// Operations Research 56, 958, 2008). Beams that represent copies at several
+/// positions (Beam::places) have one entry per position, one after the other, and each survivor has a single position.
+/// In an infinite part, a survivor continues at the first position and represents all of them.
 class BeamGeneration {
  public:
   /// \param part whose periods or outline places are compared by \param beams outlive this
@@ -40,7 +41,7 @@ class BeamGeneration {
   struct Entry {
     std::uint64_t order;  ///< of direction and place
     std::size_t beam;
-    double power_up_to;  ///< of all before it and its own
+    double power_up_to;  ///< sum of the powers of all entries up to and including this one
   };
   const WaitingBeams& beams_;
   bool is_endless_;

@@ -8,7 +8,7 @@
 namespace retrace::raytrace {
 namespace {
 
-// Positions of a beam that are compared with the borders for one unit of work.
+// Number of positions of a beam whose comparison with the borders counts as one unit of work.
 constexpr std::size_t kPlacesPerWork = 16;
 
 /// A stretch of the entrance along an axis, and by what it is moved to be like others.
@@ -40,7 +40,7 @@ std::vector<Span> spans(double lower, double upper, double period, int steps) {
   return all;
 }
 
-/// What of a polygon lies in a convex outline, in plan.
+/// Returns the part of a polygon that lies within a convex outline, in projection along z.
 Corners within(Corners corners, const geometry::Polygon& outline) {
   for (std::size_t k = 0; k < outline.size() && !corners.empty(); ++k) {
     const Vec2 along = (outline[(k + 1) % outline.size()] - outline[k]).normalized();
@@ -87,7 +87,8 @@ void BeamWalk::enter_at_places(const Beam& whole, double parts) {
   book_rest(whole, 1.0 - entered);
 }
 
-/// \return the share of the light that enters there
+/// Starts the beams that enter above one region.
+/// \return the fraction of the light that enters there
 double BeamWalk::enter_region(const Beam& whole, std::uint32_t number, const Vec2& most_step_mm) {
   const RepeatRegion& region = equal_->regions()[number];
   const Frame from_above(-Vec3::UnitZ());

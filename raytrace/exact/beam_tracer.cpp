@@ -22,7 +22,8 @@ constexpr double kSlowestFall = 0.7;
 // Weak beams that wait to be resampled: some 30 MB.
 constexpr std::size_t kMostWaiting = 50'000;
 
-/// Returns the part. \throw BudgetError if its elements exceed the memory budget
+/// Returns the part.
+/// \throw BudgetError if its elements exceed the memory budget
 const geometry::Part& within_memory(const geometry::Part& part) {
   require_element_memory(part);
   return part;

@@ -38,9 +38,10 @@ constexpr std::uint64_t kWorkOfCut = 30;
 constexpr std::uint64_t kWorkOfBeam = 50;
 // Work grows as the power that is left behind falls, to this power, before two passes have told.
 constexpr double kUsualSlope = 0.5;
-// Beams that are kept for a lower cut-off: some 150 MB, and at most three quarters of the memory of a trace.
+// Maximum number of beams below the cut-off that are kept for a lower cut-off. They take about 150 MB. Their memory is
+// also limited to three quarters of that of a trace.
 constexpr std::size_t kMostDeferred = 200'000;
-// Work of moving one copy of a beam from one list of positions to another.
+// Work of moving one position of a beam from one list to another, in units of BeamWalk::work().
 constexpr std::uint64_t kWorkOfPlace = 1;
 
 /// Memory of a waiting beam without its list of positions, in bytes.

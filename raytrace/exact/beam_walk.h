@@ -125,9 +125,11 @@ class BeamWalk {
   /// Removes the last waiting beam and returns it.
   Beam next_pending();
   void keep_equal_places(Beam& beam);
-  /// Returns null for one position. The memory of the positions counts until the last beam with them is gone.
+  /// Returns a shared list of the positions, or null if there is only one position. The memory of the list counts until
+  /// the last beam that uses the list is destroyed.
   std::shared_ptr<const BeamPlaces> shared(BeamPlaces places) const;
-  /// Returns true if so many beams are below the cut-off that further ones are not kept, but found again.
+  /// Returns true if the list of beams below the cut-off is full. Further beams are then not stored. If a lower cut-off
+  /// is needed, the walk must start again.
   bool has_many_deferred() const;
   void defer(Beam&& beam);
   /// Power of beams that wait, in this pass or below its cut-off.
@@ -175,7 +177,9 @@ class BeamWalk {
   double index_at(bool inside) const { return inside ? setup_.optics.index : setup_.optics.back_index; }
   void observe_front() const;
   [[noreturn]] void fail_on_budget() const;
-  /// \throw BudgetError if the beams of this walk exceed the memory budget \throw SharedMemoryShort
+  /// Checks the memory of the beams.
+  /// \throw BudgetError if the beams of this walk exceed the memory budget
+  /// \throw SharedMemoryShort as BeamMemory::require_shared()
   void require_memory() const;
 
   const geometry::Part& part_;
@@ -189,7 +193,7 @@ class BeamWalk {
   std::vector<ScatterSite>* sites_ = nullptr;
   std::optional<std::uint32_t> replicate_;
   Tally tally_;
-  /// Beams that wait, with their total power and the memory that they occupy.
+  /// Queue of beams, with their total power and the memory that they occupy.
   struct Waiting {
     WaitingBeams beams;
     double power = 0.0;

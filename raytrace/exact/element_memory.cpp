@@ -7,12 +7,13 @@
 namespace retrace::raytrace {
 namespace {
 
-/// Memory in bytes of a cell: in CellIndex, where it is listed in some five buckets, and in the lookup by which
-/// EqualPlaces finds like cells.
+/// Memory in bytes of a cell. It includes about five entries of the cell in buckets of CellIndex, and the lookup table
+/// in which EqualPlaces finds identical cells.
 constexpr double kBytesPerCell = 150.0;
 /// Memory in bytes of a bucket of CellIndex. Cells that are much longer than wide are listed in many buckets.
 constexpr double kBytesPerBucket = 24.0;
-/// Work of listing a cell and of searching its neighbours: some 1.2 us.
+/// Work of adding a cell to the index and of comparing it with its neighbours, in units of ElementCost::work; about
+/// 1.2 us.
 constexpr double kWorkPerCell = 40.0;
 
 double bucket_count(const geometry::Part& part) {
@@ -40,7 +41,7 @@ void require_element_memory(const geometry::Part& part) {
   const ElementCost cost = element_cost(part);
   if (cost.fits_memory()) return;
   throw TraceBudgetError(fmt::format(
-      "beams through {:.3g} cells take some {:.3g} GiB, more than half of {}: give a larger budget, or --engine "
+      "beams through {:.3g} cells take about {:.3g} GiB, which exceeds half of {}: give a larger budget, or --engine "
       "montecarlo",
       cost.cells, cost.bytes / static_cast<double>(1U << 30), memory_budget_text()));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-// What the structures in which beams find the elements of a part cost, before they are made.
+// Estimates, before they are built, the memory and the time of the structures in which beams find the elements of a
+// part.
 
 #include "geometry/part/part.h"
 
@@ -8,9 +9,9 @@ namespace retrace::raytrace {
 
 /// Cost of making a BeamTracer.
 struct ElementCost {
-  double cells = 0.0;  ///< of the back surface, at all places
-  double bytes = 0.0;  ///< memory at its peak
-  double work = 0.0;   ///< in looks at a facet's bounding box, as BeamTrace::work()
+  double cells = 0.0;  ///< number of cells of the back surface, over all placements
+  double bytes = 0.0;  ///< peak memory
+  double work = 0.0;   ///< time in units of BeamTrace::work(), tests of a facet's bounding box
 
   /// Returns true if the memory is within the budget.
   bool fits_memory() const;
@@ -18,6 +19,7 @@ struct ElementCost {
 
 ElementCost element_cost(const geometry::Part& part);
 
+/// Checks the memory before a BeamTracer is made.
 /// \throw BudgetError if the elements of the part do not fit into the memory budget
 void require_element_memory(const geometry::Part& part);
 

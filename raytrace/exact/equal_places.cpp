@@ -17,7 +17,8 @@ using geometry::Part, geometry::PatchCell, geometry::PatchFacet, geometry::Place
 constexpr double kSameCorner = 1e-9;
 // An array of fewer periods along both axes is followed element by element.
 constexpr double kFewestPeriods = 2.0;
-// Rows or columns that differ in turn repeat after so many periods of their array, or never.
+// Maximum number of periods of an array after which a sequence of different rows or columns repeats. Longer sequences
+// are not searched.
 constexpr int kMostInTurn = 12;
 
 Vec2 origin_of(const PatchCell& cell) {
@@ -59,7 +60,7 @@ bool is_rectangle(const geometry::Polygon& outline, double near_mm) {
   return outline.size() == 4 && std::all_of(outline.begin(), outline.end(), is_corner);
 }
 
-/// Of what the cell covers in plan.
+/// Returns the area of a cell in projection along z.
 double plan_area(const SurfacePatch& patch, const PatchCell& cell) {
   double area_mm2 = 0.0;
   for (std::uint32_t f = 0; f < cell.facet_count; ++f) {
@@ -72,7 +73,8 @@ double plan_area(const SurfacePatch& patch, const PatchCell& cell) {
   return area_mm2;
 }
 
-/// With the fewest periods of its lattice after which rows that differ, in turn, repeat.
+/// Returns the region with the smallest multiple of its periods after which a sequence of different rows or columns
+/// repeats.
 RepeatRegion repeating(const geometry::Polygon& outline, const std::array<Vec2, 2>& periods_mm,
                        const std::vector<PlacedCell>& cells, double near_mm) {
   for (int all = 1; all <= kMostInTurn; ++all)

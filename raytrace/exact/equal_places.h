@@ -15,12 +15,13 @@
 
 namespace retrace::raytrace {
 
-/// What of an array repeats: cells that are alike, and how far the part is the same when it is moved by a period. Parts
-/// of zones repeat in each of their regions by itself.
+/// Translational symmetry of an array: identical cells, and the region within which the part does not change when it is
+/// shifted by a period. In a part of zones, each region has a symmetry of its own.
 class EqualPlaces {
  public:
-  /// Nothing for a part whose elements are not all alike or too few, or whose outline is no rectangle along the axes;
-  /// of zones: for one none of whose regions repeats. \param centre_mm point of the plane that becomes the origin
+  /// Returns the symmetry of a part. Returns nothing if the elements differ or are too few, or if the outline is not a
+  /// rectangle along the axes. For a part of zones, returns nothing if no region repeats.
+  /// \param centre_mm point of the plane z = 0 that becomes the origin
   static std::optional<EqualPlaces> of(const geometry::Part& part, const geometry::Vec2& centre_mm);
 
   /// A cell as one of those that are like it: the id is that of the first of them. \param offset_mm as CellIndex tells
@@ -28,16 +29,18 @@ class EqualPlaces {
   CellPlace place_of(const geometry::SurfacePatch& patch, const geometry::PatchCell& cell,
                      const geometry::Vec2& offset_mm) const;
 
-  /// Of a part that is one array.
+  /// Period of a part that is a single array.
   const geometry::Vec2& period_mm() const { return period_mm_; }
-  /// Of a part of zones, which they cover; those of a part that is one array are not told.
+  /// Regions of a part of zones, which together cover the part; empty for a part that is a single array.
   const std::vector<RepeatRegion>& regions() const { return regions_; }
   /// Of a part that repeats without end: by what it may be moved besides, within its period, and stay the same.
   const std::optional<geometry::Vec2>& within_period_mm() const { return within_period_mm_; }
 
-  /// Divides places into those where a beam meets the same. \param places offsets of the beam and its copies, moved
-  /// from each other by whole periods \param sweep in plan, of the first: all that it may meet lies there \param region
-  /// of zones: in which those places are \return nothing if they all meet the same
+  /// Divides the positions of a beam into groups. Within a group, all copies of the beam meet identical facets.
+  /// \param places offsets of the beam and its copies, which differ by whole periods
+  /// \param sweep box, in projection along z, that contains everything that the first copy may meet
+  /// \param region index of the region that contains the positions, for parts of zones
+  /// \return empty if all copies meet identical facets
   std::vector<BeamPlaces> divided(const BeamPlaces& places, const geometry::Rectangle& sweep,
                                   std::uint32_t region) const;
 

@@ -10,14 +10,15 @@ namespace {
 
 using geometry::Polygon, geometry::Rectangle;
 
-// The cells of a period cover it but for this share.
+// Maximum relative difference between the area of a period and the total area of its cells.
 constexpr double kUncovered = 1e-6;
-// A region of fewer periods is followed element by element.
+// Minimum number of periods in a region. In smaller regions, each element is traced separately.
 constexpr double kFewestPeriodsOfRegion = 4.0;
-// Likewise one of which less than this share is left when cells beside the lattice's are left out.
+// Minimum fraction of the region's area that remains when cells outside the lattice are excluded. In other regions,
+// each element is traced separately.
 constexpr double kLeastRest = 0.25;
 
-/// The least of normal . p over a box.
+/// Returns the minimum of normal . p over the points p of a box.
 double least_along(const Vec2& normal, const Rectangle& box) {
   return (normal.array() > 0.0).select(box.lower, box.upper).dot(normal);
 }
@@ -31,7 +32,7 @@ Vec2 outward(const Polygon& outline, std::size_t side) {
   return Vec2(along.y(), -along.x()).normalized();
 }
 
-/// Where normal . p <= offset_mm, as far as a polygon may reach there.
+/// Returns a polygon that covers the half-plane normal . p <= offset_mm as far as `polygon` extends.
 Polygon half_plane(const Vec2& normal, double offset_mm, const Polygon& polygon) {
   const Rectangle box = geometry::bounding_box(polygon);
   const double reach_mm = box.size().norm();
@@ -70,7 +71,8 @@ RepeatRegion::RepeatRegion(Polygon outline, const std::array<Vec2, 2>& periods_m
   if (rest.empty() || geometry::area(rest) < kLeastRest * geometry::area(outline_mm_)) sides_.clear();
 }
 
-/// Those nearest to the middle; none if they do not cover a period.
+/// Returns the cells nearest to the centroid of the region that together cover one period. Returns nothing if no set of
+/// cells covers exactly one period.
 std::vector<PlacedCell> RepeatRegion::cells_of_a_period(const std::vector<PlacedCell>& cells) const {
   const Vec2 middle = geometry::centroid(outline_mm_);
   const double reach_mm = periods_mm_[0].norm() + periods_mm_[1].norm();
@@ -101,7 +103,7 @@ bool RepeatRegion::is_of_lattice(const PlacedCell& cell, const std::vector<Place
   });
 }
 
-/// Draws the side in that has to move least for it.
+/// Excludes a box from the region: moves inward the side that has to move least.
 void RepeatRegion::leave_out(const Rectangle& box_mm) {
   Side* nearest = nullptr;
   double least_loss = std::numeric_limits<double>::infinity();

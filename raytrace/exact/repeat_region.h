@@ -1,7 +1,7 @@
 #pragma once
 
-// A region of a part of zones, in which cells are those of a lattice: where a beam and its copies, whole periods apart,
-// meet the same.
+// A region of a part of zones whose cells form a lattice. Within the region, a beam and its copies at whole periods
+// meet identical facets.
 
 #include <array>
 #include <vector>
@@ -11,37 +11,40 @@
 
 namespace retrace::raytrace {
 
-/// A cell of the back surface in its place, seen from above.
+/// A cell of the back surface at its position in the part, in projection along z.
 struct PlacedCell {
   geometry::Rectangle box_mm;
-  CellPlace place;  ///< its id is the same for all cells that are alike
+  CellPlace place;  ///< identical cells have the same id
   double area_mm2 = 0.0;
 };
 
 class RepeatRegion {
  public:
-  /// \param outline convex, counter-clockwise \param periods_mm across each other \param cells of the whole part \param
-  /// near_mm by which places may differ and be one
+  /// \param outline convex, counter-clockwise
+  /// \param periods_mm two periods, at right angles to each other
+  /// \param cells cells of the whole part
+  /// \param near_mm maximum distance of two positions that count as equal
   RepeatRegion(geometry::Polygon outline, const std::array<Vec2, 2>& periods_mm, const std::vector<PlacedCell>& cells,
                double near_mm);
 
   const geometry::Polygon& outline_mm() const { return outline_mm_; }
   bool repeats() const { return !sides_.empty(); }
 
-  /// What an entrance above the region is divided into: tiles that repeat by whole periods.
+  /// Division of the entrance face above the region into tiles. Tiles inside the region repeat by whole periods.
   struct Tiles {
-    geometry::Polygon first;  ///< that lies wholly within the outline ...
-    BeamPlaces inner;         ///< ... and by what it is moved to be one of all that do, itself included
+    geometry::Polygon first;  ///< one tile that lies completely within the outline
+    BeamPlaces inner;         ///< offsets from `first` to all tiles within the outline, including 0
     std::vector<geometry::Polygon> at_border;
   };
-  /// \param most_step_mm sides of tiles, or less
+  /// \param most_step_mm maximum side lengths of a tile
   std::vector<Tiles> tiles(const Vec2& most_step_mm) const;
 
-  /// As EqualPlaces::divided(): those in the middle of the region meet the same, all others each something of its own.
+  /// Divides positions as EqualPlaces::divided(). All copies whose sweep is inside the region form one group. Every
+  /// other copy forms a group of its own.
   std::vector<BeamPlaces> divided(const BeamPlaces& places, const geometry::Rectangle& sweep) const;
 
  private:
-  /// All cells where normal . p <= offset_mm, of all sides, are the lattice's.
+  /// Side of the symmetric region. Cells with normal . p <= offset_mm for all sides belong to the lattice.
   struct Side {
     Vec2 normal;
     double offset_mm = 0.0;
@@ -54,7 +57,7 @@ class RepeatRegion {
 
   geometry::Polygon outline_mm_;
   std::array<Vec2, 2> periods_mm_;
-  std::vector<Side> sides_;  ///< none: it does not repeat
+  std::vector<Side> sides_;  ///< empty if the region does not repeat
   double near_mm_;
 };
 

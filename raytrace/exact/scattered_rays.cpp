@@ -15,17 +15,18 @@ namespace {
 constexpr double kClearance = 1e-9;
 // Numbers of the rays of one round; those of the next follow.
 constexpr std::uint32_t kRaysOfRound = 1U << 26;
-// Where the widest cone would hold less of what a place scatters, it is scored by expected value.
+// Maximum fraction of a site's scattered power in the widest cone for the cone to be scored by expected value.
 constexpr double kNarrow = 0.1;
-// Rays to the source of less than this share of an ordinary one's power are followed by chance.
+// Minimum power of a ray to the source, as a fraction of an ordinary ray's power. Weaker rays undergo Russian roulette.
 constexpr double kLeastShare = 0.05;
 
-/// Of the widest cone, in air.
+/// Returns the solid angle of the widest cone in air.
 double solid_angle(const PathSetup& setup) {
   return std::numbers::pi * setup.cone_chord2.back();
 }
 
-/// By how much solid angles about a direction that leaves are smaller inside.
+/// Returns the ratio of a small solid angle inside the part to the same solid angle in air.
+/// \param out direction in air of light that leaves the part
 double narrowing(const PathSetup& setup, const Vec3& out) {
   const double n = setup.optics.index;
   return out.z() / (n * n * std::sqrt(1.0 - out.head<2>().squaredNorm() / (n * n)));
@@ -33,20 +34,20 @@ double narrowing(const PathSetup& setup, const Vec3& out) {
 
 }  // namespace
 
-/// The way by mirrors alone that light has from a place of a facet, inside the part, out into the widest cone about the
+/// Path that consists only of reflections, from a point of a facet inside the part into the widest cone about the
 /// source.
 class WayToSource {
  public:
-  /// \param turn of PathWalker::mirrors_to_entrance() there
+  /// \param turn result of PathWalker::mirrors_to_entrance() at the start of the path
   WayToSource(const PathSetup& setup, Eigen::Matrix3d turn) : setup_(setup), turn_(std::move(turn)) {}
 
-  /// At the place, of light that leaves along `out`.
+  /// Returns the direction at the start of the path of light that leaves the part along `out`.
   Vec3 direction_to(const Vec3& out) const {
     const Vec2 across = out.head<2>() / setup_.optics.index;
     return turn_.transpose() * Vec3(across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm()));
   }
 
-  /// Whether light of this direction at the place would leave into the cone.
+  /// Returns true if light with this direction at the start of the path leaves into the cone.
   bool leads_back(const Vec3& direction) const {
     const Vec3 inside = turn_ * direction;
     const Vec2 across = setup_.optics.index * inside.head<2>();
@@ -55,7 +56,7 @@ class WayToSource {
            setup_.cone_of({across.x(), across.y(), std::sqrt(rest)}) < setup_.cone_chord2.size();
   }
 
-  /// A direction out, uniform in the cone.
+  /// Draws a direction outside the part, uniformly distributed in the cone.
   Vec3 draw(surface_models::RandomStream& random) const {
     const double less = 0.5 * setup_.cone_chord2.back() * random.next();  // 1 - cos
     const double sine = std::sqrt(less * (2.0 - less)), turn = 2.0 * std::numbers::pi * random.next();
@@ -71,12 +72,14 @@ class WayToSource {
 
 namespace {
 
-/// Nothing where ordinary rays find the cone as well. \param met light that meets the facet \param power of an
-/// ordinary ray from there
+/// Returns the path from a scattering site to the source. Returns nothing if ordinary rays sample the cone well enough.
+/// \param met light that meets the facet
+/// \param power power of an ordinary ray from this site
 std::optional<WayToSource> way_to_source(const PathSetup& setup, const PathWalker& walker, const Vec3& position,
                                          const Vec3& normal, const Ray& met, double power) {
   if (!met.inside || surface_models::first_order_model(setup.optics.facet_scatter) == nullptr) return std::nullopt;
-  // Whether the cone is narrow is asked before the mirrors are looked for, and so where the lobe is densest.
+  // The width of the cone is tested before the mirrors are searched. The specular direction, where the lobe is densest,
+  // is therefore used.
   const Vec3 specular = mirrored(met.direction, normal);
   const double density = diffracted_once_into(setup.optics, normal, met, specular).light.power();
   const double in_cone = density * narrowing(setup, setup.to_source) * solid_angle(setup);
@@ -191,7 +194,8 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
     walker_.resume(start, ray, key_, replicate_, number, choices);
 }
 
-/// An ordinary ray whose light in the cones score() has booked: what it brings there counts as scattered elsewhere.
+/// Traces an ordinary ray whose light in the cones is already booked by score(). Power that this ray brings into the
+/// cones is booked as scattered elsewhere.
 void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uint32_t number, std::uint32_t& choices) {
   apart_.clear();
   walker_apart_.resume(position, ray, key_, replicate_, number, choices);
@@ -200,8 +204,8 @@ void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uin
   tally_.add(apart_);
 }
 
-/// One ray that stands for all light of the place that is diffracted once towards the widest cone. What it brings into
-/// the cones is taken from what is scattered elsewhere, where follow_scored() books it.
+/// Traces one ray that represents all light of this site that is diffracted once towards the widest cone. Its power in
+/// the cones is subtracted from the power scattered elsewhere, which contains it due to follow_scored().
 void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met,
                           double power, std::uint32_t number, std::uint32_t& choices) {
   surface_models::RandomStream random(key_, replicate_, number, choices++);

@@ -14,12 +14,12 @@ namespace retrace::raytrace {
 
 class WayToSource;
 
-/// Launches rays where beams meet rough facets. A ray stands for scattered power alone, begins at a random place of the
-/// piece of the facet in a random direction of the lobe, and is followed by all physics from there on; it never becomes
-/// a beam again, so that nothing is counted twice. Where roughness diffracts light once and mirrors lead from the place
-/// to the source, what comes into cones that are narrow against the lobe is scored by expected value: a second ray has
-/// a direction that leads there, and the power of the lobe in it (docs/theory/beams.md). For one replicate and one
-/// thread.
+/// Launches rays where beams meet rough facets. A ray carries only scattered power. It starts at a random point of the
+/// polygon on the facet, in a random direction of the lobe, and is traced with all physics. It never becomes a beam
+/// again, so that no light is counted twice. If light is diffracted once at the site and reflections lead from there to
+/// the source, light in cones much narrower than the lobe is scored by expected value: a second ray starts in a
+/// direction that leads into the cone, with the power of the lobe in this direction (docs/theory/beams.md). For one
+/// replicate and one thread.
 class ScatteredRays : public ScatteredReplicate {
  public:
   /// \param setup outlives this \param key of the random numbers of this replicate and round
@@ -45,7 +45,7 @@ class ScatteredRays : public ScatteredReplicate {
   const Cancellation* cancel_;
   Tally tally_;
   PathWalker walker_;
-  Tally apart_;  ///< of one ray whose light in the cones is not booked as that of others
+  Tally apart_;  ///< tally of a single ray; see follow_scored()
   PathWalker walker_apart_;
 };
 

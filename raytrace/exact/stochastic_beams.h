@@ -23,8 +23,8 @@ class BeamGeneration;
 /// Beams of a power above the threshold w are followed as BeamTrace follows them. A generation of weaker ones, with the
 /// power P together, is resampled: of it n = ceil(P / (kThinning w)) survive with P / n each, chosen by systematic
 /// resampling, which is unbiased and keeps the power (BeamGeneration). Replicates, each with
-/// random numbers of its own, give the standard error. It is never told to be less than what a survivor brings over
-/// their number, or one ray of scattered light: so much may be in beams or rays that none of them has seen
+/// random numbers of its own, give the standard error. The standard error is at least the power of one survivor, or of
+/// one ray of scattered light, divided by the number of replicates. This allows for light that no replicate has traced
 /// (docs/theory/beams.md).
 ///
 /// At rough facets beams keep their specular light, and what is scattered goes on by itself, in each replicate of its
@@ -49,9 +49,9 @@ class StochasticBeams {
                   const Cancellation* cancel = nullptr, BeamObserver observer = {});
   ~StochasticBeams();
 
-  /// One more round, at a lower threshold. \return whether that was the last one that is needed or possible; if it was
-  /// cancelled, it is the last as well. If a round exceeds the memory budget, the result is that of the round before.
-  /// \throw BudgetError if the first round exceeds the memory budget
+  /// Traces one more round, at a lower threshold. If the round exceeds the memory budget, the result of the round
+  /// before is kept. \return true if no further round is needed or possible, or if tracing was cancelled \throw
+  /// BudgetError if the first round exceeds the memory budget
   bool advance();
   /// Of the last round, without rays. 1.96 standard errors hold the truth in 95 of 100 cases.
   const MonteCarloResult& result() const { return result_; }

@@ -29,7 +29,7 @@ void throw_on_error(void*, RTCError code, const char* text) {
 
 RTCDevice new_device() {
   RTCDevice device = nullptr;
-  // Embree builds scenes on as many threads as are allowed where its device is made.
+  // Embree builds scenes with the number of threads that is allowed when its device is created.
   run_with_threads(std::thread::hardware_concurrency(), [&] { device = rtcNewDevice(nullptr); });
   if (device == nullptr) {
     if (rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU)
@@ -40,8 +40,8 @@ RTCDevice new_device() {
   return device;
 }
 
-/// Returns the device of the process. It is never released: Embree may hang when one device is made while another one
-/// ends.
+/// Returns the Embree device of the process. It is never released, because Embree may hang if a device is created while
+/// another device is released.
 RTCDevice shared_device() {
   static RTCDevice device = new_device();
   return device;

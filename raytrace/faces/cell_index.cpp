@@ -36,7 +36,7 @@ CellIndex::CellIndex(const geometry::Part& part, const Vec2& centre_mm) : part_(
       }
     }
   };
-  // The entries are counted first, so that they are stored one time only.
+  // The entries are counted first, so that the memory for them is allocated only one time.
   first_.resize(static_cast<std::size_t>(count_[0] * count_[1]) + 1);
   visit_all([&](std::size_t bucket, const Entry&) { ++first_[bucket + 1]; });
   std::partial_sum(first_.begin(), first_.end(), first_.begin());

@@ -19,10 +19,10 @@ using geometry::Vec2, geometry::Vec3;
 // Places nearer than this share of an element are one, normals that differ by less are one.
 constexpr double kSamePlace = 1e-8;
 constexpr double kSameNormal = 1e-9;
-// Memory in bytes of a facet in FacetsByPlace.
+// Memory of a facet in FacetsByPlace, in bytes.
 constexpr double kBytesPerFacet = 350.0;
 
-/// Returns true if the facets of the part, at all places, fit into the memory budget.
+/// Returns true if the facets of the part, over all placements, fit into the memory budget.
 bool fits_memory(const Part& part) {
   double facets = 0.0;
   for (const Placement& placement : part.placements)

@@ -27,26 +27,27 @@ namespace {
 
 using std::numbers::pi;
 
-// Philox streams: of the scrambles of points, of the choices on the way, of wavelengths and points of the pupil, of
-// choices on the way of many paths together, and of points that a guide chooses.
+// Philox streams: scrambles of points, random choices along a path, wavelengths and points of the pupil, random choices
+// of paths that are traced together, and points that a guide selects.
 constexpr std::uint32_t kCameraScrambleStream = 11;
 constexpr std::uint32_t kCameraChoiceStream = 12;
 constexpr std::uint32_t kLensStream = 13;
 constexpr std::uint32_t kCameraCellStream = 14;
 constexpr std::uint32_t kGuideStream = 15;
-// Paths of a wavelength that the cell engine follows together, about.
+// Approximate number of paths of one wavelength that the cell engine traces together.
 constexpr std::size_t kPathsTogether = 4096;
-// Number of the pass that a guide is made of; no picture has as many.
+// Number of the pass from which a guide is made. Pictures have fewer passes.
 constexpr std::uint32_t kFirstPass = 0xffffffff;
-// Least side of a tile of the picture that a guide knows by itself, and the most along a side.
+// Minimum side of a tile in pixels, and maximum number of tiles along a side of the picture. A guide has a map per
+// tile.
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMostTiles = 8;
 
 /// A path of the camera, from where it meets the part.
 struct Look {
   Contact contact;
-  double luminance = 0.0;                              ///< that it sees, cd/m^2
-  double weight = 1.0 / CameraTracer::kPointsPerPass;  ///< in the mean of its pixel
+  double luminance = 0.0;                              ///< luminance along the path, cd/m^2
+  double weight = 1.0 / CameraTracer::kPointsPerPass;  ///< weight in the mean of its pixel
   bool shows_part() const { return contact.what == Contact::What::face || contact.what == Contact::What::side; }
 };
 
@@ -209,16 +210,16 @@ struct CameraTracer::Hidden {
   std::vector<double> cumulative;
   Vec3 middle;  ///< of a sphere round the finite part
   double radius_mm = 0.0;
-  std::size_t tiles_along;          ///< a side of the picture, for the guide
-  std::optional<PixelGuide> guide;  ///< of what is followed together, after a pass that is no part of the picture
-  bool has_learnt_all = false;      ///< of pass 0 as well
-  std::vector<bool> has_guide;      ///< by pixel
-  std::vector<float> levels;        ///< what most of a pixel shows, by pixel
+  std::size_t tiles_along;          ///< number of guide tiles along a side of the picture
+  std::optional<PixelGuide> guide;  ///< set after a training pass, which is not part of the picture
+  bool has_learnt_all = false;      ///< true if the guide has also learnt from pass 0
+  std::vector<bool> has_guide;      ///< for each pixel
+  std::vector<float> levels;        ///< usual luminance of each pixel
 };
 
-/// What a pass tells a PixelGuide.
+/// Training samples that a pass gives to a PixelGuide.
 struct CameraTracer::Hidden::Lesson {
-  /// Paths for the maps.
+  /// Maximum number of paths for the maps.
   static constexpr std::size_t kMostLooks = std::size_t{1} << 22U;
 
   explicit Lesson(const Hidden& h)
@@ -231,7 +232,8 @@ struct CameraTracer::Hidden::Lesson {
     if (levels.empty()) levels.resize(pixels);
   }
 
-  /// \param looks of pixels from `pixel` on
+  /// Adds the paths of consecutive pixels to the samples.
+  /// \param pixel first of these pixels
   void take(const std::vector<Look>& looks, std::size_t pixel, PixelGuide::Samples& into) {
     for (std::size_t k = 0; k < looks.size(); k += kPointsPerPass, ++pixel) {
       const std::span<const Look, kPointsPerPass> of(looks.data() + k, kPointsPerPass);
@@ -246,13 +248,14 @@ struct CameraTracer::Hidden::Lesson {
 
   const Hidden& hidden;
   std::size_t pixels;
-  std::size_t stride = (pixels * kPointsPerPass + kMostLooks - 1) / kMostLooks;  ///< of pixels that it tells of
+  std::size_t stride = (pixels * kPointsPerPass + kMostLooks - 1) / kMostLooks;  ///< distance between sampled pixels
   PixelGuide guide;
   std::vector<float> levels;                 ///< as Hidden::levels
   std::vector<PixelGuide::Samples> samples;  ///< by block
 
  private:
-  /// The second least, as strips that differ are few and seldom dark.
+  /// Returns the usual luminance of a pixel: the second smallest value, because strips of another luminance are few and
+  /// rarely dark.
   static float level_of(std::span<const Look, kPointsPerPass> looks) {
     std::array<double, kPointsPerPass> seen;
     std::ranges::transform(looks, seen.begin(), &Look::luminance);
@@ -373,7 +376,7 @@ void CameraTracer::Hidden::look(const WorldRay& ray, std::size_t wavelength, std
   block.resume(on, wavelength, {seed, kCameraChoiceStream}, point, pixel, choices);
 }
 
-/// Where the points of a pixel lie, if all of it shows the entrance face.
+/// Returns the position of a pixel on the entrance face if the whole pixel shows the entrance face.
 std::optional<PixelPlace> CameraTracer::Hidden::place_of(std::uint32_t pixel) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);
@@ -386,13 +389,13 @@ std::optional<PixelPlace> CameraTracer::Hidden::place_of(std::uint32_t pixel) co
   return PixelPlace{at[0], at[1] - at[0], at[2] - at[0], tile_of(pixel)};
 }
 
-/// The points of a pixel in a pass.
+/// Returns the points of a pixel in a pass.
 std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden::points_of(std::uint32_t pixel,
                                                                                             std::uint32_t pass) const {
   if (is_guided(pixel)) {
     const auto words = philox({seed, kGuideStream}, pass, pixel);
     auto points = guide->points(*place_of(pixel), {words[0], words[1], words[2], words[3]});
-    // Points of each kind are to see all wavelengths.
+    // Over the passes, points of each kind are traced at all wavelengths.
     const auto turn = static_cast<std::ptrdiff_t>(philox({seed, kGuideStream}, pass, pixel, 1)[0] % kPointsPerPass);
     std::rotate(points.begin(), points.begin() + turn, points.end());
     return points;
@@ -407,7 +410,7 @@ std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden
   return points;
 }
 
-/// The paths of a pixel in a pass.
+/// Starts the paths of a pixel in a pass.
 void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);
@@ -443,7 +446,8 @@ void CameraTracer::Hidden::follow_together(std::uint32_t pass, std::uint32_t blo
   }
 }
 
-/// \param lesson to be filled; null: nothing is learnt
+/// Traces a pass.
+/// \param lesson receives training samples unless it is null
 std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, const Cancellation* cancel,
                                                       Lesson* lesson) const {
   const std::size_t columns = scene.view.columns;
@@ -470,7 +474,8 @@ std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, cons
     for (std::size_t k = 0; k < block.looks.size(); ++k) {
       const Look& look = block.looks[k];
       const std::size_t pixel = first + k / kPointsPerPass;
-      // The weights of a pixel's points add up to 1 in the mean: by how much they miss it must not brighten its level.
+      // The weights of a pixel's points add up to 1 only on average. The usual luminance of the pixel is therefore
+      // subtracted before weighting, so that the deviation causes no noise.
       const double level = is_guided(pixel) ? static_cast<double>(levels[pixel]) : 0.0;
       const double luminance = level / kPointsPerPass + look.weight * (look.luminance - level);
       result[pixel] += luminance;
@@ -492,7 +497,7 @@ std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, cons
   return result;
 }
 
-/// A pass that the guide learns from. It stays as it was if that was cancelled.
+/// Traces a pass from which the guide learns. If the pass is cancelled, the guide is unchanged.
 std::optional<CameraPass> CameraTracer::Hidden::trace_and_learn(std::uint32_t number, const Cancellation* cancel) {
   Lesson lesson(*this);
   std::optional<CameraPass> result = trace(number, cancel, &lesson);

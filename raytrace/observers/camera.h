@@ -122,10 +122,10 @@ class CameraTracer {
   /// Whether many paths are followed together.
   bool is_by_cells() const;
   CameraImage empty_image() const;
-  /// A pass, on the threads at hand; nothing if it was cancelled. It depends on seed, scene and its number alone.
-  /// Where paths are followed together, pixels take half of their points by PixelGuide if that serves. It learns from a
-  /// pass that is no part of the picture, and from pass 0; the first call traces what is missing. One call at a time.
-  /// \throw BudgetError if power is lost
+  /// Traces a pass with all available threads. Returns nothing if it was cancelled. The result depends only on the
+  /// seed, the scene and the number of the pass. In the cell engine, PixelGuide selects half of the points of a pixel
+  /// if it reduces noise. The guide learns from a training pass, which is not part of the picture, and from pass 0. The
+  /// first call traces these passes. Only one call may run at a time. \throw BudgetError if power is lost
   std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;
   /// Adds the next pass; false and nothing added if it was cancelled.
   bool add_pass(CameraImage& image, const Cancellation* cancel = nullptr) const;

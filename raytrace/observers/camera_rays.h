@@ -1,7 +1,6 @@
 #pragma once
 
-// Rays of a camera up to the part, and what they find beyond it: the lens that sends them, where they meet a sheet, and
-// the lamp. For CameraTracer alone.
+// Internal to CameraTracer: the lens from which rays start, the point at which a ray meets the sheet, and the lamp.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -13,13 +12,13 @@
 
 namespace retrace::raytrace {
 
-/// A ray outside of the part, in the frame of cameras.
+/// A ray outside the part, in the frame of the camera.
 struct WorldRay {
   Vec3 origin;
   Vec3 direction;
 };
 
-/// Where a ray of the camera meets the part. Local: the frame in which light is followed.
+/// Point at which a ray of the camera meets the part. The local frame is the frame in which light is traced.
 struct Contact {
   enum class What { nothing, face, side, outside, dark };
   What what = What::nothing;
@@ -43,7 +42,9 @@ class Lens {
     pupil_radius_mm_ = 0.5 * view.pupil.rad() * (view.target_mm - view.eye_mm).norm();
   }
 
-  /// The ray through a point of the picture, in pixels from its upper left corner. \param pupil point of the unit disc
+  /// Returns the ray through a point of the picture.
+  /// \param at position in pixels, from the upper left corner of the picture
+  /// \param pupil point of the unit disc, which represents the pupil
   WorldRay ray(const Vec2& at, const Vec2& pupil) const {
     const Vec3 origin = eye_ + pupil_radius_mm_ * (pupil.x() * right_ + pupil.y() * up_);
     const Vec3 focus = target_ + pixel_mm_ * ((at.x() - half_.x()) * right_ + (half_.y() - at.y()) * up_);
@@ -60,7 +61,7 @@ class Lens {
   double pupil_radius_mm_ = 0.0;
 };
 
-/// Luminance of the lamp as light that leaves the part finds it.
+/// Luminance of the lamp, seen along a ray that leaves the part.
 class Luminaire {
  public:
   Luminaire(const LampDisc& lamp, const CameraView& view, DiscAverage discs)
@@ -73,7 +74,7 @@ class Luminaire {
     intensity_ = lamp.illuminance_lx * distance * distance;
   }
 
-  /// What a ray brings from it, averaged over the discs. cd/m^2
+  /// Returns the luminance of the lamp along a ray, averaged over the discs, in cd/m^2.
   double luminance(const Vec3& from, const Vec3& direction) const {
     if (!(intensity_ > 0.0)) return 0.0;
     return discs_ == DiscAverage::kernel ? averaged(from, direction) : met(from, direction);
@@ -88,7 +89,7 @@ class Luminaire {
     const double chord = (direction - way / distance).norm();
     if (chord > 1.01 * (lamp_rad + pupil_rad)) return 0.0;
     const ApertureKernel kernel({Angle::from_rad(2.0 * lamp_rad), Angle::from_rad(2.0 * pupil_rad)});
-    // Illuminance at this place times the share of pairs of points, one in each disc, that the ray joins, per
+    // Illuminance at this point, times the fraction of pairs of points, one in each disc, that the ray connects, per
     // steradian.
     return intensity_ / (distance * distance) * kernel.per_sr(2.0 * std::asin(0.5 * chord));
   }
@@ -110,7 +111,8 @@ class Luminaire {
   double intensity_ = 0.0;  ///< towards the target, lx mm^2
 };
 
-/// Where a ray meets a bent or plane sheet first; its face is the plane z = thickness_mm where it touches the target.
+/// Returns the first point at which a ray meets a curved or plane sheet. At the target point, the face of the sheet is
+/// tangent to the plane z = thickness_mm.
 inline Contact contact_with(const Film& film, double thickness_mm, const WorldRay& ray) {
   Contact contact;
   const auto is_on_it = [&](double u, double v) {

@@ -12,21 +12,23 @@ namespace {
 using geometry::Vec2;
 using Bands = std::array<double, 3>;
 
-// Lattice steps to the finest detail of what is diffracted, and to the kernel's reach: what is diffracted is known from
-// its values half a detail apart, and of finer details the kernel has shares that fall by the cube of their fineness.
+// Number of lattice steps per finest detail of the diffracted light, and per reach of the kernel. The diffracted light
+// is band-limited, so that two steps per detail determine it. The spectrum of the kernel falls with the cube of
+// frequency.
 constexpr double kStepsToADetail = 2.0;
 constexpr double kStepsToTheReach = 12.0;
-// Rays that lie apart by less than this share of the reach are told as one.
+// Maximum distance between rays that are merged, as a fraction of the kernel's reach.
 constexpr double kSpot = 1e-3;
-// Entries of the table of the kernel, but one.
+// Number of intervals in the table of the kernel.
 constexpr std::size_t kKernelSteps = 4096;
 
-/// Along +z. \pre above the horizon
+/// Returns the unit vector with these x and y components and positive z.
+/// \pre the squared norm of `cosines` is at most 1
 Vec3 upward(const Vec2& cosines) {
   return {cosines.x(), cosines.y(), std::sqrt(1.0 - cosines.squaredNorm())};
 }
 
-/// An ApertureKernel by chords of the unit sphere, from a table.
+/// Table of an ApertureKernel as a function of the chord between two points of the unit sphere.
 class ChordKernel {
  public:
   explicit ChordKernel(const ApertureKernel& kernel) : most_(2.0 * std::sin(0.5 * kernel.reach_rad())) {
@@ -48,10 +50,11 @@ class ChordKernel {
   std::vector<double> values_;
 };
 
-/// Power by cosines at the points of a lattice, summed over fields.
+/// Power per unit area of direction cosines at the points of a lattice, summed over fields.
 class Lattice {
  public:
-  /// Over the square and a margin. \param step of both cosines
+  /// Creates a lattice that covers a square and a margin around it.
+  /// \param step lattice step in both direction cosines
   Lattice(const CosineSquare& square, double margin, double step)
       : first_(square.middle - Vec2::Constant(square.half_width + margin)),
         step_(step),
@@ -85,7 +88,7 @@ class Lattice {
     }
   }
 
-  /// The mean over the kernel about a direction.
+  /// Returns the mean around a direction, weighted by the kernel.
   Bands mean(const Vec3& direction, const ChordKernel& kernel) const {
     Bands sum{};
     double weights = 0.0;
@@ -125,9 +128,9 @@ class Lattice {
   std::vector<Bands> sums_;
 };
 
-/// Rays of all fields that go nearly the same way, as one.
+/// Rays of all fields with nearly equal directions, merged into one ray.
 struct Spot {
-  Vec3 direction = Vec3::Zero();  ///< mean, by power
+  Vec3 direction = Vec3::Zero();  ///< mean, weighted by power
   double power = 0.0;
   Bands bands{};
 };
@@ -168,7 +171,7 @@ std::vector<Bands> disc_means(std::span<const BandedField> fields, const CosineS
   for (const BandedField& one : fields) detail = std::min(detail, one.field->detail_rad());
   const double step = std::min(detail / kStepsToADetail, kernel.reach_rad() / kStepsToTheReach);
   const bool is_diffracted = std::isfinite(detail);
-  // Where a wide square is seen by small discs, points for each view are fewer than those of a lattice.
+  // For a wide square and small discs, direct evaluation at each view needs fewer points than the lattice has.
   const bool is_direct = is_diffracted && Lattice::points(square, kernel.reach_rad(), step) >
                                               static_cast<double>(means.size() * kernel.nodes(detail).size());
   if (is_direct) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What discs of source and receiver make of far fields, at all points of a square of directions.
+// Averages far fields over the discs of source and receiver, at all points of a square of directions.
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace retrace::raytrace {
 
-/// Points over x and y of unit vectors, row by row of rising y, x rising.
+/// Grid of points in the x and y components of unit vectors. Points are stored row by row, with ascending y and x.
 struct CosineSquare {
   geometry::Vec2 middle = geometry::Vec2::Zero();
   double half_width = 0.0;  ///< > 0
@@ -23,16 +23,17 @@ struct CosineSquare {
   geometry::Vec2 at(std::size_t index) const;
 };
 
-/// A far field, and what its intensities count in each of three bands, such as red, green and blue.
+/// A far field, and the weights of its intensities in three bands, such as red, green and blue.
 struct BandedField {
   const FarField* field = nullptr;
   std::array<double, 3> weights{};
 };
 
-/// Of each point and band the sum over fields of weight x FarField::intensity(), per steradian, within 2e-4 of the
-/// greatest; 0 below the horizon. What is diffracted is worked out once, on a lattice as fine as its details, and means
-/// over the discs are sums over that lattice (docs/theory/appearance.md). Of no use if it was cancelled. \pre the
-/// fields are of one direction of light
+/// Returns, for each point and band, the sum over the fields of weight times FarField::intensity(), per steradian. The
+/// error is at most 2e-4 of the maximum. Points below the horizon have the value 0. The diffracted light is computed
+/// one time on a lattice that resolves its details. Means over the discs are sums over this lattice
+/// (docs/theory/appearance.md). If the computation is cancelled, the result is invalid.
+/// \pre all fields have the same direction of light
 std::vector<std::array<double, 3>> disc_means(std::span<const BandedField> fields, const CosineSquare& square,
                                               const ApertureKernel& kernel, const Cancellation* cancel);
 

@@ -73,7 +73,7 @@ class FarField {
   std::vector<double> diffracted_per_sr(const std::vector<Vec3>& directions) const;
   /// The lobes of what scatters, likewise.
   double scattered_per_sr(const Vec3& direction) const;
-  double scattered_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;  ///< that discs see
+  double scattered_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;  ///< mean over the discs
 
   /// Power by the bins of a grid, and outside of it at the end. Undiffracted light goes where its direction is;
   /// diffracted light by its density in the middle of a bin.

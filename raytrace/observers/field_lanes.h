@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to the far field: transforms of polygons and sums over them, computed for many directions at once by SIMD.
+// Internal to the far field: Fourier transforms of polygons and powers of fields, for many directions at once by SIMD.
 
 #include <Eigen/Core>
 #include <array>
@@ -28,7 +28,7 @@ struct Outline {
   std::vector<geometry::Vec2> corners_mm;  ///< relative to the centroid
   geometry::Vec2 centroid_mm;
   double area_mm2 = 0.0;
-  double size_mm = 0.0;  ///< greatest distance of a corner from the centroid
+  double size_mm = 0.0;  ///< maximum distance of a corner from the centroid
 };
 
 /// As PolygonTransform::at(), at wave vectors (kx, ky), in radians per mm.

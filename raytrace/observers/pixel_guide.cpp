@@ -11,13 +11,13 @@ namespace {
 
 using geometry::Vec2;
 
-/// Paths all over the picture for each bin of a map, and its most bins.
+/// Number of paths of the whole picture per bin of a map, and maximum number of bins.
 constexpr std::size_t kPathsPerBin = 32;
 constexpr std::size_t kMostBins = std::size_t{1} << 16U;
-/// What is expected of a bin counts as much as so many paths: few meet anything.
+/// Weight of the expected mean of a bin, as a number of paths. Few paths of a bin are bright.
 constexpr double kPathsOfPrior = 32.0;
 
-// Places in a period and in a pixel are numbers of 32 digits: what lies a period on is the same.
+// Positions within a period or a pixel are stored as 32-bit fractions. Overflow then subtracts whole periods.
 constexpr double kWhole = 0x1p32;
 
 std::uint64_t digits(double x) {
@@ -28,7 +28,7 @@ std::uint32_t share_of(std::uint32_t within, std::uint64_t whole) {
   return static_cast<std::uint32_t>((std::uint64_t{within} * whole) >> 32U);
 }
 
-/// A map and all that are coarser, the coarsest last.
+/// A map at all resolutions, from fine to coarse.
 using Pyramid = std::vector<PixelGuide::Bins>;
 
 Pyramid pyramid(PixelGuide::Bins finest) {
@@ -37,8 +37,8 @@ Pyramid pyramid(PixelGuide::Bins finest) {
   return levels;
 }
 
-/// Means of bins by level, as in `found`. What a bin's own paths do not tell is expected to share out the mean of the
-/// coarser bin as `like` does; null: evenly.
+/// Returns the means of the bins at each resolution of `found`. The expected mean of a bin is the mean of its coarser
+/// bin, scaled by the ratio of these bins in `like`. If `like` is null, it is the mean of the coarser bin.
 std::vector<std::vector<double>> means_of(const Pyramid& found,
                                           const std::vector<std::vector<double>>* like = nullptr) {
   std::vector<std::vector<double>> means(found.size());
@@ -87,7 +87,7 @@ PixelGuide::Sample PixelGuide::sample(const Vec2& place_mm, std::uint32_t tile, 
   const Vec2 periods = place_mm.cwiseQuotient(period_mm_);
   const std::size_t bin =
       bin_at(static_cast<std::uint32_t>(digits(periods.x())), static_cast<std::uint32_t>(digits(periods.y())));
-  // Sums over all paths are to stay finite.
+  // This limit keeps sums over all paths finite.
   constexpr float kMostSquare = 1e30F;
   return {static_cast<std::uint32_t>(tile * columns_ * rows_ + bin), std::min(excess * excess, kMostSquare)};
 }
@@ -163,7 +163,8 @@ std::array<PixelGuide::Point, PixelGuide::kPoints> PixelGuide::points(
   const double sum = roots_at(pixel, shift, roots);
   constexpr std::size_t kByMap = kPoints / 2;
   constexpr std::size_t kEvenly = kPoints - kByMap;
-  // A candidate may be taken by either; it counts by the mean number of times that it is.
+  // A candidate may be selected evenly or by the map. Its weight is the reciprocal of its expected number of
+  // selections.
   const auto point_of = [&](std::size_t k) {
     const double even = static_cast<double>(kEvenly) / kCandidates;
     const auto [x, y] = candidate(k, shift);

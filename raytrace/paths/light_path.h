@@ -45,12 +45,12 @@ struct LightPath {
   bool is_returned = false;    ///< it leaves through the entrance face, within `cone_deg`
 };
 
-/// The first facet that a ray meets, if any.
+/// Function that returns the first facet that a ray meets, or nothing.
 using HitFinder = std::function<std::optional<SurfaceHit>(const SurfaceRay& ray)>;
 
 /// Follows the stronger branch at every interface from a point of the entrance face: how one would draw the light. For
 /// explaining a part, not for adding up power. \pre part is finite, facets are smooth
-/// \param first_hit of a surface of the part whose origin is `centre_mm`
+/// \param first_hit finds facets of the part, in coordinates with the origin `centre_mm`
 /// \param cone_deg half angle of the acceptance cone
 LightPath strongest_path(const geometry::Part& part, const HitFinder& first_hit, const Vec2& centre_mm,
                          const Optics& optics, const Illumination& illumination, double cone_deg, const Vec2& entry_mm);

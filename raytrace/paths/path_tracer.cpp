@@ -13,7 +13,7 @@ using geometry::FacetRole;
 
 // Pieces of an infinite surface that one straight line may cross before it counts as trapped.
 constexpr int kMaxWraps = 1000;
-// Mirrors of a way to the entrance that is looked for beforehand; of cube corners and prisms it has no more than three.
+// Maximum number of reflections on a predicted path to the entrance face. Prisms and cube corners need at most three.
 constexpr int kMostMirrors = 8;
 
 }  // namespace

@@ -22,7 +22,8 @@ surface_models::ScatterEvent event_of(const Optics& optics, bool inside, const V
   return {direction, from, to, optics.wavelength_nm, inside};
 }
 
-/// At the mean surface. \param normal of the facet, unit, out of the part
+/// Returns the refraction event at the mean surface of the facet.
+/// \param normal unit normal of the facet, pointing out of the part
 LocalEvent event_at(const Optics& optics, const Vec3& normal, const Ray& ray) {
   LocalEvent local;
   const Vec3 z = ray.inside ? Vec3(-normal) : normal;
@@ -129,14 +130,14 @@ Stokes stokes_of(const surface_models::Polarisation2& coherency, double power) {
   return {power, s - p, cross.real(), cross.imag()};
 }
 
-/// What roughness between dielectrics makes of light, before what scatters has a direction.
+/// Light after interaction with roughness between dielectrics. The scattered light has no direction yet.
 struct RoughLight {
   enum Kind : std::size_t { reflected, transmitted, reflected_again, transmitted_again, once, kKinds };
   std::array<Light, kKinds> lights;
   std::array<double, kKinds> power{};
 };
 
-/// \param light of the ray along s and p of the piece that it meets
+/// \param light light of the ray, with the s and p axes of the surface patch that the ray meets
 RoughLight rough_light(const surface_models::HarveyShack& rough, const Light& light,
                        const materials::FresnelCoefficients& f, const LocalEvent& local) {
   const surface_models::DiffractionMeans means = surface_models::diffraction_means(rough, local.event, local.piece, f);
@@ -151,7 +152,8 @@ RoughLight rough_light(const surface_models::HarveyShack& rough, const Light& li
   return made;
 }
 
-/// Roughness between dielectrics. \param light of the ray along s and p of the piece that it meets
+/// Computes the light that returns from roughness between dielectrics.
+/// \param light light of the ray, with the s and p axes of the surface patch that the ray meets
 TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, const Light& light,
                                      const materials::FresnelCoefficients& f, const LocalEvent& local,
                                      const Ray& to_reflect, const Ray& to_transmit, double split_power,

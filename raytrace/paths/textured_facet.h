@@ -41,9 +41,9 @@ Branch choose_branch(Light& reflected, Light& transmitted, double split_power, c
 struct TexturedReturn {
   std::array<Ray, 5> rays;  ///< the first `count` of them
   std::size_t count = 0;
-  std::optional<std::size_t> once;  ///< which of them is light that roughness between dielectrics diffracts once
-  double truncated = 0.0;           ///< power that the texture keeps, or gives (negative)
-  double absorbed = 0.0;            ///< power that layers take
+  std::optional<std::size_t> once;  ///< index of the ray that roughness between dielectrics has diffracted once
+  double truncated = 0.0;           ///< power that the texture model removes, or adds if negative
+  double absorbed = 0.0;            ///< power that layers absorb
 
   /// Mirrors at the facet's plane the directions that its form has turned to the wrong side of it: light that grazes
   /// the facet. \param plane_normal unit, out of the part
@@ -57,7 +57,8 @@ struct TexturedReturn {
 TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
                                    surface_models::RandomStream& random);
 
-/// The same light that is diffracted once, into one direction: its power is per steradian. \param direction unit
+/// Returns the light that is diffracted once into a direction. Its power is per steradian.
+/// \param direction unit vector
 /// \pre surface_models::first_order_model(optics.facet_scatter) without waviness, and the ray has power
 Ray diffracted_once_into(const Optics& optics, const Vec3& normal, const Ray& ray, const Vec3& direction);
 

@@ -72,7 +72,7 @@ TEST(MemoryBudget, MoreElementsThanItHoldsAreRefusedBeforeTheyAreListed) {
   folder.write("cubes.toml", small_cubes(31.2));
   const Measured exact = measured(folder, {"rre", "cubes.toml", "--engine", "exact", "--cutoff=1e-3"});
   EXPECT_EQ(exact.code, 3);
-  EXPECT_TRUE(exact.err.starts_with("retrace: beams through 1.5e+07 cells take some ")) << exact.err;
+  EXPECT_TRUE(exact.err.starts_with("retrace: beams through 1.5e+07 cells take about ")) << exact.err;
   EXPECT_NE(exact.err.find("the memory budget of 1 GiB (--memory-gib)"), std::string::npos) << exact.err;
   EXPECT_LE(exact.peak_mib, 200.0);
   EXPECT_LE(exact.processor_s, 5.0);

@@ -226,7 +226,8 @@ TEST(BeamTracer, RunsOutOfItsBudgetAloud) {
   }
 }
 
-// Over a rectangle along which x rises by `width` the mean of exp(-x) is exp(-least) (1 - exp(-width)) / width.
+// If x increases linearly by `width` over a rectangle, starting at `least`, the mean of exp(-x) is
+// exp(-least) (1 - exp(-width)) / width.
 TEST(MeanTransmission, IsThatOfTheClosedForm) {
   const Corners corners = {Vec3(1.0, 0.0, 0.0), Vec3(1.0, 1.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 0.0)};
   for (const double least : {0.0, 0.3, 2000.0})

@@ -31,7 +31,7 @@ PartZone zone(const Element& element, Arrangement arrangement, double rotation_d
   return {{to_polygon(region)}, rotation_deg, finite(element, arrangement, 1.0, 1.0, 1.0)};
 }
 
-/// Unlike lattices side by side, one of them askew to the border.
+/// Returns a part with different lattices side by side. One lattice is oblique to the border.
 Part patchwork() {
   const PartZone left = zone(HexagonalCube{1.0}, Arrangement::honeycomb, 25.0, {{0.0, 0.0}, {9.0, 10.0}});
   PartZone middle = zone(HexagonalCube{0.8}, Arrangement::honeycomb, 0.0, {{9.0, 0.0}, {14.0, 10.0}});
@@ -40,7 +40,8 @@ Part patchwork() {
   return build_part(ZonedSpec{{18.0, 10.0}, 1.0, {left, middle, right}});
 }
 
-/// Every third column of triangles canted, or every one by chance.
+/// Returns an array of triangular cube corners. Every third column has dihedral errors; if `in_turn` is false, randomly
+/// chosen elements have them.
 Part columns(bool in_turn) {
   PartZone first = {{}, 0.0, finite(TriangularCube{1.0}, Arrangement::triangular, 1.0, 1.0, 1.0)};
   PartZone other = first;
@@ -208,8 +209,8 @@ TEST(EqualPlaces, ResampledLightIsThatOfAllPlaces) {
   }
 }
 
-/// A part's borders and the walls between its zones take a share that falls as one over its size; what is left is the
-/// sum of endless arrays of the zones' cells.
+/// The RRE of a part of zones approaches the sum of infinite arrays of the zones' cells as the part grows. The
+/// difference, caused by borders and by walls between zones, is inversely proportional to the size of the part.
 TEST(EqualPlaces, PartsOfZonesComeToTheSumOfTheirZones) {
   PartSpec upright = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
   PartSpec opened = infinite(HexagonalCube{0.8}, Arrangement::honeycomb, 1.0);

@@ -155,8 +155,8 @@ TEST(StochasticBeams, IntervalsHoldOverSeedsForRoughFacets) {
   expect_truth(questions()[0], rough(10.0, 5.0), 2e-3);
 }
 
-/// Where so little is scattered that the first rays may all miss the cone, that is not taken for an error of 0. The
-/// truth is a finer answer of other seeds: RoughFacetsAgreeWithRays has an independent one.
+/// If little light is scattered, the first rays may all miss the cone. The standard error must not be 0 then. The
+/// reference is a more accurate result with other seeds. RoughFacetsAgreeWithRays has an independent reference.
 TEST(StochasticBeams, IntervalsHoldWhereFewScatteredRaysReachTheCone) {
   const Part part = build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 2.0));
   const Optics optics = rough(10.0, 1.0);
@@ -218,9 +218,10 @@ TEST(StochasticBeams, RoughFacetsAgreeWithRays) {
   }
 }
 
-/// Prisms at normal incidence, both of whose facets reflect totally at 45 degrees: of what either scatters once, the
-/// light that goes where the mean field goes comes back, less what the facets scatter again, and the entrance face
-/// sends its share round once more. A narrow cone holds first order's density there times its solid angle inside.
+/// Prisms at normal incidence, whose two facets totally reflect at 45 degrees. Light that a facet scatters into the
+/// direction of the mean field comes back, except for the part that the facets scatter again. Part of it is reflected
+/// by the entrance face and makes a second round trip. The power in a narrow cone is the density of first-order
+/// scattering in this direction, times the solid angle of the cone inside the part.
 TEST(StochasticBeams, PrismsScatterIntoNarrowConesAsFirstOrderSays) {
   using std::numbers::pi, surface_models::Lobe, surface_models::Polarisation2;
   const Optics optics = rough(4.0, 0.3);

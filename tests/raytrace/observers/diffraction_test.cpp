@@ -334,8 +334,8 @@ TEST(FarField, TellsWhatTheBudgetOfPolygonsLeavesUndiffracted) {
   EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
 }
 
-/// By Gauss's rule along radii on either side of the kernel's kink, at so many points that what is between them is
-/// known.
+/// Returns the mean over the kernel. Gauss's rule is used along radii on both sides of the kernel's kink, with enough
+/// points to resolve the field.
 double mean_over(const FarField& field, const Vec3& direction, const ApertureKernel& kernel, double kink_rad) {
   constexpr int kRound = 300;
   const GaussRule rule = gauss_legendre(80);
@@ -358,7 +358,8 @@ double mean_over(const FarField& field, const Vec3& direction, const ApertureKer
   return sum;
 }
 
-/// Of cells with details wider than the discs, as wide and much finer, square to the light and aslant.
+/// The diffraction patterns of the cells have details wider than the discs, as wide as the discs and much narrower.
+/// Light falls along the normal and obliquely.
 TEST(DiscMeans, AreMeansOverTheDiscs) {
   for (const double discs_arcmin : {3.0, 10.0})
     for (const double radius_mm : {0.1, 0.4, 1.5})
@@ -386,7 +387,7 @@ TEST(DiscMeans, AreMeansOverTheDiscs) {
       }
 }
 
-/// Light without a shape is the kernel itself about its direction; below the horizon there is none.
+/// The mean of a single ray is the kernel around the direction of the ray. Below the horizon, the mean is 0.
 TEST(DiscMeans, OfRaysAreTheKernel) {
   FarFieldPolicy policy;
   policy.diffraction = false;

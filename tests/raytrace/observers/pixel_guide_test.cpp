@@ -1,4 +1,4 @@
-// Points of pixels that are chosen by a map: means stay, and what is rare is met.
+// Tests of pixel points that are selected by a map: mean luminances do not change, and rare bright strips are sampled.
 #include "raytrace/observers/pixel_guide.h"
 
 #include <gtest/gtest.h>
@@ -19,10 +19,11 @@ using raytrace::PixelGuide, raytrace::PixelPlace;
 const Vec2 kPeriod(2.0, 3.0);
 constexpr std::uint32_t kPasses = 4000;
 
-/// What is seen at a place of the face.
+/// Luminance as a function of the position on the face.
 using Seen = std::function<double(const Vec2& place_mm)>;
 
-/// A strip of 0.01 mm along y in every period, bright by `bright`.
+/// Returns the luminance of a scene with one strip per period. The strip is 0.01 mm wide, parallel to y, and brighter
+/// than its surroundings by `bright`.
 Seen strip(double x_mm, double bright) {
   return [=](const Vec2& at) {
     const double x = at.x() - kPeriod.x() * std::floor(at.x() / kPeriod.x());
@@ -30,7 +31,8 @@ Seen strip(double x_mm, double bright) {
   };
 }
 
-/// A guide for two tiles that has been told of places all over, of the second tile of nothing that stands out.
+/// Returns a guide for two tiles that has learnt from evenly distributed positions. The second tile has uniform
+/// luminance.
 PixelGuide guide_of(const Seen& seen) {
   constexpr std::size_t kPaths = 800'000;
   PixelGuide guide(kPeriod, 2, kPaths);
@@ -53,7 +55,7 @@ Vec2 place_of(const PixelPlace& pixel, const Vec2& within) {
 
 struct Mean {
   double mean = 0.0;
-  double variance = 0.0;  ///< of a pass
+  double variance = 0.0;  ///< variance of one pass
   double error() const { return std::sqrt(variance / kPasses); }
 };
 
@@ -90,7 +92,7 @@ Mean even(const PixelPlace& pixel, const Seen& seen) {
   });
 }
 
-/// Pixels small and large, turned, mirrored, beside and over several periods, of either tile.
+/// Returns pixels of both tiles: small, large, rotated and mirrored ones, and pixels that cover several periods.
 std::vector<PixelPlace> pixels() {
   return {{{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0},  {{-7.3, 4.4}, {0.3, 0.2}, {0.2, -0.3}, 0},
           {{1.7, -9.0}, {-0.6, 0.1}, {0.1, 0.6}, 0}, {{12.0, 30.0}, {5.3, 0.0}, {0.0, -7.1}, 0},
@@ -104,7 +106,7 @@ TEST(PixelGuide, LeavesMeansAsTheyAre) {
   for (const PixelPlace& pixel : pixels())
     for (const Seen& seen : {ones, waves, strip(0.505, 100.0), strip(0.3, 5.0)}) {
       const Mean by_map = guided(guide, pixel, seen);
-      // An independent mean over a fine grid of the pixel.
+      // The expected mean is computed independently on a fine grid over the pixel.
       double expected = 0.0;
       constexpr int kColumns = 6000;
       constexpr int kRows = 100;
@@ -127,12 +129,12 @@ TEST(PixelGuide, MeetsWhatIsRare) {
 TEST(PixelGuide, ServesOnlyWhereItsMapIsUneven) {
   const PixelGuide guide = guide_of(strip(0.505, 100.0));
   EXPECT_TRUE(guide.serves({{4.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0}));
-  // Beside the strip, and where nothing stood out.
+  // A pixel next to the strip, and a pixel of the tile with uniform luminance.
   EXPECT_FALSE(guide.serves({{0.8, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0}));
   EXPECT_FALSE(guide.serves({{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 1}));
 }
 
-/// What was learnt evenly shows where to look more closely; paths that looked there say no other mean.
+/// Learning from the paths that the guide itself has selected reduces the variance further.
 TEST(PixelGuide, LearnsFromItsOwnPoints) {
   const Seen seen = strip(0.505, 100.0);
   PixelGuide guide = guide_of(seen);
