@@ -57,7 +57,7 @@ bool is_box(const Polygon& region, double tolerance_mm) {
          });
 }
 
-/// Whether so much less than there was is more than rounding.
+/// Returns true if the lost area is larger than rounding errors can cause.
 bool is_loss(double lost_mm2, const Polygon& left, double tolerance_mm) {
   return lost_mm2 > tolerance_mm * bounding_box(left).size().norm();
 }
@@ -123,10 +123,10 @@ ArrayTiles tiles_of_cells(const PartZone& zone, const PartSpec& spec, const Arra
   return array;
 }
 
-/// The array that fills a region: that of its box, or one that reaches beyond it on all sides.
+/// Array that fills a region. It covers the bounding box of the region, or extends beyond the region on all sides.
 struct FillingArray {
   PartSpec spec;
-  Turn to_part;  ///< from its middle
+  Turn to_part;  ///< rotation and shift from coordinates relative to the centre of the array to the part frame
   bool is_cut = false;
 
   FillingArray(const PartZone& zone, const Polygon& region, double tolerance_mm)
@@ -144,7 +144,7 @@ struct FillingArray {
   Vec2 middle_mm() const { return 0.5 * Vec2(spec.array.x_length_mm, spec.array.y_length_mm); }
 };
 
-/// What stands in a region, in the part frame.
+/// Returns the tiles of the elements in a region, in the part frame.
 ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double tolerance_mm) {
   const FillingArray filling(zone, region, tolerance_mm);
   ArrayTiles array = array_tiles(filling.spec);
@@ -156,7 +156,7 @@ ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double toleranc
   return array;
 }
 
-/// The elements of the array that fills a region which lie wholly in it.
+/// Appends the elements of a zone's array that lie completely within a region.
 void add_whole_elements(const PartZone& zone, const Polygon& region, double tolerance_mm,
                         std::vector<StandingElement>& elements) {
   const FillingArray filling(zone, region, tolerance_mm);
@@ -253,7 +253,7 @@ bool is_same(const Polygon& a, const Polygon& b, double near_mm) {
   return a.size() == b.size() && std::ranges::all_of(a, has);
 }
 
-/// The outlines of elements and of what lies between them are the same, in the same places.
+/// Returns true if two arrays have elements and land with equal outlines at equal positions.
 bool are_alike(const ArraySheet& own, const ArraySheet& first, double near_mm) {
   const auto is_near = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= near_mm; };
   return is_near(own.lattice.period_mm, first.lattice.period_mm) && is_near(own.anchor_mm, first.anchor_mm) &&
@@ -263,7 +263,7 @@ bool are_alike(const ArraySheet& own, const ArraySheet& first, double near_mm) {
                     });
 }
 
-/// A turn of every element about its centroid leads its outline to itself.
+/// Returns true if a rotation of each element about its centroid maps the outline of the element to itself.
 bool may_turn(const ArraySheet& sheet, double deg, double near_mm) {
   return std::ranges::all_of(sheet.lattice.cells, [&](const Cell& cell) {
     const Vec2 middle = centroid(cell.outline);
@@ -274,22 +274,21 @@ bool may_turn(const ArraySheet& sheet, double deg, double near_mm) {
   });
 }
 
-/// The least turn that does; outlines have at most six corners.
+/// Returns the smallest rotation for which may_turn() is true. Outlines have at most six corners.
 double least_turn_deg(const ArraySheet& sheet, double near_mm) {
   for (int times = 6; times > 1; --times)
     if (may_turn(sheet, 360.0 / times, near_mm)) return 360.0 / times;
   return 360.0;
 }
 
-/// What keeps a zone's elements out of cells of the first zone's array.
+/// Returns why the elements of a zone cannot be placed in the cells of the first zone's array, or nothing if they can.
 std::optional<ZoneFault> misfit(std::size_t zone, const ArraySheet& own, const ArraySheet& first, double rotation_deg,
                                 double near_mm) {
   if (!are_alike(own, first, near_mm))
-    return ZoneFault{zone, "must leave elements with the outlines and places of those of zone 1",
-                     ZoneFault::Of::elements};
+    return ZoneFault{zone, "must keep the outlines and positions of the elements of zone 1", ZoneFault::Of::elements};
   if (!may_turn(own, rotation_deg, near_mm))
     return ZoneFault{zone,
-                     fmt::format("must be a multiple of {:.6g}, which leads the elements' outlines to themselves, "
+                     fmt::format("must be a multiple of {:.6g}, which maps the outline of each element to itself, "
                                  "got {:.17g}",
                                  least_turn_deg(own, near_mm), rotation_deg),
                      ZoneFault::Of::rotation};
@@ -404,7 +403,7 @@ std::vector<std::vector<StandingElement>> whole_elements(const ZonedSpec& spec) 
       while (cell->number != number) ++cell;
       if (!cell->is_element || !contains(plan.block_mm, cell->outline, tolerance_mm)) continue;
       const Vec2 apex = centroid(cell->outline);
-      // A rotated triangle has no corner on the side of +x.
+      // A rotated triangle has no corner in the direction +x from its centroid.
       const bool is_rotated = std::ranges::none_of(
           cell->outline, [&](const Vec2& p) { return p.x() - apex.x() > 0.75 * (p - apex).norm(); });
       elements[z].push_back({apex, zone.rotation_deg + (is_rotated ? 180.0 : 0.0)});

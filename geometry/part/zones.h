@@ -57,20 +57,21 @@ struct ZoneFault {
   std::string text;  ///< "reaches beyond the part", "overlaps zone 1"
   Of what = Of::zone;
 };
-/// The first fault of zones that do not cover the plate, or cover a part of it twice; of zones by cell also of arrays
-/// whose cells lie elsewhere than the first one's, of turns that do not lead them to themselves and of zones without
-/// elements; none if all is well.
+/// Returns the first fault of the zones, or nothing. Zones must cover the plate without overlap. For zones by cell, the
+/// arrays must have cells at the positions of the first array's cells, rotations must map each outline to itself, and
+/// each zone must have elements.
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec);
 
 /// About how many elements its zones have.
 double element_estimate(const ZonedSpec& spec);
 
-/// An element where it stands in the part.
+/// Position and rotation of an element in the part.
 struct StandingElement {
   Vec2 apex_mm = Vec2::Zero();  ///< in the part frame
-  double rotation_deg = 0.0;    ///< that of its zone, and 180 more where the zone's array rotates it
+  double rotation_deg = 0.0;    ///< rotation of its zone, plus 180 if the zone's array rotates the element
 };
-/// The elements of each zone that nothing cuts: the same that the part has. \pre as of build_part(), cube corners
+/// Returns the whole elements of each zone, which are also those of the part.
+/// \pre as of build_part(); all elements are cube corners
 std::vector<std::vector<StandingElement>> whole_elements(const ZonedSpec& spec);
 
 /// Internal to geometry: adds what build_part() takes of zones.

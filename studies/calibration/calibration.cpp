@@ -135,7 +135,8 @@ double most_by_chance(std::size_t measurements) {
                   line > 0 ? "those of lines " : "", places));
 }
 
-/// Measurements of one quantity of similar facets. The same convention gives the sign of all of them.
+/// Returns true if both measurements are of the same quantity of similar facets. Their signs follow the same
+/// convention.
 bool is_alike(const MeasuredParts& measured, const Measurement& a, const Measurement& b) {
   const auto is_rotated = [&](const Measurement& m) {
     return measured.plan_of(m.part).plan.elements[m.at.element].rotated;
@@ -144,13 +145,13 @@ bool is_alike(const MeasuredParts& measured, const Measurement& a, const Measure
 }
 
 /// Refuses a table if all measurements of one quantity of similar facets are outliers, because their sign is then
-/// likely to be wrong. This applies to several rows of one part, or to all rows of all parts. \param measured the
-/// measurements without the outliers
+/// likely to be wrong. This applies to several rows of one part, or to all rows of all parts.
+/// \param measured measurements without the outliers
 void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& parts,
                  const std::vector<Outlier>& outliers) {
   for (const Outlier& outlier : outliers) {
     const Measurement& worst = outlier.measurement;
-    if (worst.line == 0) continue;  // figures of maps have no sign that someone wrote
+    if (worst.line == 0) continue;  // the signs of values from maps are not entered by a user
     bool is_in_part = false;
     bool is_in_others = false;
     for (const Measurement& m : measured.measurements)

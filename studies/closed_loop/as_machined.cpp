@@ -197,10 +197,11 @@ ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
   if (run.result.border_overcut_mm3 > 0.0)
     part.warnings.push_back(
         run.result.elements_overcut == 0
-            ? "cavities of hexagons reach into the land at borders of zones: left out"
-            : fmt::format("cavities of hexagons reach beyond the elements' outlines at borders of zones, and take {} "
-                          "mm2 of the apertures of other elements: left out",
-                          fixed(run.result.zone_overcut_mm2, 4)));
+            ? "cavities of hexagons extend into the land at borders of zones: this is left out"
+            : fmt::format(
+                  "cavities of hexagons extend beyond the elements' outlines at borders of zones, and remove {} "
+                  "mm2 of the apertures of other elements: left out",
+                  fixed(run.result.zone_overcut_mm2, 4)));
   return machined_zones(run.job, run.request.job, elements, part.warnings);
 }
 
@@ -255,7 +256,7 @@ AsMachined as_machined(const VerificationRun& run) {
 
 namespace {
 
-/// Errors that are cut on purpose, and what the programs add.
+/// Returns the sum of the intended errors of angle and the facet tilts that the programs cause.
 geometry::AngleErrors machined_errors(geometry::AngleErrors errors, const std::vector<double>& tilt_arcmin) {
   for (std::size_t f = 0; f < tilt_arcmin.size(); ++f)
     if (std::abs(tilt_arcmin[f]) >= 1e-6) errors.facet_tilt_arcmin[f] += tilt_arcmin[f];

@@ -24,7 +24,7 @@ using geometry::Vec2;
 
 constexpr double kToldSpreadArcmin = 0.05;
 
-/// Whole elements of a design by their apexes.
+/// Finds whole elements of a design by the position of their apex.
 class DesignElements {
  public:
   struct Element {
@@ -74,14 +74,15 @@ std::string change_of(const char* key, const std::array<double, 3>& arcmin) {
   return fmt::format("surface.{}=[{}, {}, {}]", key, shortest(arcmin[0]), shortest(arcmin[1]), shortest(arcmin[2]));
 }
 
-/// The cube corner of a zone of the job, of the part.
+/// Returns the cube corner that a zone of the job makes in the part, without the allowance for shrinkage.
 geometry::Element part_element(const fabrication::Job& job, std::size_t zone) {
   fabrication::Job part = job;
   part.workpiece.shrinkage_percent = 0.0;
   return fabrication::blank_element(part, zone);
 }
 
-/// \throw InputError at the job's zone where it cuts what its design does not have
+/// Checks that the design has every element that a zone of the job cuts.
+/// \throw InputError at the zone of the job if an element is missing or differs
 void check_zone(const fabrication::Job& job, std::size_t zone, const DesignElements& elements,
                 const geometry::ZonedSpec& spec) {
   const InputLocation where = job.where(schema::path_of_entry("zone", zone));
@@ -89,25 +90,26 @@ void check_zone(const fabrication::Job& job, std::size_t zone, const DesignEleme
   for (const Vec2& apex : job.zones[zone].apexes_mm) {
     const std::string which = fmt::format("the element at x = {}, y = {} mm", shortest(apex.x()), shortest(apex.y()));
     const DesignElements::Element* const at = elements.at(apex);
-    if (at == nullptr) throw InputError(where, which + " is none of the job's design: no as-machined part can be told");
+    if (at == nullptr) throw InputError(where, which + " is not in the job's design: there is no as-machined part");
     const geometry::Element& designed = spec.zones[at->zone].elements.element;
     constexpr double kSame = 1e-9;
     const double turn_deg = std::remainder(at->rotation_deg - job.zones[zone].rotation_deg, 360.0);
     const double size = geometry::element_depth_mm(cut) / geometry::element_depth_mm(designed);
     if (cut.index() != designed.index() || std::abs(turn_deg) > kSame || std::abs(size - 1.0) > kSame)
       throw InputError(where, which +
-                                  " has another kind, size or turn in the job's design: no as-machined part can be "
-                                  "told");
+                                  " has another kind, size or rotation in the job's design: there is no as-machined "
+                                  "part");
   }
 }
 
-/// What a zone of the design is cut with, and by how much its elements miss it.
+/// Angles with which a zone of the design is cut, and deviations of its elements from these angles.
 struct CutAngles {
   std::optional<geometry::AngleErrors> asked;
   ZoneTilts missed;
 };
 
-/// Of each zone of the design. \throw InputError at the job's zone where the two do not fit
+/// Returns the angles for each zone of the design.
+/// \throw InputError at the zone of the job that does not agree with the design
 std::vector<CutAngles> cut_angles(const fabrication::Job& job, const std::vector<ElementTilts>& elements,
                                   const DesignElements& designed, const geometry::ZonedSpec& spec) {
   std::vector<CutAngles> angles(spec.zones.size());
@@ -120,8 +122,8 @@ std::vector<CutAngles> cut_angles(const fabrication::Job& job, const std::vector
       CutAngles& of_zone = angles[designed.at(apex)->zone];
       if (of_zone.asked.value_or(asked) != asked)
         throw InputError(job.where(schema::path_of_entry("zone", z)),
-                         "cuts other angles than a zone before it, which is one with it in the job's design: no "
-                         "as-machined part can be told");
+                         "has other angles than an earlier zone of the job, but both are the same zone in the job's "
+                         "design: there is no as-machined part");
       of_zone.asked = asked;
       of_zone.missed.add(*element);
     }
@@ -165,11 +167,12 @@ ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::pat
   for (ElementsOfZone& of_zone : part.elements)
     if (of_zone.mask) of_zone.mask->name = std::filesystem::absolute(of_zone.mask->file).string();
   if (cut < designed.size())
-    warnings.push_back(fmt::format("{} of {} elements are not cut, but there in the as-machined design",
+    warnings.push_back(fmt::format("{} of {} elements are not cut, but are contained in the as-machined design",
                                    designed.size() - cut, designed.size()));
   if (spread_arcmin > kToldSpreadArcmin)
-    warnings.push_back(fmt::format("facets of a zone differ by up to {} arcmin: the as-machined design has their means",
-                                   fixed(spread_arcmin, 2)));
+    warnings.push_back(
+        fmt::format("facets of a zone differ by up to {} arcmin: the as-machined design contains their mean",
+                    fixed(spread_arcmin, 2)));
   return part;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Parts of zones as programs leave them.
+// Computes the as-machined design of a part of zones.
 
 #include <array>
 #include <filesystem>
@@ -13,13 +13,16 @@
 
 namespace retrace::studies {
 
-/// By how much the facets of an element are turned open from what its job asks, in arc minutes; none: it is not cut.
+/// Tilts of the three facets of an element relative to the job, in minutes of arc, positive if the facet opens; none:
+/// the element is not cut.
 using ElementTilts = std::optional<std::array<double, 3>>;
 
-/// The zones of the job's design with whole elements alone, at the angles that the job asks for and tilted by the mean
-/// over each zone's elements.
-/// \param elements in the order of cut_elements() \param warnings is told what that leaves out
-/// \throw InputError if the design is not beside the job or has no zones, or has no such element where the job cuts one
+/// Returns the zones of the job's design without partial elements. The facets have the angles given in the job plus the
+/// mean tilts over the elements of each zone.
+/// \param elements tilts of the elements, in the order of cut_elements()
+/// \param warnings receives a warning about each difference that the result does not contain
+/// \throw InputError if the design named by the job does not exist or has no zones, or if the job cuts an element that
+/// the design does not have
 ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
                          const std::vector<ElementTilts>& elements, std::vector<std::string>& warnings);
 

@@ -124,10 +124,9 @@ void check_zones(const ZonedPart& part, const std::function<InputLocation(const 
   if (fault->what != Of::elements)
     throw InputError(where(fault->what == Of::rotation ? zone + ".rotation_deg" : zone), fault->text);
   if (!part.changes[fault->zone].empty()) throw InputError(where(zone + ".set"), fault->text);
-  // It is as the design says, so zone 1 is not.
-  throw InputError(
-      where(schema::path_of_entry("zone", 0) + ".set"),
-      fmt::format("must leave elements with the outlines and places of those of zone {}", fault->zone + 1));
+  // This zone has the elements of the design, so the elements of zone 1 are the changed ones.
+  throw InputError(where(schema::path_of_entry("zone", 0) + ".set"),
+                   fmt::format("must keep the outlines and positions of the elements of zone {}", fault->zone + 1));
 }
 
 }  // namespace retrace::studies

@@ -135,15 +135,16 @@ void check_zones(const Design& design, const JobRequest& request) {
   const std::vector<geometry::PartZone>& zones = design.zoned()->spec.zones;
   for (std::size_t z = 0; z < zones.size(); ++z) {
     const InputLocation where = design.where(schema::path_of_entry("zone", z));
-    if (is_prism(zones[z].elements)) throw InputError(where, "must have cube corners to be cut, has prisms");
+    if (is_prism(zones[z].elements)) throw InputError(where, "must have cube corners to be cut, got prisms");
     if (zones[z].elements.element.index() != zones.front().elements.element.index())
-      throw InputError(where, "must have the cube corners of the zones before it to be cut, hexagonal or triangular");
+      throw InputError(where,
+                       "must have the same kind of cube corners as the zones before it, hexagonal or triangular");
     check_upright(zones[z].elements.element, where);
   }
   check_cuts_zones(request);
 }
 
-/// Far below the increments of controls.
+/// Rounds to a step that is far below the increments of controls.
 double rounded_mm(double mm) {
   constexpr double kStepsPerMm = 1e9;
   return std::round(mm * kStepsPerMm) / kStepsPerMm;
@@ -154,7 +155,7 @@ double aperture_mm(const geometry::Element& element) {
   return hexagonal != nullptr ? hexagonal->aperture_mm : std::get<geometry::TriangularCube>(element).aperture_mm;
 }
 
-/// What the job cuts of each zone; of triangles the rotated ones apart.
+/// Adds to the job the elements of each zone. Rotated triangles form a separate zone of the job.
 void add_zones(const Design& design, MadeJob& made) {
   Job& job = made.job;
   const geometry::ZonedSpec spec = zones_of(design);
@@ -172,7 +173,7 @@ void add_zones(const Design& design, MadeJob& made) {
       by_turn[std::remainder(at.rotation_deg, 360.0)].apexes_mm.emplace_back(rounded_mm(at.apex_mm.x()),
                                                                              rounded_mm(at.apex_mm.y()));
     if (by_turn.empty())
-      made.warnings.push_back(fmt::format("zone {} has no whole element: nothing of it is cut", z + 1));
+      made.warnings.push_back(fmt::format("zone {} has no whole element: the zone is not cut", z + 1));
     for (auto& [turn_deg, zone] : by_turn) {
       zone.rotation_deg = turn_deg;
       if (aperture_mm(elements.element) != aperture_mm(job.element)) zone.aperture_mm = aperture_mm(elements.element);
@@ -195,19 +196,21 @@ void add_zones(const Design& design, MadeJob& made) {
     made.warnings.push_back(cut_warning(design.source_name(), made.partial_elements));
 }
 
-/// What cavities of zones must take of each other's elements. \pre a job of zones that is right
+/// Warns about the parts of elements that are removed by cavities of another zone.
+/// \pre the job has zones and is valid
 void tell_overcut(MadeJob& made) {
   Job& job = made.job;
   if (!std::holds_alternative<geometry::HexagonalCube>(job.element)) return;
-  job.notes.push_back("cavities are triangular: those at borders of zones reach beyond the elements' outlines");
+  job.notes.push_back("cavities are triangular: at borders of zones, they extend beyond the elements' outlines");
   const fabrication::Workpiece3d workpiece =
       fabrication::workpiece_of(job, fabrication::load_machine(job.machine, {"", 0, "--machine"}));
   const fabrication::ZoneOvercut overcut =
       fabrication::zone_overcut(workpiece, std::vector<bool>(workpiece.grooves.size(), true));
   if (overcut.elements == 0) return;
   made.warnings.push_back(fmt::format(
-      "cavities must take {} mm2 of the apertures of {} of {} elements, as they reach into those of other zones: {} um "
-      "deep at most",
+      "cavities remove {} mm2 of the apertures of {} of {} elements, because they extend into other zones: at most {} "
+      "um "
+      "deep",
       fixed(overcut.area_mm2, 4), overcut.elements, workpiece.grooves.size(), fixed(1e3 * overcut.deepest_mm, 1)));
 }
 

@@ -34,15 +34,16 @@ struct MadeJob {
 /// What can be told of a request without a design: its words, machine and process. \throw InputError
 void check_making(const JobRequest& request);
 
-/// Whether the strategy cuts parts of zones. \throw InputError at --strategy
+/// Checks that the strategy can cut parts of zones.
+/// \throw InputError at --strategy if it cannot
 void check_cuts_zones(const JobRequest& request);
 
 /// Whether the strategy cuts the design's element. \throw InputError at --strategy, and for designs that nothing cuts
 void check_element(const Design& design, const JobRequest& request);
 
-/// The fabrication job of a design, or of a part of zones of cube corners: dihedral errors are cut, of cube corners
-/// facet tilts too, other errors and edges of [surface] are not; partial elements are left out. \throw InputError for
-/// designs and requests that cannot be cut
+/// Returns the fabrication job of a design, which may be a part of zones of cube corners. The job contains dihedral
+/// errors and, for cube corners, facet tilts. It contains no other errors or edges of [surface] and no partial
+/// elements. \throw InputError for designs and requests that cannot be cut
 MadeJob make_job(const Design& design, const JobRequest& request);
 
 }  // namespace retrace::studies

@@ -23,7 +23,7 @@ constexpr int kBisections = 4;
 // Of a value over its limit: what the few wavelengths of the search may be wrong by is added.
 constexpr double kEnough = 1.01;
 constexpr double kMostErrorArcmin = 300.0;
-constexpr double kNothingMade = -1.0;  // in place of a ratio
+constexpr double kNothingMade = -1.0;  // used instead of a ratio if the part cannot be made
 constexpr double kWholeTable = -std::numeric_limits<double>::infinity();
 
 /// A parameter of the design and how it is changed.
@@ -58,8 +58,9 @@ class Search {
   Search(const Knob& knob, const TestProgramme& programme, const TableOfDesign& table)
       : knob_(knob), programme_(programme), table_(table) {}
 
-  /// Looks for the least change that passes, or the best.
-  /// \param than only better ones are of interest \return its least ratio; `than` if nothing better was found
+  /// Searches for the smallest change that makes the design pass, or otherwise for the best change.
+  /// \param than minimum ratio of interest; smaller ratios are ignored
+  /// \return minimum ratio of the change that was found, or `than` if none exceeds it
   double run(double than) {
     double best_ratio = than;
     for (const double value : knob_.tries) {
@@ -76,7 +77,8 @@ class Search {
     return best_ratio;
   }
 
-  /// What run() found, to three digits of the change, with all wavelengths. Nothing if it was cancelled.
+  /// Returns the change that run() found, rounded to three digits, with readings at all wavelengths. Returns nothing if
+  /// the computation was cancelled.
   std::optional<PhotometricChange> told() const {
     const double change = best_ - knob_.from;
     const double scale = std::pow(10.0, 2.0 - std::floor(std::log10(std::abs(change))));
@@ -94,8 +96,8 @@ class Search {
   bool is_cancelled() const { return is_cancelled_; }
 
  private:
-  /// The least of value over limit, or less than `enough`; kNothingMade if such a part cannot be made, or the search
-  /// was cancelled.
+  /// Returns the minimum ratio of a reading to its limit. If this minimum is below `enough`, any value below `enough`
+  /// may be returned. Returns kNothingMade if the part cannot be made or the search was cancelled.
   double ratio_at(double value, double enough) {
     if (is_cancelled_) return kNothingMade;
     try {

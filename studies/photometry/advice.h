@@ -19,10 +19,11 @@ using TableOfDesign =
 /// The least of value over limit, where an undetermined point is no more than 1; infinite if there are none.
 double least_ratio(const std::vector<PhotometricPoint>& points);
 
-/// Looks for what makes a failing design pass, one parameter at a time: first the error of the angles between facets,
-/// then the size of the elements. The first that passes ends the search, at the least change that does; if none does,
-/// the best of all that was tried is told. Found with few wavelengths, told with all. Nothing if no other part can be
-/// made, or it was cancelled.
+/// Searches for a change of one parameter that makes a failing design pass. The first parameter is the error of the
+/// angles between facets, the second the size of the elements. The search ends with the smallest change of the first
+/// parameter that makes the design pass. If no change makes it pass, the best change that was tried is returned. The
+/// search uses few wavelengths, the returned readings use all. Returns nothing if no other part can be made, or if the
+/// search was cancelled.
 std::optional<PhotometricChange> change_that_passes(const Design& design, const TestProgramme& programme,
                                                     const TableOfDesign& table);
 

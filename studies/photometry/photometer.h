@@ -57,17 +57,19 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
                                                         Progress* progress, const Cancellation* cancel) const;
 
-  /// A far field, and its share of the response.
+  /// A far field of one wavelength, and the weight of this wavelength in the response.
   struct WeighedField {
     raytrace::FarField field;
     double weight = 0.0;
   };
-  /// The far fields of light from one direction, of all wavelengths: what measure() makes readings of. Nothing if it
-  /// was cancelled. \param tracer from make_tracer() \pre is_exact()
+  /// Returns the far fields at all wavelengths for light from one direction. measure() computes readings from them.
+  /// Returns nothing if the computation was cancelled.
+  /// \param tracer tracer from make_tracer()
+  /// \pre is_exact()
   std::optional<std::vector<WeighedField>> far_fields(const geometry::Vec3& to_source,
                                                       const raytrace::BeamTracer& tracer,
                                                       const Cancellation* cancel) const;
-  /// For any number of threads; outlived by the photometer.
+  /// Returns a tracer that any number of threads may use. The photometer must outlive the tracer.
   raytrace::BeamTracer make_tracer() const;
   const raytrace::ApertureKernel& kernel() const { return kernel_; }
 
@@ -93,7 +95,8 @@ class Photometer {
   /// From now on by Monte Carlo.
   void leave_exact() { is_exact_ = false; }
   bool is_exact() const { return is_exact_; }
-  /// From now on, where weak beams are resampled, fewer of them: values guide a search and are told to nobody.
+  /// Makes later measurements faster and less accurate by resampling fewer weak beams. Their values only guide a search
+  /// and are not shown to the user.
   void only_guide() { is_guide_ = true; }
   /// From now on without the mirror image of the light: what the entrance face reflects, from outside and, between
   /// elements that send it back, from inside. \pre is_exact()
@@ -134,18 +137,18 @@ class Photometer {
   raytrace::FarFieldPolicy far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const;
   /// \param coarseness factor of the cut-off
   raytrace::BeamPolicy beam_policy(std::size_t wavelength, double coarseness) const;
-  /// What comes back of one wavelength.
+  /// Returned light of one wavelength.
   struct Traced {
     raytrace::BeamResult beams;
     raytrace::FarField field;
-    double scattered_from_cone = 0.0;  ///< by textures, of the detector's widest
+    double scattered_from_cone = 0.0;  ///< power that textures scatter out of the widest cone of the detector
   };
   /// Traces the light of one wavelength. Returns nothing if the trace was cancelled.
   /// \param coarseness factor of the cut-off
   std::optional<Traced> traced(const geometry::Vec3& to_source, std::size_t wavelength,
                                const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                                double coarseness = 1.0) const;
-  /// Of settings that share their light, in that order.
+  /// Measures settings that share their traced light. The results are in the order of the settings.
   std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
                                      std::size_t wavelength, const raytrace::BeamTracer& tracer,
                                      const Cancellation* cancel) const;
@@ -157,7 +160,7 @@ class Photometer {
                         std::vector<Piece>& pieces) const;
   void look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
             std::size_t wavelength, Piece& piece) const;
-  /// \param tracer null for balls, which have their own
+  /// \param tracer null for balls, which have a tracer of their own
   Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
                         const Cancellation* cancel) const;
   /// All of them. \param pieces by setting and wavelength; filled. False if it was cancelled
@@ -176,7 +179,7 @@ class Photometer {
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
   std::size_t middle_wavelength() const;
   std::uint32_t seed_of(std::size_t wavelength) const;
-  bool resamples_weak() const;  ///< beams below the cut-off, in place of giving them up
+  bool resamples_weak() const;  ///< true: beams below the cut-off are resampled; false: truncated
   double cutoff() const;
   std::uint32_t replicates() const;
 

@@ -23,11 +23,11 @@ constexpr double kCutoff = 1e-5;
 constexpr double kCutoffOfFinite = 5e-5;
 constexpr double kCutoffOfAll = 5e-7;
 constexpr std::uint32_t kReplicates = 16;
-// Of a photometer that only guides a search: its replicates, and its cut-off over that of others. Errors of some 1e-3
-// but where next to nothing returns, and a third less time.
+// For a photometer that only guides a search: number of replicates, and ratio of its cut-off to the usual one. Errors
+// are about 1e-3 unless almost no light returns, and the time is a third less.
 constexpr std::uint32_t kReplicatesOfGuide = 4;
 constexpr double kCutoffOfGuide = 3.0;
-// Beams of a direction and wavelength beyond which the choice is Monte Carlo.
+// Maximum number of beams per direction and wavelength; with more beams, `auto` uses Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
 // Minimum trace of the linear part of ReturnedBeam::entry_from_exit for beams of the mirror image of the light. The
 // trace is 2 for a plane mirror and at most 0 for retroreflection.
@@ -40,10 +40,10 @@ constexpr double kMostLatticePoints = 300'000.0;
 constexpr double kLeastTruncated = 1e-9;
 // Ratio of the cut-off of the coarse trace in estimate_missing() to the cut-off of the trace itself.
 constexpr double kCoarseness = 20.0;
-// Memory in bytes of a cell of a finite part in FarFieldCollector, and of each of its beams.
+// Memory in bytes that FarFieldCollector needs per cell of a finite part, and per returned beam of a cell.
 constexpr double kBytesPerCell = 200.0;
 constexpr double kBytesPerBeamOfCell = 8.0;
-// Minimum number of beams that a cell sends back, for the estimate before anything is traced.
+// Minimum number of returned beams per cell, for the memory estimate before tracing.
 constexpr double kLeastBeamsOfCell = 10.0;
 
 [[noreturn]] void fail_on_memory() {
@@ -55,7 +55,9 @@ constexpr double kLeastBeamsOfCell = 10.0;
 /// Memory of a far field while its beams are collected. Beams of equal elements count for each element.
 class FarFieldMemory {
  public:
-  /// \throw TraceBudgetError if this far field exceeds the budget \throw SharedMemoryShort
+  /// Adds the memory of a returned beam.
+  /// \throw TraceBudgetError if this far field exceeds the memory budget
+  /// \throw SharedMemoryShort as BeamMemory::require_shared()
   void add(const raytrace::ReturnedBeam& beam) {
     const double count = beam.place_count();
     const double new_cells = std::max(0.0, count - cells_);
@@ -188,7 +190,7 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
   common.std_error = traced->beams.std_error.back();
   common.truncated = traced->beams.ledgers.back()[raytrace::Account::truncated];
   if (keeps_phases_) {
-    // What textures take from the cone's beams, and what falls into the cone of all that they scatter.
+    // Power that textures scatter out of the beams of the cone, and scattered power that falls into the cone.
     const Angle widest = Angle::from_deg(design_.detector.acceptance_half_angle_deg.back());
     common.rre += field.scattered_within(frame, widest.rad()) - traced->scattered_from_cone;
     common.truncated += field.unplaced_power();

@@ -165,7 +165,8 @@ struct PhotometryResult {
   Verdict verdict = Verdict::fail;
   std::string reason;                       ///< why points are undetermined; empty if none is
   std::optional<PhotometricColour> colour;  ///< has a verdict of its own
-  std::optional<PhotometricChange> change;  ///< if it fails: what passes, or the best that was tried
+  std::optional<PhotometricChange>
+      change;  ///< for a failing design: a change that makes it pass, or the best change that was tried
   std::vector<FarFieldMap> maps;
   std::vector<ObservationCurve> curves;
   double elapsed_s = 0.0;

@@ -103,8 +103,9 @@ void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut&
   }
 }
 
-/// Positions of the edge's ends at the root and at the rims of both facets, and of the tool a facet above its ends at
-/// the root, in the workpiece frame. \param machine that runs the words which `planned` needs
+/// Returns positions in the workpiece frame: the ends of the cutting edge at the root and at the rims of both facets,
+/// and points of the tool above its ends at the root, at the distance of a facet length. \param machine machine that
+/// executes the axis positions planned for `planned`
 std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, const PlacedCut& ending,
                               double half_width_mm) {
   const Groove& groove = ending.groove();
@@ -124,7 +125,8 @@ std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, co
   return places;
 }
 
-/// Compares the tool's ends with the walls: where a whole edge moves along the root, one of its ends goes into a wall.
+/// Computes how far the ends of the tool move into the walls. If the whole edge moves along the root, one of its ends
+/// moves into a wall.
 void tell_walls(const Machine& machine, const PlacedCut& ending, double half_width_mm, const SetupQuantity& quantity,
                 Sensitivity& row) {
   if (machine.tilt == Tilt::head) return;

@@ -138,9 +138,9 @@ bool is_still(const std::vector<ElementCutPlanes>& before, const std::vector<Ele
 }  // namespace
 
 std::string why_no_setup_light(const Job& job) {
-  if (job.workpiece.kind == WorkpieceKind::direct) return "the light of parts that are cut directly is not told";
-  if (job.substrate) return "the light of elements on a base is not told";
-  if (!job.zones.empty()) return "the light of parts of zones is not told";
+  if (job.workpiece.kind == WorkpieceKind::direct) return "the light of parts that are cut directly is not computed";
+  if (job.substrate) return "the light of elements on a base is not computed";
+  if (!job.zones.empty()) return "the light of parts of zones is not computed";
   return {};
 }
 

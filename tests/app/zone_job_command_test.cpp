@@ -102,11 +102,11 @@ TEST_F(ZoneJobCommand, WhatCannotBeCutIsRefusedAndNothingWritten) {
       {"element.aperture_mm=0.4",
        "element.kind=\\\"triangular_icc\\\"\", \"element.aperture_mm=0.5",
        {},
-       "zone[3]: must have the cube corners of the zones before it to be cut"},
+       "zone[3]: must have the same kind of cube corners as the zones before it"},
       {"\"element.aperture_mm=0.4\"",
        "'element.kind=\"rtp\"', \"element.base_mm=0.5\", \"element.width_mm=0.5\"",
        {},
-       "zone[3]: must have cube corners to be cut, has prisms"},
+       "zone[3]: must have cube corners to be cut, got prisms"},
   };
   for (const Case& wrong : cases) {
     SCOPED_TRACE(wrong.message);

@@ -209,7 +209,7 @@ TEST(Zones, PartialElementsAreLeftOutIfTheyAreNotWanted) {
   EXPECT_NEAR(retro_mm2, static_cast<double>(whole.elements_full) * cell_mm2, 1e-9);
 }
 
-/// That a part has the three facets of an element where it is said to stand whole, turned as is said.
+/// Expects that a part has the three facets of a whole element at the given position and rotation.
 void expect_standing(const Part& part, const StandingElement& at, const PartSpec& kind) {
   const Cell cell = element_cell(kind.element, kind.angle_errors);
   const Vec3 apex(at.apex_mm.x(), at.apex_mm.y(), -element_depth_mm(kind.element, kind.angle_errors));
@@ -388,8 +388,8 @@ TEST(Zones, CellsThatAreNotOneEachAreFound) {
             "1 and those before it leave 1 of 48 cells free, the element at x = 0.25, y = 0.25 mm among them");
   spec = well;
   spec.zones[1].rotation_deg = 45.0;
-  EXPECT_EQ(fault(spec), "1 must be a multiple of 90, which leads the elements' outlines to themselves, got 45");
-  const std::string misfit = "1 must leave elements with the outlines and places of those of zone 1";
+  EXPECT_EQ(fault(spec), "1 must be a multiple of 90, which maps the outline of each element to itself, got 45");
+  const std::string misfit = "1 must keep the outlines and positions of the elements of zone 1";
   for (const PartSpec& other : {prisms(0.5, 0.4), prisms(0.5, 0.5, Arrangement::offset), hexagons(0.5)}) {
     spec = well;
     spec.zones[1].elements = other;

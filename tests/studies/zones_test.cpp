@@ -128,13 +128,13 @@ TEST(ZonedDesign, ZonesOfSingleElementsAreRefusedWithTheirPlaceToo) {
         "d.toml:10: zone[1].rows: must be at most 2, as many as there are until they are counted from 1 again, got 3"},
        {"[[zone]]\nrest = true\nevery = 2\n", "d.toml:11: zone[1].every: only allowed beside rows or columns, got 2"},
        {odd + rest + "rotation_deg = 30\n",
-        "d.toml:14: zone[2].rotation_deg: must be a multiple of 60, which leads the elements' outlines to themselves, "
+        "d.toml:14: zone[2].rotation_deg: must be a multiple of 60, which maps the outline of each element to itself, "
         "got 30"},
        {odd + rest + "rotation_deg = -120\n", ""},
        {odd + rest + "set = [\"element.aperture_mm=1\"]\n",
-        "d.toml:14: zone[2].set: must leave elements with the outlines and places of those of zone 1"},
+        "d.toml:14: zone[2].set: must keep the outlines and positions of the elements of zone 1"},
        {odd + "set = [\"element.aperture_mm=1\"]\n" + rest,
-        "d.toml:12: zone[1].set: must leave elements with the outlines and places of those of zone 2"},
+        "d.toml:12: zone[1].set: must keep the outlines and positions of the elements of zone 2"},
        {"[[zone]]\nrows = 2000\nevery = 9000\n" + rest, "d.toml:9: zone[1]: holds no element"},
        {odd + "[[zone]]\nrows = 2\nevery = 2\n" + rest, "d.toml:15: zone[3]: holds no element"},
        {odd + rest + "set = [\"element.aperture_mm=30\"]\n",

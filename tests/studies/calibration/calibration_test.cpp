@@ -185,8 +185,9 @@ std::string refusal_of(const MeasuredParts& parts) {
   return "accepted";
 }
 
-/// Somebody who takes the tilts along the roots of turned prisms the other way round, on one part, gives four wrong
-/// rows of 72: too few to be refused as a whole, and no row is left that would say so.
+/// A user enters the tilts along the roots of rotated prisms with the wrong sign, on one part. Four rows of 72 are
+/// wrong. These are too few outliers to refuse the table, but after their removal no measurement of this quantity
+/// remains.
 TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
   const Machine& ideal = test_cuts().plans.front().machine;
   const Machine real = with_error(ideal, *setup_quantity(Tilt::table, "tool_turn_z_arcsec"), 60.0);
@@ -204,15 +205,15 @@ TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
     EXPECT_NE(refusal.find("along_arcsec of facet"), std::string::npos) << refusal;
     EXPECT_NE(refusal.find("of turned elements of 1.toml"), std::string::npos) << refusal;
     EXPECT_NE(refusal.find("a positive value means \"rises towards +Y\" at A0 C0"), std::string::npos) << refusal;
-    // One wrong row of two is an outlier as before.
+    // If only one of two rows is wrong, it is an outlier, and the table is accepted.
     for (Measurement& m : parts.measurements)
       if (is_of_turned(m) && m.at != FacetPlace{1, 0}) m.value = -m.value;
     EXPECT_EQ(refusal_of(parts), "accepted") << seed;
   }
 }
 
-/// The words of a positive tilt along the root, against the part itself: tilted so that its +X or +Y side rises, its
-/// facets rise that way.
+/// Compares the described sense of a positive tilt along the root with the part: if the part is tilted so that its +X
+/// or +Y side rises, its facets rise in this direction.
 TEST(Calibration, TiltsAlongTheRootArePositiveWhereTheWordsSay) {
   const FabricationResult& plan = test_cuts().plans.front();
   const CutPart part(plan, {});
@@ -223,7 +224,7 @@ TEST(Calibration, TiltsAlongTheRootArePositiveWhereTheWordsSay) {
       ASSERT_TRUE(words == "rises towards +X" || words == "rises towards +Y") << words;
       EXPECT_EQ(words == "rises towards +Y", plan.plan.elements[element].rotated);
       PartPose pose;
-      // By the right hand: about -Y the side of +X goes up, about X that of +Y.
+      // By the right-hand rule, a rotation about -Y raises the +X side, and a rotation about X raises the +Y side.
       pose.turn_arcsec = words.ends_with("X") ? geometry::Vec3(0, -10, 0) : geometry::Vec3(10, 0, 0);
       EXPECT_NEAR(part.predicted(along, plan.machine, pose), 10.0 / std::numbers::sqrt2, 1e-3);
     }

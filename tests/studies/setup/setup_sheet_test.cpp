@@ -75,7 +75,7 @@ TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
   EXPECT_NEAR(level.root_cut_nm, end_nm, 1e-6);
 }
 
-/// Edges that move along the root go into a wall by as much, whatever moves them.
+/// If an edge is displaced along the root, it cuts into a wall by the same amount, whatever the cause.
 TEST(SetupSheet, WallsAreWhatTheVerifierFinds) {
   const FabricationResult result = made();
   const SetupSheet sheet = setup_sheet(result, false);
