@@ -33,23 +33,27 @@ using View = raytrace::PhotometricDirections;
 // Spans of each colour matching function, of two wavelengths each; of the eye, to judge the table by.
 constexpr std::size_t kParts = 2;
 constexpr std::size_t kPartsOfProbes = 4;
-// Grid steps from the middle of the discs' density to its end, along the plane of incidence at the largest entrance
-// angle, where it is narrowest, to begin with: cubics err by the fourth power of the step (docs/theory/appearance.md).
+// Initial number of grid steps from the centre of the discs' kernel to its edge, along the plane of incidence at the
+// maximum entrance angle, where the kernel is narrowest. The error of cubic interpolation grows with the fourth power of
+// the step (docs/theory/appearance.md).
 constexpr double kStepsPerReach = 4.0;
 constexpr std::size_t kMostColumns = 161;
-// A grid is good enough if its views are off by this share of what is asked.
+// Maximum error of a grid, as a fraction of the requested error.
 constexpr double kShareOfGrid = 0.5;
-// A grid that is not good enough gets so many times as many points each way, up to this number.
+// Factor by which the number of grid points along each side grows if the error is too large, and maximum number of
+// points along a side.
 constexpr double kFinerGrid = 1.5;
 constexpr std::size_t kMostColumnsForError = 121;
-// Azimuth of the light by which prisms are told from cube corners: the ways in which they may send it lie apart there.
+// Azimuth of the light with which prisms are distinguished from cube corners. At this azimuth, the possible directions of
+// returned light differ clearly.
 constexpr double kAsideDeg = 30.0;
 // Extents of the first cells, at most.
 constexpr double kFirstEntranceDeg = 20.0;
 constexpr double kFirstAzimuthDeg = 30.0;
 // Halvings of a first cell, at most: 3 steps of a cell times this are a lattice on which directions are known again.
 constexpr int kMostHalvings = 8;
-// A cell is not halved along a side where values bend by less than this share of how they bend along the other.
+// Minimum ratio of the third differences along one side of a cell to those along the other side for the cell to be halved
+// along the first side.
 constexpr double kLeastBend = 0.3;
 // Directions of light that are computed at once, and views of each by which a cell is judged.
 constexpr std::size_t kBatch = 16;
@@ -98,7 +102,8 @@ Eigen::Matrix3d rgb_from_xyz(const materials::Tristimulus& white) {
   return (primaries * brightness.asDiagonal()).inverse();
 }
 
-/// None below the horizon. \param across x and y of the direction to the observer
+/// Returns the directions of a view, or nothing if the observer is below the horizon.
+/// \param across x and y components of the unit vector to the observer
 std::optional<View> view_of(const Vec3& to_source, const Vec2& across) {
   if (across.squaredNorm() >= 1.0) return std::nullopt;
   return View{to_source, {across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm())}};
@@ -109,9 +114,9 @@ using LatticePlace = std::pair<int, int>;  ///< in entrance angle and azimuth
 
 /// A cell of the table to be.
 struct PlannedCell {
-  std::array<int, 2> corner{};  ///< lattice place in entrance angle and azimuth of the lower one
+  std::array<int, 2> corner{};  ///< lattice position, in entrance angle and azimuth, of the lower corner
   std::array<int, 2> size{};    ///< lattice steps along its sides: multiples of 3
-  double error = 0.0;           ///< of what lies between its directions
+  double error = 0.0;           ///< error of interpolation between its directions
 
   bool is_least() const { return size[0] <= 3 && size[1] <= 3; }
 };
@@ -137,8 +142,9 @@ void check_engine(const Design& design, PhotometryRequest request) {
 
 constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
 
-/// Along which axes light comes back, and along which it goes on: of the three ways in which two faces of a prism, or
-/// three of a cube corner, can send it that which most of the light takes. Nothing if it was cancelled.
+/// Returns ReflectionTable::back: 1 for each axis whose direction component light reverses, and -1 for each axis whose
+/// component it keeps. Cube corners reverse both components, prisms one of them. Of these three cases, the one with most
+/// of the light is returned. Returns nothing if the computation was cancelled.
 std::optional<Vec2> back_of(const Design& design, const AppearanceRequest& request, const Cancellation* cancel) {
   const Vec3 to_source = geometry::direction_at(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
   const Photometer eye = photometer_of(design, photometry_of(request, -Vec2::Ones()), kEye, kParts);
@@ -164,7 +170,8 @@ std::optional<Vec2> back_of(const Design& design, const AppearanceRequest& reque
   return has_most_light ? ways[static_cast<std::size_t>(most - powers.begin())] : ways[0];
 }
 
-/// Of a value, or of a share of the greatest with that light.
+/// Returns the error relative to the true value. Values below a fraction of the maximum `most` are compared with this
+/// fraction instead.
 double error_of(double told, double truth, double most) {
   return std::abs(told - truth) / std::max({truth, AppearanceError::kFloor * most, 1e-300});
 }
@@ -178,7 +185,7 @@ double share_within(const std::vector<double>& errors) {
   return quantile(errors, kJudgedShare);
 }
 
-/// A photometer and what it traces beams with.
+/// A photometer and its beam tracer.
 struct Instrument {
   explicit Instrument(Photometer of_response) : photometer(std::move(of_response)), tracer(photometer.make_tracer()) {}
 
@@ -261,7 +268,7 @@ class TableMaker {
   ReflectionTable take() { return std::move(table_); }
 
  private:
-  /// Of halving a cell: its error, and how much of all light it is of; 0 if it is good enough.
+  /// Returns the priority of halving a cell: its error times its fraction of all light. 0 if the error is small enough.
   double urgency(const PlannedCell& cell) const {
     if (cell.error <= request_.error || cell.is_least()) return 0.0;
     const double from = std::sin(entrance_at(cell.corner[0]).rad());
@@ -296,7 +303,7 @@ class TableMaker {
     return cells;
   }
 
-  /// Halved across each side along which values bend by much: by the third differences of what its directions see.
+  /// Returns the parts of a cell after halving. A side is halved if the third differences of values along it are large.
   std::vector<PlannedCell> halves_of(const PlannedCell& cell) const {
     const std::array<double, 2> bends = bends_of(cell);
     const double most = std::max(bends[0], bends[1]);
@@ -314,7 +321,7 @@ class TableMaker {
     return parts;
   }
 
-  /// Mean third differences along entrance angle and azimuth.
+  /// Returns the mean third differences of the values along entrance angle and azimuth.
   std::array<double, 2> bends_of(const PlannedCell& planned) const {
     const ReflectionTable::Cell cell = cell_of(planned);
     const auto value = [&](std::size_t azimuth, std::size_t entrance, std::size_t point) {
@@ -391,12 +398,12 @@ class TableMaker {
     return true;
   }
 
-  /// Far fields of the three responses, and what they count in red, green and blue.
+  /// Far fields of the three responses, and their weights in red, green and blue.
   struct Fields {
     std::array<std::vector<Photometer::WeighedField>, 3> of_response;
     std::vector<raytrace::BandedField> weighed;
   };
-  /// Nothing if it was cancelled.
+  /// Returns the far fields for one direction of light, or nothing if the computation was cancelled.
   std::optional<Fields> fields_of(const Vec3& to_source, const Cancellation* cancel) const {
     Fields fields;
     const Angle entrance = Angle::from_rad(std::acos(to_source.z()));
@@ -420,8 +427,8 @@ class TableMaker {
                                 eye().kernel(), cancel);
   }
 
-  /// More points to the grid, until what lies between them is told, in the middle of the directions of light. False if
-  /// it was cancelled.
+  /// Refines the grid until interpolation between its points is accurate, for a direction in the middle of the range of
+  /// directions of light. Returns false if the computation was cancelled.
   bool refine_grid(const Cancellation* cancel) {
     const std::array<Angle, 2> range = table_.azimuths();
     const Vec3 to_source = geometry::direction_at(Angle::from_rad(0.5 * table_.most_entrance.rad()),

@@ -17,10 +17,10 @@ namespace retrace::studies {
 struct AppearanceRequest {
   /// Of the source and the receiver that values are means over.
   raytrace::PhotometricApertures apertures{Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)};
-  double window_deg = 1.0;             ///< half width of the deviations, at normal incidence; 0.1 to 5
-  double entrance_deg = 20.0;          ///< the largest entrance angle; 1 to 40
-  double error = 0.02;                 ///< of values, 0.001 to 0.5
-  std::size_t most_directions = 1000;  ///< of light; 64 to 10000
+  double window_deg = 1.0;             ///< half-width of the square of deviations, at normal incidence; 0.1 to 5
+  double entrance_deg = 20.0;          ///< maximum entrance angle; 1 to 40
+  double error = 0.02;                 ///< maximum relative error of values; 0.001 to 0.5
+  std::size_t most_directions = 1000;  ///< maximum number of directions of light; 64 to 10000
 };
 
 /// How far a table, or what was fitted to it, is from the photometer, at random directions of light and of view. Of a
@@ -56,10 +56,11 @@ struct AppearanceResult {
 /// \param r_a of each probe \pre as many as probes, > 0
 AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, const std::vector<double>& r_a);
 
-/// Computes the table: its grid is made so fine that views between its points are told, and cells of directions of
-/// light are halved where what lies between their directions is off by more than `error`, those of most light first,
-/// until none is or `most_directions` are computed. By the exact engine, with diffraction; CIE D65 and the CIE 1931
-/// observer. \throw InputError for numbers out of range, and for designs that the exact engine does not take
+/// Computes the table with the exact engine and diffraction, for CIE D65 and the CIE 1931 observer. The grid is refined
+/// until interpolated views are accurate. Cells of directions of light are halved if interpolation between their
+/// directions has an error above `error`, the cells with most light first. This ends when no such cell remains, or after
+/// `most_directions` directions.
+/// \throw InputError for numbers out of range, and for designs that the exact engine does not support
 AppearanceResult compute_appearance(const Design& design, const AppearanceRequest& request,
                                     Progress* progress = nullptr, const Cancellation* cancel = nullptr);
 

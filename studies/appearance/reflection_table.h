@@ -23,12 +23,12 @@ double luminous(const Rgb& rgb);
 /// Values that a cubic is laid through, and directions along each side of a cell.
 inline constexpr std::size_t kPerSide = 4;
 
-/// R_A in cd/(lx m^2) about the direction back to the source, or, of prisms, about where they send the light: `back`
-/// turned. Of every direction of light it holds a square grid over the deviation o - back s of the unit vectors to
-/// observer and source, along x and y of the part frame: what light does there changes least with its direction, as
-/// refraction at the entrance face leaves these components as they are (docs/theory/appearance.md). Directions of light
-/// are the corners and thirds of cells in entrance angle and azimuth; between grid points and between directions cubics
-/// are laid through four each way.
+/// R_A in cd/(lx m^2) around the direction to the source or, for prisms, around the direction into which they reflect the
+/// light. For each direction of light, the table has a square grid of R_A over the deviation o - back s, where o and s are
+/// the x and y components of the unit vectors to observer and source in the part frame. R_A depends least on the direction
+/// of light in these coordinates, because refraction at the entrance face scales all components by the same factor
+/// (docs/theory/appearance.md). The directions of light are the corners and thirds of cells in entrance angle and azimuth.
+/// Cubic interpolation between four points per axis is used between grid points and between directions.
 struct ReflectionTable {
   /// The R_A of one direction of light, row by row of rising y, x rising.
   struct Direction {
@@ -46,16 +46,16 @@ struct ReflectionTable {
   double half_width = 0.0;  ///< of the square of deviations: a share of a unit vector
   std::size_t columns = 0;  ///< and rows; >= 4
   Angle most_entrance;
-  geometry::Vec2 back = geometry::Vec2::Ones();  ///< 1 along axes whose light comes back, -1 where it goes on
-  std::array<bool, 2> mirrors{};                 ///< whether light from -x, -y is the mirror image of that from x, y
+  geometry::Vec2 back = geometry::Vec2::Ones();  ///< 1 for an axis whose direction component is reversed, otherwise -1
+  std::array<bool, 2> mirrors{};                 ///< for x and y: true if the part is mirror-symmetric in that axis
   std::vector<Direction> directions;
   std::vector<Cell> cells;
 
   double step() const { return 2.0 * half_width / static_cast<double>(columns - 1); }
   geometry::Vec2 deviation(std::size_t index) const;
-  /// x and y of the middle of the deviations, of a direction of light.
+  /// Returns the x and y components of the direction to the observer at the deviation 0.
   geometry::Vec2 middle(const geometry::Vec3& to_source) const { return back.cwiseProduct(to_source.head<2>()); }
-  /// What a grid says of a deviation within it.
+  /// Returns the interpolated value of a grid at a deviation within the grid.
   Rgb between(const std::vector<Rgb>& grid, const geometry::Vec2& deviation) const;
   /// The range of azimuths that the cells cover: what mirrors do not tell.
   std::array<Angle, 2> azimuths() const;

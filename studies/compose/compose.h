@@ -20,7 +20,7 @@ struct ErrorSpread {
   double cell_sigma_arcmin = 0.0;     ///< from cell to cell, which averages out over a zone
   double zone_sigma_arcmin = 0.0;     ///< from zone to zone, the same in all cells of one, which does not
   std::size_t parts = 1024;           ///< that are drawn
-  std::optional<double> worst_share;  ///< a part is told that is best for so many of them, the worst
+  std::optional<double> worst_share;  ///< fraction of the drawn parts, the worst ones, for which a part is optimized
 };
 
 struct ComposeRequest {
@@ -74,7 +74,7 @@ struct PartYield {
   std::optional<double> mean_of_worst;  ///< of the share of the worst that is asked for
 };
 
-/// The part that is best for the worst of those that are drawn, of cells that are in the best parts of any number of
+/// The part that is optimal for the worst of the drawn parts. Its cells are taken from the best parts of all numbers of
 /// zones.
 struct PartForWorst {
   std::vector<Zone> zones;  ///< the largest first
@@ -114,7 +114,7 @@ struct Composition {
   bool complete = true;
 };
 
-/// None without Composition::errors that were asked for them.
+/// Returns the zones of PartForWorst. Empty if the composition has no such part.
 std::vector<Zone> zones_for_worst(const Composition& composition);
 
 StoreLayout compose_layout(const Study& study);

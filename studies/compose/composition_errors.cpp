@@ -19,7 +19,7 @@ const double kStepOfSpread = std::sqrt(3.0);
 constexpr double kLeastStep = 0.1;
 /// Sets of errors, of each zone, at which the polynomials are held against goals that are computed.
 constexpr std::size_t kChecked = 2;
-/// Cells among which a part is sought that is best for the worst, at most: all sets of them are tried.
+/// Maximum number of cells from which the part for the worst parts is composed. All sets of these cells are tried.
 constexpr std::size_t kMostCells = 8;
 
 /// The largest error that is looked at.
@@ -63,7 +63,8 @@ CheckedResponse response_of(const Study& study, const ComposeRequest& request, c
   return made;
 }
 
-/// Cells that the worst parts may be best of: those of the best part, then those of parts of more zones and of fewer.
+/// Returns candidate cells for the part that is optimal for the worst parts: first the cells of the best part, then those
+/// of the best parts with more and with fewer zones.
 std::vector<FamilyCell> cells_for_worst(const Composition& composition) {
   std::vector<FamilyCell> cells;
   const auto take = [&](const PartOfZones& part) {

@@ -174,7 +174,7 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
 
 namespace {
 
-/// Passes until the noise is that of the request, as it falls with the root of their number.
+/// Returns the number of passes for the requested noise. The noise is inversely proportional to the root of this number.
 double passes_needed(const raytrace::CameraImage& image, const CameraRequest& request) {
   return image.passes * std::pow(image.relative_noise() / request.noise, 2.0);
 }
@@ -289,13 +289,13 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
     result.warnings.push_back(fmt::format(
         "{}: the noise of {} is above the target of {} after {} passes, which would take about {:.2g}, of {} at most "
-        "(--passes N sets their number)",
+        "(--passes N sets the number of passes)",
         design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise), result.image.passes,
         passes_needed(result.image, request_), kMostPasses));
   if (result.complete && result.image.part_mean() == 0.0)
     result.warnings.push_back(fmt::format(
-        "{}: no light comes to the camera from the part in {} passes: it is black, or what shines is rarer than they "
-        "find (--passes N sets their number)",
+        "{}: no light comes to the camera from the part in {} passes: the part is dark, or bright paths are too rare to "
+        "be found (--passes N sets the number of passes)",
         design_.source_name(), result.image.passes));
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

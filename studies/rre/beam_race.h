@@ -39,8 +39,9 @@ class BeamRace {
 
   /// What the quicker way is expected to take in all; infinite if neither may do.
   double expected_ns() const;
-  /// Takes the quicker way a step on. A way that exceeds a budget is given up if the other one is left.
-  /// \return whether it has reached its end \throw BudgetError if no way is left
+  /// Runs one step of the method that is expected to finish first. A method that exceeds a budget is abandoned.
+  /// \return true if the method has reached its goal
+  /// \throw BudgetError if both methods are abandoned
   bool advance();
 
   /// Which way did. \pre advance() was true

@@ -29,8 +29,8 @@ constexpr SegmentCost kCellOfFinite{220.0, 25.0};
 constexpr SegmentCost kEmbree{350.0, 25.0};
 /// Straight pieces of a first round of Monte Carlo, before there was one.
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
-/// Maximum time of making the tracer of beams, as a fraction of the time that rays are expected to take from now on.
-/// With what BeamRace spends before it is given up, beams that turn out to be slower cost at most half as much as rays.
+/// Maximum time for making the beam tracer, as a fraction of the expected remaining time of rays. If beams turn out to be
+/// slower, this time and the time of BeamRace until it is abandoned are together at most half of the time of rays.
 constexpr double kMaxTracerShare = 0.3;
 /// What beams may take below the error that was requested: some 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
@@ -118,7 +118,7 @@ class DesignTracing {
   /// Whether directions are shared out among the threads; else each takes all of them.
   bool takes_several() const { return follows_beams_; }
 
-  /// Sets the number of directions and wavelengths that the cost of making the tracer of beams is divided by.
+  /// Sets the number of directions times wavelengths. The time for making the beam tracer is divided by this number.
   void expect(std::size_t units) {
     if (follows_beams_ && !tracer_ns_) tracer_ns_ = beam_tracer_ns(model_.part) / static_cast<double>(units);
   }
@@ -159,7 +159,7 @@ class DesignTracing {
     return *beam_tracer_;
   }
 
-  /// Made likewise.
+  /// Returns the ray tracer, which is made when a thread first needs it.
   const raytrace::MonteCarlo& ray_tracer() {
     std::call_once(ray_tracer_is_made_, [this] {
       ray_tracer_.emplace(model_.part, ray_engine(), model_.entrance ? &*model_.entrance : nullptr);
@@ -238,7 +238,7 @@ class DesignTracing {
     return keep(direction, wavelength, beams);
   }
 
-  /// Both ways of beams for one direction, with the light that rough facets take from them.
+  /// The race between the two beam methods for one direction, and the light that rough facets scatter.
   struct Beams {
     std::unique_ptr<raytrace::ScatteredLight> scattered;
     std::optional<BeamRace> race;
@@ -252,8 +252,8 @@ class DesignTracing {
                        BeamRace::Options{.may_resample = !request_.cutoff}, cancel_);
   }
 
-  /// Takes beams a step on. Beams that exceed a budget are given up, as rays have none.
-  /// \return whether they have reached their end
+  /// Traces beams for one step. Beams that exceed a budget are abandoned, because rays can always continue.
+  /// \return true if the beams have reached their goal
   static bool advance(Beams& beams) {
     try {
       return beams.race->advance();

@@ -146,7 +146,7 @@ TEST_F(ZoneJobCommand, EditedJobsComeBackAsTheyAreCut) {
     edit(from, to);
     const Outcome run = retrace(folder_, {"verify", "job.toml", "nc/program.ngc", "--as-machined", "part.toml"});
     EXPECT_EQ(run.code, 2);
-    EXPECT_NE(run.err.find("has another kind, size or turn in the job's design"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("has another kind, size or rotation in the job's design"), std::string::npos) << run.err;
     EXPECT_FALSE(exists("part.toml"));
   }
 }

@@ -70,7 +70,7 @@ void check_parameters(const Study& study) {
       throw InputError(parameter.location, "a distribution is no family of cells: give values, or from and to");
 }
 
-/// Cells are of one kind of element each. What cannot be made at all is told of its point.
+/// Checks that each cell has one kind of element. Cells that cannot be made are reported later as failed points.
 void check_cells(const Study& study) {
   std::optional<Candidate> cell;
   try {

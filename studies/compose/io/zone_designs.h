@@ -16,7 +16,9 @@ namespace retrace::studies {
 /// Of how many zones, the largest, designs are written at most.
 std::size_t most_zone_designs(const ComposeRequest& request);
 
-/// The design whose part is all of a zone's cells; its comment says the zone's share and turn. \pre one of the zones
+/// Returns the design of an array that consists only of a zone's cells. A comment in it contains the zone's fraction of the
+/// area and its rotation.
+/// \pre `zone` is an index in `zones`
 /// \throw InputError as make_candidate()
 std::string zone_design_text(const Study& study, const std::vector<Zone>& zones, std::size_t zone);
 

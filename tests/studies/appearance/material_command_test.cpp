@@ -146,7 +146,8 @@ TEST(Material, IsWithinTwoPercentOfPhotometryByItsExampleReader) {
   EXPECT_LT(header.at("error").at("of_95_percent"), 0.02);
 }
 
-/// Prisms send light back across their roof edge and on along it: tables lie about where it goes.
+/// Prisms reverse the component of the light direction across their roof edge and keep the component along it. The table
+/// is centred on the resulting direction.
 TEST(Material, PrismsAreToldWhereTheySendTheLight) {
   const TemporaryFolder folder;
   folder.write("d.toml",
@@ -158,7 +159,8 @@ TEST(Material, PrismsAreToldWhereTheySendTheLight) {
   ASSERT_EQ(retrace(folder, arguments).code, 0);
   const Json header = folder.json("m.json");
   EXPECT_EQ(header.at("back"), Json::array({1.0, -1.0}));
-  // Along the roof edge, where next to nothing comes back, all that the facets reflect is in the table.
+  // For light inclined along the roof edge, almost nothing returns to the source, but all light that the facets reflect
+  // is in the table.
   for (const Json& at : header.at("directions"))
     if (at.at("azimuth_deg") == 90.0 && at.at("entrance_deg") == 4.0) {
       EXPECT_GT(at.at("returned"), 0.85);

@@ -75,7 +75,7 @@ TEST_F(Image, CameraTakesALampOfAFile) {
   EXPECT_EQ(lit("1")["lamp"]["aim_deg"], 1);
 }
 
-/// A noise that no number of passes would reach is not waited for.
+/// If the requested noise cannot be reached, the run ends with a warning.
 TEST_F(Image, CameraSaysThatANoiseIsOutOfReach) {
   const Json json =
       retrace_json(folder_, {"image", "brick.toml", "--camera", "--pixels=24x18", "--ambient-lx=1", "--noise=1e-7"});
