@@ -34,8 +34,8 @@ using View = raytrace::PhotometricDirections;
 constexpr std::size_t kParts = 2;
 constexpr std::size_t kPartsOfProbes = 4;
 // Initial number of grid steps from the centre of the discs' kernel to its edge, along the plane of incidence at the
-// maximum entrance angle, where the kernel is narrowest. The error of cubic interpolation grows with the fourth power of
-// the step (docs/theory/appearance.md).
+// maximum entrance angle, where the kernel is narrowest. The error of cubic interpolation grows with the fourth power
+// of the step (docs/theory/appearance.md).
 constexpr double kStepsPerReach = 4.0;
 constexpr std::size_t kMostColumns = 161;
 // Maximum error of a grid, as a fraction of the requested error.
@@ -44,16 +44,16 @@ constexpr double kShareOfGrid = 0.5;
 // points along a side.
 constexpr double kFinerGrid = 1.5;
 constexpr std::size_t kMostColumnsForError = 121;
-// Azimuth of the light with which prisms are distinguished from cube corners. At this azimuth, the possible directions of
-// returned light differ clearly.
+// Azimuth of the light with which prisms are distinguished from cube corners. At this azimuth, the possible directions
+// of returned light differ clearly.
 constexpr double kAsideDeg = 30.0;
 // Extents of the first cells, at most.
 constexpr double kFirstEntranceDeg = 20.0;
 constexpr double kFirstAzimuthDeg = 30.0;
 // Halvings of a first cell, at most: 3 steps of a cell times this are a lattice on which directions are known again.
 constexpr int kMostHalvings = 8;
-// Minimum ratio of the third differences along one side of a cell to those along the other side for the cell to be halved
-// along the first side.
+// Minimum ratio of the third differences along one side of a cell to those along the other side for the cell to be
+// halved along the first side.
 constexpr double kLeastBend = 0.3;
 // Directions of light that are computed at once, and views of each by which a cell is judged.
 constexpr std::size_t kBatch = 16;
@@ -143,8 +143,8 @@ void check_engine(const Design& design, PhotometryRequest request) {
 constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
 
 /// Returns ReflectionTable::back: 1 for each axis whose direction component light reverses, and -1 for each axis whose
-/// component it keeps. Cube corners reverse both components, prisms one of them. Of these three cases, the one with most
-/// of the light is returned. Returns nothing if the computation was cancelled.
+/// component it keeps. Cube corners reverse both components, prisms one of them. Of these three cases, the one with
+/// most of the light is returned. Returns nothing if the computation was cancelled.
 std::optional<Vec2> back_of(const Design& design, const AppearanceRequest& request, const Cancellation* cancel) {
   const Vec3 to_source = geometry::direction_at(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
   const Photometer eye = photometer_of(design, photometry_of(request, -Vec2::Ones()), kEye, kParts);

@@ -58,9 +58,9 @@ AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, con
 
 /// Computes the table with the exact engine and diffraction, for CIE D65 and the CIE 1931 observer. The grid is refined
 /// until interpolated views are accurate. Cells of directions of light are halved if interpolation between their
-/// directions has an error above `error`, the cells with most light first. This ends when no such cell remains, or after
-/// `most_directions` directions.
-/// \throw InputError for numbers out of range, and for designs that the exact engine does not support
+/// directions has an error above `error`, the cells with most light first. This ends when no such cell remains, or
+/// after `most_directions` directions. \throw InputError for numbers out of range, and for designs that the exact
+/// engine does not support
 AppearanceResult compute_appearance(const Design& design, const AppearanceRequest& request,
                                     Progress* progress = nullptr, const Cancellation* cancel = nullptr);
 

@@ -23,12 +23,13 @@ double luminous(const Rgb& rgb);
 /// Values that a cubic is laid through, and directions along each side of a cell.
 inline constexpr std::size_t kPerSide = 4;
 
-/// R_A in cd/(lx m^2) around the direction to the source or, for prisms, around the direction into which they reflect the
-/// light. For each direction of light, the table has a square grid of R_A over the deviation o - back s, where o and s are
-/// the x and y components of the unit vectors to observer and source in the part frame. R_A depends least on the direction
-/// of light in these coordinates, because refraction at the entrance face scales all components by the same factor
-/// (docs/theory/appearance.md). The directions of light are the corners and thirds of cells in entrance angle and azimuth.
-/// Cubic interpolation between four points per axis is used between grid points and between directions.
+/// R_A in cd/(lx m^2) around the direction to the source or, for prisms, around the direction into which they reflect
+/// the light. For each direction of light, the table has a square grid of R_A over the deviation o - back s, where o
+/// and s are the x and y components of the unit vectors to observer and source in the part frame. R_A depends least on
+/// the direction of light in these coordinates, because refraction at the entrance face scales all components by the
+/// same factor (docs/theory/appearance.md). The directions of light are the corners and thirds of cells in entrance
+/// angle and azimuth. Cubic interpolation between four points per axis is used between grid points and between
+/// directions.
 struct ReflectionTable {
   /// The R_A of one direction of light, row by row of rising y, x rising.
   struct Direction {

@@ -63,8 +63,8 @@ CheckedResponse response_of(const Study& study, const ComposeRequest& request, c
   return made;
 }
 
-/// Returns candidate cells for the part that is optimal for the worst parts: first the cells of the best part, then those
-/// of the best parts with more and with fewer zones.
+/// Returns candidate cells for the part that is optimal for the worst parts: first the cells of the best part, then
+/// those of the best parts with more and with fewer zones.
 std::vector<FamilyCell> cells_for_worst(const Composition& composition) {
   std::vector<FamilyCell> cells;
   const auto take = [&](const PartOfZones& part) {

@@ -174,7 +174,8 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
 
 namespace {
 
-/// Returns the number of passes for the requested noise. The noise is inversely proportional to the root of this number.
+/// Returns the number of passes for the requested noise. The noise is inversely proportional to the root of this
+/// number.
 double passes_needed(const raytrace::CameraImage& image, const CameraRequest& request) {
   return image.passes * std::pow(image.relative_noise() / request.noise, 2.0);
 }
@@ -293,10 +294,11 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
         design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise), result.image.passes,
         passes_needed(result.image, request_), kMostPasses));
   if (result.complete && result.image.part_mean() == 0.0)
-    result.warnings.push_back(fmt::format(
-        "{}: no light comes to the camera from the part in {} passes: the part is dark, or bright paths are too rare to "
-        "be found (--passes N sets the number of passes)",
-        design_.source_name(), result.image.passes));
+    result.warnings.push_back(
+        fmt::format("{}: no light comes to the camera from the part in {} passes: the part is dark, or bright paths "
+                    "are too rare to "
+                    "be found (--passes N sets the number of passes)",
+                    design_.source_name(), result.image.passes));
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -146,8 +146,8 @@ TEST(Material, IsWithinTwoPercentOfPhotometryByItsExampleReader) {
   EXPECT_LT(header.at("error").at("of_95_percent"), 0.02);
 }
 
-/// Prisms reverse the component of the light direction across their roof edge and keep the component along it. The table
-/// is centred on the resulting direction.
+/// Prisms reverse the component of the light direction across their roof edge and keep the component along it. The
+/// table is centred on the resulting direction.
 TEST(Material, PrismsAreToldWhereTheySendTheLight) {
   const TemporaryFolder folder;
   folder.write("d.toml",
