@@ -6,7 +6,6 @@
 #include <csignal>
 #include <ctime>
 
-#include "app/progress_bar.h"
 #include "core/error.h"
 #include "core/threads.h"
 
@@ -61,9 +60,9 @@ void OrderlyInterrupt::run(std::optional<unsigned> threads,
   set_deadline(kNever);
 }
 
-void OrderlyInterrupt::run(const CommonOptions& common, const std::string& doing,
+void OrderlyInterrupt::run(const CommonOptions& common, const RunText& text,
                            const std::function<void(Progress*, const Cancellation*)>& work) const {
-  ProgressBar bar(doing, !common.quiet);
+  ProgressBar bar(text, common);
   run(common.threads, [&](const Cancellation* cancel) { work(&bar, cancel); });
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/command.h"
+#include "app/progress_bar.h"
 #include "core/progress.h"
 
 namespace retrace::app {
@@ -28,8 +29,8 @@ class OrderlyInterrupt {
   /// with it, and nothing is written; once it has stopped, what it has is written however long that takes.
   /// \param threads none or 0: as many as there are cores
   void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;
-  /// The same with a progress bar. \param doing what it says
-  void run(const CommonOptions& common, const std::string& doing,
+  /// Does the same with a progress bar. \param text text of the bar
+  void run(const CommonOptions& common, const RunText& text,
            const std::function<void(Progress*, const Cancellation*)>& work) const;
 };
 

@@ -6,10 +6,12 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/ranks.h"
+#include "app/study_bar.h"
 #include "studies/sweep/shared_sweep.h"
 
 namespace retrace::app {
@@ -18,20 +20,26 @@ namespace {
 /// The bar with points a second and failures behind it.
 class PointsBar : public studies::SweepObserver {
  public:
-  PointsBar(const std::string& doing, bool enabled) : bar_(doing, enabled) {}
+  PointsBar(RunText text, const CommonOptions& common) : bar_(std::move(text), common) {}
 
   void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) override {
     if (!began_) begun_with_ = done;
     began_ = true;
     const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const double rate = elapsed_s > 0.0 ? static_cast<double>(done - begun_with_) / elapsed_s : 0.0;
-    bar_.at(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0,
-            fmt::format("  {}/{} points, {:.3g}/s, {} failed", done, total, rate, failed));
+    remark_ = fmt::format("  {}/{} points, {:.3g}/s, {} failed", done, total, rate, failed);
+    at_share(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0);
+  }
+  void at_share(double share) override {
+    share_ = std::max(share_, share);
+    bar_.at(share_, remark_);
   }
 
  private:
   ProgressBar bar_;
   bool began_ = false;
+  double share_ = 0.0;
+  std::string remark_;
   std::uint64_t begun_with_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
@@ -58,7 +66,7 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
   studies::ResultStore store(file, sweep.layout(), if_exists_of(options));
   bool complete = false;
   {
-    PointsBar bar(command.doing, !common.quiet);
+    PointsBar bar({command.doing, to_shorten_study(sweep.study(), command.fewer_points)}, common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
       const ShareTasks share = share_among(session, slots(common), cancel);
       complete =

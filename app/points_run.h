@@ -16,8 +16,9 @@ namespace retrace::app {
 
 /// A command whose points are known beforehand and kept in a store.
 struct PointsCommand {
-  std::string doing;  ///< what the progress bar says
-  std::string store;  ///< its file in the output folder
+  std::string doing;              ///< what the progress bar says
+  std::string fewer_points = {};  ///< advice that reduces the number of points, such as "give fewer values"
+  std::string store;              ///< its file in the output folder
   /// Reads the study and checks all of it; also on ranks that only compute.
   std::function<studies::Sweep()> read;
   std::string document;  ///< JSON in the output folder

@@ -1,11 +1,14 @@
 #include "app/progress_bar.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
 #include <utility>
+
+#include "app/output.h"
 
 namespace retrace::app {
 namespace {
@@ -15,11 +18,38 @@ constexpr std::chrono::milliseconds kRedraw{100};
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::string what, bool enabled)
-    : what_(std::move(what)), enabled_(enabled && ::isatty(STDERR_FILENO) != 0) {}
+ProgressBar::ProgressBar(RunText text, const CommonOptions& common)
+    : text_(std::move(text)), is_quiet_(common.quiet), is_terminal_(::isatty(STDERR_FILENO) != 0) {}
 
 ProgressBar::~ProgressBar() {
+  clear();
+}
+
+void ProgressBar::clear() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
+  drawn_ = false;
+}
+
+double ProgressBar::elapsed_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+bool ProgressBar::is_time_to_draw(bool is_end) {
+  const auto now = std::chrono::steady_clock::now();
+  if (is_quiet_ || !is_terminal_ || (drawn_ && !is_end && now - last_ < kRedraw)) return false;
+  last_ = now;
+  drawn_ = true;
+  return true;
+}
+
+void ProgressBar::notice(double share, const std::string& work) {
+  if (is_quiet_) return;
+  const std::optional<double> remaining_s = run_.notice_s(share, elapsed_s());
+  if (!remaining_s) return;
+  clear();
+  const std::string advice = fmt::format("{}", fmt::join(text_.to_shorten, ", or "));
+  say(fmt::format("note: {} will take about {} longer{}{}", work, duration_text(*remaining_s),
+                  advice.empty() ? "" : "; to shorten it, ", advice));
 }
 
 void ProgressBar::at(double share) {
@@ -27,25 +57,34 @@ void ProgressBar::at(double share) {
 }
 
 void ProgressBar::at(double share, const std::string& remark) {
-  if (first_share_ < 0.0) first_share_ = share;
-  const auto now = std::chrono::steady_clock::now();
-  if (!enabled_ || (drawn_ && share < 1.0 && now - last_ < kRedraw)) return;
-  last_ = now;
-  drawn_ = true;
+  notice(share, "this run");
+  const std::optional<double> remaining_s = run_.remaining_s(share, elapsed_s());
+  if (!is_time_to_draw(share >= 1.0)) return;
   const auto full = static_cast<int>(std::lround(share * kWidth));
-  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-  fmt::print(stderr, "\r\033[K{} [{:=>{}}{:>{}}] {:3.0f} %", what_, "", full, "", kWidth - full, 100.0 * share);
-  if (share > first_share_) fmt::print(stderr, "  {:.0f} s left", elapsed_s * (1.0 - share) / (share - first_share_));
+  fmt::print(stderr, "\r\033[K{} [{:=>{}}{:>{}}] {:3.0f} %", text_.doing, "", full, "", kWidth - full, 100.0 * share);
+  if (remaining_s) fmt::print(stderr, "  {:.0f} s left", *remaining_s);
   fmt::print(stderr, "{}", remark);
   std::fflush(stderr);
 }
 
 void ProgressBar::count(const std::string& done) {
-  const auto now = std::chrono::steady_clock::now();
-  if (!enabled_ || (drawn_ && now - last_ < kRedraw)) return;
-  last_ = now;
-  drawn_ = true;
-  fmt::print(stderr, "\r\033[K{}: {}, {:.0f} s", what_, done, std::chrono::duration<double>(now - start_).count());
+  if (!is_time_to_draw(false)) return;
+  fmt::print(stderr, "\r\033[K{}: {}, {:.0f} s", text_.doing, done, elapsed_s());
+  std::fflush(stderr);
+}
+
+void ProgressBar::begin_group(double share) {
+  run_.begin_part(share, elapsed_s());
+}
+
+void ProgressBar::at_group(double share, const std::string& group) {
+  notice(share, group);
+}
+
+void ProgressBar::write_above(const std::string& lines) {
+  if (is_quiet_) return;
+  clear();
+  std::fwrite(lines.data(), 1, lines.size(), stderr);
   std::fflush(stderr);
 }
 

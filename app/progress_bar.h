@@ -1,34 +1,58 @@
 #pragma once
 
-// Progress of long work as a bar on the terminal.
+// Progress of long work on standard error: a bar on the terminal, and one line if the work will take long.
 
 #include <chrono>
 #include <string>
 
+#include "app/command.h"
+#include "core/long_run.h"
 #include "core/progress.h"
 
 namespace retrace::app {
 
-/// A bar on standard error with the share done and the time left; draws nothing when that is not a terminal.
+/// What a progress bar shows of a run.
+struct RunText {
+  std::string doing;  ///< such as "tracing"
+  /// Alternatives that make the run shorter, such as "give a smaller --samples (now 1000000000)".
+  Words to_shorten = {};
+};
+
+/// A bar on standard error with the finished fraction and the remaining time, if standard error is a terminal. One time
+/// in a run, a line reports the estimated duration and what makes the run shorter, see LongRun. This line is also
+/// written if standard error is not a terminal. With --quiet, nothing is written.
 class ProgressBar : public Progress {
  public:
-  /// \param enabled false draws nothing
-  ProgressBar(std::string what, bool enabled);
+  ProgressBar(RunText text, const CommonOptions& common);
   ~ProgressBar() override;
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void at(double share) override;
-  /// The same, with a remark behind it.
+  /// Shows the fraction with a remark behind it.
   void at(double share, const std::string& remark);
-  /// Work whose end is not known: what has been done so far, with the time it took.
+  /// Shows work whose end is not known. \param done what has been done so far
   void count(const std::string& done);
+  /// Begins a group of tasks of work whose end is not known. \param share fraction of the group that is finished
+  /// already
+  void begin_group(double share);
+  /// Reports the finished fraction of the group, for the line about long work. \param group such as "65 designs"
+  void at_group(double share, const std::string& group);
+  /// Writes lines of text above the bar, unless --quiet is given.
+  void write_above(const std::string& lines);
 
  private:
-  std::string what_;
-  bool enabled_;
+  double elapsed_s() const;
+  bool is_time_to_draw(bool is_end);
+  /// \param work what takes the time
+  void notice(double share, const std::string& work);
+  void clear();
+
+  RunText text_;
+  bool is_quiet_;
+  bool is_terminal_;
   bool drawn_ = false;
-  double first_share_ = -1.0;  ///< that work began with; negative before the first call
+  LongRun run_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point last_;
 };

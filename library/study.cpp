@@ -43,11 +43,17 @@ class Share : public studies::SweepObserver {
  public:
   explicit Share(Progress* progress) : progress_(progress) {}
   void at(std::uint64_t done, std::uint64_t total, std::uint64_t) override {
-    if (progress_ != nullptr) progress_->at(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0);
+    at_share(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0);
+  }
+  void at_share(double share) override {
+    if (progress_ == nullptr || share < reported_) return;
+    reported_ = share;
+    progress_->at(share);
   }
 
  private:
   Progress* progress_;
+  double reported_ = 0.0;
 };
 
 /// A sweep that is carried out, and what came of it.

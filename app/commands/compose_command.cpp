@@ -12,9 +12,9 @@
 #include "app/interrupt.h"
 #include "app/job_output.h"
 #include "app/output.h"
-#include "app/progress_bar.h"
 #include "app/ranks.h"
 #include "app/shared_arguments.h"
+#include "app/study_bar.h"
 #include "report/results/result_plots.h"
 #include "studies/compose/io/compose_reader.h"
 #include "studies/compose/io/composition_files.h"
@@ -26,16 +26,6 @@
 
 namespace retrace::app {
 namespace {
-
-class CellsBar : public studies::OptimiseObserver, public studies::SweepObserver {
- public:
-  explicit CellsBar(bool enabled) : bar_("composing", enabled) {}
-  void at(std::uint64_t done, std::uint64_t, std::uint64_t) override { at(static_cast<std::size_t>(done)); }
-  void at(std::size_t evaluated) override { bar_.count(fmt::format("{} cells looked at", evaluated)); }
-
- private:
-  ProgressBar bar_;
-};
 
 /// The design of a zone's cells; empty where the part has fewer.
 std::string zone_design(const studies::Study& study, const std::vector<studies::Zone>& zones, std::size_t zone) {
@@ -152,7 +142,9 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   files.prepare();
   studies::ResultStore store(file, studies::compose_layout(study), if_exists_of(options));
   {
-    CellsBar bar(!common.quiet);
+    SearchBar bar(
+        {"composing", to_shorten_study(study, fmt::format("give a smaller compose.scan (now {})", request.scan))},
+        "cells", common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
       if (const ShareTasks share = share_among(session, slots(common), cancel))
         studies::share_sweep(studies::compose_scan(study, request), store, &bar, share);

@@ -94,7 +94,9 @@ ExitCode run_material(const ExportOptions& options, const CommonOptions& common,
   if (format == studies::AppearanceFormat::table) files.add_named("--out", values, [&] { return text.values; });
   files.prepare();
   // Only while it lasts: what comes after has nothing to stop in order for.
-  OrderlyInterrupt().run(common, "material", [&](Progress* bar, const Cancellation* cancel) {
+  const RunText running{
+      "material", {fmt::format("give a larger --error (now {:g})", request.error), "give fewer --most-directions"}};
+  OrderlyInterrupt().run(common, running, [&](Progress* bar, const Cancellation* cancel) {
     result = studies::compute_appearance(design, request, bar, cancel);
   });
   if (!result.complete) {

@@ -14,6 +14,7 @@
 #include "app/shared_arguments.h"
 #include "core/atomic_file.h"
 #include "core/message_text.h"
+#include "core/number_format.h"
 #include "core/pictures.h"
 #include "core/text.h"
 #include "materials/io/spectrum_reader.h"
@@ -211,6 +212,24 @@ void check_can_draw(const CommonOptions& common) {
   if (!common.out.empty()) picture_files();
 }
 
+/// Options that make a run with --detector shorter.
+Words what_shortens_detector(const ImageOptions& options) {
+  const bool may_be_exact = options.engine == "exact" || options.engine == "auto";
+  Words advice;
+  if (options.engine != "exact")
+    advice.push_back(fmt::format("give a smaller --samples (now {})", options.detected.rays));
+  if (may_be_exact) advice.emplace_back("give a larger --cutoff");
+  return advice;
+}
+
+/// Options that make a run with --camera shorter.
+Words what_shortens_camera(const ImageOptions& options) {
+  const studies::CameraRequest& request = options.photographed;
+  return {request.passes ? fmt::format("give fewer --passes (now {})", *request.passes)
+                         : fmt::format("give a larger --noise (now {})", shortest(request.noise)),
+          "give fewer --pixels"};
+}
+
 ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
   studies::DetectorResult result;
   ResultFiles files(common, files_read({design}), "image.json");
@@ -225,7 +244,8 @@ ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, 
   check_can_draw(common);
   const OrderlyInterrupt interrupt;
   files.prepare();
-  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  interrupt.run(common, {"tracing", what_shortens_detector(options)},
+                [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
   return files.write(studies::detector_json(result), studies::detector_table(result), result.warnings,
                      {.complete = result.complete});
 }
@@ -270,7 +290,7 @@ ExitCode photograph(const ImageOptions& options, const CommonOptions& common, st
   const OrderlyInterrupt interrupt;
   files.prepare();
   Preview preview(common);
-  interrupt.run(common, "rendering", [&](Progress* bar, const Cancellation* cancel) {
+  interrupt.run(common, {"rendering", what_shortens_camera(options)}, [&](Progress* bar, const Cancellation* cancel) {
     result = study.run(
         bar, cancel, [&](const raytrace::CameraImage& image) { preview(image); },
         share_among(session, kPassesAtATime, cancel));
@@ -316,7 +336,8 @@ ExitCode run_road(const ImageOptions& options, const CommonOptions& common, stud
   add("road.png", [](const auto& r) { return report::road_png(r); });
   add("road.exr", [](const auto& r) { return report::exr_file(report::road_picture(r)); });
   files.prepare();
-  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  interrupt.run(common, {"tracing", {"give fewer distances (--road-distance-m)"}},
+                [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
   return files.write(studies::road_json(result), studies::road_table(result), result.warnings,
                      {.complete = result.complete});
 }

@@ -9,9 +9,9 @@
 #include "app/interrupt.h"
 #include "app/job_output.h"
 #include "app/output.h"
-#include "app/progress_bar.h"
 #include "app/ranks.h"
 #include "app/shared_arguments.h"
+#include "app/study_bar.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"
@@ -58,16 +58,6 @@ void check_making_of(const OptimizeOptions& options, const studies::Study& study
   studies::check_element(studies::make_candidate(study, some_values(study)).design(), request);
 }
 
-class LooksBar : public studies::OptimiseObserver, public studies::SweepObserver {
- public:
-  explicit LooksBar(bool enabled) : bar_("looking", enabled) {}
-  void at(std::uint64_t done, std::uint64_t, std::uint64_t) override { at(static_cast<std::size_t>(done)); }
-  void at(std::size_t evaluated) override { bar_.count(fmt::format("{} designs looked at", evaluated)); }
-
- private:
-  ProgressBar bar_;
-};
-
 /// \param session null without MPI
 ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
@@ -84,7 +74,9 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
   files.prepare();
   studies::ResultStore store(file, studies::optimise_layout(study), if_exists_of(options));
   {
-    LooksBar bar(!common.quiet);
+    SearchBar bar(
+        {"looking", to_shorten_study(study, fmt::format("give a smaller optimize.scan (now {})", request.scan))},
+        "designs", common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
       if (const ShareTasks share = share_among(session, slots(common), cancel))
         studies::share_sweep(studies::optimise_scan(study, request), store, &bar, share);

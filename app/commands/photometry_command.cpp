@@ -129,6 +129,19 @@ void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
   files.add_drawing("r_a", [&] { return report::observation_plot(result); });
 }
 
+/// Options that make the run shorter. \param follows_beams whether beams are followed, as PhotometryStudy reports
+Words what_shortens(const PhotometryOptions& options, bool follows_beams, bool has_rotations) {
+  Words advice;
+  if (!follows_beams)
+    advice.push_back(fmt::format("give a smaller --samples (now {})", options.samples));
+  else if (options.cutoff)
+    advice.push_back(fmt::format("give a larger --cutoff (now {})", shortest(*options.cutoff)));
+  else
+    advice.emplace_back("give a --cutoff larger than its default");
+  if (has_rotations) advice.emplace_back("give fewer turns (--rotation)");
+  return advice;
+}
+
 ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   const studies::Design design = studies::read_design(options.design, common.overrides);
   std::vector<std::string> inputs = files_read({design});
@@ -140,13 +153,15 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   if (!dye.empty()) inputs.push_back(dye.string());
   request = with_options(std::move(request), options, common);
   studies::set_dye(request, options.dye, dye);
+  const bool has_rotations = request.rotation_deg.size() > 1;
   const studies::PhotometryStudy study(design, std::move(request));
   const OrderlyInterrupt interrupt;
   studies::PhotometryResult result;
   ResultFiles files(common, inputs, "photometry.json");
   add_files(files, result);
   files.prepare();
-  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  const RunText text{"tracing", what_shortens(options, study.follows_beams(), has_rotations)};
+  interrupt.run(common, text, [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
   return files.write(studies::photometry_json(result), studies::photometry_table(result), result.warnings,
                      {.complete = result.complete, .is_yes = result.passes()});
 }

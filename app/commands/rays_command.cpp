@@ -117,7 +117,9 @@ ExitCode run(const RaysOptions& options, const CommonOptions& common) {
   std::unique_ptr<studies::RaySink> sink;
   if (!common.out.empty()) sink = studies::make_ray_file(common.out, "--out");
   studies::RayResult result;
-  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) {
+  const Words to_shorten = {emitter ? fmt::format("give fewer --rays (now {})", emitter->rays)
+                                    : "give a --source of fewer rays"};
+  interrupt.run(common, {"tracing", to_shorten}, [&](Progress* bar, const Cancellation* cancel) {
     result = study.run(*source, sink.get(), bar, cancel);
   });
   result.source_name = options.source.value_or("");

@@ -10,6 +10,7 @@
 #include "app/ranks.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
+#include "core/number_format.h"
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/design/request_limits.h"
@@ -75,7 +76,12 @@ ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, stu
   files.add("roughness.csv", [&] { return studies::roughness_csv(result); });
   files.add_drawing("roughness", [&] { return report::roughness_plot(result); });
   files.prepare();
-  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) {
+  const Words to_shorten = {
+      options.request.rays
+          ? fmt::format("give a smaller --samples (now {})", *options.request.rays)
+          : fmt::format("give a larger --target-error (now {})", shortest(options.request.target_error)),
+      "give fewer values (--sa)"};
+  interrupt.run(common, {"tracing", to_shorten}, [&](Progress* bar, const Cancellation* cancel) {
     result = study.run(bar, cancel, share_among(session, slots(common), cancel));
   });
   for (const std::string& remark : remarks_of(session)) result.warnings.push_back(remark);

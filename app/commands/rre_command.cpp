@@ -8,6 +8,7 @@
 #include "app/number_list.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
+#include "core/number_format.h"
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/rre/io/rre_files.h"
@@ -105,16 +106,35 @@ void add_files(ResultFiles& files, const studies::RreRequest& asked, const studi
   }
 }
 
+/// Options that make the run shorter.
+Words what_shortens(const studies::RreRequest& request) {
+  Words advice;
+  if (request.rays) {
+    advice.push_back(fmt::format("give a smaller --samples (now {})", *request.rays));
+  } else if (request.cutoff && request.engine == studies::Engine::exact) {
+    advice.push_back(fmt::format("give a larger --cutoff (now {})", shortest(*request.cutoff)));
+  } else if (request.engine == studies::Engine::exact && !request.target_error) {
+    advice.emplace_back("give a --target-error larger than 1e-10");
+  } else {
+    advice.push_back(fmt::format("give a larger --target-error (now {})", shortest(target_error_of(request))));
+  }
+  if (request.incidence_deg.size() * request.azimuth_deg.size() > 1 || !request.incidence_spans.empty())
+    advice.emplace_back("give fewer directions (--incidence, --azimuth)");
+  return advice;
+}
+
 ExitCode run(const RreOptions& options, const CommonOptions& common) {
   studies::RreRequest request = request_of(options, common);
   std::vector<studies::Design> designs = designs_of(options, common);
   studies::RreResult result;
   ResultFiles files(common, files_read(designs), "rre.json");
   add_files(files, request, result);
+  const Words to_shorten = what_shortens(request);
   const studies::RreStudy study(std::move(designs), std::move(request));
   const OrderlyInterrupt interrupt;
   files.prepare();
-  interrupt.run(common, "tracing", [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  interrupt.run(common, {"tracing", to_shorten},
+                [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
   warn_of_panels(result);
   return files.write(
       studies::rre_json(result), studies::rre_table(result) + studies::derivative_table(result), result.warnings,

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "app/commands.h"
 #include "app/points_run.h"
 #include "studies/quantity/io/study_reader.h"
@@ -15,7 +17,13 @@ ExitCode run_sweep(const StudyOptions& options, const CommonOptions& common) {
   command.add_files = [](ResultFiles& files, const auto& result) {
     files.add("sweep.csv", [&] { return studies::sweep_csv(*result); });
   };
-  command.read = [&] { return studies::read_sweep(studies::read_study(options.study, common.overrides, common.seed)); };
+  command.read = [&] {
+    const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
+    const auto samples = study.document->number_if("sweep.samples");
+    command.fewer_points = samples ? fmt::format("give a smaller sweep.samples (now {:.0f})", *samples)
+                                   : "give the parameters fewer values";
+    return studies::read_sweep(study);
+  };
   command.write = [](const studies::SweepResult& result, const ResultFiles& files) {
     return files.write(studies::sweep_json(result), studies::sweep_table(result));
   };

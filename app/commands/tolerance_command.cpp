@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "app/commands.h"
 #include "app/points_run.h"
 #include "report/results/result_plots.h"
@@ -23,6 +25,7 @@ ExitCode run_tolerance(const StudyOptions& options, const CommonOptions& common)
   command.read = [&] {
     studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
     request = studies::read_tolerance(study);
+    command.fewer_points = fmt::format("give a smaller tolerance.samples (now {})", request.samples);
     return studies::tolerance_sweep(std::move(study), request);
   };
   command.write = [&](studies::SweepResult& result, const ResultFiles& files) {

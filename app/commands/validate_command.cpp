@@ -19,7 +19,7 @@ ExitCode run(const ValidateOptions&, const CommonOptions& common) {
   TextFiles files(common);
   const OrderlyInterrupt interrupt;
   studies::ValidationResult result;
-  interrupt.run(common, "computing", [&](Progress* bar, const Cancellation* cancel) {
+  interrupt.run(common, {"computing"}, [&](Progress* bar, const Cancellation* cancel) {
     result = studies::validate(studies::validation_rows(), bar, cancel);
   });
   return files.write(studies::validation_json(result), studies::validation_markdown(result),

@@ -54,8 +54,8 @@ Light incident_light(const Stokes& stokes, const Vec3& to_source) {
 
 MonteCarloResult BallTracer::trace(const Optics& optics, const Illumination& illumination,
                                    const std::vector<double>& cones_deg, const Sampling& sampling,
-                                   const PathPolicy& policy, const Cancellation* cancel,
-                                   const DirectionScore* score) const {
+                                   const PathPolicy& policy, const Cancellation* cancel, const DirectionScore* score,
+                                   Progress* progress) const {
   LightSetup setup(geometry::Part{}, Vec2::Zero(), optics, illumination, cones_deg);
   setup.score = score;
   const BallEntry entry(layer_, setup.to_source);
@@ -74,10 +74,12 @@ MonteCarloResult BallTracer::trace(const Optics& optics, const Illumination& ill
     }
     return tally;
   };
-  Rounds rounds(sampling, cones_deg, score_size,
-                [&](std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates) {
-                  return trace_replicates(from, until, replicates, task);
-                });
+  Rounds rounds(
+      sampling, cones_deg, score_size,
+      [&](std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates) {
+        return trace_replicates(from, until, replicates, task);
+      },
+      progress);
   while (!rounds.advance()) continue;
   return rounds.result();
 }

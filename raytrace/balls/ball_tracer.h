@@ -18,9 +18,10 @@ class BallTracer {
 
   /// \param optics lossless_entrance: every clear interface passes all; mirror_facets or an opaque layer of
   /// facet_layers: the mirror \param score of the directions in which light leaves; null: nothing
+  /// \param progress as that of Rounds
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
-                         const DirectionScore* score = nullptr) const;
+                         const DirectionScore* score = nullptr, Progress* progress = nullptr) const;
 
  private:
   BallLayer layer_;

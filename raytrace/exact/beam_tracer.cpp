@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/task_progress.h"
 #include "raytrace/exact/beam_generation.h"
 #include "raytrace/exact/beam_walk.h"
 #include "raytrace/exact/element_memory.h"
@@ -21,6 +22,9 @@ constexpr double kHighestFirstCutoff = 1e-3;
 constexpr double kSlowestFall = 0.7;
 // Weak beams that wait to be resampled: some 30 MB.
 constexpr std::size_t kMostWaiting = 50'000;
+// Work of BeamTrace between two reports of progress: some 0.1 s at first, then a fraction of the work done so far.
+constexpr double kWorkBetweenReports = 3e6;
+constexpr double kGrowthBetweenReports = 1.05;
 
 /// Returns the part.
 /// \throw BudgetError if its elements exceed the memory budget
@@ -43,18 +47,24 @@ BeamTracer::BeamTracer(const geometry::Part& part, Elements elements)
 
 BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illumination,
                              const std::vector<double>& cones_deg, const BeamPolicy& policy, const Cancellation* cancel,
-                             const BeamObserver& observer) const {
+                             const BeamObserver& observer, Progress* progress) const {
   if (policy.weak) return trace_with_weak(optics, illumination, cones_deg, policy, cancel, observer);
-  const auto traced = [&](const BeamPolicy& how, const BeamObserver& told) {
+  const auto traced = [&](const BeamPolicy& how, const BeamObserver& told, PartOfProgress part) {
     BeamTrace trace(*this, optics, illumination, cones_deg, how, told);
-    trace.advance(std::numeric_limits<std::uint64_t>::max(), cancel);
+    double share = 0.0;
+    while (!trace.advance(static_cast<std::uint64_t>(kWorkBetweenReports + kGrowthBetweenReports * trace.work()),
+                          cancel)) {
+      if (is_cancelled(cancel)) break;
+      share = std::max(share, trace.work() / trace.expected_work());
+      part.at(share);
+    }
     return trace.result();
   };
-  if (policy.cutoff || !observer) return traced(policy, observer);
+  if (policy.cutoff || !observer) return traced(policy, observer, {progress, 0.0, 1.0});
   BeamPolicy found = policy;
-  const BeamResult first = traced(policy, {});
+  const BeamResult first = traced(policy, {}, {progress, 0.0, 0.5});
   found.cutoff = first.cutoff;
-  return first.complete ? traced(found, observer) : first;
+  return first.complete ? traced(found, observer, {progress, 0.5, 1.0}) : first;
 }
 
 namespace {

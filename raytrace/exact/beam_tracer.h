@@ -129,10 +129,12 @@ class BeamTracer {
 
   /// Of beams above the cut-off, and of weak ones where BeamPolicy::weak asks for them, which the mean over replicates
   /// counts of.
+  /// \param progress receives the work done as a fraction of the work expected; null: nothing is reported. With
+  ///        BeamPolicy::weak, nothing is reported either
   /// \throw BudgetError if `max_beams` is reached; the message says what was accounted for
   BeamResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
-                   const BeamPolicy& policy, const Cancellation* cancel = nullptr,
-                   const BeamObserver& observer = {}) const;
+                   const BeamPolicy& policy, const Cancellation* cancel = nullptr, const BeamObserver& observer = {},
+                   Progress* progress = nullptr) const;
 
   const geometry::Part& part() const { return part_; }
   /// Of the part: beams are relative to it.

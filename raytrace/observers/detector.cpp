@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "core/task_progress.h"
 #include "core/threads.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/light/exit_observer.h"
@@ -198,6 +199,7 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
   RunningMean angles(setting.angles.size() + 1);
   RunningMean rre(1);
   DetectorMaps maps = empty_maps(setting);
+  TaskProgress all(progress, kDetectorReplicates * tasks);
   for (std::uint32_t replicate = 0; replicate < kDetectorReplicates; ++replicate) {
     const auto words = philox({seed, kScrambleStream}, replicate, 0);
     const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
@@ -217,6 +219,7 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
       }
       deposits.truncated = tally.other[Account::truncated];
       deposits.lost = tally.other[Account::lost];
+      TaskProgress::Task(all).finish();
     });
     if (cancel != nullptr && cancel->requested()) {
       maps.complete = false;
@@ -239,7 +242,6 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
     entering.close(to_irradiance);
     angles.close(share);
     rre.close(share);
-    if (progress != nullptr) progress->at((replicate + 1.0) / kDetectorReplicates);
   }
   maps.rays = std::uint64_t{per_replicate} * kDetectorReplicates;
   const double irradiance_of_ray = part.entrance_area_mm2 / setting.face.pixel_area_mm2();

@@ -124,7 +124,7 @@ struct MonteCarlo::Run::Question {
 
 MonteCarlo::Run::Run(const MonteCarlo& tracer, const Optics& optics, const Illumination& illumination,
                      const std::vector<double>& cones_deg, const Sampling& sampling, const PathPolicy& policy,
-                     const Cancellation* cancel, const DirectionScore* score)
+                     const Cancellation* cancel, const DirectionScore* score, Progress* progress)
     : question_(std::make_unique<Question>()) {
   Question& q = *question_;
   const Scene& scene = *tracer.scene_;
@@ -145,10 +145,12 @@ MonteCarlo::Run::Run(const MonteCarlo& tracer, const Optics& optics, const Illum
   } else {
     q.trace_task = tracer.one_by_one(*q.paths, sampling, cancel);
   }
-  q.rounds.emplace(sampling, cones_deg, score != nullptr ? score->size() : 0,
-                   [&tracer, &q](std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates) {
-                     return tracer.trace_range(q.trace_task, from, until, replicates);
-                   });
+  q.rounds.emplace(
+      sampling, cones_deg, score != nullptr ? score->size() : 0,
+      [&tracer, &q](std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates) {
+        return tracer.trace_range(q.trace_task, from, until, replicates);
+      },
+      progress);
 }
 
 MonteCarlo::Run::~Run() = default;
@@ -167,9 +169,9 @@ double MonteCarlo::Run::expected_segments() const {
 
 MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& illumination,
                                    const std::vector<double>& cones_deg, const Sampling& sampling,
-                                   const PathPolicy& policy, const Cancellation* cancel,
-                                   const DirectionScore* score) const {
-  Run run(*this, optics, illumination, cones_deg, sampling, policy, cancel, score);
+                                   const PathPolicy& policy, const Cancellation* cancel, const DirectionScore* score,
+                                   Progress* progress) const {
+  Run run(*this, optics, illumination, cones_deg, sampling, policy, cancel, score, progress);
   while (!run.advance()) continue;
   return run.result();
 }

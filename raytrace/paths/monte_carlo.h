@@ -58,18 +58,19 @@ class MonteCarlo {
 
   /// Traces in the calling thread's TBB arena. \pre for Engine::cell: cell_serves()
   /// \param score what is asked of the directions in which light leaves the entrance face; null: nothing
+  /// \param progress as that of Rounds
   /// \throw BudgetError if power is lost: a ray missed every face from inside
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
-                         const DirectionScore* score = nullptr) const;
+                         const DirectionScore* score = nullptr, Progress* progress = nullptr) const;
 
   /// The same round by round, to be dropped if something else is quicker.
   class Run {
    public:
-    /// Parameters as those of trace(). \pre `tracer`, `cancel` and `score` outlive the run
+    /// Parameters as those of trace(). \pre `tracer`, `cancel`, `score` and `progress` outlive the run
     Run(const MonteCarlo& tracer, const Optics& optics, const Illumination& illumination,
         const std::vector<double>& cones_deg, const Sampling& sampling, const PathPolicy& policy,
-        const Cancellation* cancel = nullptr, const DirectionScore* score = nullptr);
+        const Cancellation* cancel = nullptr, const DirectionScore* score = nullptr, Progress* progress = nullptr);
     ~Run();
 
     /// As Rounds::advance().

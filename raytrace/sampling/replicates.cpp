@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t kReplicates = MonteCarlo::kReplicates;
 // Rays of a replicate that one task traces: small enough to share out, large enough to hide the cost of a task.
 constexpr std::uint32_t kRaysPerTask = 2048;
-// Rays of a replicate between two collections of the tasks' tallies: bounds their memory.
+// Rays of a replicate that are traced before the tallies of the tasks are added up: bounds the memory of the tallies.
 constexpr std::uint32_t kRaysPerSlice = 64 * kRaysPerTask;
 // The Sobol sequence has 2^32 points; one is kept back so that counters do not wrap.
 constexpr std::uint32_t kMostRaysPerReplicate = UINT32_MAX - kRaysPerSlice;
@@ -56,27 +56,25 @@ bool trace_replicates(std::uint32_t from, std::uint32_t until, std::vector<Tally
   struct Task {
     std::uint32_t replicate, first, last;
   };
-  for (std::uint32_t slice = from; slice < until;) {
-    const std::uint32_t slice_end = until - slice > kRaysPerSlice ? slice + kRaysPerSlice : until;
-    std::vector<Task> tasks;
-    for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate)
-      for (std::uint32_t first = slice; first < slice_end; first += kRaysPerTask)
-        tasks.push_back({replicate, first, std::min(slice_end, first + kRaysPerTask)});
-    std::vector<std::optional<Tally>> tallies(tasks.size());
-    for_each_in_parallel(tasks.size(),
-                         [&](std::size_t k) { tallies[k] = trace(tasks[k].replicate, tasks[k].first, tasks[k].last); });
-    if (std::any_of(tallies.begin(), tallies.end(), [](const auto& t) { return !t.has_value(); })) return false;
-    // Added up in the order of the tasks, whichever thread did them.
-    for (std::size_t k = 0; k < tasks.size(); ++k) replicates[tasks[k].replicate].add(*tallies[k]);
-    slice = slice_end;
-  }
+  std::vector<Task> tasks;
+  for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate)
+    for (std::uint32_t first = from; first < until; first += kRaysPerTask)
+      tasks.push_back({replicate, first, std::min(until, first + kRaysPerTask)});
+  std::vector<std::optional<Tally>> tallies(tasks.size());
+  for_each_in_parallel(tasks.size(),
+                       [&](std::size_t k) { tallies[k] = trace(tasks[k].replicate, tasks[k].first, tasks[k].last); });
+  if (std::any_of(tallies.begin(), tallies.end(), [](const auto& t) { return !t.has_value(); })) return false;
+  // Added up in the order of the tasks, whichever thread did them.
+  for (std::size_t k = 0; k < tasks.size(); ++k) replicates[tasks[k].replicate].add(*tallies[k]);
   return true;
 }
 
-Rounds::Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::size_t score_size, TraceRange trace_range)
+Rounds::Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::size_t score_size, TraceRange trace_range,
+               Progress* progress)
     : sampling_(sampling),
       cones_deg_(std::move(cones_deg)),
       trace_range_(std::move(trace_range)),
+      progress_(progress),
       goal_(static_cast<std::uint32_t>(std::min<std::uint64_t>(
           (sampling.rays.value_or(sampling.max_rays) + kReplicates - 1) / kReplicates, kMostRaysPerReplicate))),
       replicates_(kReplicates, Tally(cones_deg_.size(), score_size)) {}
@@ -89,16 +87,32 @@ std::uint32_t Rounds::next_end() const {
 
 bool Rounds::advance() {
   const std::uint32_t end = next_end();
-  if (!trace_range_(done_, end, replicates_)) {
-    result_.complete = false;  // with what the rounds before gave
-    return true;
+  for (std::uint32_t first = done_; first < end;) {
+    const std::uint32_t last = end - first > kRaysPerSlice ? first + kRaysPerSlice : end;
+    if (!trace_range_(first, last, replicates_)) {
+      result_.complete = false;  // with what the rounds before gave
+      return true;
+    }
+    first = last;
+    if (sampling_.rays && first < end) report(first);
   }
   done_ = end;
   result_ = result_of(replicates_, done_, cones_deg_);
   check_lost(result_);
   for (ConeResult& cone : result_.cones) cone.std_error = std_error_of(cone.spread, static_cast<double>(result_.rays));
   result_.reached_target = sampling_.rays || largest_error(result_) <= sampling_.target_error;
+  report(done_);
   return done_ >= goal_ || (!sampling_.rays && result_.reached_target);
+}
+
+void Rounds::report(std::uint32_t rays) {
+  if (progress_ == nullptr) return;
+  double share = static_cast<double>(rays) / static_cast<double>(goal_);
+  if (!sampling_.rays && result_.segments > 0)
+    share = std::max(share, static_cast<double>(result_.segments) / expected_segments());
+  if (!(share > reported_)) return;
+  reported_ = std::min(share, 1.0);
+  progress_->at(reported_);
 }
 
 double Rounds::expected_segments() const {

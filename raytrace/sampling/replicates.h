@@ -27,6 +27,7 @@ using ReplicateTask =
     std::function<std::optional<Tally>(std::uint32_t replicate, std::uint32_t first, std::uint32_t last)>;
 
 /// Adds rays from..until-1 of every replicate to its tally, on the threads at hand; sums do not depend on their number.
+/// The tallies of all tasks are kept until the end. Rounds therefore calls this function for few rays at a time.
 /// False if cancelled: the tallies are then of no use.
 bool trace_replicates(std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates,
                       const ReplicateTask& trace);
@@ -37,7 +38,10 @@ using TraceRange = std::function<bool(std::uint32_t from, std::uint32_t until, s
 /// Doubles the rays round by round until the target error is reached, or as many are traced as are requested.
 class Rounds {
  public:
-  Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::size_t score_size, TraceRange trace_range);
+  /// \param progress receives the fraction of the rays that are traced. Without Sampling::rays, it receives an
+  ///        estimate, because the number of rays is not known. Null: nothing is reported
+  Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::size_t score_size, TraceRange trace_range,
+         Progress* progress = nullptr);
 
   /// One more round. \return whether that was the last one that is needed; if it was cancelled, it is the last as well
   /// \throw BudgetError if power is lost: a ray missed every face from inside
@@ -49,10 +53,14 @@ class Rounds {
 
  private:
   std::uint32_t next_end() const;
+  /// \param rays number of rays of each replicate that are traced
+  void report(std::uint32_t rays);
 
   Sampling sampling_;
   std::vector<double> cones_deg_;
   TraceRange trace_range_;
+  Progress* progress_;
+  double reported_ = 0.0;
   std::uint32_t goal_;
   std::uint32_t done_ = 0;  ///< rays of a replicate
   std::vector<Tally> replicates_;

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "core/task_progress.h"
 #include "studies/design/request_limits.h"
 
 namespace retrace::studies {
@@ -145,18 +146,23 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
       result.acceptance_half_angle_deg};
   bool exact =
       model_.optics.keeps_beams() && (request_.engine == Engine::exact || request_.engine == Engine::automatic);
+  AttemptProgress attempt(progress);
   const auto trace_all = [&] {
     result.maps = {};
-    for (std::size_t k = 0; k < model_.spectral.size() && result.maps.complete; ++k)
-      add(result.maps,
-          trace(model_.spectral[k], setting, k, exact, model_.spectral.size() == 1 ? progress : nullptr, cancel),
-          model_.spectral[k].weight);
+    const std::size_t wavelengths = model_.spectral.size();
+    TaskProgress all(&attempt, wavelengths);
+    for (std::size_t k = 0; k < wavelengths && result.maps.complete; ++k) {
+      TaskProgress::Task task(all);
+      add(result.maps, trace(model_.spectral[k], setting, k, exact, &task, cancel), model_.spectral[k].weight);
+      task.finish();
+    }
   };
   try {
     trace_all();
   } catch (const BudgetError&) {
     if (!exact || request_.engine == Engine::exact) throw;
     exact = false;  // too many beams
+    attempt.begin_again();
     trace_all();
   }
   result.engine = exact ? "exact" : "embree";

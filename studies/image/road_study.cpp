@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "core/task_progress.h"
 #include "core/threads.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "studies/photometry/photometer.h"
@@ -234,30 +235,18 @@ PhotometryRequest photometry_at(const RoadRequest& r, const RoadScene& s, double
   return request;
 }
 
-/// Tells a share of a whole.
-class PartOfProgress : public Progress {
- public:
-  PartOfProgress(Progress* whole, double from, double share) : whole_(whole), from_(from), share_(share) {}
-  void at(double share) override {
-    if (whole_ != nullptr) whole_->at(from_ + share_ * share);
-  }
-
- private:
-  Progress* whole_;
-  double from_;
-  double share_;
-};
-
 /// Exactly, or by Monte Carlo where that takes too many beams.
 std::optional<std::vector<PhotometerReading>> measured(Photometer& photometer,
                                                        const std::vector<PhotometerSetting>& settings,
-                                                       Progress& progress, const Cancellation* cancel) {
+                                                       Progress* progress, const Cancellation* cancel) {
+  AttemptProgress attempt(progress);
   try {
-    return photometer.measure(settings, &progress, cancel);
+    return photometer.measure(settings, &attempt, cancel);
   } catch (const BudgetError&) {
     if (!photometer.is_exact()) throw;
     photometer.leave_exact();
-    return photometer.measure(settings, &progress, cancel);
+    attempt.begin_again();
+    return photometer.measure(settings, &attempt, cancel);
   }
 }
 
@@ -280,8 +269,9 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
       const Vec3 reflector = reflector_place(result.scene, side);
       settings.push_back(setting_of({(lamps[lamp] - reflector).normalized(), (eye - reflector).normalized()}));
     }
-    PartOfProgress part(progress, share * static_cast<double>(result.views.size()), share);
-    const auto readings = measured(photometer, settings, part, cancel);
+    const auto done = static_cast<double>(result.views.size());
+    PartOfProgress part(progress, share * done, share * (done + 1.0));
+    const auto readings = measured(photometer, settings, &part, cancel);
     if (!readings) {
       result.complete = false;
       break;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/number_format.h"
+#include "core/task_progress.h"
 #include "core/threads.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/sweep.h"
@@ -17,6 +18,19 @@ std::string text_of(const std::variant<double, std::string>& value) {
   const double* const number = std::get_if<double>(&value);
   return number != nullptr ? shortest(*number) : std::get<std::string>(value);
 }
+
+/// Reports the progress of a group of designs to an observer, which may be null.
+class GroupProgress : public Progress {
+ public:
+  GroupProgress(OptimiseObserver* observer, std::size_t designs) : observer_(observer), designs_(designs) {}
+  void at(double share) override {
+    if (observer_ != nullptr && designs_ > 0) observer_->at_group(share, designs_);
+  }
+
+ private:
+  OptimiseObserver* observer_;
+  std::size_t designs_;
+};
 
 }  // namespace
 
@@ -59,6 +73,11 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
     const auto found = stored_.find(keys[k]);
     number[k] = found != stored_.end() ? found->second.point : free_number();
   }
+  const std::size_t unknown = static_cast<std::size_t>(
+      std::ranges::count_if(keys, [&](const std::string& key) { return !stored_.contains(key); }));
+  GroupProgress group(observer_, unknown);
+  group.at(0.0);
+  TaskProgress all(&group, std::max<std::size_t>(1, unknown));
   std::vector<std::optional<StoredPoint>> points(open.size());
   std::vector<char> ran_out(open.size());  // not bool, as threads write next to each other
   for_each_in_parallel(open.size(), [&](std::size_t k) {
@@ -68,7 +87,9 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
       return;
     }
     bool has_run_out = false;
-    points[k] = compute_point(study_, number[k], open[k], cancel_, &has_run_out);
+    TaskProgress::Task task(all);
+    points[k] = compute_point(study_, number[k], open[k], cancel_, &has_run_out, &task);
+    if (points[k]) task.finish();
     ran_out[k] = has_run_out ? 1 : 0;
     if (points[k] && !has_run_out) store_.record(*points[k]);
   });

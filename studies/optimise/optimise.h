@@ -85,6 +85,12 @@ class OptimiseObserver {
  public:
   virtual ~OptimiseObserver() = default;
   virtual void at(std::size_t evaluated) = 0;
+  /// Called while a group of designs is computed. \param share finished fraction of the group; 0 begins a group
+  /// \param designs size of the group
+  virtual void at_group(double share, std::size_t designs) {
+    static_cast<void>(share);
+    static_cast<void>(designs);
+  }
 };
 
 StoreLayout optimise_layout(const Study& study);

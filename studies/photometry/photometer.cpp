@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "core/error.h"
+#include "core/task_progress.h"
 #include "core/within_memory.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/faces/mirror_symmetry.h"
@@ -82,18 +82,6 @@ Design dyed(Design design, const PhotometryRequest& request) {
   for (std::size_t k = 0; k < dye.values.size(); ++k) curve.push_back({dye.wavelengths_nm[k], dye.values[k]});
   design.substance.absorption_per_mm = std::move(curve);
   return design;
-}
-
-/// Calls work(k) for every k on the threads at hand, within the memory budget, and tells how far it is.
-void for_each_told(std::size_t count, Progress* progress, const std::function<void(std::size_t)>& work) {
-  std::mutex mutex;
-  double done = 0.0;
-  for_each_within_memory(count, [&](std::size_t k) {
-    work(k);
-    const std::lock_guard lock(mutex);
-    done += 1.0;
-    if (progress != nullptr) progress->at(done / static_cast<double>(count));
-  });
 }
 
 /// What the discs make of a map, by the kernel's values on its own pixels.
@@ -307,10 +295,13 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure_in_one_light(
   if (is_exact_) {
     const raytrace::BeamTracer tracer = make_tracer();
     const std::vector<LitAlike> traced = settings_lit_alike(settings);
-    for_each_told(traced.size() * wavelengths, progress, [&](std::size_t k) {
+    TaskProgress all(progress, traced.size() * wavelengths);
+    for_each_within_memory(traced.size() * wavelengths, [&](std::size_t k) {
+      TaskProgress::Task task(all);
       const LitAlike& alike = traced[k / wavelengths];
       const std::vector<Piece> seen = measure_exactly(settings, alike, k % wavelengths, tracer, cancel);
       for (std::size_t s = 0; s < alike.size(); ++s) pieces[alike[s].index][k % wavelengths] = seen[s];
+      task.finish();
     });
   } else if (!measure_by_rays(settings, progress, cancel, pieces)) {
     return std::nullopt;

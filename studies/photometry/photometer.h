@@ -162,7 +162,7 @@ class Photometer {
             std::size_t wavelength, Piece& piece) const;
   /// \param tracer null for balls, which have a tracer of their own
   Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
-                        const Cancellation* cancel) const;
+                        Progress& progress, const Cancellation* cancel) const;
   /// All of them. \param pieces by setting and wavelength; filled. False if it was cancelled
   bool measure_by_rays(const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel,
                        std::vector<std::vector<Piece>>& pieces) const;

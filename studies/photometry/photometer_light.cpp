@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/task_progress.h"
 #include "materials/io/material_library.h"
 #include "materials/knee_rule.h"
 #include "studies/design/total_reflection.h"
@@ -93,20 +94,6 @@ std::vector<double> knees_of(const geometry::PartSpec& part, const geometry::Vec
   }
   return joined(std::move(knees_nm));
 }
-
-/// Reports the progress of one part of the work as progress of the whole work. The values 0 and 1 of the part are
-/// reported as `from` and `to`.
-class PartOfProgress : public Progress {
- public:
-  PartOfProgress(Progress* whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
-  void at(double share) override {
-    if (whole_ != nullptr) whole_->at(std::lerp(from_, to_, share));
-  }
-
- private:
-  Progress* whole_;
-  double from_, to_;
-};
 
 }  // namespace
 

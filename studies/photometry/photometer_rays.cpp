@@ -1,6 +1,7 @@
 // What a photometer measures by sampling rays: its members that know of Monte Carlo.
 #include <algorithm>
 
+#include "core/task_progress.h"
 #include "raytrace/balls/ball_tracer.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "studies/photometry/photometer.h"
@@ -8,7 +9,8 @@
 namespace retrace::studies {
 
 Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
-                                              const raytrace::MonteCarlo* tracer, const Cancellation* cancel) const {
+                                              const raytrace::MonteCarlo* tracer, Progress& progress,
+                                              const Cancellation* cancel) const {
   const SpectralOptics& light = model_.spectral[wavelength];
   const raytrace::ReturnFrame frame = frame_of(setting);
   const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
@@ -24,9 +26,9 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
   const raytrace::MonteCarloResult traced =
-      tracer != nullptr ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score)
+      tracer != nullptr ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score, &progress)
                         : raytrace::BallTracer(*design_.balls())
-                              .trace(light.optics, illumination, cones, sampling, {}, cancel, &score);
+                              .trace(light.optics, illumination, cones, sampling, {}, cancel, &score, &progress);
   Piece piece;
   if (!traced.complete) return piece;
   const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
@@ -53,12 +55,13 @@ bool Photometer::measure_by_rays(const std::vector<PhotometerSetting>& settings,
   if (!design_.balls())
     tracer.emplace(model_.part, raytrace::MonteCarlo::Engine::embree, model_.entrance ? &*model_.entrance : nullptr);
   const std::size_t wavelengths = model_.spectral.size();
+  TaskProgress all(progress, settings.size() * wavelengths);
   for (std::size_t k = 0; k < settings.size() * wavelengths; ++k) {
     if (is_cancelled(cancel)) return false;
+    TaskProgress::Task task(all);
     pieces[k / wavelengths][k % wavelengths] =
-        measure_by_rays(settings[k / wavelengths], k % wavelengths, tracer ? &*tracer : nullptr, cancel);
-    if (progress != nullptr)
-      progress->at(static_cast<double>(k + 1) / static_cast<double>(settings.size() * wavelengths));
+        measure_by_rays(settings[k / wavelengths], k % wavelengths, tracer ? &*tracer : nullptr, task, cancel);
+    task.finish();
   }
   return true;
 }

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/task_progress.h"
 #include "studies/design/request_limits.h"
 #include "studies/photometry/advice.h"
 #include "studies/photometry/colour.h"
@@ -348,6 +349,10 @@ PhotometryStudy::PhotometryStudy(Design design, PhotometryRequest request) : pre
 
 PhotometryStudy::~PhotometryStudy() = default;
 
+bool PhotometryStudy::follows_beams() const {
+  return prepared_->photometer->is_exact();
+}
+
 namespace {
 
 /// Of a part whose facets scatter, points without diffraction that the mean field alone lifts above their limits.
@@ -385,12 +390,14 @@ std::string reason_of(const std::vector<PhotometricPoint>& points, const Photome
 std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer, const PhotometryRequest& request,
                                                           const Plan& plan, Progress* progress,
                                                           const Cancellation* cancel) {
+  AttemptProgress attempt(progress);
   try {
-    return photometer.measure(plan.settings, progress, cancel);
+    return photometer.measure(plan.settings, &attempt, cancel);
   } catch (const BudgetError&) {
     if (request.engine == Engine::exact || !photometer.is_exact()) throw;
     photometer.leave_exact();
-    return photometer.measure(plan.settings, nullptr, cancel);
+    attempt.begin_again();
+    return photometer.measure(plan.settings, &attempt, cancel);
   }
 }
 

@@ -192,6 +192,10 @@ class PhotometryStudy {
   PhotometryStudy(Design design, PhotometryRequest request);
   ~PhotometryStudy();
 
+  /// Returns true if the light is traced as beams, at least until too many beams are needed, and false if it is traced
+  /// by rays.
+  bool follows_beams() const;
+
   /// \throw BudgetError if power was lost
   PhotometryResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 

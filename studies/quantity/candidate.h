@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/progress.h"
 #include "geometry/part/part.h"
 #include "studies/design/design.h"
 #include "studies/design/part_of_design.h"
@@ -38,6 +39,10 @@ class Candidate {
   const Design& design() const { return design_; }
   const AnalysisSettings& analysis() const { return analysis_; }
   const MachiningProcess& machining() const { return machining_; }
+  /// Sets what is informed of the progress of long quantities. \param progress null: nothing is
+  void report_to(Progress* progress) { progress_ = progress; }
+  /// Progress of the quantity that is being measured; may be null.
+  Progress* progress() const { return progress_; }
   /// Built when it is first requested. \throw InputError as part_of_design()
   const geometry::Part& part() const {
     if (!part_) part_ = part_of_design(design_, nullptr);
@@ -56,6 +61,7 @@ class Candidate {
   Design design_;
   AnalysisSettings analysis_;
   MachiningProcess machining_;
+  Progress* progress_ = nullptr;
   mutable std::optional<geometry::Part> part_;
   mutable std::map<std::string, std::shared_ptr<const void>> shared_;
 };

@@ -26,9 +26,8 @@ class PhotometricQuantity final : public Quantity {
       : Quantity(std::move(name)), table_(std::move(table)), choice_(choice), figure_(figure) {}
 
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const override {
-    const auto points = candidate.shared<Points>("photometry " + table_->key, [&] {
-      return std::make_shared<const Points>(measured_points(candidate, cancel));
-    });
+    const auto points = candidate.shared<Points>(
+        tracing(), [&] { return std::make_shared<const Points>(measured_points(candidate, cancel)); });
     if (points->judged.empty()) return std::nullopt;
     if (choice_.reading) return figure_of_reading(*points);
     if (choice_.point) return figure_of(*points, *choice_.point);
@@ -37,6 +36,8 @@ class PhotometricQuantity final : public Quantity {
     return *std::min_element(all.begin(), all.end(),
                              [](const Measured& a, const Measured& b) { return *a.value < *b.value; });
   }
+
+  std::string tracing() const override { return "photometry " + table_->key; }
 
   std::string label() const override {
     if (!choice_.point) return name();
@@ -78,7 +79,8 @@ class PhotometricQuantity final : public Quantity {
       request.dye.clear();
       request.dye_absorption_per_mm = {};
     }
-    const PhotometryResult result = PhotometryStudy(candidate.design(), std::move(request)).run(nullptr, cancel);
+    const PhotometryResult result =
+        PhotometryStudy(candidate.design(), std::move(request)).run(candidate.progress(), cancel);
     return result.complete ? Points{result.points, result.measured, result.readings, result.reason} : Points{};
   }
 

@@ -66,7 +66,7 @@ class ShareQuantity final : public Quantity {
 
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const override {
     const RreStudy study({design_of(candidate)}, request_of(spec_.window, candidate.analysis()));
-    const RreResult result = study.run(nullptr, cancel);
+    const RreResult result = study.run(candidate.progress(), cancel);
     if (!result.complete) return std::nullopt;
     const std::size_t cones = result.designs.front().detector.acceptance_half_angle_deg.size();
     std::vector<Share> shares;
@@ -79,6 +79,8 @@ class ShareQuantity final : public Quantity {
     const Share share = spec_.reduction == Reduction::least ? least_of(shares) : mean_of(shares, weights);
     return Measured{share.value, share.std_error};
   }
+
+  std::string tracing() const override { return "rre " + name(); }
 
   bool adds_up() const override { return spec_.reduction != Reduction::least; }
 

@@ -38,6 +38,9 @@ class Quantity {
   const std::string& name() const { return name_; }
   /// Nothing if it was cancelled. \throw Error if it cannot be computed for this candidate
   virtual std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const = 0;
+  /// Name of the tracing that the value comes from. Quantities with the same name share one tracing. Empty: nothing is
+  /// traced, and the value takes next to no time.
+  virtual std::string tracing() const { return {}; }
   /// What it is of, for people: "20' V 5 H -20".
   virtual std::string label() const { return name_; }
   /// Whether a part that is mixed of several has their mean, weighted by shares of the area: no least of several

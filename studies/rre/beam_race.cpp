@@ -72,6 +72,11 @@ double BeamRace::expected_ns() const {
   return std::min(beams_ns(), stochastic_ns());
 }
 
+double BeamRace::share_done() const {
+  if (beams_ && beams_ns() <= stochastic_ns()) return beams_->work() / beams_->expected_work();
+  return stochastic_ ? stochastic_->work() / stochastic_->expected_work() : 0.0;
+}
+
 bool BeamRace::advance() {
   if (beams_ && beams_ns() <= stochastic_ns()) return advance_exact();
   if (may_resample_) return advance_stochastic();

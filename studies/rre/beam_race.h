@@ -39,6 +39,8 @@ class BeamRace {
 
   /// What the quicker way is expected to take in all; infinite if neither may do.
   double expected_ns() const;
+  /// Returns the completed fraction of the expected work of the quicker method; 0 before the work begins.
+  double share_done() const;
   /// Runs one step of the method that is expected to finish first. A method that exceeds a budget is abandoned.
   /// \return true if the method has reached its goal
   /// \throw BudgetError if both methods are abandoned

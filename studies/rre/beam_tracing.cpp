@@ -30,10 +30,11 @@ raytrace::Illumination illumination_of(const RrePoint& at, const Design& design)
 
 BeamAnswer follow_beams(const raytrace::BeamTracer& tracer, const geometry::Part& part, const raytrace::Optics& optics,
                         const raytrace::Illumination& illumination, const std::vector<double>& cones_deg,
-                        const raytrace::BeamPolicy& policy, const BeamQuestion& question, const Cancellation* cancel) {
+                        const raytrace::BeamPolicy& policy, const BeamQuestion& question, const Cancellation* cancel,
+                        Progress* progress) {
   BeamCollector collector(question, part, cones_deg.size(), illumination);
   BeamAnswer answer;
-  answer.traced = tracer.trace(optics, illumination, cones_deg, policy, cancel, collector.observer());
+  answer.traced = tracer.trace(optics, illumination, cones_deg, policy, cancel, collector.observer(), progress);
   if (!answer.traced.complete) return answer;
   answer.footprint = collector.footprint();
   answer.far_field = collector.far_field();

@@ -49,7 +49,8 @@ struct BeamAnswer {
 /// \param part that `tracer` is of \throw BudgetError as BeamTracer::trace()
 BeamAnswer follow_beams(const raytrace::BeamTracer& tracer, const geometry::Part& part, const raytrace::Optics& optics,
                         const raytrace::Illumination& illumination, const std::vector<double>& cones_deg,
-                        const raytrace::BeamPolicy& policy, const BeamQuestion& question, const Cancellation* cancel);
+                        const raytrace::BeamPolicy& policy, const BeamQuestion& question, const Cancellation* cancel,
+                        Progress* progress);
 
 /// The points of a direction, one a cone. \param at what they have in common
 std::vector<RrePoint> points_of(const RrePoint& at, const std::vector<double>& cones_deg,

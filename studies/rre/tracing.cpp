@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "core/task_progress.h"
 #include "core/within_memory.h"
 #include "raytrace/balls/ball_tracer.h"
 #include "raytrace/exact/scattered_rays.h"
@@ -85,24 +86,11 @@ std::string_view name_of(raytrace::MonteCarlo::Engine engine) {
   return engine == raytrace::MonteCarlo::Engine::cell ? "cell" : "embree";
 }
 
-/// Reports the share of finished wavelengths, whichever thread finishes one.
-class Counter {
- public:
-  Counter(Progress* progress, const std::vector<Direction>& directions) : progress_(progress) {
-    for (const Direction& direction : directions) total_ += static_cast<double>(direction.spectral.size());
-    if (progress_ != nullptr) progress_->at(0.0);
-  }
-  void finished() {
-    const std::lock_guard lock(mutex_);
-    if (progress_ != nullptr) progress_->at(++done_ / total_);
-  }
-
- private:
-  Progress* progress_;
-  double total_ = 0.0;
-  double done_ = 0.0;
-  std::mutex mutex_;
-};
+std::size_t unit_count(const std::vector<Direction>& directions) {
+  std::size_t count = 0;
+  for (const Direction& direction : directions) count += direction.spectral.size();
+  return count;
+}
 
 }  // namespace
 
@@ -125,11 +113,11 @@ class DesignTracing {
 
   /// False if it was cancelled: an unfinished point is no point.
   /// \pre expect()
-  bool trace(Direction& direction, std::size_t wavelength) {
-    if (!follows_beams_) return trace_rays(direction, wavelength);
-    if (must_be_exact(request_)) return trace_beams(direction, wavelength);
-    if (request_.engine == Engine::stochastic) return trace_stochastic(direction, wavelength);
-    return trace_fastest(direction, wavelength);
+  bool trace(Direction& direction, std::size_t wavelength, Progress& progress) {
+    if (!follows_beams_) return trace_rays(direction, wavelength, progress);
+    if (must_be_exact(request_)) return trace_beams(direction, wavelength, progress);
+    if (request_.engine == Engine::stochastic) return trace_stochastic(direction, wavelength, progress);
+    return trace_fastest(direction, wavelength, progress);
   }
 
  private:
@@ -182,24 +170,25 @@ class DesignTracing {
     return true;
   }
 
-  bool trace_rays(Direction& direction, std::size_t wavelength) {
+  bool trace_rays(Direction& direction, std::size_t wavelength, Progress& progress) {
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     const raytrace::Optics& optics = light(wavelength).optics;
     const raytrace::Sampling sampling = sampling_of(request_, light(wavelength).weight, wavelength);
     if (design_.balls())
-      return keep(
-          direction, wavelength,
-          raytrace::BallTracer(*design_.balls()).trace(optics, illumination, cones(), sampling, paths_, cancel_),
-          "balls");
-    return keep(direction, wavelength, ray_tracer().trace(optics, illumination, cones(), sampling, paths_, cancel_),
+      return keep(direction, wavelength,
+                  raytrace::BallTracer(*design_.balls())
+                      .trace(optics, illumination, cones(), sampling, paths_, cancel_, nullptr, &progress),
+                  "balls");
+    return keep(direction, wavelength,
+                ray_tracer().trace(optics, illumination, cones(), sampling, paths_, cancel_, nullptr, &progress),
                 name_of(ray_engine()));
   }
 
-  bool trace_beams(Direction& direction, std::size_t wavelength) {
+  bool trace_beams(Direction& direction, std::size_t wavelength, Progress& progress) {
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     BeamAnswer answer =
         follow_beams(beam_tracer(), model_.part, light(wavelength).optics, illumination, cones(), beams_,
-                     {.footprint = request_.footprint, .far_field = request_.far_field}, cancel_);
+                     {.footprint = request_.footprint, .far_field = request_.far_field}, cancel_, &progress);
     if (!keep(direction, wavelength, answer.traced)) return false;
     direction.footprint = std::move(answer.footprint);
     direction.far_field = std::move(answer.far_field);
@@ -227,14 +216,13 @@ class DesignTracing {
     return std::make_unique<raytrace::ScatteredLightByRays>(tracer, *scattering_, optics, illumination, cones());
   }
 
-  bool trace_stochastic(Direction& direction, std::size_t wavelength) {
+  bool trace_stochastic(Direction& direction, std::size_t wavelength, Progress& progress) {
     const raytrace::Optics& optics = light(wavelength).optics;
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     const std::unique_ptr<raytrace::ScatteredLight> scattered = scattered_light(optics, illumination);
     raytrace::StochasticBeams beams(beam_tracer(), scattered.get(), optics, illumination, cones(),
                                     sampling_of(request_, light(wavelength).weight, wavelength), cancel_);
-    while (!beams.advance())
-      ;
+    while (!beams.advance()) progress.at(beams.work() / beams.expected_work());
     return keep(direction, wavelength, beams);
   }
 
@@ -266,7 +254,7 @@ class DesignTracing {
 
   /// By the engine that is expected to reach the goal first, round by round: each goes on where it was left when
   /// another turns out to be slower than expected.
-  bool trace_fastest(Direction& direction, std::size_t wavelength) {
+  bool trace_fastest(Direction& direction, std::size_t wavelength, Progress& progress) {
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     const raytrace::Optics& optics = light(wavelength).optics;
     const raytrace::Sampling sampling = sampling_of(request_, light(wavelength).weight, wavelength);
@@ -280,9 +268,11 @@ class DesignTracing {
       if (begins) begin(beams, optics, illumination, sampling);
       if (beams.race && beams.race->expected_ns() <= rays_take) {
         if (advance(beams)) return keep(direction, wavelength, *beams.race);
+        if (beams.race) progress.at(beams.race->share_done());
       } else {
         if (!rays) rays.emplace(ray_tracer(), optics, illumination, cones(), sampling, paths_, cancel_);
         if (rays->advance()) return keep(direction, wavelength, rays->result(), name_of(ray_engine()));
+        progress.at(static_cast<double>(rays->result().segments) / rays->expected_segments());
       }
     }
     return false;
@@ -325,7 +315,8 @@ DirectionTracing::DirectionTracing(const std::vector<Design>& designs, const std
 DirectionTracing::~DirectionTracing() = default;
 
 void DirectionTracing::trace(std::vector<Direction>& directions, Progress* progress) {
-  Counter counter(progress, directions);
+  if (progress != nullptr) progress->at(0.0);
+  TaskProgress all(progress, unit_count(directions));
   for (auto first = directions.begin(); first != directions.end();) {
     const std::size_t d = first->at.design;
     const std::size_t wavelengths = models_[d].spectral.size();
@@ -334,8 +325,9 @@ void DirectionTracing::trace(std::vector<Direction>& directions, Progress* progr
     DesignTracing& tracing = *tracings_[d];
     const auto trace_unit = [&](std::size_t k) {
       Direction& direction = first[static_cast<std::ptrdiff_t>(k / wavelengths)];
-      const bool is_traced = tracing.trace(direction, k % wavelengths);
-      if (is_traced) counter.finished();
+      TaskProgress::Task task(all);
+      const bool is_traced = tracing.trace(direction, k % wavelengths, task);
+      if (is_traced) task.finish();
       return is_traced;
     };
     const std::size_t units = static_cast<std::size_t>(last - first) * wavelengths;

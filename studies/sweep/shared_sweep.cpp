@@ -65,6 +65,7 @@ class SweepLedger : public TaskLedger {
   void finish(std::uint64_t, const std::string& bytes) override {
     const StoredPoint point = from_message(bytes, sweep_);
     store_.record(point);
+    TaskProgress::Task(count_.points()).finish();
     count_.finished(point.failed);
   }
 

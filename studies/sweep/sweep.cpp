@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -141,12 +142,37 @@ StoreLayout Sweep::layout() const {
 
 namespace {
 
+/// Reports the progress of the quantities of one point. Quantities that share a tracing count as one, and quantities
+/// without a tracing do not count.
+class QuantityProgress {
+ public:
+  QuantityProgress(const Quantities& quantities, Progress* whole) : whole_(whole) {
+    for (const auto& quantity : quantities)
+      if (!quantity->tracing().empty()) tracings_.insert(quantity->tracing());
+  }
+
+  PartOfProgress of(const Quantity& quantity) {
+    const auto count = static_cast<double>(std::max<std::size_t>(1, tracings_.size()));
+    const bool is_new = !quantity.tracing().empty() && begun_.insert(quantity.tracing()).second;
+    const auto begun = static_cast<double>(begun_.size());
+    return {is_new ? whole_ : nullptr, (begun - 1.0) / count, begun / count};
+  }
+
+ private:
+  Progress* whole_;
+  std::set<std::string> tracings_;
+  std::set<std::string> begun_;
+};
+
 /// Nothing if it was cancelled.
 std::optional<std::vector<StoredOutput>> measure_all(const Study& study, const PointValues& values,
-                                                     const Cancellation* cancel) {
-  const Candidate candidate = make_candidate(study, values);
+                                                     const Cancellation* cancel, Progress* progress) {
+  Candidate candidate = make_candidate(study, values);
+  QuantityProgress of_quantities(study.quantities, progress);
   std::vector<StoredOutput> outputs;
   for (const auto& quantity : study.quantities) {
+    PartOfProgress part = of_quantities.of(*quantity);
+    candidate.report_to(&part);
     const std::optional<Measured> measured = quantity->measure(candidate, cancel);
     if (!measured) return std::nullopt;
     // What is no number is no value either.
@@ -159,14 +185,14 @@ std::optional<std::vector<StoredOutput>> measure_all(const Study& study, const P
 }  // namespace
 
 std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
-                                         const Cancellation* cancel, bool* ran_out) {
+                                         const Cancellation* cancel, bool* ran_out, Progress* progress) {
   const auto start = std::chrono::steady_clock::now();
   StoredPoint point;
   point.point = number;
   point.version = kVersion;
   for (const ParameterValue& value : values) point.inputs.push_back(value.shown);
   try {
-    const auto outputs = measure_all(study, values, cancel);
+    const auto outputs = measure_all(study, values, cancel, progress);
     if (!outputs) return std::nullopt;
     point.outputs = *outputs;
   } catch (const Error& error) {
@@ -190,15 +216,35 @@ struct SweepCount::State {
   }
 };
 
+/// Passes the progress of the points that were not finished at the beginning on to an observer. One mutex guards all
+/// calls of the observer.
+struct SweepCount::Share : Progress {
+  explicit Share(State& its_state)
+      : state(its_state),
+        begin(its_state.total > 0 ? static_cast<double>(its_state.done) / static_cast<double>(its_state.total) : 0.0) {}
+  void at(double share) override {
+    const std::lock_guard lock(state.mutex);
+    if (state.observer != nullptr) state.observer->at_share(std::lerp(begin, 1.0, share));
+  }
+  State& state;
+  double begin;
+};
+
 SweepCount::SweepCount(const Sweep& sweep, const ResultStore& store, SweepObserver* observer)
     : state_(std::make_unique<State>()) {
   state_->observer = observer;
   state_->done = store.finished().size();
   state_->total = sweep.size();
+  share_ = std::make_unique<Share>(*state_);
+  points_.emplace(share_.get(), state_->total > state_->done ? state_->total - state_->done : 1);
   state_->tell();
 }
 
 SweepCount::~SweepCount() = default;
+
+TaskProgress& SweepCount::points() {
+  return *points_;
+}
 
 void SweepCount::finished(bool failed) {
   const std::lock_guard lock(state_->mutex);
@@ -231,12 +277,15 @@ std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& point
     // In the order of their numbers, whatever pieces the threads were given.
     const std::uint64_t number = points[next.fetch_add(1)];
     if (is_cancelled(cancel) || !store.claim(number)) return;
-    const std::optional<StoredPoint> point = compute_point(sweep.study(), number, sweep.values(number), cancel);
+    TaskProgress::Task task(count.points());
+    const std::optional<StoredPoint> point =
+        compute_point(sweep.study(), number, sweep.values(number), cancel, nullptr, &task);
     if (!point) {
       store.give_up(number);
       return;
     }
     store.record(*point);
+    task.finish();
     count.finished(point->failed);
     ++computed;
   });

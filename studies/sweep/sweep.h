@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/task_progress.h"
 #include "studies/quantity/study.h"
 #include "studies/store/store.h"
 #include "studies/sweep/sampling.h"
@@ -65,14 +66,19 @@ class Sweep {
 /// Computes one point of a study; what is wrong with it is recorded, not thrown. Nothing if it was cancelled.
 /// \throw std::bad_alloc: the same point may succeed when more memory is available
 /// \param ran_out set to true if the point failed because a budget of memory or beams ran out; null: not requested
+/// \param progress receives the finished fraction of the point; null: nothing is reported
 std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
-                                         const Cancellation* cancel, bool* ran_out = nullptr);
+                                         const Cancellation* cancel, bool* ran_out = nullptr,
+                                         Progress* progress = nullptr);
 
 /// Told how far a sweep has come. Calls come from one thread at a time.
 class SweepObserver {
  public:
   virtual ~SweepObserver() = default;
   virtual void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) = 0;
+  /// Called in addition to at() while points are computed. \param share finished fraction of all points; points that
+  /// are being computed count in part
+  virtual void at_share(double share) { static_cast<void>(share); }
 };
 
 /// Counts finished points and tells an observer, which may be null. Safe to call from several threads.
@@ -81,10 +87,15 @@ class SweepCount {
   SweepCount(const Sweep& sweep, const ResultStore& store, SweepObserver* observer);
   ~SweepCount();
   void finished(bool failed);
+  /// Adds up the progress of points that are being computed, and calls SweepObserver::at_share().
+  TaskProgress& points();
 
  private:
   struct State;
+  struct Share;
   std::unique_ptr<State> state_;
+  std::unique_ptr<Share> share_;
+  std::optional<TaskProgress> points_;
 };
 
 /// Numbers of the points of a sweep that are not in the store, ascending.

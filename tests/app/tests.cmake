@@ -31,5 +31,5 @@ retrace_test(command_tests
     app/verify_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 retrace_test(command_tests
-  SOURCES app/entrance_test.cpp app/inputs_test.cpp app/interrupt_test.cpp
+  SOURCES app/entrance_test.cpp app/inputs_test.cpp app/interrupt_test.cpp app/long_run_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)

@@ -17,6 +17,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/mirror_symmetry_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/overlay_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/polarisation_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/ray_progress_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/ray_tracer_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/reference_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/returned_beams_test.cpp

@@ -66,6 +66,34 @@ TEST(Optimise, ReachesTheTopOfAParaboloid) {
   EXPECT_NEAR(*optimum.best->objective, 1.0, 2e-6);
 }
 
+/// Groups of designs that an optimisation computes.
+class Groups : public OptimiseObserver {
+ public:
+  void at(std::size_t) override {}
+  void at_group(double share, std::size_t designs) override {
+    if (share == 0.0) sizes.push_back(designs);
+    if (share > 0.0) EXPECT_GT(share, last);
+    last = share;
+    finished += share == 1.0 ? designs : 0;
+  }
+  std::vector<std::size_t> sizes;
+  std::size_t finished = 0;
+  double last = 0.0;
+};
+
+TEST(Optimise, ReportsTheProgressOfEachGroupOfDesigns) {
+  const Study study = analytic_study("[optimize]\nmaximize = \"f\"\nscan = 20\n",
+                                     {{"f", [](double x, double y) { return -std::pow(x - 1.7, 2) - y; }}});
+  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  Groups groups;
+  const Optimum optimum = optimise(study, read_optimise(study), store, &groups, nullptr);
+  ASSERT_FALSE(groups.sizes.empty());
+  EXPECT_EQ(groups.finished, optimum.evaluations) << "each design belongs to one group, and each group is finished";
+  Groups again;
+  optimise(study, read_optimise(study), store, &again, nullptr);
+  EXPECT_TRUE(again.sizes.empty()) << "designs of the store are not computed";
+}
+
 /// A quantity that knows its slope by the thickness, and counts how often it is asked.
 class WithSlope : public Quantity {
  public:

@@ -318,6 +318,45 @@ TEST(Sweep, ResultsDoNotDependOnWhatIsAlreadyThere) {
   EXPECT_EQ(sweep_csv(collect(sweep, store, true)), sweep_csv(swept(sweep)));
 }
 
+/// A quantity that reports half of its tracing, and shares it with quantities of the same tracing.
+class HalfReported : public Quantity {
+ public:
+  HalfReported(std::string name, std::string tracing) : Quantity(std::move(name)), tracing_(std::move(tracing)) {}
+  std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
+    if (!tracing_.empty()) candidate.progress()->at(0.5);
+    return Measured{1.0, 0.0};
+  }
+  std::string tracing() const override { return tracing_; }
+
+ private:
+  std::string tracing_;
+};
+
+class SharesOfSweep : public SweepObserver {
+ public:
+  void at(std::uint64_t, std::uint64_t, std::uint64_t) override {}
+  void at_share(double share) override { shares.push_back(share); }
+  std::vector<double> shares;
+};
+
+TEST(Sweep, APointThatIsBeingComputedCountsInPart) {
+  Study study = read_study(kFolder + "studies/table1.toml");
+  study.quantities.clear();
+  for (const auto& [name, tracing] : {std::pair{"a", "x"}, {"b", "x"}, {"c", ""}, {"d", "y"}})
+    study.quantities.push_back(std::make_shared<HalfReported>(name, tracing));
+  const Sweep sweep(study, Combine::zipped, 0);
+  ASSERT_EQ(sweep.size(), 5U);
+  ResultStore store("", sweep.layout(), IfExists::refuse);
+  for (const std::uint64_t point : {0U, 1U, 3U, 4U})
+    store.record(*compute_point(sweep.study(), point, sweep.values(point), nullptr));
+  SharesOfSweep seen;
+  EXPECT_TRUE(run_sweep(sweep, store, &seen, nullptr));
+  // The last point is a fifth of all. Its two tracings, x and y, are half of it each.
+  const std::vector<double> expected = {0.8 + 0.2 * 0.25, 0.8 + 0.2 * 0.75, 1.0};
+  ASSERT_EQ(seen.shares.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(seen.shares[k], expected[k], 1e-12);
+}
+
 TEST(Sweep, ALackOfMemoryIsNoResultOfAPoint) {
   class Greedy : public Quantity {
    public:

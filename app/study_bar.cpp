@@ -1,0 +1,70 @@
+#include "app/study_bar.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/number_format.h"
+#include "studies/rre/rre.h"
+
+namespace retrace::app {
+namespace {
+
+bool has_tracing(const studies::Study& study, std::string_view kind) {
+  return std::ranges::any_of(study.quantities,
+                             [&](const auto& quantity) { return quantity->tracing().starts_with(kind); });
+}
+
+/// Settings of the analysis that make one point shorter.
+Words to_shorten_point(const studies::Study& study) {
+  const schema::Document& document = *study.document;
+  const bool has_rre = has_tracing(study, "rre");
+  const bool has_photometry = has_tracing(study, "photometry");
+  Words advice;
+  if (!has_rre && !has_photometry) return advice;
+  if (const auto samples = document.number_if("analysis.samples")) {
+    advice.push_back(fmt::format("give a smaller analysis.samples (now {:.0f})", *samples));
+  } else if (has_rre) {
+    const double error = document.number_if("analysis.target_error").value_or(studies::kUsualTargetError);
+    advice.push_back(fmt::format("give a larger analysis.target_error (now {})", shortest(error)));
+  }
+  if (has_photometry) {
+    const auto cutoff = document.number_if("analysis.cutoff");
+    advice.push_back(cutoff ? fmt::format("give a larger analysis.cutoff (now {})", shortest(*cutoff))
+                            : "give an analysis.cutoff larger than its default");
+  }
+  return advice;
+}
+
+}  // namespace
+
+Words to_shorten_study(const studies::Study& study, const std::string& fewer_points) {
+  Words advice = to_shorten_point(study);
+  if (!fewer_points.empty()) advice.push_back(fewer_points);
+  return advice;
+}
+
+SearchBar::SearchBar(RunText text, std::string of, const CommonOptions& common)
+    : bar_(std::move(text), common), of_(std::move(of)) {}
+
+void SearchBar::at(std::uint64_t done, std::uint64_t total, std::uint64_t) {
+  if (first_group_ == 0 && total > 0) bar_.begin_group(static_cast<double>(done) / static_cast<double>(total));
+  first_group_ = total;
+  at(static_cast<std::size_t>(done));
+}
+
+void SearchBar::at_share(double share) {
+  at_group(share, first_group_);
+}
+
+void SearchBar::at(std::size_t evaluated) {
+  bar_.count(fmt::format("{} {} looked at", evaluated, of_));
+}
+
+void SearchBar::at_group(double share, std::size_t designs) {
+  if (share == 0.0) bar_.begin_group(0.0);
+  bar_.at_group(share, fmt::format("computing {} of the {} to look at", designs, of_));
+}
+
+}  // namespace retrace::app

@@ -1,0 +1,36 @@
+#pragma once
+
+// Progress bar of searches for designs, and advice that makes studies shorter.
+
+#include <cstdint>
+#include <string>
+
+#include "app/progress_bar.h"
+#include "studies/optimise/optimise.h"
+#include "studies/sweep/sweep.h"
+
+namespace retrace::app {
+
+/// Returns alternatives that make a study shorter, such as "give a smaller analysis.samples (now 1000000000)".
+/// \param fewer_points advice that reduces the number of points, such as "give fewer values"; empty: there is none
+Words to_shorten_study(const studies::Study& study, const std::string& fewer_points);
+
+/// Progress bar of a search, whose number of designs is not known beforehand.
+class SearchBar : public studies::OptimiseObserver, public studies::SweepObserver {
+ public:
+  /// \param of what is counted, such as "designs"
+  SearchBar(RunText text, std::string of, const CommonOptions& common);
+
+  /// Reports the points of the first group, which several processes compute together.
+  void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) override;
+  void at_share(double share) override;
+  void at(std::size_t evaluated) override;
+  void at_group(double share, std::size_t designs) override;
+
+ private:
+  ProgressBar bar_;
+  std::string of_;
+  std::uint64_t first_group_ = 0;  ///< size of the first group; 0: not known
+};
+
+}  // namespace retrace::app
