@@ -125,7 +125,7 @@ std::vector<Argument> common_arguments(CommonOptions& common) {
           {"--seed S", "seed of the random numbers", &common.seed, whole(0, std::numeric_limits<std::uint32_t>::max())},
           {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4; KEY= unsets the key",
            &common.overrides, one_of(keys)},
-          {"--quiet", "print no progress bar, no table and no warnings", &common.quiet},
+          {"--quiet", "print no progress bar, no note about long runs, no table and no warnings", &common.quiet},
           {"--version", "show the version and exit", {}},
           {"-h,--help", "show this help and exit", {}}};
 }

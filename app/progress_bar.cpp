@@ -81,11 +81,4 @@ void ProgressBar::at_group(double share, const std::string& group) {
   notice(share, group);
 }
 
-void ProgressBar::write_above(const std::string& lines) {
-  if (is_quiet_) return;
-  clear();
-  std::fwrite(lines.data(), 1, lines.size(), stderr);
-  std::fflush(stderr);
-}
-
 }  // namespace retrace::app

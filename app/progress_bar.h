@@ -38,8 +38,6 @@ class ProgressBar : public Progress {
   void begin_group(double share);
   /// Reports the finished fraction of the group, for the line about long work. \param group such as "65 designs"
   void at_group(double share, const std::string& group);
-  /// Writes lines of text above the bar, unless --quiet is given.
-  void write_above(const std::string& lines);
 
  private:
   double elapsed_s() const;
