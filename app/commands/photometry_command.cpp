@@ -130,7 +130,7 @@ void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
 }
 
 /// Options that make the run shorter. \param follows_beams whether beams are followed, as PhotometryStudy reports
-Words what_shortens(const PhotometryOptions& options, bool follows_beams, bool has_rotations) {
+Words what_shortens_photometry(const PhotometryOptions& options, bool follows_beams, bool has_rotations) {
   Words advice;
   if (!follows_beams)
     advice.push_back(fmt::format("give a smaller --samples (now {})", options.samples));
@@ -160,7 +160,7 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   ResultFiles files(common, inputs, "photometry.json");
   add_files(files, result);
   files.prepare();
-  const RunText text{"tracing", what_shortens(options, study.follows_beams(), has_rotations)};
+  const RunText text{"tracing", what_shortens_photometry(options, study.follows_beams(), has_rotations)};
   interrupt.run(common, text, [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
   return files.write(studies::photometry_json(result), studies::photometry_table(result), result.warnings,
                      {.complete = result.complete, .is_yes = result.passes()});

@@ -107,7 +107,7 @@ void add_files(ResultFiles& files, const studies::RreRequest& asked, const studi
 }
 
 /// Options that make the run shorter.
-Words what_shortens(const studies::RreRequest& request) {
+Words what_shortens_rre(const studies::RreRequest& request) {
   Words advice;
   if (request.rays) {
     advice.push_back(fmt::format("give a smaller --samples (now {})", *request.rays));
@@ -129,7 +129,7 @@ ExitCode run(const RreOptions& options, const CommonOptions& common) {
   studies::RreResult result;
   ResultFiles files(common, files_read(designs), "rre.json");
   add_files(files, request, result);
-  const Words to_shorten = what_shortens(request);
+  const Words to_shorten = what_shortens_rre(request);
   const studies::RreStudy study(std::move(designs), std::move(request));
   const OrderlyInterrupt interrupt;
   files.prepare();

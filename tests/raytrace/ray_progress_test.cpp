@@ -98,7 +98,10 @@ TEST(BeamProgress, RisesAndTheResultIsThatOfOneTraceWithoutPauses) {
   policy.cutoff = 1e-10;
   Reports reports;
   const BeamResult told = tracer.trace(pmma(), from(25.0, 7.0), {0.5}, policy, nullptr, {}, &reports);
-  BeamTrace without_pauses(tracer, pmma(), from(25.0, 7.0), {0.5}, policy);
+  const Optics optics = pmma();
+  const Illumination illumination = from(25.0, 7.0);
+  const std::vector<double> cones_deg = {0.5};
+  BeamTrace without_pauses(tracer, optics, illumination, cones_deg, policy);
   ASSERT_TRUE(without_pauses.advance(std::numeric_limits<std::uint64_t>::max(), nullptr));
   EXPECT_EQ(told.beams, without_pauses.result().beams);
   EXPECT_EQ(told.ledgers[0].power, without_pauses.result().ledgers[0].power);
