@@ -217,7 +217,8 @@ Words what_shortens_detector(const ImageOptions& options) {
   const bool may_be_exact = options.engine == "exact" || options.engine == "auto";
   Words advice;
   if (options.engine != "exact")
-    advice.push_back(fmt::format("give a smaller --samples (now {})", options.detected.rays));
+    advice.push_back(
+        fmt::format("give a smaller --samples (now {})", options.detected.rays.value_or(studies::kUsualDetectorRays)));
   if (may_be_exact) advice.emplace_back("give a larger --cutoff");
   return advice;
 }

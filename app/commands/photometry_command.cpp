@@ -133,7 +133,8 @@ void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
 Words what_shortens_photometry(const PhotometryOptions& options, bool follows_beams, bool has_rotations) {
   Words advice;
   if (!follows_beams)
-    advice.push_back(fmt::format("give a smaller --samples (now {})", options.samples));
+    advice.push_back(
+        fmt::format("give a smaller --samples (now {})", options.samples.value_or(studies::kUsualRaysOfDirection)));
   else if (options.cutoff)
     advice.push_back(fmt::format("give a larger --cutoff (now {})", shortest(*options.cutoff)));
   else

@@ -83,7 +83,7 @@ class Tracing {
     raytrace::BeamPolicy again;
     again.cutoff = traced.cutoff;
     studies::BeamAnswer answer = studies::follow_beams(opened_.require_tracer(), part(), lit_.optics, illumination_,
-                                                       cones(), again, question, nullptr);
+                                                       cones(), again, question, nullptr, nullptr);
     found.footprint = std::move(answer.footprint);
     found.far_field = std::move(answer.far_field);
     return found;
