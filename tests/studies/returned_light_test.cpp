@@ -161,7 +161,7 @@ TEST(Footprint, OfElementsFollowedOnceIsThatOfAll) {
     policy.cutoff = 1e-7;
     const auto answer = [&](Elements elements) {
       return follow_beams(raytrace::BeamTracer(part, elements), part, pmma(), light, cones, policy, {true, true},
-                          nullptr);
+                          nullptr, nullptr);
     };
     const BeamAnswer each = answer(Elements::each_by_itself);
     const BeamAnswer once = answer(Elements::equal_at_once);

@@ -72,7 +72,9 @@ class Groups : public OptimiseObserver {
   void at(std::size_t) override {}
   void at_group(double share, std::size_t designs) override {
     if (share == 0.0) sizes.push_back(designs);
-    if (share > 0.0) EXPECT_GT(share, last);
+    if (share > 0.0) {
+      EXPECT_GT(share, last);
+    }
     last = share;
     finished += share == 1.0 ? designs : 0;
   }
