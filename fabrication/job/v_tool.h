@@ -45,7 +45,8 @@ inline constexpr double kEdgeLineSteps[] = {1.5, 8.0};
 /// \param step_mm least increment of the control
 double rounded_fin_mm(Angle first, Angle second, Angle between, double step_mm);
 
-/// Returns the maximum height of a fin that stays inside the strip, for all measured distances from the edge.
+/// Returns the maximum height of a fin that is inside the strip of kEdgeStripMm along the edge, less the distance from
+/// the edge of the farthest measuring line.
 double max_fin_mm(double step_mm);
 
 /// Returns the maximum height of the fin for an ideally aligned tool. \param error largest error of angle of the

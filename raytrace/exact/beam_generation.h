@@ -14,11 +14,12 @@ namespace retrace::raytrace {
 
 class BeamWalk;
 
-/// Beams that are as many interfaces away from where they were first too weak, in the order in which survivors are
-/// chosen: sorted by direction and place, as alike beams have alike ends (Array-RQMC: L'Ecuyer, Lecot and Tuffin,
-/// Operations Research 56, 958, 2008). Beams that represent copies at several
-/// positions (Beam::places) have one entry per position, one after the other, and each survivor has a single position.
-/// In an infinite part, a survivor continues at the first position and represents all of them.
+/// A generation of weak beams. All of them have met the same number of interfaces since they became too weak to be
+/// followed exactly. They are sorted by direction and position, because similar beams lead to similar results.
+/// Survivors are chosen in this order (Array-RQMC: L'Ecuyer, Lecot and Tuffin, Operations Research 56, 958, 2008).
+/// Beams that represent copies at several positions (Beam::places) have one entry per position, one after the other,
+/// and each survivor has a single position. In an infinite part, a survivor continues at the first position and
+/// represents all of them.
 class BeamGeneration {
  public:
   /// \param part whose periods or outline places are compared by \param beams outlive this

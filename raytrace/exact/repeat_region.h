@@ -1,7 +1,7 @@
 #pragma once
 
-// A region of a part of zones whose cells form a lattice. Within the region, a beam and its copies at whole periods
-// meet identical facets.
+// A region of the part in which the cells form a lattice. A part with zones has several such regions. Within a region,
+// a beam and its copies at whole periods of the lattice meet identical facets.
 
 #include <array>
 #include <vector>

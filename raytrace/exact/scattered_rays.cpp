@@ -194,8 +194,8 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
     walker_.resume(start, ray, key_, replicate_, number, choices);
 }
 
-/// Traces an ordinary ray whose light in the cones is already booked by score(). Power that this ray brings into the
-/// cones is booked as scattered elsewhere.
+/// Traces an ordinary ray. score() has already counted the light that reaches the cones from the place where this ray
+/// starts. If this ray itself ends in a cone, its power is therefore counted as scattered outside of the cones.
 void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uint32_t number, std::uint32_t& choices) {
   apart_.clear();
   walker_apart_.resume(position, ray, key_, replicate_, number, choices);

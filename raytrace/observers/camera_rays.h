@@ -89,8 +89,8 @@ class Luminaire {
     const double chord = (direction - way / distance).norm();
     if (chord > 1.01 * (lamp_rad + pupil_rad)) return 0.0;
     const ApertureKernel kernel({Angle::from_rad(2.0 * lamp_rad), Angle::from_rad(2.0 * pupil_rad)});
-    // Illuminance at this point, times the fraction of pairs of points, one in each disc, that the ray connects, per
-    // steradian.
+    // Illuminance at this point, times the probability density per steradian of this direction. The density is that
+    // of rays from a random point of the lamp's disc to a random point of the pupil's disc.
     return intensity_ / (distance * distance) * kernel.per_sr(2.0 * std::asin(0.5 * chord));
   }
 

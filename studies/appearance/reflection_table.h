@@ -54,7 +54,8 @@ struct ReflectionTable {
 
   double step() const { return 2.0 * half_width / static_cast<double>(columns - 1); }
   geometry::Vec2 deviation(std::size_t index) const;
-  /// Returns the x and y components of the direction to the observer at the deviation 0.
+  /// Returns the x and y components of the central direction of view: the direction to the source, or its mirror
+  /// image along x or y.
   geometry::Vec2 middle(const geometry::Vec3& to_source) const { return back.cwiseProduct(to_source.head<2>()); }
   /// Returns the interpolated value of a grid at a deviation within the grid.
   Rgb between(const std::vector<Rgb>& grid, const geometry::Vec2& deviation) const;

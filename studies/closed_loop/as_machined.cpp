@@ -299,8 +299,8 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
       HarveyShackTexture{rounded(part.texture.roughness_sq_nm), part.texture.correlation_length_um,
                          rounded(part.texture.waviness_sq_nm), rounded(part.texture.waviness_length_um)};
   design.detector.acceptance_half_angle_deg = {0.05, 0.5};
-  return design_text(design, fmt::format("# Facets as the programs leave them: {}. Sa {} nm, as published for facets\n"
-                                         "# that were made by such motions; feed marks at 7.07 Hz.\n",
+  return design_text(design, fmt::format("# Facets as the programs leave them: {}. Sa {} nm is a published value for\n"
+                                         "# facets that were cut by such motions; feed marks at 7.07 Hz.\n",
                                          part.planes  ? "a plane each"
                                          : part.zones ? "the mean over the elements of each zone"
                                                       : "the mean over the elements",

@@ -76,7 +76,7 @@ struct Optimum {
   std::string method;  ///< of the refinement: "exact slopes" or "no slopes"
   std::size_t evaluations = 0;
   std::size_t ran_out = 0;      ///< designs that failed because a budget of memory or beams ran out
-  std::string ran_out_because;  ///< message of the first of them
+  std::string ran_out_because;  ///< error message of the first of these designs
   bool complete = true;
 };
 

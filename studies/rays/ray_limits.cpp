@@ -58,7 +58,8 @@ const char* settle_stokes(SetRay& ray) {
     for (double& s : ray.stokes) s /= std::sqrt(sum);
   const Vec3 axis = moderate(ray.axis);
   const Vec3 across = axis - axis.dot(ray.direction) * ray.direction;
-  if (!(across.norm() > kLeastAcross * axis.norm())) return "the axis of polarisation must lie across the direction";
+  if (!(across.norm() > kLeastAcross * axis.norm()))
+    return "the axis of polarisation must not be parallel to the direction";
   ray.axis = across.normalized();
   return nullptr;
 }

@@ -42,7 +42,7 @@ inline constexpr Engine kExactEngines[] = {Engine::exact, Engine::automatic};
 /// Engines of RRE that stop following light below a power of their own choice or of the request.
 inline constexpr Engine kCutoffEngines[] = {Engine::automatic, Engine::exact, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
-/// Engines of RRE that have a target error even if the request gives a cut-off.
+/// Engines of RRE that use a target error. They also use it if the request gives a cut-off.
 inline constexpr Engine kTargetEngines[] = {Engine::automatic, Engine::stochastic, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
 /// True if `engine` is one of `engines`.

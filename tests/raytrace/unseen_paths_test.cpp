@@ -83,7 +83,8 @@ TEST(UnseenPaths, SmallRegionsLieWithinTheError) {
   }
 }
 
-// If no ray meets the region, the rule of three determines the number of rays, which is rounded up to a power of two.
+// If no ray of n meets the region, its share is below 3 / n with 95 % confidence. This bound determines the number of
+// rays, which is rounded up to a power of two.
 TEST(UnseenPaths, ATargetOf1e5StaysAffordable) {
   std::mt19937 random(1);
   const MonteCarloResult result = sampled(ReturningRegion(random, 1e-9), 1e-5, 1);

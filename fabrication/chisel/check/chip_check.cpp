@@ -123,7 +123,8 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
     std::vector<double> bends;
     for (const double bend : limit.bends_mm())
       for (const double side : {-1.0, 1.0}) bends.push_back(deepest_mm + side * (bend + 1e-9));
-    // With errors of angle, the lines of a section are not exactly parallel to the facet's normal.
+    // Thicknesses are measured along parallel lines in a cross-section of the element. If the element has errors of
+    // angle, these lines are not exactly parallel to the facet's normal.
     const double upright = groove_.is_cube() ? square.norm() : 1.0;
     for (const LineLength& line : line_lengths(removed[s], along, bends)) {
       const double most_mm = limit.at(std::abs(line.at_mm - deepest_mm), beside_mm);

@@ -16,10 +16,11 @@ struct ZoneOvercut {
   std::int64_t elements = 0;  ///< number of elements that lose material
 };
 
-/// Computes the overcut from the lowest of all cavities on a dense grid of points. The grid covers the corner of each
-/// cavity at each dihedral edge, outside of its hexagon. Each half of a corner lies in the hexagon of one neighbour and
-/// is omitted if this neighbour is a cut element of the same zone. The relative error of areas and volumes is some
-/// thousandths. \param is_cut true for each element that is cut \pre the job has zones of hexagonal cube corners
+/// Computes the overcut from the lowest of all cavities on a dense grid of points. At the end of
+/// each dihedral edge, a cavity extends beyond its hexagon in a small corner. The grid covers these corners. Each half
+/// of a corner lies in the hexagon of one neighbour. A half is omitted if this neighbour belongs to the same zone and
+/// is cut. The relative error of areas and volumes is a few thousandths. \param is_cut true for each element that is
+/// cut \pre the job has zones of hexagonal cube corners
 ZoneOvercut zone_overcut(const Workpiece3d& workpiece, const std::vector<bool>& is_cut);
 
 }  // namespace retrace::fabrication

@@ -100,8 +100,8 @@ class EdgeProbe {
     stand.angle_within_rad = angle;
   }
 
-  /// Returns the angle at the center of that portion of the arc that is inside the region. The arc is assumed to be
-  /// straight in plan, which is exact without rake.
+  /// A part of the nose's arc is inside the region. Returns the angle of the middle of this part. Seen from above, the
+  /// arc is assumed to be straight, which is exact without rake.
   double inner_angle(const Pose& at) const {
     const Vec2 tip = place(at, 0.0);
     const Vec2 across(std::cos(at.c_rad), -std::sin(at.c_rad));

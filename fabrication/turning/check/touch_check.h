@@ -10,8 +10,8 @@
 
 namespace retrace::fabrication::turning {
 
-/// A point on the border of the region, below a block with its intended point of contact outside of the region. The
-/// edge does not reach the surface in this block.
+/// A point on the border of the region, below the path of one block of the program. The block should touch the surface
+/// outside of the region, and the edge does not reach the surface inside the region.
 struct BorderPlace {
   geometry::Vec2 at_mm = geometry::Vec2::Zero();
   double edge_nm = 0.0;      ///< height of the edge above the surface at this point, normal to the surface

@@ -92,7 +92,7 @@ std::string verification_table(const VerificationRun& run) {
     row("beyond the apertures", fixed(r.border_overcut_mm3, 6) + " mm3, as triangular cavities must");
   if (r.elements_overcut > 0)
     row("of other elements",
-        fmt::format("{} reached into, {} mm2 of their apertures, {} um deep at most, at borders", r.elements_overcut,
+        fmt::format("cut at borders: {} elements, {} mm2 of their apertures, at most {} um deep", r.elements_overcut,
                     fixed(r.zone_overcut_mm2, 4), fixed(r.zone_overcut_um_max, 3)));
   if (r.rim_overcut_um_max > 0.0)
     row("under rims", fixed(r.rim_overcut_um_max, 3) + " um, as neighbours at other heights must");

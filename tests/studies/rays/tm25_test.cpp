@@ -209,7 +209,7 @@ TEST(Tm25, WrongRaysAreRefusedWithTheirByte) {
   EXPECT_EQ(complaint(full(), [](File& f) { f.values[0][7] = 1.0F; }),
             "led.tm25ray: byte " + last(7) + ": the squares of S1, S2 and S3 must add up to 1 at most");
   EXPECT_EQ(complaint(full(), [](File& f) { f.values[0][11] = 0.0F, f.values[0][12] = 1.0F; }),
-            "led.tm25ray: byte " + last(7) + ": the axis of polarisation must lie across the direction");
+            "led.tm25ray: byte " + last(7) + ": the axis of polarisation must not be parallel to the direction");
   for (const float index : {0.0F, 3.0F, 1.5F})
     EXPECT_NE(complaint(full(), [&](File& f) { f.values[0][13] = index; })
                   .find("byte " + last(13) + ": a spectrum index must be 1 to 2, got "),

@@ -88,9 +88,10 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
 }
 
 /// Returns the height, along the normal of a facet, up to which material counts as material on this facet. The height
-/// ends at the blank's face, and before another facet that includes less than 90 degrees with this one. For a point
-/// close to a dihedral edge it ends at the upper limit of the edge strip. A normal that starts close to both other
-/// facets runs along their dihedral edge; it ends before the fin that rounding may leave there.
+/// is limited by the blank's face, and by another facet if the angle to that facet is less than 90 degrees. For a point
+/// close to a dihedral edge, the limit is the end of the strip along this edge. For a point close to both other facets,
+/// the normal runs along their dihedral edge. The limit is then the fin that may remain there because the control
+/// rounds positions.
 double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge, double fin_mm) {
   constexpr double kParallel = 1e-9;
   const Vec3& normal = cavity.facets[facet].normal;
