@@ -20,7 +20,7 @@ const studies::AppearanceRequest kUsual;
 struct ExportOptions {
   std::string design;
   std::optional<std::string> file;  ///< the same as --out
-  std::optional<std::string> what;  ///< by default "array"
+  std::string what = "array";
   std::optional<double> block_mm;
   std::optional<double> entrance_deg, window_deg, error, source_arcmin, receiver_arcmin;
   std::optional<std::uint64_t> most_directions;
@@ -34,24 +34,24 @@ std::vector<Argument> arguments(ExportOptions& options) {
       words.push_back(studies::name_of(kind));
     return words;
   };
-  return {design_argument(options.design),
-          {"FILE",
-           "file to write: .stl, .obj, .glb, .step or .stp; a material: .json, .xml or .glsl; the same as --out FILE",
-           &options.file, files("")},
-          {"--what WHAT", "solid: element, array or mould: the block behind the part's back [array]", &options.what,
-           one_of(kinds)},
-          {"--block-mm T", "mould: thickness of the block below its deepest point [the plate's thickness]",
-           &options.block_mm},
-          {"--entrance-deg B", fmt::format("material: largest entrance angle [{:g}]", kUsual.entrance_deg),
-           &options.entrance_deg},
-          {"--window-deg W", fmt::format("material: largest angle between view and source [{:g}]", kUsual.window_deg),
-           &options.window_deg},
-          {"--source-arcmin D", "material: diameter of the source [10]", &options.source_arcmin},
-          {"--receiver-arcmin D", "material: diameter of the receiver [10]", &options.receiver_arcmin},
-          {"--error E", fmt::format("material: target of the relative error [{:g}]", kUsual.error), &options.error},
-          {"--most-directions N",
-           fmt::format("material: directions of light that are computed, at most [{}]", kUsual.most_directions),
-           &options.most_directions}};
+  return {
+      design_argument(options.design),
+      {"FILE",
+       "file to write: .stl, .obj, .glb, .step or .stp; a material: .json, .xml or .glsl; the same as --out FILE",
+       &options.file, files("")},
+      {"--what WHAT", "solid: element, array or mould: the block behind the part's back", &options.what, one_of(kinds)},
+      {"--block-mm T", "mould: thickness of the block below its deepest point [the plate's thickness]",
+       &options.block_mm},
+      {"--entrance-deg B", fmt::format("material: largest entrance angle [{:g}]", kUsual.entrance_deg),
+       &options.entrance_deg},
+      {"--window-deg W", fmt::format("material: largest angle between view and source [{:g}]", kUsual.window_deg),
+       &options.window_deg},
+      {"--source-arcmin D", "material: diameter of the source [10]", &options.source_arcmin},
+      {"--receiver-arcmin D", "material: diameter of the receiver [10]", &options.receiver_arcmin},
+      {"--error E", fmt::format("material: target of the relative error [{:g}]", kUsual.error), &options.error},
+      {"--most-directions N",
+       fmt::format("material: directions of light that are computed, at most [{}]", kUsual.most_directions),
+       &options.most_directions}};
 }
 
 /// Refuses options of the other kind of file.
@@ -61,7 +61,7 @@ void check_options(const ExportOptions& options, bool is_material) {
       throw InputError({"", 0, option},
                        is_material ? "is of solids: a material has none" : "is of materials: .json, .xml or .glsl");
   };
-  refuse("--what", is_material && options.what);
+  refuse("--what", is_material && options.what != "array");
   refuse("--block-mm", is_material && options.block_mm);
   refuse("--entrance-deg", !is_material && options.entrance_deg);
   refuse("--window-deg", !is_material && options.window_deg);
@@ -123,7 +123,7 @@ ExitCode run(const ExportOptions& options, const CommonOptions& common) {
   if (material) return run_material(options, common, file, *material);
   const auto format = file.empty() ? studies::SolidFormat::stl : studies::solid_format(file);
   studies::SolidRequest request;
-  request.what = studies::read_solid_kind(options.what.value_or("array"));
+  request.what = studies::read_solid_kind(options.what);
   request.block_mm = options.block_mm;
   const studies::Design design = studies::read_design(options.design, common.overrides);
   const studies::Solid solid = studies::make_solid(design, request);
