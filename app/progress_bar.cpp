@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 #include <utility>
 
 #include "app/output.h"
@@ -50,6 +52,23 @@ void ProgressBar::notice(double share, const std::string& work) {
   const std::string advice = fmt::format("{}", fmt::join(text_.to_shorten, ", or "));
   say(fmt::format("note: {} will take about {} longer{}{}", work, duration_text(*remaining_s),
                   advice.empty() ? "" : "; to shorten it, ", advice));
+  if (after_notice_) after_notice_(*remaining_s);
+}
+
+void ProgressBar::after_notice(std::function<void(double)> action) {
+  const std::lock_guard lock(mutex_);
+  after_notice_ = std::move(action);
+}
+
+void ProgressBar::write_lines(const std::string& lines) {
+  const std::lock_guard lock(mutex_);
+  if (is_quiet_) return;
+  clear();
+  for (std::size_t from = 0; from < lines.size();) {
+    const std::size_t end = std::min(lines.find('\n', from), lines.size());
+    say(std::string_view(lines).substr(from, end - from));
+    from = end + 1;
+  }
 }
 
 void ProgressBar::at(double share) {
@@ -57,6 +76,7 @@ void ProgressBar::at(double share) {
 }
 
 void ProgressBar::at(double share, const std::string& remark) {
+  const std::lock_guard lock(mutex_);
   notice(share, "this run");
   const std::optional<double> remaining_s = run_.remaining_s(share, elapsed_s());
   if (!is_time_to_draw(share >= 1.0)) return;
@@ -68,16 +88,19 @@ void ProgressBar::at(double share, const std::string& remark) {
 }
 
 void ProgressBar::count(const std::string& done) {
+  const std::lock_guard lock(mutex_);
   if (!is_time_to_draw(false)) return;
   fmt::print(stderr, "\r\033[K{}: {}, {:.0f} s", text_.doing, done, elapsed_s());
   std::fflush(stderr);
 }
 
 void ProgressBar::begin_group(double share) {
+  const std::lock_guard lock(mutex_);
   run_.begin_part(share, elapsed_s());
 }
 
 void ProgressBar::at_group(double share, const std::string& group) {
+  const std::lock_guard lock(mutex_);
   notice(share, group);
 }
 

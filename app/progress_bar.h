@@ -3,6 +3,8 @@
 // Progress of long work on standard error: a bar on the terminal, and one line if the work will take long.
 
 #include <chrono>
+#include <functional>
+#include <mutex>
 #include <string>
 
 #include "app/command.h"
@@ -20,7 +22,7 @@ struct RunText {
 
 /// A bar on standard error with the finished fraction and the remaining time, if standard error is a terminal. One time
 /// in a run, a line reports the estimated duration and what makes the run shorter, see LongRun. This line is also
-/// written if standard error is not a terminal. With --quiet, nothing is written.
+/// written if standard error is not a terminal. With --quiet, nothing is written. Several threads may use a bar.
 class ProgressBar : public Progress {
  public:
   ProgressBar(RunText text, const CommonOptions& common);
@@ -39,13 +41,21 @@ class ProgressBar : public Progress {
   /// Reports the finished fraction of the group, for the line about long work. \param group such as "65 designs"
   void at_group(double share, const std::string& group);
 
+  /// Sets the function that is called after the line about long work was written. It must not use the bar.
+  /// \param action receives the estimated remaining time in seconds; empty: nothing is called
+  void after_notice(std::function<void(double)> action);
+  /// Writes lines on standard error and removes the bar until it is drawn again. Control characters are escaped.
+  void write_lines(const std::string& lines);
+
  private:
   double elapsed_s() const;
   bool is_time_to_draw(bool is_end);
-  /// \param work what takes the time
+  /// Writes the line about long work if it is time for it. \param work what takes the time \pre mutex_ is locked
   void notice(double share, const std::string& work);
   void clear();
 
+  std::mutex mutex_;
+  std::function<void(double)> after_notice_;
   RunText text_;
   bool is_quiet_;
   bool is_terminal_;

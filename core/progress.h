@@ -11,10 +11,16 @@ namespace retrace {
 /// Asked between pieces of work whether to stop. Safe to set from a signal handler.
 class Cancellation {
  public:
+  Cancellation() = default;
+  /// \param whole if its stop is requested, this work stops as well; null: there is none. It must outlive this object.
+  explicit Cancellation(const Cancellation* whole) : whole_(whole) {}
   void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
-  bool requested() const noexcept { return requested_.load(std::memory_order_relaxed); }
+  bool requested() const noexcept {
+    return requested_.load(std::memory_order_relaxed) || (whole_ != nullptr && whole_->requested());
+  }
 
  private:
+  const Cancellation* whole_ = nullptr;
   std::atomic<bool> requested_{false};
 };
 

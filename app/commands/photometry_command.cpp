@@ -4,9 +4,11 @@
 #include <set>
 
 #include "app/commands.h"
+#include "app/first_answer.h"
 #include "app/interrupt.h"
 #include "app/number_list.h"
 #include "app/output.h"
+#include "app/progress_bar.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
 #include "core/number_format.h"
@@ -143,6 +145,14 @@ Words what_shortens_photometry(const PhotometryOptions& options, bool follows_be
   return advice;
 }
 
+/// Returns the table of preliminary readings, or an empty text if it was cancelled. It is ready after some seconds.
+std::string first_answer_of(const studies::PhotometryStudy& study, double remaining_s, const Cancellation* cancel) {
+  // Time of its rays without other work. The main measurement runs at the same time, so that it is about doubled.
+  constexpr double first_answer_s = 3.0;
+  const auto answer = study.first_answer(first_answer_s / remaining_s, cancel);
+  return answer ? studies::first_answer_table(*answer) : std::string();
+}
+
 ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   const studies::Design design = studies::read_design(options.design, common.overrides);
   std::vector<std::string> inputs = files_read({design});
@@ -162,7 +172,15 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   add_files(files, result);
   files.prepare();
   const RunText text{"tracing", what_shortens_photometry(options, study.follows_beams(), has_rotations)};
-  interrupt.run(common, text, [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  {
+    ProgressBar bar(text, common);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) {
+      const FirstAnswer first(bar, cancel, [&study](double remaining_s, const Cancellation* until) {
+        return first_answer_of(study, remaining_s, until);
+      });
+      result = study.run(&bar, cancel);
+    });
+  }
   return files.write(studies::photometry_json(result), studies::photometry_table(result), result.warnings,
                      {.complete = result.complete, .is_yes = result.passes()});
 }

@@ -98,6 +98,10 @@ class Photometer {
   /// Makes later measurements faster and less accurate by resampling fewer weak beams. Their values only guide a search
   /// and are not shown to the user.
   void only_guide() { is_guide_ = true; }
+  /// Makes later measurements faster than only_guide() does, for preliminary values that are shown with their errors.
+  /// The cut-off is larger for all parts. The elements of the part take at most half of their memory, because another
+  /// photometer measures the same part at the same time.
+  void only_first_answer() { is_guide_ = is_first_answer_ = true; }
   /// From now on without the mirror image of the light: what the entrance face reflects, from outside and, between
   /// elements that send it back, from inside. \pre is_exact()
   void leave_out_mirror_image() { has_mirror_image_ = false; }
@@ -191,6 +195,7 @@ class Photometer {
   raytrace::ApertureKernel kernel_;
   bool is_exact_ = true;
   bool is_guide_ = false;
+  bool is_first_answer_ = false;
   bool has_mirror_image_ = true;
   bool has_form_ = false;
   bool keeps_phases_ = false;  ///< exact: textures scatter by their phases, diffracted

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/memory_budget.h"
+#include "raytrace/exact/element_memory.h"
 #include "raytrace/observers/small_angle.h"
 #include "studies/photometry/photometer.h"
 
@@ -27,6 +28,8 @@ constexpr std::uint32_t kReplicates = 16;
 // are about 1e-3 unless almost no light returns, and the time is a third less.
 constexpr std::uint32_t kReplicatesOfGuide = 4;
 constexpr double kCutoffOfGuide = 3.0;
+// Ratio of the cut-off for preliminary values to the usual one.
+constexpr double kCutoffOfFirstAnswer = 10.0;
 // Maximum number of beams per direction and wavelength; with more beams, `auto` uses Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
 // Minimum trace of the linear part of ReturnedBeam::entry_from_exit for beams of the mirror image of the light. The
@@ -102,9 +105,12 @@ bool Photometer::resamples_weak() const {
 /// As a share of all light.
 double Photometer::cutoff() const {
   const double elements = std::max(1.0, static_cast<double>(model_.part.period_mm ? 1 : model_.part.elements_full));
-  if (request_.cutoff) return *request_.cutoff / elements;
-  if (model_.part.period_mm || !resamples_weak()) return kCutoff / elements;
-  return (is_guide_ ? kCutoffOfGuide : 1.0) * std::max(kCutoffOfFinite / elements, kCutoffOfAll);
+  const double given = request_.cutoff.value_or(0.0) / elements;
+  if (request_.cutoff && !is_first_answer_) return given;
+  const bool is_finite = !model_.part.period_mm && resamples_weak();
+  const double usual = is_finite ? std::max(kCutoffOfFinite / elements, kCutoffOfAll) : kCutoff / elements;
+  if (is_first_answer_) return std::max(given, kCutoffOfFirstAnswer * usual);
+  return is_finite && is_guide_ ? kCutoffOfGuide * usual : usual;
 }
 
 std::uint32_t Photometer::replicates() const {
@@ -137,6 +143,8 @@ raytrace::BeamTracer Photometer::make_tracer() const {
   const double cells = model_.part.period_mm ? 0.0 : static_cast<double>(model_.part.elements_full);
   const double bytes = cells * (kBytesPerCell + kLeastBeamsOfCell * kBytesPerBeamOfCell);
   if (request_.diffraction && bytes > static_cast<double>(beam_memory_bytes())) fail_on_memory();
+  if (is_first_answer_ && 2.0 * raytrace::element_cost(model_.part).bytes > static_cast<double>(element_memory_bytes()))
+    throw TraceBudgetError("preliminary values do not fit into memory next to the measurement itself");
   return raytrace::BeamTracer(model_.part, raytrace::BeamTracer::Elements::equal_at_once);
 }
 

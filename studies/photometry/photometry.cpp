@@ -32,6 +32,9 @@ constexpr double kLeastApertureArcmin = 0.006;
 constexpr double kErrorsOfAMargin = 2.0;
 // Wavelengths for figures, and for pictures.
 constexpr std::size_t kPictureParts = 1;
+// Preliminary readings: number of spans of the spectrum with two wavelengths each, and minimum number of rays.
+constexpr std::size_t kFirstAnswerParts = 1;
+constexpr double kMinRaysOfFirstAnswer = 4096.0;
 constexpr std::size_t kMapColumns = 97;
 constexpr std::size_t kMostMaps = 6;
 // Entrance angles and observation angles of the curves.
@@ -466,6 +469,24 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   if (result.complete) result.complete = add_change(photometer, plan, cancel, result);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+std::optional<PhotometricFirstAnswer> PhotometryStudy::first_answer(double ray_share,
+                                                                    const Cancellation* cancel) const {
+  PhotometryRequest request = prepared_->request;
+  const auto rays = static_cast<double>(request.rays.value_or(kUsualRaysOfDirection));
+  request.rays = static_cast<std::uint64_t>(std::min(rays, std::max(kMinRaysOfFirstAnswer, ray_share * rays)));
+  Plan plan = prepared_->plan;
+  for (PhotometerSetting& setting : plan.settings) setting.split = false;
+  Photometer photometer(prepared_->design, request, kFirstAnswerParts);
+  photometer.only_first_answer();
+  const auto readings = readings_of(photometer, request, plan, nullptr, cancel);
+  if (!readings) return std::nullopt;
+  PhotometricFirstAnswer answer;
+  answer.points = least_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
+  answer.wavelengths_nm = photometer.wavelengths_nm();
+  answer.lacks_diffraction = request.diffraction && !photometer.has_diffraction();
+  return answer;
 }
 
 }  // namespace retrace::studies

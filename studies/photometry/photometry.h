@@ -177,6 +177,17 @@ struct PhotometryResult {
   bool passes() const { return every_point_holds(verdict) && !(colour && colour->verdict() == Verdict::fail); }
 };
 
+/// Systematic error of preliminary readings, as a fraction of the value, that their standard errors do not contain. It
+/// comes from the few wavelengths, except at the design's own light, and from weak beams, which do not interfere.
+inline constexpr double kSystematicErrorOfFirstAnswer = 0.02;
+
+/// Preliminary readings at the test points, from a computation that takes much less time.
+struct PhotometricFirstAnswer {
+  std::vector<PhotometricPoint> points;  ///< one for each test point; their verdicts mean nothing
+  std::vector<double> wavelengths_nm;
+  bool lacks_diffraction = false;  ///< although the request asks for it
+};
+
 /// What points say together: one that fails decides, then one that is undetermined. Points of recalled limits, and
 /// programmes that are not complete, confirm nothing.
 Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme);
@@ -198,6 +209,13 @@ class PhotometryStudy {
 
   /// \throw BudgetError if power was lost
   PhotometryResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
+
+  /// Computes preliminary readings at fewer wavelengths, with fewer rays or with a larger cut-off of beams. It may be
+  /// called while run() is running on another thread, and does not change what run() returns. Returns nothing if it was
+  /// cancelled.
+  /// \param ray_share number of rays divided by the number of rays of run(), > 0 and at most 1
+  /// \throw BudgetError if the memory does not suffice next to run()
+  std::optional<PhotometricFirstAnswer> first_answer(double ray_share, const Cancellation* cancel = nullptr) const;
 
  private:
   struct Prepared;

@@ -80,6 +80,11 @@ INSTANTIATE_TEST_SUITE_P(
                 {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=30", "--engine=montecarlo", "--samples=4294967296"},
                 SIGTERM},
+        LongRun{"photometry_with_preliminary_readings",
+                {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
+                 "--area-cm2=30", "--engine=montecarlo", "--samples=4294967296"},
+                SIGINT,
+                3.0},  // by then the preliminary readings are being computed as well
         LongRun{"photometry_seeks_advice",
                 {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=1e-3", "--rotation=0,20,40,60", "--quiet"},

@@ -54,6 +54,37 @@ TEST(LongRunOfTheProgram, OfAStudyIsReportedBeforeItsFirstPointIsFinished) {
   EXPECT_NE(outcome.err.find("analysis.samples (now 1000000000)"), std::string::npos) << outcome.err;
 }
 
+// The preliminary readings come while the run goes on. What an interrupted run writes to standard output does not
+// depend on them.
+TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadings) {
+  const TemporaryFolder folder;
+  const Arguments arguments = {"photometry",
+                               example("reflex_reflector.toml"),
+                               "--standard=r150",
+                               "--class=IA",
+                               "--colour=red",
+                               "--area-cm2=30",
+                               "--engine=montecarlo",
+                               "--samples=4294967296",
+                               "--json=-"};
+  Child child(folder.path(), with(with({RETRACE_PROGRAM}, arguments), {"--threads=1"}));
+  const auto limit = std::chrono::steady_clock::now() + patient(60);
+  while (!child.has_ended() && std::chrono::steady_clock::now() < limit &&
+         child.err_so_far().find("preliminary readings") == std::string::npos)
+    std::this_thread::sleep_for(10ms);
+  child.interrupt(SIGINT);
+  const Outcome loud = child.wait(patient(60));
+  EXPECT_EQ(loud.code, 130) << loud.err;
+  EXPECT_EQ(note_count(loud.err), 1) << loud.err;
+  EXPECT_LT(loud.err.find("note: "), loud.err.find("\npreliminary readings")) << loud.err;
+  EXPECT_NE(loud.err.find("\npreliminary readings"), std::string::npos) << loud.err;
+  EXPECT_EQ(loud.err.find("verdict"), std::string::npos) << loud.err;
+  const Outcome quiet = interrupted(folder, with(arguments, {"--quiet"}));
+  EXPECT_EQ(quiet.code, 130) << quiet.err;
+  EXPECT_EQ(quiet.err.find("preliminary"), std::string::npos) << quiet.err;
+  EXPECT_EQ(without_elapsed(loud.out), without_elapsed(quiet.out));
+}
+
 TEST(LongRunOfTheProgram, IsNotReportedIfItIsQuiet) {
   const TemporaryFolder folder;
   folder.write("study.toml", kStudy);

@@ -127,6 +127,17 @@ void Child::interrupt(int signal) const {
   ::kill(process_, signal);
 }
 
+std::string Child::err_so_far() const {
+  // Reads at given offsets, because the child writes at the file offset, which both processes share.
+  std::string text;
+  std::array<char, 4096> block{};
+  for (;;) {
+    const ssize_t count = ::pread(::fileno(err_.get()), block.data(), block.size(), static_cast<off_t>(text.size()));
+    if (count <= 0) return text;
+    text.append(block.data(), static_cast<std::size_t>(count));
+  }
+}
+
 double Child::processor_time_s() const {
   clockid_t clock = {};
   timespec spent = {};

@@ -81,6 +81,8 @@ class Child {
   Outcome wait(std::chrono::seconds limit);
   /// Whether it has ended; what it left behind is still told by wait().
   bool has_ended() const;
+  /// Returns what it has written to standard error so far.
+  std::string err_so_far() const;
   /// Time of the processor that its threads have spent so far. \pre wait() has not been called
   double processor_time_s() const;
 

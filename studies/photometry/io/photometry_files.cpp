@@ -246,6 +246,20 @@ std::string far_field_map_csv(const PhotometryResult& result) {
   return csv.text();
 }
 
+std::string first_answer_table(const PhotometricFirstAnswer& answer) {
+  std::string table = fmt::format(
+      "preliminary readings{} at {} wavelength{}; errors are standard errors, and systematic errors of about {:.0f} % "
+      "come on top; the run goes on\n",
+      answer.lacks_diffraction ? " without diffraction" : "", answer.wavelengths_nm.size(),
+      answer.wavelengths_nm.size() == 1 ? "" : "s", 100.0 * kSystematicErrorOfFirstAnswer);
+  table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11}\n", "alpha", "V", "H", "rotation", "mcd/lx", "error");
+  for (const PhotometricPoint& p : answer.points)
+    table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11}\n", fixed_visible(p.asked.observation_deg, 2),
+                         shortest(p.asked.v_deg), shortest(p.asked.h_deg), shortest(p.rotation_deg),
+                         fixed(p.r_i_mcd_per_lx, 2), fixed_visible(p.std_error_mcd_per_lx, 2));
+  return table;
+}
+
 std::string photometry_table(const PhotometryResult& result) {
   const TestProgramme& programme = result.request.programme;
   std::string table = printable(programme.standard);

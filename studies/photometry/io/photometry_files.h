@@ -18,6 +18,9 @@ std::string photometry_csv(const PhotometryResult& result);
 /// source and above it.
 std::string far_field_map_csv(const PhotometryResult& result);
 
+/// Preliminary readings with their standard errors, for a terminal.
+std::string first_answer_table(const PhotometricFirstAnswer& answer);
+
 /// For people at a terminal: the table, the verdict, and what to change.
 std::string photometry_table(const PhotometryResult& result);
 

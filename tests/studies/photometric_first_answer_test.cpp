@@ -1,0 +1,131 @@
+// Preliminary readings of photometry, which are computed next to a measurement that takes long.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "studies/photometry/io/photometry_files.h"
+#include "studies/photometry/photometry.h"
+#include "tests/studies/photometric_requests.h"
+
+namespace retrace::studies::photometric_first_answer_test {
+namespace {
+
+using namespace photometric_requests;
+
+/// Fraction of the rays that the preliminary readings use.
+constexpr double kRayShare = 1.0 / 32.0;
+
+Design design() {
+  return design_of(honeycomb(2.0));
+}
+
+/// Returns a request of two readings at an angle at which light is trapped in the part. Beams are diffracted and have
+/// the wavelengths of CIE A. Rays have one wavelength.
+PhotometryRequest request(Engine engine) {
+  TestProgramme programme = points_at({0.1, 0.2}, 1.0);
+  for (TestPoint& point : programme.points) point.h_deg = 20.0;
+  PhotometryRequest request = request_of(programme);
+  request.engine = engine;
+  if (engine == Engine::montecarlo) {
+    request.rays = std::uint64_t{1} << 19U;
+  } else {
+    request.diffraction = true;
+    request.light = PhotometricLight::illuminant_a;
+  }
+  return request;
+}
+
+TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
+  for (const Engine engine : {Engine::montecarlo, Engine::automatic}) {
+    const PhotometryStudy study(design(), request(engine));
+    const PhotometryResult result = study.run();
+    const auto first = study.first_answer(kRayShare);
+    ASSERT_TRUE(first.has_value());
+    EXPECT_FALSE(first->lacks_diffraction);
+    ASSERT_EQ(first->points.size(), result.points.size());
+    for (std::size_t k = 0; k < result.points.size(); ++k) {
+      const double value = result.points[k].r_i_mcd_per_lx;
+      const double error = first->points[k].std_error_mcd_per_lx;
+      EXPECT_GT(value, 0.0);
+      EXPECT_GT(error, 0.0);
+      EXPECT_LT(error, 0.2 * value) << k;
+      EXPECT_NEAR(
+          first->points[k].r_i_mcd_per_lx, value,
+          3.0 * std::hypot(error, result.points[k].std_error_mcd_per_lx) + kSystematicErrorOfFirstAnswer * value)
+          << engine_name(engine) << ", point " << k;
+    }
+    const std::string table = first_answer_table(*first);
+    EXPECT_TRUE(table.starts_with("preliminary readings")) << table;
+    EXPECT_EQ(table.find("verdict"), std::string::npos) << table;
+  }
+}
+
+TEST(PhotometricFirstAnswer, CostsLess) {
+  const PhotometryStudy by_beams(design(), request(Engine::automatic));
+  EXPECT_LT(3 * by_beams.first_answer(kRayShare)->wavelengths_nm.size(), by_beams.run().wavelengths_nm.size());
+  // Fewer rays have a larger error: 32 times fewer rays have 5.7 times the error.
+  const PhotometryStudy by_rays(design(), request(Engine::montecarlo));
+  const PhotometryResult result = by_rays.run();
+  EXPECT_GT(by_rays.first_answer(kRayShare)->points[0].std_error_mcd_per_lx,
+            2.0 * result.points[0].std_error_mcd_per_lx);
+  EXPECT_EQ(by_rays.first_answer(1.0)->points[0].r_a, result.points[0].r_a) << "with all rays it is the final reading";
+}
+
+/// Computes preliminary readings on another thread as soon as a measurement reports progress.
+class Meanwhile : public Progress {
+ public:
+  explicit Meanwhile(const PhotometryStudy& study) : study_(study) {}
+  ~Meanwhile() override { join(); }
+  Meanwhile(const Meanwhile&) = delete;
+  Meanwhile& operator=(const Meanwhile&) = delete;
+
+  void at(double) override {
+    if (is_begun_) return;
+    is_begun_ = true;
+    thread_ = std::thread([this] { answer_ = study_.first_answer(kRayShare); });
+  }
+  const std::optional<PhotometricFirstAnswer>& answer() {
+    join();
+    return answer_;
+  }
+
+ private:
+  void join() {
+    if (thread_.joinable()) thread_.join();
+  }
+
+  const PhotometryStudy& study_;
+  std::optional<PhotometricFirstAnswer> answer_;
+  bool is_begun_ = false;
+  std::thread thread_;
+};
+
+TEST(PhotometricFirstAnswer, ChangesNothingOfTheMeasurementThatRunsMeanwhile) {
+  for (const Engine engine : {Engine::montecarlo, Engine::automatic}) {
+    const PhotometryStudy study(design(), request(engine));
+    PhotometryResult alone = study.run();
+    const auto first = study.first_answer(kRayShare);
+    Meanwhile meanwhile(study);
+    PhotometryResult with_first = study.run(&meanwhile);
+    ASSERT_TRUE(meanwhile.answer().has_value());
+    alone.elapsed_s = with_first.elapsed_s = 0.0;
+    EXPECT_EQ(photometry_json(with_first), photometry_json(alone));
+    EXPECT_EQ(photometry_table(with_first), photometry_table(alone));
+    EXPECT_EQ(first_answer_table(*meanwhile.answer()), first_answer_table(*first));
+  }
+}
+
+TEST(PhotometricFirstAnswer, StopsWithTheMeasurementThatItBelongsTo) {
+  for (const Engine engine : {Engine::montecarlo, Engine::automatic}) {
+    const PhotometryStudy study(design(), request(engine));
+    Cancellation whole;
+    const Cancellation part(&whole);
+    EXPECT_TRUE(study.first_answer(kRayShare, &part).has_value());
+    whole.request();
+    EXPECT_FALSE(study.first_answer(kRayShare, &part).has_value());
+  }
+}
+
+}  // namespace
+}  // namespace retrace::studies::photometric_first_answer_test
