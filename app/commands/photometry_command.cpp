@@ -175,8 +175,8 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   {
     ProgressBar bar(text, common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
-      const FirstAnswer first(bar, cancel, [&study](double remaining_s, const Cancellation* until) {
-        return first_answer_of(study, remaining_s, until);
+      const FirstAnswer first(bar, cancel, [&study](double remaining_s, const Cancellation* stop) {
+        return first_answer_of(study, remaining_s, stop);
       });
       result = study.run(&bar, cancel);
     });

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "studies/photometry/io/photometry_files.h"
@@ -16,13 +19,13 @@ using namespace photometric_requests;
 /// Fraction of the rays that the preliminary readings use.
 constexpr double kRayShare = 1.0 / 32.0;
 
-Design design() {
+Design cubes() {
   return design_of(honeycomb(2.0));
 }
 
 /// Returns a request of two readings at an angle at which light is trapped in the part. Beams are diffracted and have
 /// the wavelengths of CIE A. Rays have one wavelength.
-PhotometryRequest request(Engine engine) {
+PhotometryRequest request_by(Engine engine) {
   TestProgramme programme = points_at({0.1, 0.2}, 1.0);
   for (TestPoint& point : programme.points) point.h_deg = 20.0;
   PhotometryRequest request = request_of(programme);
@@ -38,7 +41,7 @@ PhotometryRequest request(Engine engine) {
 
 TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
   for (const Engine engine : {Engine::montecarlo, Engine::automatic}) {
-    const PhotometryStudy study(design(), request(engine));
+    const PhotometryStudy study(cubes(), request_by(engine));
     const PhotometryResult result = study.run();
     const auto first = study.first_answer(kRayShare);
     ASSERT_TRUE(first.has_value());
@@ -62,10 +65,10 @@ TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
 }
 
 TEST(PhotometricFirstAnswer, CostsLess) {
-  const PhotometryStudy by_beams(design(), request(Engine::automatic));
+  const PhotometryStudy by_beams(cubes(), request_by(Engine::automatic));
   EXPECT_LT(3 * by_beams.first_answer(kRayShare)->wavelengths_nm.size(), by_beams.run().wavelengths_nm.size());
   // Fewer rays have a larger error: 32 times fewer rays have 5.7 times the error.
-  const PhotometryStudy by_rays(design(), request(Engine::montecarlo));
+  const PhotometryStudy by_rays(cubes(), request_by(Engine::montecarlo));
   const PhotometryResult result = by_rays.run();
   EXPECT_GT(by_rays.first_answer(kRayShare)->points[0].std_error_mcd_per_lx,
             2.0 * result.points[0].std_error_mcd_per_lx);
@@ -103,7 +106,7 @@ class Meanwhile : public Progress {
 
 TEST(PhotometricFirstAnswer, ChangesNothingOfTheMeasurementThatRunsMeanwhile) {
   for (const Engine engine : {Engine::montecarlo, Engine::automatic}) {
-    const PhotometryStudy study(design(), request(engine));
+    const PhotometryStudy study(cubes(), request_by(engine));
     PhotometryResult alone = study.run();
     const auto first = study.first_answer(kRayShare);
     Meanwhile meanwhile(study);
@@ -118,7 +121,7 @@ TEST(PhotometricFirstAnswer, ChangesNothingOfTheMeasurementThatRunsMeanwhile) {
 
 TEST(PhotometricFirstAnswer, StopsWithTheMeasurementThatItBelongsTo) {
   for (const Engine engine : {Engine::montecarlo, Engine::automatic}) {
-    const PhotometryStudy study(design(), request(engine));
+    const PhotometryStudy study(cubes(), request_by(engine));
     Cancellation whole;
     const Cancellation part(&whole);
     EXPECT_TRUE(study.first_answer(kRayShare, &part).has_value());
