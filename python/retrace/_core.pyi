@@ -112,6 +112,7 @@ class FabricationRequest:
     dialect: str
     phase: str
     from_element: int | None
+    from_pass: int | None
     stop_every: int | None
     split_hours: float | None
     job_text: str | None
