@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "fabrication/job/cube_corner.h"
-#include "fabrication/job/v_tool.h"
+#include "fabrication/job/fins.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -46,15 +46,15 @@ void check_fin(const Job& job, const Machine& machine) {
   const double step_mm = 1e-6 * static_cast<double>(machine.increments.linear_nm);
   const double limit_mm = max_fin_mm(step_mm);
   for (std::size_t zone = 0; zone < zone_count(job); ++zone) {
-    const Angle error = Angle::from_deg(blank_corner(job, zone).largest_error_deg());
-    const double fin_mm = rounded_fin_mm(job.tool, error, step_mm);
+    const CubeCorner corner = blank_corner(job, zone);
+    const double fin_mm = highest_fin_mm(edge_covers(corner.normals, spines_of(corner, job.tool)), step_mm);
     if (fin_mm <= limit_mm) continue;
     throw InputError(
         job.where("tool.wedge_deg"),
         fmt::format(
-            "must be larger, or the increments of the control smaller: machine {} rounds positions to {} um, which "
-            "may leave a fin of {} um along dihedral edges; at most {} um are allowed, got {}",
-            machine.name, shortest(1e3 * step_mm), fixed(1e3 * fin_mm, 3), shortest(1e3 * limit_mm),
+            "must be larger, or the increments of the control smaller: machine {} rounds positions to {} um, so "
+            "that {} may remain between the cuts of its facets; at most {} um are allowed, got {}",
+            machine.name, shortest(1e3 * step_mm), fin_text(fin_mm), shortest(1e3 * limit_mm),
             shortest(job.tool.wedge_deg)));
   }
 }

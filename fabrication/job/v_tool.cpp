@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
 #include <numbers>
 
 #include "core/angle.h"
 #include "core/number_format.h"
 #include "fabrication/job/cube_corner.h"
+#include "fabrication/job/fins.h"
 #include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
@@ -55,40 +54,13 @@ double nose_strip_mm(const Tool& tool) {
   return 1e-3 * tool.edge_radius_um * (std::sin(rad(45.0)) / std::sin(rad(0.5 * tool.nose_angle_deg)) - 1.0);
 }
 
-double rounded_fin_mm(Angle first, Angle second, Angle between, double step_mm) {
-  const double overlap_rad = first.rad() + second.rad() - between.rad();
-  if (overlap_rad <= 0.0) return std::numeric_limits<double>::infinity();
-  // A position is the sum of a start and a path. Each is rounded by at most sqrt(3) increments in any direction, and by
-  // at most half an increment along the facet's normal.
-  const double along_mm = 2.0 * std::numbers::sqrt3 * step_mm;
-  const double across_mm = step_mm;
-  const auto height_mm = [&](Angle own, Angle other) {
-    const double rest_rad = between.rad() - other.rad();
-    const double off_mm = along_mm * (std::sin(other.rad()) + std::abs(std::sin(rest_rad))) +
-                          across_mm * (std::abs(std::cos(other.rad())) + std::abs(std::cos(rest_rad)));
-    return across_mm + std::sin(own.rad()) * off_mm / std::sin(overlap_rad);
-  };
-  return std::max(height_mm(first, second), height_mm(second, first));
-}
-
-double max_fin_mm(double step_mm) {
-  return kEdgeStripMm - *std::max_element(std::begin(kEdgeLineSteps), std::end(kEdgeLineSteps)) * step_mm;
-}
-
-double rounded_fin_mm(const Tool& tool, Angle error, double step_mm) {
-  const Vec3 spine = v_tool_edges(tool).spine;
-  return rounded_fin_mm(Angle::from_rad(std::atan2(spine.z(), spine.y())),
-                        Angle::from_rad(std::atan2(spine.z(), spine.x())),
-                        Angle::from_rad(0.5 * std::numbers::pi + error.rad()), step_mm);
-}
-
 void check_v_tool(const geometry::Element& element, const geometry::AngleErrors& errors, const Tool& tool,
                   const schema::Refuse& refuse) {
   // Maximum difference between an angle of the element and 90 degrees.
   double error_deg = 0.0;
   double edge_mm = cavity_edge_mm(element);
+  const CubeCorner corner = cube_corner(element, errors);
   if (errors != geometry::AngleErrors{}) {
-    const CubeCorner corner = cube_corner(element, errors);
     error_deg = corner.largest_error_deg();
     for (const Vec3& edge : corner.edges) edge_mm = std::max(edge_mm, corner.depth_mm / edge.z());
   }
@@ -106,6 +78,10 @@ void check_v_tool(const geometry::Element& element, const geometry::AngleErrors&
   if (covered_deg(edges) < 90.0 + error_deg)
     refuse("tool.wedge_deg", fmt::format("is too narrow: with nose_angle_deg and clearance_deg the cuts of two facets "
                                          "leave a fin along their edge, got {}",
+                                         shortest(tool.wedge_deg)));
+  if (std::isinf(rounded_peak_mm(edge_covers(corner.normals, spines_of(corner, tool)), 0.0)))
+    refuse("tool.wedge_deg", fmt::format("is too narrow: with nose_angle_deg and clearance_deg the cuts of the three "
+                                         "facets leave a peak between them, got {}",
                                          shortest(tool.wedge_deg)));
   constexpr double kMostRadiusShare = 0.1;
   const double aperture_mm = geometry::bounding_box(geometry::element_cell(element).outline).upper.x() * 2.0;

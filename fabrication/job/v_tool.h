@@ -5,7 +5,6 @@
 
 #include <array>
 
-#include "core/angle.h"
 #include "core/schema/schema.h"
 #include "fabrication/job/job.h"
 #include "geometry/vec.h"
@@ -28,30 +27,6 @@ double cavity_edge_mm(const geometry::Element& element);
 
 /// Width that a nose of the tool's radius leaves uncut on either facet along a dihedral edge.
 double nose_strip_mm(const Tool& tool);
-
-/// Width of the strip on either side of a dihedral edge. Remaining material in this strip is reported for the edge and
-/// not for a facet.
-inline constexpr double kEdgeStripMm = 1e-3;
-/// Distances from a dihedral edge at which the material in the strip is measured, in least increments of the control.
-/// They are larger than 1 because rounding moves a facet by up to one increment.
-inline constexpr double kEdgeLineSteps[] = {1.5, 8.0};
-
-/// Returns the maximum height of the fin that the cuts of two facets may leave at their dihedral edge because positions
-/// are rounded (docs/theory/micro_chiseling.md, section "Fins"). The height is measured normal to either facet; it is
-/// infinity if the cuts do not overlap.
-/// \param first angle at the dihedral edge between the first facet and the upper boundary of its cut
-/// \param second angle at the dihedral edge between the second facet and the upper boundary of its cut
-/// \param between angle between the facets
-/// \param step_mm least increment of the control
-double rounded_fin_mm(Angle first, Angle second, Angle between, double step_mm);
-
-/// Returns the maximum height of a fin that is inside the strip of kEdgeStripMm along the edge, less the distance from
-/// the edge of the farthest measuring line.
-double max_fin_mm(double step_mm);
-
-/// Returns the maximum height of the fin for an ideally aligned tool. \param error largest error of angle of the
-/// element
-double rounded_fin_mm(const Tool& tool, Angle error, double step_mm);
 
 /// That the tool reaches the apex of a cube corner, and every place of its facets.
 /// \param element as it is cut into the blank \pre it is a cube corner

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -8,6 +11,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "fabrication/job/fins.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/v_tool.h"
 #include "tests/fabrication/chiseling_programs.h"
@@ -42,7 +46,8 @@ TEST(RoundedCuts, FinsAreNoHigherThanTheFormula) {
     const double overlap = uniform(0.01, 0.5);
     const double first = uniform(0.6, 1.0);
     const double second = between + overlap - first;
-    const double bound = rounded_fin_mm(Angle::from_rad(first), Angle::from_rad(second), Angle::from_rad(between), 1.0);
+    const double bound =
+        rounded_fin_mm({Angle::from_rad(first), Angle::from_rad(second), Angle::from_rad(between)}, 1.0);
     double highest = 0.0;
     for (int k = 0; k < 20'000; ++k) {
       // Rounding errors along and normal to the facets, in increments. Half of the samples are at the extreme values.
@@ -61,6 +66,115 @@ TEST(RoundedCuts, FinsAreNoHigherThanTheFormula) {
     EXPECT_LE(highest, bound * (1.0 + 1e-9)) << first << ' ' << second << ' ' << between;
     EXPECT_GE(highest, 0.9 * bound - 1.0) << first << ' ' << second << ' ' << between;
   }
+}
+
+/// Three planes with random errors of angle, and the spine of a random tool in each.
+struct RandomCuts {
+  std::array<geometry::Vec3, 3> normals;
+  std::array<geometry::Vec3, 3> spines;
+};
+
+RandomCuts random_cuts(std::mt19937& bits) {
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
+  const geometry::Vec3 spine(uniform(0.7, 1.1), uniform(0.7, 1.1), 1.0);
+  RandomCuts cuts;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const auto facet = static_cast<std::size_t>(k);
+    geometry::Vec3 normal(uniform(-0.01, 0.01), uniform(-0.01, 0.01), uniform(-0.01, 0.01));
+    normal[k] = 1.0;
+    cuts.normals[facet] = normal.normalized();
+    // The dihedral edges of facet k are the two axes after k.
+    cuts.spines[facet][(k + 1) % 3] = spine.x();
+    cuts.spines[facet][(k + 2) % 3] = spine.y();
+    cuts.spines[facet][k] = spine.z();
+    cuts.spines[facet].normalize();
+  }
+  return cuts;
+}
+
+/// True if the cut along a facet removes a point: the cone of the facet's two edges and the spine, moved by `tip`,
+/// holds it. The cone is computed from its own three planes.
+bool removes(const RandomCuts& cuts, std::size_t facet, const geometry::Vec3& tip, const geometry::Vec3& point) {
+  const geometry::Vec3& normal = cuts.normals[facet];
+  const geometry::Vec3 first = cuts.normals[(facet + 2) % 3].cross(normal);
+  const geometry::Vec3 second = normal.cross(cuts.normals[(facet + 1) % 3]);
+  Eigen::Matrix3d cone;
+  cone << first, second, cuts.spines[facet];
+  return (cone.inverse() * (point - tip)).minCoeff() >= 0.0;
+}
+
+/// Points are searched from all cuts at exact positions: directions from the apex on a fine grid.
+bool leaves_a_peak(const RandomCuts& cuts) {
+  constexpr int kSteps = 160;
+  for (int i = 1; i < kSteps; ++i)
+    for (int j = 1; i + j < kSteps; ++j) {
+      const geometry::Vec3 heights(i, j, kSteps - i - j);
+      Eigen::Matrix3d planes;
+      for (Eigen::Index k = 0; k < 3; ++k) planes.row(k) = cuts.normals[static_cast<std::size_t>(k)].transpose();
+      const geometry::Vec3 point = planes.inverse() * heights;
+      if (!removes(cuts, 0, geometry::Vec3::Zero(), point) && !removes(cuts, 1, geometry::Vec3::Zero(), point) &&
+          !removes(cuts, 2, geometry::Vec3::Zero(), point))
+        return true;
+    }
+  return false;
+}
+
+/// Tools whose cuts overlap along every edge may still leave a peak in the middle.
+TEST(RoundedCuts, PeaksAreWhereTheFormulaHasThem) {
+  std::mt19937 bits(5);
+  int peaks = 0;
+  int covered = 0;
+  for (int tool = 0; tool < 400; ++tool) {
+    const RandomCuts cuts = random_cuts(bits);
+    const std::array<EdgeCover, 3> covers = edge_covers(cuts.normals, cuts.spines);
+    const auto fins = [&](const EdgeCover& cover) { return std::isinf(rounded_fin_mm(cover, 1.0)); };
+    if (std::any_of(covers.begin(), covers.end(), fins)) continue;
+    const double height = rounded_peak_mm(covers, 1.0);
+    // A narrow peak may lie between the points of the grid.
+    if (height > 1e3 && std::isfinite(height)) continue;
+    const bool is_peak = leaves_a_peak(cuts);
+    if (std::isfinite(height)) {
+      EXPECT_FALSE(is_peak) << height;
+      ++covered;
+    } else if (is_peak) {
+      ++peaks;
+    }
+  }
+  EXPECT_GE(covered, 20);
+  EXPECT_GE(peaks, 20);
+}
+
+/// Tips are displaced as rounding may displace them. No point that is higher than the formula over a facet stays.
+TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
+  std::mt19937 bits(7);
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
+  int checked = 0;
+  for (int tool = 0; tool < 300; ++tool) {
+    const RandomCuts cuts = random_cuts(bits);
+    const double bound = highest_fin_mm(edge_covers(cuts.normals, cuts.spines), 1.0);
+    if (bound > 1e4) continue;
+    ++checked;
+    for (int k = 0; k < 200; ++k) {
+      std::array<geometry::Vec3, 3> tips;
+      for (std::size_t f = 0; f < 3; ++f) {
+        const geometry::Vec3& normal = cuts.normals[f];
+        geometry::Vec3 along(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+        along = (along - along.dot(normal) * normal).normalized();
+        tips[f] = std::copysign(rounded_across_mm(1.0), uniform(-1, 1)) * normal + rounded_along_mm(1.0) * along;
+      }
+      // Points beyond the bound over a facet, and anywhere over the others.
+      geometry::Vec3 heights(uniform(0, 2), uniform(0, 2), uniform(0, 2));
+      heights = (heights * bound).cwiseMax(3.0 * rounded_along_mm(1.0));
+      heights[k % 3] = std::max(heights[k % 3], bound * 1.0001);
+      Eigen::Matrix3d planes;
+      for (Eigen::Index f = 0; f < 3; ++f) planes.row(f) = cuts.normals[static_cast<std::size_t>(f)].transpose();
+      const geometry::Vec3 point = planes.inverse() * heights;
+      EXPECT_TRUE(removes(cuts, 0, tips[0], point) || removes(cuts, 1, tips[1], point) ||
+                  removes(cuts, 2, tips[2], point))
+          << bound << ' ' << heights.transpose();
+    }
+  }
+  EXPECT_GE(checked, 20);
 }
 
 /// Returns a job of one cube corner with errors of angle, in a rotated zone.

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/number_format.h"
+#include "fabrication/job/fins.h"
 
 namespace retrace::fabrication {
 
@@ -56,6 +58,20 @@ void ChiselingCheck::open(const CutMove& move) {
   open_ = cut;
 }
 
+double ChiselingCheck::short_limit_mm(const OpenCut& cut, std::size_t other) const {
+  const Groove& cavity = workpiece_.grooves[cut.element];
+  const Vec3& normal = cavity.facets[cut.facet].normal;
+  const double cosine = normal.dot(cavity.facets[other].normal);
+  const double sine = normal.cross(cavity.facets[other].normal).norm();
+  const double step_mm = workpiece_.prediction(cut.element).step_mm;
+  const double rounded_mm = (1.0 - cosine) * rounded_across_mm(step_mm) + sine * rounded_along_mm(step_mm);
+  return std::max(workpiece_.tolerance_mm, rounded_mm);
+}
+
+double ChiselingCheck::layer_limit_mm(std::size_t element) const {
+  return std::max(workpiece_.tolerance_mm, 2.0 * rounded_across_mm(workpiece_.prediction(element).step_mm));
+}
+
 void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
   const double tip_mm = cut.tip_mm[cut.facet];
   const double chip_mm = state.left_mm[cut.facet] - tip_mm;
@@ -66,19 +82,21 @@ void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
     find("rubs", cut.place, cut.element, rubbing_text(1e3 * chip_mm, 1e3 * least_mm), 1e3 * chip_mm, 1e3 * least_mm);
   for (std::size_t g = 0; g < 3; ++g) {
     const double short_mm = cut.tip_mm[g] - tip_mm;
-    if (short_mm > workpiece_.tolerance_mm)
+    const double limit_mm = short_limit_mm(cut, g);
+    if (short_mm > limit_mm)
       find("chip_not_separated", cut.place, cut.element,
            fmt::format("the tip stops {} um short of its layer's apex: the chip hangs on", fixed(1e3 * short_mm, 3)),
-           1e3 * short_mm, 1e3 * workpiece_.tolerance_mm);
+           1e3 * short_mm, 1e3 * limit_mm);
   }
+  const double limit_mm = layer_limit_mm(cut.element);
   const auto [least, most] = std::minmax_element(state.left_mm.begin(), state.left_mm.end());
   const double hangs_mm = *most - *least;
-  const bool begins_layer = tip_mm < *least - workpiece_.tolerance_mm;
-  if (begins_layer && hangs_mm > workpiece_.tolerance_mm)
+  const bool begins_layer = tip_mm < *least - limit_mm;
+  if (begins_layer && hangs_mm > limit_mm)
     find("chip_not_separated", cut.place, cut.element,
          fmt::format("facet {} was not cut as deep as the others before the next layer: its chip hangs on",
                      most - state.left_mm.begin() + 1),
-         1e3 * hangs_mm, 1e3 * workpiece_.tolerance_mm);
+         1e3 * hangs_mm, 1e3 * limit_mm);
 }
 
 void ChiselingCheck::dwell(double seconds) {
@@ -105,9 +123,10 @@ void ChiselingCheck::finish() {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const State& state = states_[i];
     const auto [least, most] = std::minmax_element(state.left_mm.begin(), state.left_mm.end());
-    if (state.last.line == 0 || *most - *least <= workpiece_.tolerance_mm) continue;
+    const double limit_mm = layer_limit_mm(i);
+    if (state.last.line == 0 || *most - *least <= limit_mm) continue;
     find("layer_unfinished", state.last, i, "the last layer was not cut on all three facets: its chip hangs on",
-         1e3 * (*most - *least), 1e3 * workpiece_.tolerance_mm);
+         1e3 * (*most - *least), 1e3 * limit_mm);
   }
 }
 

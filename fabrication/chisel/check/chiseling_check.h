@@ -38,6 +38,11 @@ class ChiselingCheck : public CutCheck {
   };
 
   void open(const CutMove& move);
+  /// Returns the distance by which the tip of a right cut may stop short of its layer's apex over another facet: the
+  /// tolerance, or what rounding to the increments of the control does if that is more.
+  double short_limit_mm(const OpenCut& cut, std::size_t other) const;
+  /// Returns the distance by which right cuts of one layer may differ in height over their facets.
+  double layer_limit_mm(std::size_t element) const;
   void check_layer(const OpenCut& cut, const State& state);
 
   std::vector<State> states_;

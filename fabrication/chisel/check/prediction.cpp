@@ -2,40 +2,17 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/job/v_tool.h"
+#include "fabrication/job/fins.h"
 
 namespace retrace::fabrication {
 
 using geometry::Vec3;
 
 namespace {
-
-/// Returns the maximum height of the fins that rounding of positions may leave along the three dihedral edges. The
-/// height is limited to max_fin_mm(). \pre the poses of `prediction` are set
-double highest_fin_mm(const Machine& machine, const Groove& cavity, const ToolWedge& wedge,
-                      const Prediction& prediction) {
-  double highest_mm = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t next = (k + 1) % 3;
-    const Vec3& edge = cavity.edges[next];
-    // Unit vectors in the two facets at this edge, perpendicular to the edge and pointing away from it.
-    const auto away = [&](const Vec3& other) -> Vec3 { return (other - other.dot(edge) * edge).normalized(); };
-    const Vec3 along_first = away(cavity.edges[k]);
-    const Vec3 along_second = away(cavity.edges[(k + 2) % 3]);
-    const auto reach = [&](std::size_t facet, const Vec3& along) {
-      const Vec3 up =
-          machine_from_workpiece(machine, prediction.poses[facet].pose).inverse().direction(wedge.rake_direction);
-      return Angle::from_rad(std::atan2(up.dot(cavity.facets[facet].normal), up.dot(along)));
-    };
-    highest_mm = std::max(
-        highest_mm, rounded_fin_mm(reach(k, along_first), reach(next, along_second),
-                                   Angle::from_rad(std::acos(along_first.dot(along_second))), prediction.step_mm));
-  }
-  return std::min(highest_mm, max_fin_mm(prediction.step_mm));
-}
 
 Prediction predict_cube(const Machine& machine, const Groove& cavity, const ToolWedge& wedge) {
   Prediction prediction;
@@ -49,7 +26,14 @@ Prediction predict_cube(const Machine& machine, const Groove& cavity, const Tool
     const Vec3 level = facet.normal.cross(cavity.axis).normalized();
     prediction.poses.push_back(solve_plunge_pose(machine, facet.normal, level, near));
   }
-  prediction.fin_mm = highest_fin_mm(machine, cavity, wedge, prediction);
+  std::array<Vec3, 3> normals;
+  std::array<Vec3, 3> spines;
+  for (std::size_t k = 0; k < 3; ++k) {
+    normals[k] = cavity.facets[k].normal;
+    spines[k] = machine_from_workpiece(machine, prediction.poses[k].pose).inverse().direction(wedge.rake_direction);
+  }
+  prediction.fin_mm =
+      std::min(highest_fin_mm(edge_covers(normals, spines), prediction.step_mm), max_fin_mm(prediction.step_mm));
   return prediction;
 }
 
@@ -100,8 +84,10 @@ Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge
     const Vec3 up = motion.direction(ploughed.up_slope);
     const double drift = -prediction.pass_normal.dot(up) / prediction.pass_normal.dot(root);
     prediction.plough_drift[other] = drift;
-    prediction.plough_slope[other] =
-        wedge.edge.dot(motion.direction(ploughed.normal)) / (wedge.edge.dot(root) - drift * wedge.edge.dot(up));
+    // Along the root, at one distance from it, for each mm along the edge.
+    const double along = wedge.edge.dot(root) - drift * wedge.edge.dot(up);
+    prediction.plough_slope[other] = wedge.edge.dot(motion.direction(ploughed.normal)) / along;
+    prediction.plough_half_mm[other] = wedge.half_width_mm * std::abs(along);
   }
   return prediction;
 }

@@ -21,13 +21,16 @@ struct Prediction {
   /// Distance, in mm, by which the edge moves along the root for each mm that it ploughs up facet f. It differs from 0
   /// if the slides are not perpendicular to the root.
   std::array<double, 2> plough_drift{};
+  /// Half the length, in mm, that the edge covers along the root when it ploughs facet f: less than half its width if
+  /// the edge is oblique to the root.
+  std::array<double, 2> plough_half_mm{};
   /// Normal, in the machine frame, of the plane in which Y and Z move the tool while X does not move.
   geometry::Vec3 pass_normal = geometry::Vec3::UnitX();
   /// Of prisms. A V follows the dihedral edges themselves and its planes hold the facets: it leaves nothing.
   double root_mm = 0.0;                ///< by which the ends of the tilted edge stay up a facet at the root at most
   std::array<double, 2> root_of_mm{};  ///< the same, up each facet
   double wall_mm = 0.0;  ///< maximum depth to which the ends of the edge, or the tool above them, cut into a wall
-  double fin_mm = 0.0;   ///< cube corners: height of the fin that rounding of positions may leave along a dihedral edge
+  double fin_mm = 0.0;   ///< cube corners: height of the fin that rounding of positions may leave between the cuts of facets
   double step_mm = 0.0;  ///< least increment of the control
 };
 

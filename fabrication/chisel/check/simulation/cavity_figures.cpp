@@ -7,7 +7,7 @@
 #include "core/angle.h"
 #include "fabrication/chisel/check/simulation/facet_figures.h"
 #include "fabrication/chisel/check/simulation/plane_fit.h"
-#include "fabrication/job/v_tool.h"
+#include "fabrication/job/fins.h"
 
 namespace retrace::fabrication {
 namespace {

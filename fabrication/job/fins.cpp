@@ -1,0 +1,138 @@
+#include "fabrication/job/fins.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+
+#include "core/number_format.h"
+#include "fabrication/job/v_tool.h"
+
+namespace retrace::fabrication {
+
+using geometry::Vec3;
+
+namespace {
+
+/// Boundary of one cut at a dihedral edge: the cut leaves what is more than `ratio` times as high over its own facet as
+/// over the other one.
+struct CutBoundary {
+  double ratio = 0.0;
+  double shift_mm = 0.0;  ///< maximum change of the height over the cut's own facet because positions are rounded
+};
+
+CutBoundary boundary_of(Angle reach, Angle between, double step_mm) {
+  const double rest_rad = between.rad() - reach.rad();
+  if (rest_rad <= 0.0) return {std::numeric_limits<double>::infinity(), 0.0};
+  CutBoundary boundary;
+  boundary.ratio = std::sin(reach.rad()) / std::sin(rest_rad);
+  boundary.shift_mm = rounded_across_mm(step_mm) * std::abs(1.0 + boundary.ratio * std::cos(between.rad())) +
+                      rounded_along_mm(step_mm) * boundary.ratio * std::sin(between.rad());
+  return boundary;
+}
+
+/// Returns the height of the peak between three boundaries, one at each edge. Each bounds the height over its own facet
+/// by the height over the own facet of the next boundary.
+double peak_mm(const std::array<CutBoundary, 3>& boundaries) {
+  const double product = boundaries[0].ratio * boundaries[1].ratio * boundaries[2].ratio;
+  if (std::isinf(product)) return 0.0;
+  if (product <= 1.0) return std::numeric_limits<double>::infinity();
+  double highest_mm = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const CutBoundary& own = boundaries[k];
+    const CutBoundary& next = boundaries[(k + 1) % 3];
+    const CutBoundary& last = boundaries[(k + 2) % 3];
+    highest_mm = std::max(highest_mm, own.shift_mm + own.ratio * (next.shift_mm + next.ratio * last.shift_mm));
+  }
+  return highest_mm / (product - 1.0);
+}
+
+}  // namespace
+
+double rounded_along_mm(double step_mm) {
+  // A position is the sum of a start and a path, each rounded within a box of increments.
+  return 2.0 * std::numbers::sqrt3 * step_mm;
+}
+
+double rounded_across_mm(double step_mm) {
+  // Start and path are each rounded by half an increment at most along the facet's normal.
+  return step_mm;
+}
+
+std::array<EdgeCover, 3> edge_covers(const std::array<Vec3, 3>& normals, const std::array<Vec3, 3>& spines) {
+  std::array<EdgeCover, 3> covers;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const Vec3 edge = normals[k].cross(normals[next]).normalized();
+    // Directions in the facets, away from the edge.
+    const Vec3 along_first = edge.cross(normals[k]);
+    const Vec3 along_second = normals[next].cross(edge);
+    const auto reach = [&](std::size_t facet, const Vec3& along) {
+      return Angle::from_rad(std::atan2(spines[facet].dot(normals[facet]), spines[facet].dot(along)));
+    };
+    covers[k] = {reach(k, along_first), reach(next, along_second),
+                 Angle::from_rad(std::acos(along_first.dot(along_second)))};
+  }
+  return covers;
+}
+
+std::array<Vec3, 3> spines_of(const CubeCorner& corner, const Tool& tool, const std::array<Angle, 3>& root_tilts) {
+  const Vec3 spine = v_tool_edges(tool).spine;
+  std::array<Vec3, 3> spines;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& normal = corner.normals[k];
+    const Vec3 up = (Vec3::UnitZ() - normal.z() * normal).normalized();
+    const Vec3 level = normal.cross(up);
+    // The tool's view has its axes at 45 degrees to the level line. The tool turns against the facet.
+    Eigen::Matrix3d view;
+    view << (up - level).normalized(), (up + level).normalized(), normal;
+    spines[k] = view * (Eigen::AngleAxisd(-root_tilts[k].rad(), Vec3::UnitZ()) * spine);
+  }
+  return spines;
+}
+
+double rounded_fin_mm(const EdgeCover& cover, double step_mm) {
+  const double overlap_rad = cover.first.rad() + cover.second.rad() - cover.between.rad();
+  if (overlap_rad <= 0.0) return std::numeric_limits<double>::infinity();
+  const double along_mm = rounded_along_mm(step_mm);
+  const double across_mm = rounded_across_mm(step_mm);
+  const auto height_mm = [&](Angle own, Angle other) {
+    const double rest_rad = cover.between.rad() - other.rad();
+    const double off_mm = along_mm * (std::sin(other.rad()) + std::abs(std::sin(rest_rad))) +
+                          across_mm * (std::abs(std::cos(other.rad())) + std::abs(std::cos(rest_rad)));
+    return across_mm + std::sin(own.rad()) * off_mm / std::sin(overlap_rad);
+  };
+  return std::max(height_mm(cover.first, cover.second), height_mm(cover.second, cover.first));
+}
+
+double rounded_peak_mm(const std::array<EdgeCover, 3>& covers, double step_mm) {
+  std::array<CutBoundary, 3> firsts;
+  std::array<CutBoundary, 3> seconds;
+  for (std::size_t k = 0; k < 3; ++k) {
+    firsts[k] = boundary_of(covers[k].first, covers[k].between, step_mm);
+    // Boundaries of second cuts lead from each facet to the one before it.
+    seconds[2 - k] = boundary_of(covers[k].second, covers[k].between, step_mm);
+  }
+  return std::max(peak_mm(firsts), peak_mm(seconds));
+}
+
+double highest_fin_mm(const std::array<EdgeCover, 3>& covers, double step_mm) {
+  double highest_mm = rounded_peak_mm(covers, step_mm);
+  for (const EdgeCover& cover : covers) highest_mm = std::max(highest_mm, rounded_fin_mm(cover, step_mm));
+  return highest_mm;
+}
+
+std::string fin_text(double fin_mm) {
+  if (std::isinf(fin_mm)) return "a fin up to the face of the blank";
+  return fmt::format("a fin of {} um", fixed(1e3 * fin_mm, 3));
+}
+
+double max_fin_mm(double step_mm) {
+  return kEdgeStripMm - *std::max_element(std::begin(kEdgeLineSteps), std::end(kEdgeLineSteps)) * step_mm;
+}
+
+}  // namespace retrace::fabrication
