@@ -21,6 +21,7 @@
 #include "report/io/picture_file.h"
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_reader.h"
+#include "studies/design/request_limits.h"
 #include "studies/image/io/image_documents.h"
 #include "studies/image/io/lamp_reader.h"
 #include "studies/photometry/io/standard_reader.h"
@@ -62,7 +63,7 @@ struct ImageOptions {
 constexpr std::uint64_t kMostWhole = std::numeric_limits<std::uint32_t>::max();
 
 std::vector<Argument> detector_arguments(ImageOptions& o) {
-  Traits samples = whole(0, kMostWhole);
+  Traits samples = whole(1, studies::kMaxRaysOfPoint);
   samples.needs = {engine_need(studies::kRayEnginesOfParts)};
   return {{"--detector", "maps of the light that comes back, by place and by direction", &o.detector},
           {"--incidence T", "detector: angle of incidence in degrees", &o.detected.incidence_deg},

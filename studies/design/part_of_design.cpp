@@ -86,6 +86,11 @@ geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh
   return mesh;
 }
 
+/// Returns a number with three significant digits.
+std::string rounded_text(double value) {
+  return shortest(std::stod(fmt::format("{:.2e}", value)));
+}
+
 /// Warns about a mesh whose size suggests that its unit is not mm. STL files do not contain their unit.
 void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, std::vector<std::string>* warnings) {
   // The unit is probably the metre for a part below kSmallestMm, and the micrometre for a part above kLargestMm.
@@ -100,11 +105,13 @@ void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, std:
   const double size_mm = (upper - lower).maxCoeff();
   if (size_mm >= kSmallestMm && size_mm <= kLargestMm) return;
   const bool is_small = size_mm < kSmallestMm;
+  const double probable_scale = is_small ? 1000.0 : 0.001;
+  const bool is_tried = mesh_scale(design, "part") == probable_scale;
   tell(warnings, design,
-       fmt::format("the largest dimension of the mesh is {} mm; if the unit of the file is the {}, set scale = {} in "
-                   "[part]",
-                   fixed_visible(size_mm, 1), is_small ? "metre" : "micrometre",
-                   shortest(mesh_scale(design, "part") * (is_small ? 1000.0 : 0.001))));
+       fmt::format("the largest dimension of the mesh is {} mm; {}", rounded_text(size_mm),
+                   is_tried ? "check scale in [part]"
+                            : fmt::format("if the unit of the file is the {}, set scale = {} in [part]",
+                                          is_small ? "metre" : "micrometre", shortest(probable_scale))));
 }
 
 void check_thickness(const Design& design, const geometry::Part& part) {

@@ -20,6 +20,8 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
+// Largest coordinate of the eye and the lamp, in mm.
+constexpr double kFarthestMm = 1e9;
 // The picture shows this much more than the part.
 constexpr double kMargin = 1.15;
 
@@ -41,6 +43,13 @@ void check_picture(const CameraRequest& r) {
     require(*r.passes >= 2 && *r.passes <= CameraStudy::kMostPasses, "--passes", "be 2 to 65536", *r.passes);
 }
 
+/// Checks the position of the eye or the lamp. Squares of larger coordinates overflow in Embree.
+void check_coordinates(const std::optional<std::array<double, 3>>& position_mm, std::string_view option) {
+  if (!position_mm) return;
+  for (const double coordinate : *position_mm)
+    require(std::abs(coordinate) <= kFarthestMm, option, "be three numbers from -1e9 to 1e9", coordinate);
+}
+
 void check(const CameraRequest& r) {
   check_picture(r);
   require(r.distance_m > 0.0 && r.distance_m <= 1e6, "--distance-m", "be above 0 and at most 1e6", r.distance_m);
@@ -55,6 +64,10 @@ void check(const CameraRequest& r) {
   require(std::abs(r.lamp_aim_deg) <= 45.0, "--lamp-aim-deg", "lie between -45 and 45", r.lamp_aim_deg);
   require(r.ambient_lx >= 0.0, "--ambient-lx", "be >= 0", r.ambient_lx);
   require(r.backlight_lx >= 0.0, "--backlight-lx", "be >= 0", r.backlight_lx);
+  check_coordinates(r.eye_mm, "--eye-mm");
+  check_coordinates(r.lamp_mm, "--lamp-mm");
+  require(!r.cylinder_mm || std::abs(*r.cylinder_mm) <= kFarthestMm, "--cylinder-mm", "be -1e9 to 1e9",
+          r.cylinder_mm.value_or(0.0));
   for (const double length : r.film_mm)
     require(length > 0.0 && length <= 1e5, "--film-mm", "be above 0 and at most 1e5", length);
 }

@@ -137,7 +137,7 @@ constexpr Condition kOfRays[] = {is("engine", kRayEngineWords)};
 constexpr Condition kOfCutoff[] = {is("engine", kCutoffEngineWords)};
 constexpr Row kAnalysisRows[] = {
     {"incidence_deg", Number{kIncidence}, 0.0, "For quantities that name none."},
-    {"azimuth_deg", Number{}, 0.0, "For quantities that name none."},
+    {"azimuth_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0, "For quantities that name none."},
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
      "Turn of the part about its normal, counter-clockwise as seen from the light, for all that is asked about light."},
     {"engine", Word{kEngines}, "auto", "As `retrace rre --engine`."},

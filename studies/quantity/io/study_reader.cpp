@@ -38,6 +38,8 @@ AnalysisSettings analysis_of(const Document& document, std::uint32_t seed) {
   analysis.engine = document.choice<Engine>("analysis.engine");
   analysis.target_error = document.number_if("analysis.target_error");
   if (const auto rays = document.number_if("analysis.samples")) analysis.rays = static_cast<std::uint64_t>(*rays);
+  if (analysis.rays && analysis.target_error)
+    document.fail("analysis.target_error", "not together with analysis.samples");
   analysis.cutoff = document.number_if("analysis.cutoff");
   analysis.seed = seed;
   return analysis;
@@ -271,6 +273,7 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
     }
   check_columns(study, quantity_locations);
   check_keys_once(study);
+  analysis_of(document, seed);  // refuses settings that exclude each other before any point is computed
   read_designs(document, designs, study);
   std::vector<fs::path> named = files_of_designs(study);
   named.insert(named.end(), of_quantities.begin(), of_quantities.end());

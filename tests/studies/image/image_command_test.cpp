@@ -195,6 +195,9 @@ TEST_F(Image, WrongSheetsAreRefused) {
       {{"--cylinder-mm=0"}, "--cylinder-mm: must be at least "},
       {{"--cylinder-mm=10"}, "--cylinder-mm: must be at least "},
       {{"--eye-mm=0,0,0.5"}, "--eye-mm: the camera must be outside the body, in front of its face, got 0,0,0.5 mm"},
+      {{"--eye-mm=0,0,1e155"}, "--eye-mm: must be three numbers from -1e9 to 1e9, got 1e+155"},
+      {{"--lamp-mm=1e155,0,9"}, "--lamp-mm: must be three numbers from -1e9 to 1e9, got 1e+155"},
+      {{"--cylinder-mm=1e300"}, "--cylinder-mm: must be -1e9 to 1e9, got 1e+300"},
       {{"--cylinder-mm=50", "--lamp-mm=0,0,-30"}, "--lamp-mm: the lamp must be outside the body"},
       {{"--observation-deg=120"}, "--observation-deg: the camera must be outside the body"},
   };

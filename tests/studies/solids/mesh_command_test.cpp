@@ -260,7 +260,7 @@ TEST(MeshPart, ImplausibleSizesGiveAWarningThatNamesTheScale) {
   EXPECT_EQ(err, "");
   write_box(1000.0);
   volume_mm3({}, &err);
-  EXPECT_NE(err.find("the largest dimension of the mesh is 40000.0 mm; if the unit of the file is the micrometre, set "
+  EXPECT_NE(err.find("the largest dimension of the mesh is 40000 mm; if the unit of the file is the micrometre, set "
                      "scale = 0.001 in [part]"),
             std::string::npos)
       << err;
@@ -270,6 +270,9 @@ TEST(MeshPart, ImplausibleSizesGiveAWarningThatNamesTheScale) {
   volume_mm3({}, &err);
   EXPECT_NE(err.find("mm; if the unit of the file is the metre, set scale = 1000 in [part]"), std::string::npos) << err;
   EXPECT_NEAR(volume_mm3({"--set", "part.scale=1000"}, &err), 1600.0, 1e-2);
+  // The proposed scale replaces another one.
+  volume_mm3({"--set", "part.scale=2"}, &err);
+  EXPECT_NE(err.find("is 0.08 mm; if the unit of the file is the metre, set scale = 1000"), std::string::npos) << err;
   EXPECT_EQ(err, "");
 }
 
