@@ -30,7 +30,8 @@ struct Prediction {
   double root_mm = 0.0;                ///< by which the ends of the tilted edge stay up a facet at the root at most
   std::array<double, 2> root_of_mm{};  ///< the same, up each facet
   double wall_mm = 0.0;  ///< maximum depth to which the ends of the edge, or the tool above them, cut into a wall
-  double fin_mm = 0.0;   ///< cube corners: height of the fin that rounding of positions may leave between the cuts of facets
+  double fin_mm =
+      0.0;  ///< cube corners: height of the fin that rounding of positions may leave between the cuts of facets
   double step_mm = 0.0;  ///< least increment of the control
 };
 
