@@ -313,6 +313,7 @@ TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
   request.rays = 1U << 12;
   EXPECT_EQ(run(design, request).engine, "embree") << "without diffraction";
   request.engine = Engine::exact;
+  request.rays.reset();
   EXPECT_NE(refusal_of([&] { run(design, request); }).find("with diffraction and without a texture alone"),
             std::string::npos);
   request.engine = Engine::automatic;

@@ -84,10 +84,8 @@ Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge
     const Vec3 up = motion.direction(ploughed.up_slope);
     const double drift = -prediction.pass_normal.dot(up) / prediction.pass_normal.dot(root);
     prediction.plough_drift[other] = drift;
-    // Along the root, at one distance from it, for each mm along the edge.
-    const double along = wedge.edge.dot(root) - drift * wedge.edge.dot(up);
-    prediction.plough_slope[other] = wedge.edge.dot(motion.direction(ploughed.normal)) / along;
-    prediction.plough_half_mm[other] = wedge.half_width_mm * std::abs(along);
+    prediction.plough_slope[other] =
+        wedge.edge.dot(motion.direction(ploughed.normal)) / (wedge.edge.dot(root) - drift * wedge.edge.dot(up));
   }
   return prediction;
 }

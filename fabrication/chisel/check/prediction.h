@@ -21,9 +21,6 @@ struct Prediction {
   /// Distance, in mm, by which the edge moves along the root for each mm that it ploughs up facet f. It differs from 0
   /// if the slides are not perpendicular to the root.
   std::array<double, 2> plough_drift{};
-  /// Half the length, in mm, that the edge covers along the root when it ploughs facet f: less than half its width if
-  /// the edge is oblique to the root.
-  std::array<double, 2> plough_half_mm{};
   /// Normal, in the machine frame, of the plane in which Y and Z move the tool while X does not move.
   geometry::Vec3 pass_normal = geometry::Vec3::UnitX();
   /// Of prisms. A V follows the dihedral edges themselves and its planes hold the facets: it leaves nothing.

@@ -201,7 +201,7 @@ TEST(StudyReader, WhatIsWrongIsSaidWithItsLine) {
       {kDesign + kParameter + "[[parameter]]\nkey = \"element.width_mm\"\nvalues = [1]\n" + kQuantity +
            "[sweep]\ncombine = \"zipped\"\n",
        "study.toml:5: parameter[2]: zipped parameters must have as many values as the first, 2, got 1"},
-      {"design = \"absent.toml\"\n" + kParameter + kQuantity, "absent.toml: "},
+      {"design = \"absent.toml\"\n" + kParameter + kQuantity, "study.toml:1: design: "},
       {"[[parameter]]\nkey = \"design\"\nvalues = [1]\n" + kQuantity,
        "study.toml:3: parameter[1].values: must be names of design files"},
       {kDesign + "[[parameter]]\nkey = \"design\"\nvalues = [\"rtp_brick_1mm.toml\"]\n" + kQuantity,

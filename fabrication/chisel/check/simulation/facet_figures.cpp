@@ -244,7 +244,7 @@ class Measurer {
   /// \param slant distance of the point from the root along the facet, in mm
   Interval ploughed_height(std::size_t facet, double along, double slant) const {
     const double slope = prediction_.plough_slope[facet];
-    const double half = prediction_.plough_half_mm[facet];
+    const double half = wedge_.half_width_mm;
     const double most = 2.0 * half * std::abs(slope);
     Interval height{most, most};
     for (const double at_root : stations_.pass_middles_mm) {
