@@ -211,7 +211,7 @@ TEST_F(Entrance, InspectTellsAndDrawsIt) {
 TEST_F(Entrance, ReportSaysThatItIsNotShown) {
   folder_.write("lens.toml", turned(kCap));
   rre(kPlate + kFront + kBody, {"--samples", "64", "-o", "out"});
-  const Outcome outcome = retrace(folder_, {"report", "out"});
+  const Outcome outcome = retrace(folder_, {"report", "out", "--read", "lens.toml"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("no view in three dimensions"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("a [front] is taken by retrace rre, photometry, inspect and rays alone"),

@@ -290,7 +290,7 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
       {{"fabricate", "doc0.toml"}, "doc0.toml:42: process.roughing_depth_um: must be > 0 and <= 1000, got 0"},
       {{"fabricate", "wide.toml"}, "wide.toml:32: tool.width_mm: must be <= 0.451, the element's width, got 0.5"},
       {{"fabricate", "far.toml"}, "far.toml:7: machine: element 0: axis X of machine ideal would go to -0.451"},
-      {{"fabricate", "zero.toml"}, "zero_axis.toml:"},
+      {{"fabricate", "zero.toml"}, "zero.toml:7: machine: zero_axis.toml:"},
       {{"fabricate", "unknown.toml"}, "unknown.toml:7: machine: must be"},
       {{"fabricate", "j.toml", "--phase", "polishing"}, "--phase: must be all, roughing, finishing or one of roughing"},
       {{"fabricate", "j.toml", "--from-element", "8"}, "--from-element: must be 0 to 7, got 8"},

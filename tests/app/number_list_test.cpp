@@ -76,8 +76,8 @@ TEST(NumberList, ListsThatSayNothingAreRefused) {
 }
 
 TEST(NumberList, RangesThatGoNowhereAreRefused) {
-  expect_refused("5:1:1", "runs away");
-  expect_refused("1:5:-1", "runs away");
+  expect_refused("5:1:1", "must lead from start towards stop");
+  expect_refused("1:5:-1", "must lead from start towards stop");
   expect_refused("1:5:0", "step");
   expect_refused("1:5", "start:stop:step");
   expect_refused("1:2:3:4", "start:stop:step");

@@ -134,7 +134,7 @@ TEST(DesignReader, NumbersOutOfRangeAreRefused) {
        {with_line(3, "base_mm = 1e-7"), "d.toml:3: element.base_mm: must be >= 1e-06 and <= 1e+06, got 1e-07"},
        {with_line(7, "x_length_mm = -inf"), "d.toml:7: array.x_length_mm: must be a finite number, got -inf"},
        {with_line(10, "thickness_mm = 0"), "d.toml:10: body.thickness_mm: must be > 0, got 0"},
-       {with_line(11, "refractive_index = 0.9"), "d.toml:11: body.refractive_index: must be >= 1, got 0.9"},
+       {with_line(11, "refractive_index = 0.9"), "d.toml:11: body.refractive_index: must be >= 1 and <= 10, got 0.9"},
        {with_line(11, "absorption_per_mm = -1"), "d.toml:11: body.absorption_per_mm: must be >= 0, got -1"},
        {with_line(11, "light.wavelength_nm = 0"),
         "d.toml:11: body.light: unknown table (allowed: thickness_mm, material, catalogue, refractive_index, "
