@@ -110,7 +110,7 @@ TEST_F(SubstrateJob, OfWhatCannotBeCutIsRefused) {
                               "base.axis=x"})
                 .code,
             0);
-  expect_refused({"fabricate", "job.toml", "-o", "program"}, "which A and C cannot turn in the facet");
+  expect_refused({"fabricate", "job.toml", "-o", "program"}, "A and C cannot correct this angle");
 }
 
 }  // namespace
