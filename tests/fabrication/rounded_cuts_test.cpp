@@ -144,7 +144,8 @@ TEST(RoundedCuts, PeaksAreWhereTheFormulaHasThem) {
   EXPECT_GE(peaks, 20);
 }
 
-/// Tips are displaced as rounding may displace them. No point that is higher than the formula over a facet stays.
+/// Tips are displaced as rounding may displace them. No point that is higher than the formula over two facets
+/// remains.
 TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
   std::mt19937 bits(7);
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
@@ -162,10 +163,11 @@ TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
         along = (along - along.dot(normal) * normal).normalized();
         tips[f] = std::copysign(rounded_across_mm(1.0), uniform(-1, 1)) * normal + rounded_along_mm(1.0) * along;
       }
-      // Points beyond the bound over a facet, and anywhere over the others.
+      // Points beyond the bound over two facets, and anywhere over the third. A point within the bound of two facets
+      // may belong to the fin along their edge.
       geometry::Vec3 heights(uniform(0, 2), uniform(0, 2), uniform(0, 2));
       heights = (heights * bound).cwiseMax(3.0 * rounded_along_mm(1.0));
-      heights[k % 3] = std::max(heights[k % 3], bound * 1.0001);
+      for (const int facet : {k % 3, (k + 1) % 3}) heights[facet] = std::max(heights[facet], bound * 1.0001);
       Eigen::Matrix3d planes;
       for (Eigen::Index f = 0; f < 3; ++f) planes.row(f) = cuts.normals[static_cast<std::size_t>(f)].transpose();
       const geometry::Vec3 point = planes.inverse() * heights;
