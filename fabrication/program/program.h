@@ -132,9 +132,9 @@ using Item = std::variant<Comment, Message, OptionalStop, Stop, Move, Visit, Pat
 /// How the spindle turns while a program cuts.
 struct Spindle {
   std::int32_t rpm = 0;
-  bool is_clockwise = true;          ///< M3 of ISO 6983-1, otherwise M4
-  std::string start_text;            ///< program line that starts it in a dialect without spindle words; empty: none
-  std::string stop_text;             ///< program line that stops it
+  bool is_clockwise = true;  ///< M3 of ISO 6983-1, otherwise M4
+  std::string start_text;    ///< program line that starts the spindle in a dialect without spindle words; empty: none
+  std::string stop_text;     ///< program line that stops it
   bool has_unchecked_lines = false;  ///< start_text and stop_text may be any text
 };
 

@@ -14,14 +14,13 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "raytrace/observers/photometric_geometry.h"
+#include "studies/design/length_limits.h"
 
 namespace retrace::studies {
 namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
-// Largest coordinate of the eye and the lamp, in mm.
-constexpr double kFarthestMm = 1e9;
 // The picture shows this much more than the part.
 constexpr double kMargin = 1.15;
 
@@ -43,7 +42,7 @@ void check_picture(const CameraRequest& r) {
     require(*r.passes >= 2 && *r.passes <= CameraStudy::kMostPasses, "--passes", "be 2 to 65536", *r.passes);
 }
 
-/// Checks the position of the eye or the lamp. Squares of larger coordinates overflow in Embree.
+/// Checks the position of the eye or the lamp.
 void check_coordinates(const std::optional<std::array<double, 3>>& position_mm, std::string_view option) {
   if (!position_mm) return;
   for (const double coordinate : *position_mm)

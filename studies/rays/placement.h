@@ -6,12 +6,10 @@
 #include <optional>
 
 #include "geometry/part/part.h"
+#include "studies/design/length_limits.h"
 #include "studies/rays/ray_set.h"
 
 namespace retrace::studies {
-
-/// Largest coordinate, distance and diameter of a source. Farther away, rays have too few digits to meet the part.
-inline constexpr double kFarthestMm = 1e9;
 
 /// What is asked; `at_mm` or the three angles and distance, not both.
 struct RayPlacementRequest {
