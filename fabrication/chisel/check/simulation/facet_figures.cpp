@@ -139,13 +139,30 @@ class Measurer {
     const double end = groove_.half_width_mm - margin;
     stations_.along_mm = {-end, -kPlaneShare * end, kPlaneShare * end, end};
     plane_end_mm_ = kPlaneShare * groove_.half_width_mm;
-    if (stations_.pass_middles_mm.size() < 2) return;
-    for (const double middle : stations_.pass_middles_mm)
-      for (const double side : {-1.0, 1.0}) {
-        const double inner = middle + side * (wedge_.half_width_mm - margin);
-        if (std::abs(inner) < end) stations_.along_mm.push_back(inner);
-      }
-    std::sort(stations_.along_mm.begin(), stations_.along_mm.end());
+    if (stations_.pass_middles_mm.size() > 1) add_stations_of_passes(margin, end);
+  }
+
+  /// Adds stations on both sides of every end of a pass, and in the middle of each gap that no pass covers. A pass is
+  /// therefore measured also where only this pass cuts, which shows a pass that is missing or too high.
+  /// \param margin_mm distance of a station from the end of a pass
+  /// \param end_mm stations lie between -end_mm and end_mm
+  void add_stations_of_passes(double margin_mm, double end_mm) {
+    std::vector<double>& middles = stations_.pass_middles_mm;
+    std::vector<double>& along = stations_.along_mm;
+    std::sort(middles.begin(), middles.end());
+    const double half = wedge_.half_width_mm;
+    std::vector<double> added;
+    for (std::size_t k = 0; k < middles.size(); ++k) {
+      for (const double end_of_pass : {middles[k] - half, middles[k] + half})
+        for (const double offset : {-margin_mm, margin_mm}) added.push_back(end_of_pass + offset);
+      if (k > 0 && middles[k] - middles[k - 1] > 2.0 * half + kSamePassMm)
+        added.push_back(0.5 * (middles[k - 1] + middles[k]));
+    }
+    for (const double station : added)
+      if (std::abs(station) < end_mm) along.push_back(station);
+    std::sort(along.begin(), along.end());
+    const auto is_same = [](double a, double b) { return b - a < kSamePassMm; };
+    along.erase(std::unique(along.begin(), along.end(), is_same), along.end());
   }
 
   /// Distances from the root at which lines are taken: on both sides of every corner that a tip leaves, between them,
