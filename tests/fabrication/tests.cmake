@@ -25,7 +25,7 @@ retrace_test(fabrication_tests
           ${CMAKE_CURRENT_LIST_DIR}/cutting_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp ${CMAKE_CURRENT_LIST_DIR}/setup_cuts_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/random_machines_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/rates_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/rates_test.cpp ${CMAKE_CURRENT_LIST_DIR}/passes_test.cpp
   LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/planned_jobs_test.cpp ${CMAKE_CURRENT_LIST_DIR}/chip_test.cpp

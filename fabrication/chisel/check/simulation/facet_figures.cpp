@@ -76,9 +76,10 @@ class Measurer {
                                                        : surface_at(facet, along, slant + floor_mm);
         take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along, slant) : Interval{});
         if (is_for_plane(slant, along)) plane.add(slant, along, surface.lowest);
-        figures.residual_mm3 += 0.5 * (surface.top + previous_top) * (slant - previous_slant) * width_mm;
+        const double top = std::min(surface.top, bisector_height_mm(slant));
+        figures.residual_mm3 += 0.5 * (top + previous_top) * (slant - previous_slant) * width_mm;
         previous_slant = slant;
-        previous_top = surface.top;
+        previous_top = top;
       }
     }
     plane.fit(figures);
@@ -87,6 +88,12 @@ class Measurer {
   }
 
  private:
+  /// Returns the height, over a facet, of the plane that bisects the angle between the facets. Remaining stock beyond
+  /// this plane belongs to the other facet, so that no volume counts twice.
+  double bisector_height_mm(double slant) const {
+    return slant * sine_between() / (1.0 + groove_.facets[0].up_slope.dot(groove_.facets[1].up_slope));
+  }
+
   /// Part of the width that a station stands for: halfway to its neighbours.
   double width_of_station(std::size_t k) const {
     const std::vector<double>& at = stations_.along_mm;
