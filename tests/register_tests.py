@@ -1,38 +1,35 @@
-"""Writes what ctest runs of one test program: each suite, as FOLDER/SUITE after its source's folder.
+"""Writes the tests of one test program as a list that ctest includes. Suites are named FOLDER/SUITE after the folder of
+their source.
 
     python3 register_tests.py PROGRAM LIST.cmake plain|sanitized
 
-Starting a program that links hundreds of libraries takes longer than most tests do, so that the tests of a suite share
-a start. Long suites are cut in parts, FOLDER/SUITE:2 and so on, which run beside each other.
+The tests of a suite share one start of the program, because starting it takes longer than most tests do: it links
+hundreds of libraries. Long suites are split into parts, FOLDER/SUITE:2 and so on, which run in parallel.
 """
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 
-MOST_TESTS = 12
-# ctest starts the dearest first, so that no long one is left when the others are done: seconds of processor of those
-# that take long, by suite (or part of it), else of their folder. Only their order matters.
-COSTS = {"raytrace/Kinds/Leaks": 140, "app/Readme": 90, "app/Photometry/Tutorials": 20,
-         "app/Studies/Tutorials": 15, "raytrace/Cases/Canted:2": 60, "raytrace/BeamTracer": 60,
-         "sweep/CommandsByMpi": 50, "surface_models/HarveyShack": 40, "sweep/SweepByMpi": 38,
-         "studies/DesignTexture": 33, "app/Inputs": 30,
-         "raytrace/Cases/AgainstReference": 30, "studies/EngineChoice": 27, "calibration/Correction": 24,
-         "turning/Turn": 24,
-         "app/Commands/LongWork": 23, "raytrace/RoughFacets": 22, "studies/AdaptiveCurve": 22,
-         "surface_models/Scatter": 20, "app/Front": 20, "raytrace/Kinds/RealArrays": 19,
-         "surface_models/TextureModel": 19, "app/VerifyCommand": 18, "sweep/Cells": 18, "app/Inspect": 17,
-         "image/Camera": 16, "sweep/SweepCommand": 16, "raytrace": 2, "app": 1}
-# Seconds after which a suite hangs: sanitizers make them some ten times as long.
+MAX_TESTS = 12
+# Processor seconds of the expensive suites. ctest starts the most expensive ones first, so that no long suite remains
+# when all others have ended. Only the order matters. `tools/test_costs` writes the file.
+COSTS = json.loads(pathlib.Path(__file__).with_name("costs.json").read_text(encoding="utf-8"))
+# Suites whose parameters are registered separately, as FOLDER/SUITE/PARAMETER: documents, which take a minute or more.
+SPLIT_BY_PARAMETER = {"app/Docs/Pages", "app/Docs/Tutorials"}
+# Tests with the label `slow`: runs under MPI and of installations.
+SLOW = re.compile(r"/\w*ByMpi(:\d+)?$|/Installed\w*(:\d+)?$|^app/Docs/Tutorials/cluster$")
+# Timeouts of a suite in seconds. Sanitizers make suites about ten times slower.
 TIMEOUTS = {"plain": 1200, "sanitized": 12000}
-# A fixed seed: property tests draw the same cases in every run. RC_PARAMS set by hand tries others.
+# A fixed seed makes property tests draw the same cases in every run. Set RC_PARAMS by hand to try other cases.
 PROPERTIES = 'ENVIRONMENT "RC_PARAMS=seed=1"'
 
 
 def suites_of(program):
-    """Folder and name of every suite, and the names of its tests."""
+    """Returns the folder, the name and the names of the tests of every suite."""
     with tempfile.TemporaryDirectory() as folder:
         listed = pathlib.Path(folder, "tests.json")
         subprocess.run([program, "--gtest_list_tests", f"--gtest_output=json:{listed}"], check=True, timeout=60,
@@ -42,14 +39,23 @@ def suites_of(program):
              [test["name"] for test in suite["testsuite"]]) for suite in suites]
 
 
+def parts_of(suite, tests):
+    """Yields the name and the tests of every part of a suite that ctest runs by itself."""
+    if suite in SPLIT_BY_PARAMETER:
+        for test in tests:
+            yield f"{suite}/{test.rpartition('/')[2]}", [test]
+        return
+    for first in range(0, len(tests), MAX_TESTS):
+        yield suite + (f":{first // MAX_TESTS + 1}" if first else ""), tests[first:first + MAX_TESTS]
+
+
 def entries(program, timeout, folder, suite, tests):
-    for part in range(0, len(tests), MOST_TESTS):
-        name = f"{folder}/{suite}" + (f":{part // MOST_TESTS + 1}" if part else "")
-        wanted = ":".join(f"{suite}.{test}" for test in tests[part:part + MOST_TESTS])
-        cost = COSTS.get(name, COSTS.get(folder, 0))
+    for name, chosen in parts_of(f"{folder}/{suite}", tests):
+        wanted = ":".join(f"{suite}.{test}" for test in chosen)
+        labels = " LABELS slow" if SLOW.search(name) else ""
         yield (f'add_test([==[{name}]==] [==[{program}]==] [==[--gtest_filter={wanted}]==])\n'
-               f'set_tests_properties([==[{name}]==] PROPERTIES {PROPERTIES} TIMEOUT {timeout} COST {cost} '
-               f'WORKING_DIRECTORY [==[{pathlib.Path.cwd()}]==])\n')
+               f'set_tests_properties([==[{name}]==] PROPERTIES {PROPERTIES} TIMEOUT {timeout} '
+               f'COST {COSTS.get(name, 0)}{labels} WORKING_DIRECTORY [==[{pathlib.Path.cwd()}]==])\n')
 
 
 def main():

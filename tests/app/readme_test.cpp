@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@
 #include "tests/app/program.h"
 
 // Every command that README.md, docs/*.md and docs/tutorials/*.md show is run as it stands there, in a folder that
-// looks like the project's: tools/run and retrace are the program, examples/ is the project's. Results such as
+// looks like the project's. Each page is a test of its own, so that pages run in parallel: tools/run and retrace are the program, examples/ is the project's. Results such as
 // build/... land in that folder. Of tutorials the files that they ask to be saved are written, and what they show is
 // what the program says.
 
@@ -140,7 +141,7 @@ std::optional<Example> example_of(const std::string& command) {
   return example;
 }
 
-/// What examples have written on pages before, by their question: README.md and docs/ show some of them both.
+/// Folders that the examples of a page have written, by their question. A page may show an example twice.
 class Written {
  public:
   /// Puts what it wrote into `folder`. \return false if it has not been run
@@ -177,18 +178,50 @@ Outcome run_in(const TemporaryFolder& folder, const std::string& command) {
   return Child(folder.path(), {"/bin/sh", "-c", "PATH=\"$PWD/tools:$PATH\"; " + command}).wait();
 }
 
-/// Runs the commands of a page one after another, as a reader would. \param written what needs not be run again
-/// \return how many commands the page shows
-int run_page(const fs::path& page, Written& written) {
+/// Returns README.md and the pages of docs/, in the order of their names.
+std::vector<fs::path> pages() {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "docs"))
+    if (entry.path().extension() == ".md") found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  found.insert(found.begin(), fs::path(RETRACE_SOURCE_DIR) / "README.md");
+  return found;
+}
+
+/// Returns the questions of the examples that pages before `page` show. The tests of those pages run them.
+std::set<std::string> questions_before(const fs::path& page) {
+  std::set<std::string> questions;
+  for (const fs::path& earlier : pages()) {
+    if (earlier == page) break;
+    for (const std::string& command : commands_of(read_text(earlier)))
+      if (const std::optional<Example> example = example_of(command)) questions.insert(example->question);
+  }
+  return questions;
+}
+
+/// Returns true if a command after the one at `at` contains the name of the folder that the example writes.
+bool is_read_later(const std::vector<std::string>& commands, std::size_t at, const Example& example) {
+  return std::any_of(commands.begin() + static_cast<std::ptrdiff_t>(at) + 1, commands.end(),
+                     [&](const std::string& later) { return later.find(example.output) != std::string::npos; });
+}
+
+/// Runs the commands of a page one after another, as a reader would, except for examples that an earlier page shows.
+/// \return the number of commands that the page shows
+int run_page(const fs::path& page) {
   const TemporaryFolder folder;
   make_like_the_project(folder);
+  const std::set<std::string> run_elsewhere = questions_before(page);
+  const std::vector<std::string> commands = commands_of(read_text(page));
+  Written written;
   int count = 0;
-  for (const std::string& command : commands_of(read_text(page))) {
+  for (std::size_t at = 0; at < commands.size(); ++at) {
+    const std::string& command = commands[at];
     SCOPED_TRACE(page.filename().string() + ": " + command);
     EXPECT_TRUE(is_known(command)) << "what is this command?";
     if (!is_run(command)) continue;
     ++count;
     const std::optional<Example> example = example_of(command);
+    if (example && run_elsewhere.contains(example->question) && !is_read_later(commands, at, *example)) continue;
     if (example && written.give(*example, folder.path())) continue;
     const Outcome outcome = run_in(folder, command);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -270,11 +303,11 @@ std::string name_of(const testing::TestParamInfo<std::string>& tutorial) {
   return tutorial.param;
 }
 
-// Apart, so that they run beside each other.
-INSTANTIATE_TEST_SUITE_P(Short, Tutorials, testing::Values("first_curve", "measured_facet", "nc_program", "test_cuts"),
+// ctest runs every tutorial by itself (register_tests.py).
+INSTANTIATE_TEST_SUITE_P(Docs, Tutorials,
+                         testing::Values("first_curve", "measured_facet", "nc_program", "test_cuts", "regulation",
+                                         "cluster"),
                          name_of);
-INSTANTIATE_TEST_SUITE_P(Photometry, Tutorials, testing::Values("regulation"), name_of);
-INSTANTIATE_TEST_SUITE_P(Studies, Tutorials, testing::Values("cluster"), name_of);
 
 TEST(TutorialPages, AreAllFollowed) {
   std::vector<std::string> names;
@@ -355,13 +388,36 @@ TEST(Documentation, LinksLeadSomewhere) {
   EXPECT_GE(count, 100);
 }
 
-TEST(Readme, CommandsOfReadmeAndDocumentationRun) {
-  Written written;
-  EXPECT_GE(run_page(fs::path(RETRACE_SOURCE_DIR) / "README.md", written), 3);
-  int count = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "docs"))
-    if (entry.path().extension() == ".md") count += run_page(entry.path(), written);
-  EXPECT_GE(count, 1);
+class Pages : public testing::TestWithParam<fs::path> {};
+
+TEST_P(Pages, CommandsRun) {
+  run_page(GetParam());
+}
+
+// ctest runs every page that shows commands by itself (register_tests.py).
+std::vector<fs::path> pages_with_commands() {
+  std::vector<fs::path> found = pages();
+  std::erase_if(found, [](const fs::path& page) { return commands_of(read_text(page)).empty(); });
+  return found;
+}
+
+INSTANTIATE_TEST_SUITE_P(Docs, Pages, testing::ValuesIn(pages_with_commands()),
+                         [](const testing::TestParamInfo<fs::path>& page) { return page.param.stem().string(); });
+
+TEST(Readme, PagesWithCommandsAreFound) {
+  std::set<std::string> names;
+  for (const fs::path& page : pages_with_commands()) names.insert(page.filename().string());
+  for (const char* name : {"README.md", "commands.md", "gallery.md", "planing_file.md"})
+    EXPECT_TRUE(names.contains(name)) << name;
+}
+
+TEST(Readme, ExamplesOfEarlierPagesAreNotRunAgain) {
+  const fs::path docs = fs::path(RETRACE_SOURCE_DIR) / "docs";
+  EXPECT_TRUE(questions_before(pages().front()).empty());
+  EXPECT_GE(questions_before(docs / "gallery.md").size(), 5u);
+  const std::vector<std::string> commands = {"retrace rre examples/a.toml -o a", "retrace report a"};
+  EXPECT_TRUE(is_read_later(commands, 0, *example_of(commands[0])));
+  EXPECT_FALSE(is_read_later({commands[0]}, 0, *example_of(commands[0])));
 }
 
 TEST(Readme, ExamplesThatDifferByTheNameOfTheirOutputAreOne) {

@@ -12,6 +12,7 @@
 #include "raytrace/exact/beam.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
+#include "tests/support/sample_size.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::beam_tracer_test {
@@ -182,36 +183,41 @@ rc::Gen<RandomCase> random_case() {
   });
 }
 
-// Engines that share the geometry and Fresnel's formulas and nothing else.
+// Beams and rays share only the geometry and Fresnel's formulas. Rays agree with beams within their 95 % intervals in
+// 88 % of 200 designs. For fewer designs, `min_coverage` widens the distance from 95 % in proportion to the standard error.
 TEST(BeamTracer, AgreesWithMonteCarlo) {
-  constexpr std::size_t kCases = 200;
+  const std::size_t count = test::sample_size<std::size_t>(40, 200);
   const std::vector<RandomCase> cases =
-      rc::gen::container<std::vector<RandomCase>>(kCases, random_case())(rc::Random(11), rc::kNominalSize).value();
+      rc::gen::container<std::vector<RandomCase>>(count, random_case())(rc::Random(11), rc::kNominalSize).value();
   const double t95 = student_bound_of(0.05, MonteCarlo::kReplicates);
   int within = 0;
   int cell_cases = 0;
   int cell_within = 0;
-  for (std::size_t k = 0; k < kCases; ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     const RandomCase& c = cases[k];
     const Part part = build_part(c.spec);
     // What is cut off is below the Monte Carlo's own error in nearly all of them.
     const Ledger exact = beams(part, c.optics, c.illumination, 2.0, 5e-4);
     EXPECT_NEAR(exact.total(), 1.0, 1e-9) << k;
     EXPECT_GT(exact[Account::truncated], -1e-9) << k;
-    const auto agrees = [&](MonteCarlo::Engine engine, std::uint64_t count) {
+    const auto agrees = [&](MonteCarlo::Engine engine) {
       const ConeResult traced =
-          MonteCarlo(part, engine).trace(c.optics, c.illumination, {2.0}, rays(count), {}).cones[0];
+          MonteCarlo(part, engine).trace(c.optics, c.illumination, {2.0}, rays(1U << 14), {}).cones[0];
       return std::abs(exact[Account::retroreflected] - traced.rre) <=
              t95 * traced.spread + exact[Account::truncated] + 1e-9;
     };
-    within += agrees(MonteCarlo::Engine::embree, 1U << 14) ? 1 : 0;
+    within += agrees(MonteCarlo::Engine::embree) ? 1 : 0;
     if (!MonteCarlo::cell_serves(part)) continue;
     ++cell_cases;
-    cell_within += agrees(MonteCarlo::Engine::cell, 1U << 14) ? 1 : 0;
+    cell_within += agrees(MonteCarlo::Engine::cell) ? 1 : 0;
   }
-  EXPECT_GE(within, 0.88 * kCases);
-  EXPECT_GE(cell_cases, 60);
-  EXPECT_GE(cell_within, 0.88 * cell_cases);
+  const double required = test::min_coverage(0.88, 200.0, static_cast<double>(count));
+  EXPECT_GE(within, required * static_cast<double>(count));
+  // 40 % of the designs are infinite arrays, which have cells. The minimum is 2.9 standard errors of a binomial count
+  // lower: 60 of 200.
+  const double with_cells = 0.4 * static_cast<double>(count);
+  EXPECT_GE(cell_cases, with_cells - 2.9 * std::sqrt(0.6 * with_cells));
+  EXPECT_GE(cell_within, required * cell_cases);
 }
 
 TEST(BeamTracer, RunsOutOfItsBudgetAloud) {

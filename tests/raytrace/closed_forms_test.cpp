@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "materials/fresnel.h"
-#include "raytrace/exact/beam_tracer.h"
+#include "raytrace/paths/monte_carlo.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 
@@ -119,54 +119,6 @@ TEST(ClosedForms, EffectiveApertureOfAHoneycomb) {
 TEST(ClosedForms, EffectiveApertureOfATriangularArray) {
   check_ideal_array(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0), triangular_rre);
 }
-
-// Published brute-force figures for real PMMA arrays, good to 5e-3: full Fresnel, polarisation, acceptance 0.5 degrees,
-// thickness 1 mm; means over azimuths for cube corners.
-struct RealCase {
-  const char* name;
-  PartSpec spec;
-  std::vector<double> azimuth_deg;
-  std::array<double, 10> rre;
-};
-
-class RealArrays : public ::testing::TestWithParam<int> {};
-
-TEST_P(RealArrays, MeetBruteForce) {
-  const std::array<double, 10> incidence = {0, 2.5, 5, 10, 15, 20, 22.5, 25, 30, 40};
-  const std::array<RealCase, 3> cases = {
-      RealCase{"rtp",
-               infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0),
-               {0.0},
-               {1.000, 0.899, 0.422, 0.122, 0.067, 0.057, 0.049, 0.035, 0.026, 0.019}},
-      RealCase{"full cube",
-               infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0),
-               {3.75, 11.25, 18.75, 26.25, 33.75, 41.25, 48.75, 56.25},
-               {1.000, 0.882, 0.843, 0.759, 0.679, 0.523, 0.371, 0.280, 0.169, 0.068}},
-      RealCase{"triangle",
-               infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0),
-               {3.75, 11.25, 18.75, 26.25},
-               {0.919, 0.649, 0.624, 0.630, 0.614, 0.497, 0.368, 0.282, 0.178, 0.080}}};
-  const RealCase& real = cases[static_cast<std::size_t>(GetParam())];
-  const Part part = build_part(real.spec);
-  const MonteCarlo tracer(part);
-  const BeamTracer beams(part);
-  BeamPolicy policy;
-  policy.truncated_goal = 1e-3;
-  for (std::size_t k = 0; k < incidence.size(); ++k) {
-    double sampled = 0.0;
-    double exact = 0.0;
-    for (const double azimuth : real.azimuth_deg) {
-      const Illumination light = from(incidence[k], azimuth);
-      sampled += tracer.trace(pmma(), light, {0.5}, rays(1U << 14), {}).cones[0].rre;
-      exact += beams.trace(pmma(), light, {0.5}, policy).ledgers[0][Account::retroreflected];
-    }
-    const auto azimuths = static_cast<double>(real.azimuth_deg.size());
-    EXPECT_NEAR(sampled / azimuths, real.rre[k], 5e-3) << real.name << " at " << incidence[k];
-    EXPECT_NEAR(exact / azimuths, real.rre[k], 5e-3) << real.name << " at " << incidence[k];
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Kinds, RealArrays, ::testing::Values(0, 1, 2));
 
 // Every path through a right-angled prism at normal incidence is 2 thickness + base long.
 TEST(ClosedForms, AbsorptionFollowsThePathLength) {

@@ -15,6 +15,7 @@
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 #include "tests/support/return_frames.h"
+#include "tests/support/sample_size.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::weak_beams_test {
@@ -77,16 +78,17 @@ TEST(WeakBeams, AgreeWithBeamsAndBookAllPower) {
   }
 }
 
-/// Over 100 seeds the mean is right, and the truth lies within 1.96 standard errors of 88 or more.
+/// Expects that the mean is unbiased and that 1.96 standard errors contain the true value in 88 of 100 results. For fewer
+/// seeds, `min_coverage` widens the distance from 95 % in proportion to the standard error.
 TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
-  constexpr std::uint32_t kSeeds = 100;
+  const std::uint32_t seeds = test::sample_size(20U, 100U);
   for (const Question& question : questions()) {
     const Ledger exact = reference(question, pmma(), 0.5);
     const double error = 0.5 * exact[Account::truncated];
     const double truth = exact[Account::retroreflected] + error;
     const BeamTracer tracer(question.part);
-    std::vector<BeamResult> found(kSeeds);
-    for_each_in_parallel(kSeeds, [&](std::size_t k) {
+    std::vector<BeamResult> found(seeds);
+    for_each_in_parallel(seeds, [&](std::size_t k) {
       found[k] = tracer.trace(pmma(), question.light, {0.5}, resampled(1e-4, 8.0, static_cast<std::uint32_t>(k + 1)));
     });
     double mean = 0.0;
@@ -94,13 +96,15 @@ TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
     int hits = 0;
     for (const BeamResult& one : found) {
       const double off = one.ledgers[0][Account::retroreflected] - truth;
-      mean += off / kSeeds;
-      squares += std::pow(off / kSeeds, 2.0);
+      mean += off / seeds;
+      squares += std::pow(off / seeds, 2.0);
       if (std::abs(off) <= 1.96 * one.std_error[0] + error) ++hits;
     }
+    // The deviations are taken from the true value, so the tails of this ratio are lighter than normal for any number
+    // of seeds, and the bound needs no change.
     EXPECT_LE(std::abs(mean), normal_bound(4) * std::hypot(std::sqrt(squares), error)) << question.name;
-    EXPECT_GE(hits, 88) << question.name;
-    ::testing::Test::RecordProperty(question.name + " of 100", hits);
+    EXPECT_GE(hits, test::min_coverage(0.88, 100.0, seeds) * seeds) << question.name;
+    ::testing::Test::RecordProperty(question.name + " of " + std::to_string(seeds), hits);
   }
 }
 

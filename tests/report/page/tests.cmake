@@ -6,11 +6,9 @@ retrace_test(command_tests
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 add_test(NAME page/bundle_test COMMAND "${RETRACE_PYTHON}" -B report/page/bundle_test.py "${PROJECT_SOURCE_DIR}"
          WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
-add_test(NAME page/layout_test
-         COMMAND "${RETRACE_PYTHON}" -B report/page/layout_test.py "$<TARGET_FILE:retrace>" "${PROJECT_SOURCE_DIR}"
-         WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
-set_tests_properties(page/layout_test PROPERTIES TIMEOUT 600)
-add_test(NAME page/browser_test
-         COMMAND "${RETRACE_PYTHON}" -B report/page/browser_test.py "$<TARGET_FILE:retrace>" "${PROJECT_SOURCE_DIR}"
-         WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
-set_tests_properties(page/browser_test PROPERTIES TIMEOUT 600 RUN_SERIAL ON)
+retrace_script_test(page/layout_test
+  COMMAND "${RETRACE_PYTHON}" -B report/page/layout_test.py "$<TARGET_FILE:retrace>" "${PROJECT_SOURCE_DIR}")
+set_tests_properties(page/layout_test PROPERTIES TIMEOUT 600 LABELS slow)
+retrace_script_test(page/browser_test
+  COMMAND "${RETRACE_PYTHON}" -B report/page/browser_test.py "$<TARGET_FILE:retrace>" "${PROJECT_SOURCE_DIR}")
+set_tests_properties(page/browser_test PROPERTIES TIMEOUT 600 RUN_SERIAL ON LABELS slow)
