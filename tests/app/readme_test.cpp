@@ -15,10 +15,11 @@
 
 #include "tests/app/program.h"
 
-// Every command that README.md, docs/*.md and docs/tutorials/*.md show is run as it stands there, in a folder that
-// looks like the project's. Each page is a test of its own, so that pages run in parallel: tools/run and retrace are the program, examples/ is the project's. Results such as
-// build/... land in that folder. Of tutorials the files that they ask to be saved are written, and what they show is
-// what the program says.
+// Runs every command that README.md, docs/*.md and docs/tutorials/*.md show, exactly as the page shows it. Each page is
+// a test of its own, so that pages run in parallel. A test runs in a folder that looks like the project's: tools/run
+// and retrace are the program, examples/ is the project's folder, and results such as build/... are written there.
+// Tests of tutorials also write the files that the tutorial tells the reader to save, and compare the output that the
+// tutorial shows with that of the program.
 
 namespace retrace::test::readme_test {
 namespace {

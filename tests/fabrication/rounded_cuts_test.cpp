@@ -16,6 +16,7 @@
 #include "fabrication/job/v_tool.h"
 #include "tests/fabrication/chiseling_programs.h"
 #include "tests/fabrication/findings_text.h"
+#include "tests/support/sample_size.h"
 
 // Tests of cuts with V-shaped tools at rounded positions. The bound on the fin along a dihedral edge is compared with
 // randomly displaced cuts, and correct jobs with random tools pass.
@@ -238,9 +239,10 @@ Job random_corner(std::mt19937& bits) {
 }
 
 TEST(RoundedCuts, RandomNosesPass) {
+  const int noses = retrace::test::sample_size(40, 500);
   std::mt19937 bits(17);
   int cut = 0;
-  for (int tried = 0; cut < 40 && tried < 400; ++tried) {
+  for (int tried = 0; cut < noses && tried < 10 * noses; ++tried) {
     const Job job = random_corner(bits);
     if (!fits(job)) continue;
     std::string text;
@@ -254,7 +256,7 @@ TEST(RoundedCuts, RandomNosesPass) {
     const Verification v = verified(job, machine(), text);
     EXPECT_TRUE(v.passes()) << job_text(job) << listed(v);
   }
-  EXPECT_EQ(cut, 40);
+  EXPECT_EQ(cut, noses);
 }
 
 /// A Fanuc rounds positions to its increments. A job of cube corners is either refused with the key to change, or

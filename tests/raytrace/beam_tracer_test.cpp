@@ -184,7 +184,8 @@ rc::Gen<RandomCase> random_case() {
 }
 
 // Beams and rays share only the geometry and Fresnel's formulas. Rays agree with beams within their 95 % intervals in
-// 88 % of 200 designs. For fewer designs, `min_coverage` widens the distance from 95 % in proportion to the standard error.
+// 88 % of 200 designs. For fewer designs, `min_coverage` widens the distance from 95 % in proportion to the standard
+// error.
 TEST(BeamTracer, AgreesWithMonteCarlo) {
   const std::size_t count = test::sample_size<std::size_t>(40, 200);
   const std::vector<RandomCase> cases =

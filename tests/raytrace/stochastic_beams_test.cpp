@@ -129,8 +129,8 @@ Truth truth_of(const Question& question, const Optics& optics) {
   return {exact[Account::retroreflected] + 0.5 * exact[Account::truncated], 0.5 * exact[Account::truncated]};
 }
 
-/// Expects that rounds are unbiased and that 1.96 standard errors contain the true value in 90 % of 200 results. The rule
-/// that stops at a small standard error favours results that are accidentally close together. For fewer seeds,
+/// Expects that rounds are unbiased and that 1.96 standard errors contain the true value in 90 % of 200 results. The
+/// rule that stops at a small standard error favours results that are accidentally close together. For fewer seeds,
 /// `min_coverage` widens the distance from 95 % in proportion to the standard error.
 void expect_truth(const Question& question, const Optics& optics, double target_error) {
   const Truth truth = truth_of(question, optics);

@@ -78,8 +78,8 @@ TEST(WeakBeams, AgreeWithBeamsAndBookAllPower) {
   }
 }
 
-/// Expects that the mean is unbiased and that 1.96 standard errors contain the true value in 88 of 100 results. For fewer
-/// seeds, `min_coverage` widens the distance from 95 % in proportion to the standard error.
+/// Expects that the mean is unbiased and that 1.96 standard errors contain the true value in 88 of 100 results. For
+/// fewer seeds, `min_coverage` widens the distance from 95 % in proportion to the standard error.
 TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
   const std::uint32_t seeds = test::sample_size(20U, 100U);
   for (const Question& question : questions()) {
