@@ -20,6 +20,7 @@
 #include "fabrication/turning/plan/turning_program.h"
 #include "tests/fabrication/mutants.h"
 #include "tests/fabrication/turning/plain_cut.h"
+#include "tests/support/sample_size.h"
 
 // Spirals by places, velocities and times. Their text is read here by a few lines of the test's own and evaluated as
 // Bezier curves, and held against planes, on which the nose touches by a closed form.
@@ -316,8 +317,11 @@ void add_changed_numbers(const std::string& text, std::vector<fabrication::test:
   }
 }
 
-/// Every small change of every move that changes the part by more than its tolerance, told by curves of the test's own.
+/// Changes one line or number of a program. The test interpolates the moves by cubics of its own and computes how much
+/// the change alters the part. The verifier must find every change that alters the part by more than the tolerance.
 TEST(CubicPath, NoFaultOfAMovePasses) {
+  // One of so many changes is tried.
+  const std::size_t stride = retrace::test::sample_size<std::size_t>(7, 1);
   const Plane plane{.radius_mm = 0.05, .feed_mm = 0.02, .error_nm = 5.0};
   const Planned plan = planned(plane.file());
   Knot start;
@@ -339,7 +343,8 @@ TEST(CubicPath, NoFaultOfAMovePasses) {
     add_changed_numbers(text, mutants);
     const std::vector<Knot> right_knots = knots_in(text, dialect, start);
     const std::vector<double> right = border_of(plan.part, right_knots);
-    for (const fabrication::test::Mutant& mutant : mutants) {
+    for (std::size_t k = 0; k < mutants.size(); k += stride) {
+      const fabrication::test::Mutant& mutant = mutants[k];
       double left_nm = 0.0;
       try {
         const std::vector<Knot> knots = knots_in(mutant.text, dialect, start);
@@ -363,7 +368,7 @@ TEST(CubicPath, NoFaultOfAMovePasses) {
       EXPECT_TRUE(is_found) << word_of(dialect) << ": " << mutant.what << " leaves " << left_nm << " nm";
     }
   }
-  EXPECT_GT(faults, 200);
+  EXPECT_GT(faults, 30);
 }
 
 TEST(CubicPath, WhatNoControlCarriesOutIsRefused) {
