@@ -111,7 +111,7 @@ class Equality(unittest.TestCase):
 
     def test_photometry(self):
         self.walk(
-            program.designs(),
+            program.some_designs(0),
             lambda file: program.document(
                 "photometry",
                 file,
@@ -134,7 +134,7 @@ class Equality(unittest.TestCase):
                 samples=64,
                 advice=False,
             ),
-            least=12,
+            least=4,
         )
 
     def test_inspect(self):
@@ -158,7 +158,7 @@ class Equality(unittest.TestCase):
                     found = program.document("export", file, file_of_program, f"--what={what}")
                     return (*found, self.content(file_of_program))
 
-                self.walk(program.designs(), of_program, of_package, least=8)
+                self.walk(program.some_designs(1), of_program, of_package, least=2)
 
     def test_export_material(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -202,7 +202,7 @@ class Equality(unittest.TestCase):
     def test_job_and_fabricate(self):
         fabricated = 0
         with tempfile.TemporaryDirectory() as folder:
-            for file in program.designs():
+            for file in program.some_designs(2):
                 for strategy in ("two-step", "dmc"):
                     with self.subTest(
                         file=os.path.relpath(file, program.EXAMPLES), strategy=strategy
@@ -233,10 +233,10 @@ class Equality(unittest.TestCase):
                             self.assertEqual(
                                 self.content(os.path.join(folder, "nc", name)).decode(), text
                             )
-        self.assertGreaterEqual(fabricated, 5)
+        self.assertGreaterEqual(fabricated, 2)
 
     def test_verify(self):
-        job = rt.job(program.example("rtp_brick_5mm.toml"), tool_width_mm=1)
+        job = rt.job(program.example("rtp_brick_2mm.toml"), tool_width_mm=1)
         made = rt.fabricate(job)
         ((name, text),) = made.programs.items()
         with tempfile.TemporaryDirectory() as folder:

@@ -60,10 +60,25 @@ double best_in_twentieths(const Goals& a, const Goals& b, const Goals& c) {
   return best;
 }
 
-constexpr const char* kThreeZones = "[compose]\nmaximize = \"g\"\nmost_zones = 3\n";
+/// A study and its composition.
+struct Composed {
+  Study study;
+  Composition composition;
+};
+
+/// Returns the composition of up to three zones. It is computed one time, because it takes long.
+const Composed& three_zones() {
+  static const Composed result = [] {
+    Study study = study_of_corners("[compose]\nmaximize = \"g\"\nmost_zones = 3\n");
+    Composition composition = composed(study);
+    return Composed{std::move(study), std::move(composition)};
+  }();
+  return result;
+}
 
 TEST(RealCells, AreNeverWorseThanThreeZonesOnAGrid) {
-  const Study study = study_of_corners(kThreeZones);
+  const Study& study = three_zones().study;
+  const Composition& composition = three_zones().composition;
   std::vector<Goals> cells;
   for (const double cant : {0.0, 4.0, 8.0, 12.0})
     for (const double turn : {0.0, 60.0, 120.0, 180.0, 240.0, 300.0}) {
@@ -75,7 +90,6 @@ TEST(RealCells, AreNeverWorseThanThreeZonesOnAGrid) {
     for (std::size_t b = a + 1; b < cells.size(); ++b)
       for (std::size_t c = b + 1; c < cells.size(); ++c)
         best = std::max(best, best_in_twentieths(cells[a], cells[b], cells[c]));
-  const Composition composition = composed(study);
   ASSERT_TRUE(composition.best.has_value());
   EXPECT_LE(composition.best->zones.size(), 3U);
   EXPECT_GE(composition.best->mixture.least, best);
@@ -100,8 +114,8 @@ TEST(RealCells, OfOneZoneAreWhatOptimiseFinds) {
 }
 
 TEST(RealCells, AreWrittenAsTheDesignsOfTheirZones) {
-  const Study study = study_of_corners(kThreeZones);
-  const Composition composition = composed(study);
+  const Study& study = three_zones().study;
+  const Composition& composition = three_zones().composition;
   ASSERT_TRUE(composition.best.has_value());
   Goals part{};
   for (std::size_t z = 0; z < composition.best->zones.size(); ++z) {
@@ -116,8 +130,8 @@ TEST(RealCells, AreWrittenAsTheDesignsOfTheirZones) {
 }
 
 TEST(RealCells, AreWrittenAsOnePartOfZones) {
-  const Study study = study_of_corners(kThreeZones);
-  const Composition composition = composed(study);
+  const Study& study = three_zones().study;
+  const Composition& composition = three_zones().composition;
   ASSERT_TRUE(composition.best && composition.best->zones.size() > 1);
   for (const ZoneLayout layout : {ZoneLayout::stripes, ZoneLayout::blocks, ZoneLayout::rows}) {
     const ZonedDesignRequest request{layout, geometry::Vec2(80.0, 60.0)};
@@ -140,8 +154,8 @@ TEST(RealCells, AreWrittenAsOnePartOfZones) {
 
 // Traced whole the part has what endless arrays of its zones have, weighted by their shares, but for what borders take.
 TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
-  const Study study = study_of_corners(kThreeZones);
-  const Composition composition = composed(study);
+  const Study& study = three_zones().study;
+  const Composition& composition = three_zones().composition;
   ASSERT_TRUE(composition.best && composition.best->zones.size() > 1);
   const auto by_rays = [&](const Design& design, double rotation_deg, Engine engine) {
     AnalysisSettings analysis = make_candidate(study, composition.best->zones[0].cell.values).analysis();
