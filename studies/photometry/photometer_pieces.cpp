@@ -206,6 +206,8 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
   std::vector<Piece> pieces(alike.size(), common);
   for (std::size_t k = 0; k < alike.size() && !is_cancelled(cancel); ++k)
     look(settings[alike[k].index], alike[k], field, wavelength, pieces[k]);
+  // The pieces that were not looked at have no intensities.
+  if (is_cancelled(cancel)) return std::vector<Piece>(alike.size());
   if (traces_all_light()) estimate_missing(settings, alike, wavelength, *traced, tracer, cancel, pieces);
   for (Piece& piece : pieces) piece.complete = !is_cancelled(cancel);
   return pieces;

@@ -1,12 +1,14 @@
 // Preliminary readings of photometry, which are computed next to a measurement that takes long.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "studies/design/io/design_reader.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/photometry.h"
 #include "tests/studies/photometric_requests.h"
@@ -127,6 +129,40 @@ TEST(PhotometricFirstAnswer, StopsWithTheMeasurementThatItBelongsTo) {
     EXPECT_TRUE(study.first_answer(kRayShare, &part).has_value());
     whole.request();
     EXPECT_FALSE(study.first_answer(kRayShare, &part).has_value());
+  }
+}
+
+/// The time at which a user stops a run is arbitrary. Most of the time of a rough finite part is spent on its far
+/// fields.
+TEST(PhotometricFirstAnswer, MeasurementsStopAtAnyMoment) {
+  using Clock = std::chrono::steady_clock;
+  const Design rough = parse_design(
+      "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 2.5\n[array]\narrangement = \"honeycomb\"\n"
+      "x_length_mm = 5\ny_length_mm = 5\n[body]\nthickness_mm = 2\nrefractive_index = 1.49\n"
+      "[surface]\ndihedral_error_arcmin = 0.75\nroughness_sq_nm = 0.1\ncorrelation_length_um = 2\n",
+      "rough.toml");
+  PhotometryRequest request = request_of(points_at({0.1, 0.2, 0.5}, 1.0));
+  request.diffraction = true;
+  for (const Design& design : {rough, cubes()}) {
+    const PhotometryStudy study(design, request);
+    const Clock::time_point begin = Clock::now();
+    ASSERT_TRUE(study.run().complete);
+    const std::chrono::duration<double> whole = Clock::now() - begin;
+    constexpr int kStops = 16;
+    for (int k = 0; k < kStops; ++k) {
+      Cancellation cancel;
+      std::thread user([&] {
+        std::this_thread::sleep_for(whole * (k + 0.5) / kStops);
+        cancel.request();
+      });
+      const PhotometryResult result = study.run(nullptr, &cancel);
+      user.join();
+      // The run may have ended before it was stopped. Points that were not measured are not in the result.
+      if (result.complete) {
+        EXPECT_EQ(result.points.size(), 3U);
+      }
+      for (const PhotometricPoint& point : result.points) EXPECT_GT(point.r_i_mcd_per_lx, 0.0);
+    }
   }
 }
 
