@@ -186,12 +186,14 @@ void ControlCheck::axes(const Machine& machine, const NcMotion& motion) {
   words_of_axes(motion);
   for (const LimitExcess& excess : limit_excesses(machine, motion.to)) {
     const double beyond = std::max(excess.limits.low - excess.position, excess.position - excess.limits.high);
+    const double limit = excess.position > excess.limits.high ? excess.limits.high : excess.limits.low;
     const bool is_rounding = beyond <= rounding_slack(motion, excess.axis);
     if (!has_bit(motion.known | motion.moved, excess.axis) || is_rounding || is_within_turn(excess)) continue;
-    findings_.add("axis_limit", motion.place.line,
-                  fmt::format("{} goes to {}, beyond its limits {} to {}", excess.axis, shortest(excess.position),
-                              shortest(excess.limits.low), shortest(excess.limits.high)),
-                  excess.position, excess.position > excess.limits.high ? excess.limits.high : excess.limits.low);
+    findings_.add(
+        "axis_limit", motion.place.line,
+        fmt::format("{} goes to {}, beyond its limits {} to {}", excess.axis, fixed_apart(excess.position, limit, 3),
+                    shortest(excess.limits.low), shortest(excess.limits.high)),
+        excess.position, limit);
   }
   if (motion.move != NcMove::linear) return;
   has_feed(motion);
@@ -261,7 +263,7 @@ void ControlCheck::axis_speeds(const Machine& machine, const NcMotion& motion) {
       if (!is_too_fast(speed, axis.most_per_min, motion)) continue;
       findings_.add("feed_too_high", motion.place.line,
                     fmt::format("{} is fed at {} {}/min, the machine's limit is {}", axis.letter,
-                                shortest(std::round(speed * 1e3) / 1e3), unit, shortest(axis.most_per_min)),
+                                fixed_apart(speed, axis.most_per_min, 3), unit, shortest(axis.most_per_min)),
                     speed, axis.most_per_min);
     }
   };
@@ -284,8 +286,9 @@ void ControlCheck::feed(const NcMotion& motion, double process_mm_per_min) {
   if (feed <= 0.0) return findings_.add("zero_feed", motion.place.line, "a cutting move has no feed");
   const auto find = [&](const char* kind, const char* bound, double limit) {
     findings_.add(kind, motion.place.line,
-                  fmt::format("a cut has a feed of {} mm/min, {} {}", shortest(feed), bound, shortest(limit)), feed,
-                  limit);
+                  fmt::format("a cut has a feed of {} mm/min, {} {}", fixed_apart(feed, limit, 3), bound,
+                              fixed_visible(limit, 3)),
+                  feed, limit);
   };
   if (is_too_fast(feed, process_mm_per_min, motion)) find("feed_too_high", "the process allows", process_mm_per_min);
   if (is_too_fast(kLeastShare * process_mm_per_min, feed, motion))

@@ -18,9 +18,9 @@ struct ProgramTime {
     return {feed_s - other.feed_s, rapid_s - other.rapid_s, rotary_s - other.rotary_s, dwell_s - other.dwell_s};
   }
 
-  /// Adds the time of a move. All axes move at the same time. If the program gives the time of the move, this time is
-  /// added. If only rotary axes move, the feed is in degrees per minute. A linear axis whose position is not yet known
-  /// adds no time. Rotary axes start at 0.
+  /// Adds the time of a move of all its axes (motion_time.h). If the program gives the time of the move, this time is
+  /// added. A rapid move counts as rotary if its rotary axes alone take longer than its linear axes alone. A linear
+  /// axis whose position is not yet known adds no time. Rotary axes start at 0.
   void add(const Machine& machine, const NcMotion& motion);
 };
 

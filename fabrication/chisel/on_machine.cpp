@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <numbers>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "fabrication/job/cube_corner.h"
 #include "fabrication/job/fins.h"
+#include "fabrication/job/v_tool.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -41,25 +45,62 @@ void check_increments(const Job& job, const Machine& machine) {
   if (has_finishing_cuts(job)) check("process.finishing_depth_um", job.process.finishing_depth_um);
 }
 
-/// Refuses a V-shaped tool if rounding of positions may leave a fin that is higher than the edge strip.
-void check_fin(const Job& job, const Machine& machine) {
-  const double step_mm = 1e-6 * static_cast<double>(machine.increments.linear_nm);
-  const double limit_mm = max_fin_mm(step_mm);
-  for (std::size_t zone = 0; zone < zone_count(job); ++zone) {
-    const CubeCorner corner = blank_corner(job, zone);
-    const double fin_mm = highest_fin_mm(edge_covers(corner.normals, spines_of(corner, job.tool)), step_mm);
-    if (fin_mm <= limit_mm) continue;
-    throw InputError(
-        job.where("tool.wedge_deg"),
-        fmt::format(
-            "must be larger, or the increments of the control smaller: machine {} rounds positions to {} um, so "
-            "that {} may remain between the cuts of its facets; at most {} um are allowed, got {}",
-            machine.name, shortest(1e3 * step_mm), fin_text(fin_mm), shortest(1e3 * limit_mm),
-            shortest(job.tool.wedge_deg)));
+/// Returns true if a tool reaches the apexes and facets of all zones at exact positions.
+bool fits_all_zones(const Job& job, const Tool& tool) {
+  bool fits = true;
+  const auto refuse = [&](std::string_view, const std::string&) { fits = false; };
+  for (std::size_t zone = 0; zone < zone_count(job); ++zone)
+    check_v_tool(blank_element(job, zone), angle_errors_of(job, zone), tool, refuse);
+  return fits;
+}
+
+/// Returns the smallest wedge angle above that of the job, in steps of 0.1 degrees, with which the tool fits all zones
+/// and fins are as low as allowed; nullopt if there is none.
+/// \param fin_mm returns the height of the fin that a tool may leave
+std::optional<double> allowed_wedge_deg(const Job& job, double max_mm,
+                                        const std::function<double(const Tool&)>& fin_mm) {
+  constexpr double kStepsPerDeg = 10.0;
+  Tool tool = job.tool;
+  for (double step = std::ceil(tool.wedge_deg * kStepsPerDeg); step <= kMaxWedgeDeg * kStepsPerDeg; ++step) {
+    tool.wedge_deg = step / kStepsPerDeg;
+    if (fin_mm(tool) <= max_mm && fits_all_zones(job, tool)) return tool.wedge_deg;
   }
+  return std::nullopt;
 }
 
 }  // namespace
+
+void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner,
+                const std::array<Angle, 3>& root_tilts, const std::string& who) {
+  const auto fin_mm = [&](const Tool& tool, double step_mm) {
+    return highest_fin_mm(edge_covers(corner.normals, spines_of(corner, tool, root_tilts)), step_mm);
+  };
+  const double step_mm = 1e-6 * static_cast<double>(machine.increments.linear_nm);
+  const double max_mm = max_fin_mm(step_mm);
+  const double left_mm = fin_mm(job.tool, step_mm);
+  if (left_mm <= max_mm) return;
+  const std::string step_text = shortest(1e-3 * static_cast<double>(machine.increments.linear_nm));
+  const std::string fin = fmt::format("{} may remain between the cuts of the facets, at most {} um are allowed",
+                                      fin_text(left_mm), fixed(1e3 * std::max(0.0, max_mm), 3));
+  const auto at_step = [&](const Tool& tool) { return fin_mm(tool, step_mm); };
+  if (const std::optional<double> wedge_deg = allowed_wedge_deg(job, max_mm, at_step))
+    throw InputError(
+        job.where("tool.wedge_deg"),
+        fmt::format("{}must be at least {}, because machine {} rounds positions to {} um and {}, got {}", who,
+                    shortest(*wedge_deg), machine.name, step_text, fin, shortest(job.tool.wedge_deg)));
+  const std::string none = fmt::format("no tool.wedge_deg up to {} is large enough", shortest(kMaxWedgeDeg));
+  if (machine.increments.linear_nm <= Increments{}.linear_nm)
+    throw InputError(job.where("tool.nose_angle_deg"),
+                     fmt::format("{}with clearance_deg does not fit the element: {}, and {}, got {}", who, fin, none,
+                                 shortest(job.tool.nose_angle_deg)));
+  // Fins grow in proportion to the increment. Limits are rounded down.
+  const double max_step_um = 1e3 * kEdgeStripMm / (fin_mm(job.tool, 1.0) + kEdgeStripMm - max_fin_mm(1.0));
+  throw InputError(
+      job.where("machine"),
+      fmt::format("{}must round positions to at most {} um for this tool (control.increment_system), got machine {} "
+                  "with {} um: {}, and {}",
+                  who, fixed(std::floor(1e4 * max_step_um) * 1e-4, 4), machine.name, step_text, fin, none));
+}
 
 bool has_finishing_cuts(const Job& job) {
   return job.strategy == Strategy::two_step || job.strategy == Strategy::dmc;
@@ -68,7 +109,8 @@ bool has_finishing_cuts(const Job& job) {
 void check_on_machine(const Job& job, const Machine& machine) {
   check_tilt(job, machine);
   check_increments(job, machine);
-  if (job.strategy == Strategy::dmc) check_fin(job, machine);
+  if (job.strategy == Strategy::dmc)
+    for (std::size_t zone = 0; zone < zone_count(job); ++zone) check_fins(job, machine, blank_corner(job, zone));
   const Process& p = job.process;
   if (has_finishing_cuts(job) && p.finishing_depth_um > p.roughing_depth_um)
     throw InputError(job.where("process.finishing_depth_um"),

@@ -89,7 +89,8 @@ void check_v_tool(const geometry::Element& element, const geometry::AngleErrors&
     refuse("tool.edge_radius_um",
            fmt::format("must be <= {}, a tenth of the element's aperture: the element is smaller than the "
                        "tool's nose, got {}",
-                       shortest(1e3 * kMostRadiusShare * aperture_mm), shortest(tool.edge_radius_um)));
+                       fixed_apart(1e3 * kMostRadiusShare * aperture_mm, tool.edge_radius_um, 3),
+                       shortest(tool.edge_radius_um)));
   // The ends of the cutting edges must come out of the blank while the tip stands in the apex.
   const double least_mm = std::numbers::sqrt2 * edge_mm * std::tan(rad(0.5 * tool.nose_angle_deg));
   if (tool.width_mm < least_mm)

@@ -11,6 +11,9 @@
 
 namespace retrace::fabrication {
 
+/// Maximum wedge angle of a tool, in degrees.
+inline constexpr double kMaxWedgeDeg = 80.0;
+
 /// The three edges of a V-shaped tool's body, upwards from its tip, of length 1, as components along a facet's first
 /// dihedral edge, its second one and its outward normal. The tool stands as it cuts: its leading edge lies in the facet
 /// and the clearance face turns away from it about that edge (docs/theory/micro_chiseling.md).

@@ -1,8 +1,8 @@
 #include "fabrication/machine/motion_time.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
 
 namespace retrace::fabrication {
 namespace {
@@ -22,24 +22,52 @@ double middle_speed(double distance, const MotionLimits& limits) {
   return 0.5 * limits.acceleration * (std::sqrt(ramp_s * ramp_s + 4.0 * distance / limits.acceleration) - ramp_s);
 }
 
-double one_axis_s(const RotaryAxis& axis, double deg) {
-  if (deg == 0.0) return 0.0;
-  return rest_to_rest_s(std::abs(deg),
-                        {axis.speed_deg_per_s.value, axis.acceleration_deg_per_s2.value, axis.jerk_deg_per_s3.value});
+/// Part of one axis in a move.
+struct AxisMotion {
+  double travel = 0.0;  ///< in mm or degrees
+  MotionLimits limits;
+};
+
+/// Returns the parts of X, Y, Z, the tilting axis and C in a move.
+/// \param rate maximum speed of the linear axes, in mm/min
+std::array<AxisMotion, 5> axis_motions(const Machine& machine, const AxisTravel& by,
+                                       Sourced<double> LinearAxis::*rate) {
+  constexpr double kSecondsPerMinute = 60.0;
+  std::array<AxisMotion, 5> motions;
+  const LinearAxis* const linear[] = {&machine.x, &machine.y, &machine.z};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const LinearAxis& axis = *linear[k];
+    motions[k] = {
+        std::abs(by.linear_mm[static_cast<Eigen::Index>(k)]),
+        {(axis.*rate).value / kSecondsPerMinute, axis.acceleration_mm_per_s2.value, axis.jerk_mm_per_s3.value}};
+  }
+  const auto rotary = [](const RotaryAxis& axis, double by_deg) -> AxisMotion {
+    return {std::abs(by_deg),
+            {axis.speed_deg_per_s.value, axis.acceleration_deg_per_s2.value, axis.jerk_deg_per_s3.value}};
+  };
+  motions[3] = rotary(machine.a, by.tilt_deg);
+  motions[4] = rotary(machine.c, by.c_deg);
+  return motions;
+}
+
+/// Returns the limits of a motion in which all axes start and end together.
+MotionLimits limits_along(const std::array<AxisMotion, 5>& motions, double length) {
+  MotionLimits along;
+  for (const auto& [travel, limits] : motions) {
+    const double share = travel / length;
+    if (!(share > 0.0)) continue;
+    along.speed = std::min(along.speed, limits.speed / share);
+    along.acceleration = std::min(along.acceleration, limits.acceleration / share);
+    along.jerk = std::min(along.jerk, limits.jerk / share);
+  }
+  return along;
 }
 
 }  // namespace
 
-MotionLimits limits_along(const Machine& machine, const geometry::Vec3& by_mm) {
-  MotionLimits along;
-  const LinearAxis* const axes[] = {&machine.x, &machine.y, &machine.z};
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const double share = std::abs(by_mm[k]) / by_mm.norm();
-    if (!(share > 0.0)) continue;
-    along.acceleration = std::min(along.acceleration, axes[k]->acceleration_mm_per_s2.value / share);
-    along.jerk = std::min(along.jerk, axes[k]->jerk_mm_per_s3.value / share);
-  }
-  return along;
+double AxisTravel::length() const {
+  const double length_mm = linear_mm.norm();
+  return length_mm > 0.0 ? length_mm : std::hypot(tilt_deg, c_deg);
 }
 
 double rest_to_rest_s(double distance, const MotionLimits& limits) {
@@ -50,38 +78,19 @@ double rest_to_rest_s(double distance, const MotionLimits& limits) {
   return 2.0 * distance / middle_speed(distance, limits);
 }
 
-double rapid_motion_s(const Machine& machine, const geometry::Vec3& by_mm) {
-  const double distance_mm = by_mm.norm();
-  if (distance_mm == 0.0) return 0.0;
-  MotionLimits line = limits_along(machine, by_mm);
-  const LinearAxis* const axes[] = {&machine.x, &machine.y, &machine.z};
+double rapid_motion_s(const Machine& machine, const AxisTravel& by) {
+  const std::array<AxisMotion, 5> motions = axis_motions(machine, by, &LinearAxis::rapid_mm_per_min);
+  if (machine.control.rapids_are_straight) return rest_to_rest_s(by.length(), limits_along(motions, by.length()));
   double slowest_s = 0.0;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const double axis_mm = std::abs(by_mm[k]);
-    if (axis_mm == 0.0) continue;
-    const double speed = axes[k]->rapid_mm_per_min.value / 60.0;
-    line.speed = std::min(line.speed, speed * distance_mm / axis_mm);
-    slowest_s = std::max(slowest_s, rest_to_rest_s(axis_mm, {speed, axes[k]->acceleration_mm_per_s2.value,
-                                                             axes[k]->jerk_mm_per_s3.value}));
-  }
-  return machine.control.rapids_are_straight ? rest_to_rest_s(distance_mm, line) : slowest_s;
+  for (const auto& [travel, limits] : motions) slowest_s = std::max(slowest_s, rest_to_rest_s(travel, limits));
+  return slowest_s;
 }
 
-double fed_rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg, double deg_per_min) {
-  const double distance_deg = std::hypot(tilt_deg, c_deg);
-  MotionLimits path;
-  path.speed = deg_per_min / 60.0;
-  for (const auto& [axis, by_deg] : {std::pair{&machine.a, tilt_deg}, {&machine.c, c_deg}}) {
-    if (by_deg == 0.0) continue;
-    const double share = std::abs(by_deg) / distance_deg;
-    path.acceleration = std::min(path.acceleration, axis->acceleration_deg_per_s2.value / share);
-    path.jerk = std::min(path.jerk, axis->jerk_deg_per_s3.value / share);
-  }
-  return rest_to_rest_s(distance_deg, path);
-}
-
-double rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg) {
-  return std::max(one_axis_s(machine.a, tilt_deg), one_axis_s(machine.c, c_deg));
+double fed_motion_s(const Machine& machine, const AxisTravel& by, double feed_per_min) {
+  const double length = by.length();
+  MotionLimits path = limits_along(axis_motions(machine, by, &LinearAxis::max_feed_mm_per_min), length);
+  path.speed = std::min(path.speed, feed_per_min / 60.0);
+  return rest_to_rest_s(length, path);
 }
 
 }  // namespace retrace::fabrication

@@ -8,29 +8,35 @@
 
 namespace retrace::fabrication {
 
-/// Of a motion along a line, or of one axis, in mm or degrees and seconds.
+/// Limits of a motion along a path, or of one axis, in mm or degrees and seconds.
 struct MotionLimits {
   double speed = std::numeric_limits<double>::infinity();
   double acceleration = std::numeric_limits<double>::infinity();
   double jerk = std::numeric_limits<double>::infinity();
 };
 
-/// Of a motion along a line in space by (x, y, z) mm: what the axes allow together. Its speed is left open.
-MotionLimits limits_along(const Machine& machine, const geometry::Vec3& by_mm);
+/// Travel of all axes in one move.
+struct AxisTravel {
+  geometry::Vec3 linear_mm = geometry::Vec3::Zero();  ///< travel of X, Y and Z
+  double tilt_deg = 0.0;                              ///< rotation of the tilting axis (A or B)
+  double c_deg = 0.0;                                 ///< rotation of C
+
+  /// Returns the length of the path along which the feed counts: in mm, or in degrees if only rotary axes move.
+  double length() const;
+};
 
 /// The shortest time from rest to rest over a distance: jerk that is constant piece by piece, or constant acceleration
 /// where jerk has no limit (docs/theory/cutting.md). \pre distance >= 0, limits > 0
 double rest_to_rest_s(double distance, const MotionLimits& limits);
 
-/// Returns the time, in s, of a rapid move by (x, y, z) mm, without settling. This is the time of the slowest axis, or
-/// the time along the straight line if Control::rapids_are_straight is true.
-double rapid_motion_s(const Machine& machine, const geometry::Vec3& by_mm);
+/// Returns the time, in s, of a rapid move, without settling. If Control::rapids_are_straight is false, each axis moves
+/// at its own speed and the slowest axis counts. Otherwise all axes start and end together on a straight line, so that
+/// speed, acceleration and jerk along the line are each limited by the axis that limits them most.
+double rapid_motion_s(const Machine& machine, const AxisTravel& by);
 
-/// Returns the time, in s, of a simultaneous move of the tilting axis (A or B) and C, without settling.
-/// \param deg_per_min feed along the common path of both axes
-double fed_rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg, double deg_per_min);
-
-/// By A or B and by C, in degrees, each as fast as it goes and both to be waited for; without settling.
-double rotary_motion_s(const Machine& machine, double tilt_deg, double c_deg);
+/// Returns the time, in s, of a move at a feed, without settling. All axes start and end together on a straight line,
+/// within the maximum feeds of the linear axes and the speeds of the rotary axes.
+/// \param feed_per_min feed along AxisTravel::length(), in mm/min or degrees/min
+double fed_motion_s(const Machine& machine, const AxisTravel& by, double feed_per_min);
 
 }  // namespace retrace::fabrication

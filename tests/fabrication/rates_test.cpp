@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "core/atomic_file.h"
 #include "fabrication/check/program_time.h"
 #include "fabrication/chisel/check/verify.h"
+#include "fabrication/chisel/plan/move_time.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
@@ -169,6 +172,76 @@ TEST(Rates, FeedsOfRotaryAxesAreDegrees) {
   EXPECT_NEAR(seconds("G0 Z5.5 C0").total_s(), seconds("G0 C0").total_s(), 1e-9);
 }
 
+/// Returns the time, in s, in which axes travel from rest to rest together, all of them the same share of their way at
+/// any time. The motion is integrated in small steps: the share moves as fast as the maximum speed of each axis, its
+/// acceleration since the start and its deceleration before the end allow.
+/// \param axes travel, maximum speed and maximum acceleration of each axis
+double integrated_s(const std::vector<std::array<double, 3>>& axes) {
+  constexpr int kSteps = 20000;
+  double seconds = 0.0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double done = (k + 0.5) / kSteps;
+    double rate = std::numeric_limits<double>::infinity();
+    for (const auto& [travel, speed, acceleration] : axes) {
+      const double to_go = std::abs(travel) * std::min(done, 1.0 - done);
+      rate = std::min(rate, std::min(speed, std::sqrt(2.0 * acceleration * to_go)) / std::abs(travel));
+    }
+    seconds += 1.0 / (kSteps * rate);
+  }
+  return seconds;
+}
+
+/// Rapid moves of linear and rotary axes together take the time of the integrated motion: of all axes along the
+/// straight line, or of the slowest axis. Planner and verifier agree.
+TEST(Rates, RapidMovesOfAllAxesAreIntegrated) {
+  std::mt19937 random(7);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  double largest_excess = 0.0;
+  for (int tried = 0; tried < 60; ++tried) {
+    Machine machine = shipped("ideal");
+    machine.settling_s.value = 0.0;
+    for (LinearAxis* axis : {&machine.x, &machine.y, &machine.z}) {
+      axis->rapid_mm_per_min.value = between(300.0, 5000.0);
+      axis->acceleration_mm_per_s2.value = between(10.0, 1000.0);
+    }
+    for (RotaryAxis* axis : {&machine.a, &machine.c}) {
+      axis->speed_deg_per_s.value = between(1.0, 40.0);
+      axis->acceleration_deg_per_s2.value = between(1.0, 100.0);
+    }
+    const bool is_linear = tried % 3 != 0;
+    const geometry::Vec3 by_mm =
+        is_linear ? geometry::Vec3(between(-20, 20), between(-20, 20), between(1, 20)) : geometry::Vec3::Zero();
+    const double a_deg = tried % 3 == 1 ? 0.0 : between(1.0, 90.0);
+    const double c_deg = between(-180.0, -1.0);
+    std::vector<std::array<double, 3>> axes;
+    const LinearAxis* const linear[] = {&machine.x, &machine.y, &machine.z};
+    for (Eigen::Index k = 0; k < 3; ++k)
+      axes.push_back({by_mm[k], linear[k]->rapid_mm_per_min.value / 60.0, linear[k]->acceleration_mm_per_s2.value});
+    axes.push_back({a_deg, machine.a.speed_deg_per_s.value, machine.a.acceleration_deg_per_s2.value});
+    axes.push_back({c_deg, machine.c.speed_deg_per_s.value, machine.c.acceleration_deg_per_s2.value});
+    std::erase_if(axes, [](const std::array<double, 3>& axis) { return axis[0] == 0.0; });
+    double slowest_s = 0.0;
+    for (const auto& axis : axes) slowest_s = std::max(slowest_s, integrated_s({axis}));
+    const double along_s = integrated_s(axes);
+    largest_excess = std::max(largest_excess, along_s / slowest_s - 1.0);
+    NcMotion motion;
+    motion.move = NcMove::rapid;
+    motion.known = 0xff;
+    motion.to = {by_mm.x(), by_mm.y(), by_mm.z(), a_deg, c_deg, 0.0};
+    for (const bool is_straight : {false, true}) {
+      machine.control.rapids_are_straight = is_straight;
+      const double expected_s = is_straight ? along_s : slowest_s;
+      ProgramTime time;
+      time.add(machine, motion);
+      EXPECT_NEAR(time.total_s() / expected_s, 1.0, 0.01) << tried << ' ' << is_straight;
+      if (!is_linear) EXPECT_NEAR(rotary_move_s(machine, a_deg, c_deg), time.total_s(), 1e-12);
+    }
+  }
+  EXPECT_GT(largest_excess, 0.1) << "the two rules differ";
+}
+
 /// Adds up the times of the moves of a program, by closed forms and by ProgramTime.
 class TimeSink : public NcSink {
  public:
@@ -182,7 +255,7 @@ class TimeSink : public NcSink {
     const double by[] = {is_known(0) ? motion.to.x_mm - motion.from.x_mm : 0.0,
                          is_known(1) ? motion.to.y_mm - motion.from.y_mm : 0.0,
                          is_known(2) ? motion.to.z_mm - motion.from.z_mm : 0.0};
-    const double length = std::hypot(by[0], by[1], by[2]);
+    double length = std::hypot(by[0], by[1], by[2]);
     const LinearAxis* const axes[] = {&machine_.x, &machine_.y, &machine_.z};
     double slowest_s = 0.0;
     double speed = motion.feed_mm_per_min > 0.0 ? motion.feed_mm_per_min / 60.0 : 1e9;
@@ -195,14 +268,20 @@ class TimeSink : public NcSink {
       if (motion.move == NcMove::rapid) speed = std::min(speed, rapid / share);
       acceleration = std::min(acceleration, axes[k]->acceleration_mm_per_s2.value / share);
     }
-    const bool is_line = motion.move == NcMove::linear || machine_.control.rapids_are_straight;
-    double moving_s = is_line ? trapezoid_s(length, speed, acceleration) : slowest_s;
     const double tilt_deg = motion.to.a_deg + motion.to.b_deg - motion.from.a_deg - motion.from.b_deg;
     double c_deg = motion.to.c_deg - motion.from.c_deg;
     if (!machine_.shortest_axes.empty()) c_deg = std::remainder(c_deg, 360.0);
-    for (const auto& [axis, deg] : {std::pair{&machine_.a, tilt_deg}, {&machine_.c, c_deg}})
-      moving_s = std::max(moving_s,
-                          trapezoid_s(std::abs(deg), axis->speed_deg_per_s.value, axis->acceleration_deg_per_s2.value));
+    if (length == 0.0) length = std::hypot(tilt_deg, c_deg);
+    for (const auto& [axis, by_deg] : {std::pair{&machine_.a, tilt_deg}, {&machine_.c, c_deg}}) {
+      if (by_deg == 0.0) continue;
+      const double share = std::abs(by_deg) / length;
+      const double axis_acceleration = axis->acceleration_deg_per_s2.value;
+      slowest_s = std::max(slowest_s, trapezoid_s(std::abs(by_deg), axis->speed_deg_per_s.value, axis_acceleration));
+      speed = std::min(speed, axis->speed_deg_per_s.value / share);
+      acceleration = std::min(acceleration, axis_acceleration / share);
+    }
+    const bool is_line = motion.move == NcMove::linear || machine_.control.rapids_are_straight;
+    const double moving_s = is_line ? trapezoid_s(length, speed, acceleration) : slowest_s;
     if (moving_s > 0.0) moves_s += moving_s + machine_.settling_s.value;
     known_ = static_cast<std::uint8_t>(known_ | motion.absolute | motion.shortest);
   }
@@ -258,6 +337,8 @@ TEST(Rates, PlannedTimesAreThoseOfTheMoves) {
         axis->acceleration_mm_per_s2.value = between(100.0, 2000.0);
       }
       machine.c.speed_deg_per_s.value = between(1.0, 20.0);
+      machine.a.acceleration_deg_per_s2.value = between(20.0, 100.0);
+      machine.c.acceleration_deg_per_s2.value = between(1.0, 20.0);
       machine.settling_s.value = between(0.0, 0.1);
       machine.control.rapids_are_straight = d % 2 == 0;
       const Plan plan = make_plan(job, machine);

@@ -5,12 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <regex>
 #include <string>
 #include <string_view>
 
 #include "core/error.h"
+#include "fabrication/chisel/on_machine.h"
 #include "fabrication/job/fins.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/v_tool.h"
@@ -278,10 +283,62 @@ TEST(RoundedCuts, CubeCornersOfEveryIncrementSystemPassOrAreRefused) {
           EXPECT_FALSE(is_coarse);
         } catch (const InputError& error) {
           EXPECT_TRUE(is_coarse) << error.what();
-          const std::string key = system == IncrementSystem::b ? "process.roughing_depth_um" : "tool.wedge_deg";
+          const std::string key = system == IncrementSystem::b ? "process.roughing_depth_um: " : "machine: ";
           EXPECT_NE(std::string(error.what()).find(key), std::string::npos) << error.what();
         }
       }
+}
+
+/// Returns the number after `before` in a text; nullopt if the text does not contain it.
+std::optional<double> number_after(const std::string& text, const std::string& before) {
+  const std::size_t at = text.find(before);
+  if (at == std::string::npos) return std::nullopt;
+  return std::strtod(text.c_str() + at + before.size(), nullptr);
+}
+
+/// Values that a message names as allowed are accepted, and smaller wedges and larger increments are refused again. No
+/// number of the message has more than eight digits.
+TEST(RoundedCuts, RefusalsNameValuesThatAreAccepted) {
+  const auto refusal = [](const Job& job, const Machine& m) -> std::string {
+    try {
+      check_on_machine(job, m);
+    } catch (const InputError& error) {
+      EXPECT_FALSE(std::regex_search(error.what(), std::regex("[0-9]{9}|[0-9]\\.[0-9]{8}"))) << error.what();
+      return error.what();
+    }
+    return "";
+  };
+  int wedges = 0;
+  int steps = 0;
+  for (const std::int64_t step_nm : {1, 3, 10, 40, 70, 100})
+    for (const double wedge_deg : {58.95, 59.0, 59.3, 60.0, 62.0, 65.0, 80.0}) {
+      Job job = cube_job(true, 0.2);
+      job.process.roughing_depth_um = job.process.finishing_depth_um = 20.0;
+      job.tool.wedge_deg = wedge_deg;
+      Machine m = machine();
+      m.increments.linear_nm = step_nm;
+      const std::string text = refusal(job, m);
+      if (text.empty()) continue;
+      if (const auto allowed_deg = number_after(text, "tool.wedge_deg: must be at least ")) {
+        ++wedges;
+        job.tool.wedge_deg = *allowed_deg;
+        EXPECT_EQ(refusal(job, m), "") << text;
+        EXPECT_TRUE(fits(job)) << text;
+        job.tool.wedge_deg = *allowed_deg - 0.11;
+        EXPECT_NE(refusal(job, m), "") << text;
+      } else {
+        const auto allowed_um = number_after(text, "machine: must round positions to at most ");
+        ASSERT_TRUE(allowed_um) << text;
+        ++steps;
+        const double allowed_nm = 1e3 * *allowed_um;
+        m.increments.linear_nm = static_cast<std::int64_t>(std::floor(allowed_nm + 1e-6));
+        if (m.increments.linear_nm >= 1) EXPECT_EQ(refusal(job, m), "") << text;
+        m.increments.linear_nm = static_cast<std::int64_t>(std::floor(allowed_nm + 1e-6)) + 1;
+        EXPECT_NE(refusal(job, m), "") << text;
+      }
+    }
+  EXPECT_GT(wedges, 5);
+  EXPECT_GT(steps, 5);
 }
 
 }  // namespace

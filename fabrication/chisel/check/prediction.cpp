@@ -83,9 +83,14 @@ Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge
     const Vec3 root = motion.direction(groove.root_direction);
     const Vec3 up = motion.direction(ploughed.up_slope);
     const double drift = -prediction.pass_normal.dot(up) / prediction.pass_normal.dot(root);
-    prediction.plough_drift[other] = drift;
-    prediction.plough_slope[other] =
-        wedge.edge.dot(motion.direction(ploughed.normal)) / (wedge.edge.dot(root) - drift * wedge.edge.dot(up));
+    const Vec3 design = motion.direction(ploughed.normal);
+    const double along = wedge.edge.dot(root) - drift * wedge.edge.dot(up);
+    const double rise_mm = wedge.half_width_mm * std::abs(wedge.edge.dot(design));
+    PloughedFloor& floor = prediction.ploughed[other];
+    floor.drift = drift;
+    floor.slope = wedge.edge.dot(design) / along;
+    floor.half_width_mm = wedge.half_width_mm * std::abs(along);
+    floor.shift_mm = -rise_mm * prediction.pass_normal.dot(design) / prediction.pass_normal.dot(root);
   }
   return prediction;
 }

@@ -11,16 +11,21 @@
 
 namespace retrace::fabrication {
 
+/// Surface that one ploughing pass of a tilted edge leaves on a facet (docs/theory/verification.md). Positions along
+/// the root are signed along the root direction of the groove.
+struct PloughedFloor {
+  double slope = 0.0;          ///< rise of the surface along the root, in mm per mm
+  double half_width_mm = 0.0;  ///< half of the width of the pass, along the root
+  double drift = 0.0;          ///< movement of the pass along the root, in mm, for each mm up the facet
+  double shift_mm =
+      0.0;  ///< distance along the root from the plane of the pass, at the facet, to the center of the edge
+};
+
 /// What a machine's axes make unavoidable for the elements of one orientation, from the poses that this machine needs -
 /// not from those of the program (docs/theory/verification.md).
 struct Prediction {
-  std::vector<PlungePose> poses;  ///< in which facets 1, 2 and, of cube corners, 3 are cut
-  /// By how much facet f rises from one end of the tool's edge to the other, per mm, when it is ploughed in the pose of
-  /// the other facet; signed along the root direction of the groove.
-  std::array<double, 2> plough_slope{};
-  /// Distance, in mm, by which the edge moves along the root for each mm that it ploughs up facet f. It differs from 0
-  /// if the slides are not perpendicular to the root.
-  std::array<double, 2> plough_drift{};
+  std::vector<PlungePose> poses;          ///< in which facets 1, 2 and, of cube corners, 3 are cut
+  std::array<PloughedFloor, 2> ploughed;  ///< surfaces of facets 1 and 2, each ploughed in the pose of the other facet
   /// Normal, in the machine frame, of the plane in which Y and Z move the tool while X does not move.
   geometry::Vec3 pass_normal = geometry::Vec3::UnitX();
   /// Of prisms. A V follows the dihedral edges themselves and its planes hold the facets: it leaves nothing.

@@ -130,7 +130,7 @@ class Judge {
     for (std::size_t f = 0; f < figures.facets.size(); ++f)
       if (figures.facets[f].is_ploughed)
         result_.facet_angle_arcmin_predicted = std::max(
-            result_.facet_angle_arcmin_predicted, std::atan(std::abs(prediction.plough_slope[f])) * kArcminPerRad);
+            result_.facet_angle_arcmin_predicted, std::atan(std::abs(prediction.ploughed[f].slope)) * kArcminPerRad);
   }
 
   void facet(const FacetFigures& facet, std::size_t f, std::int64_t number, const std::string& program) {

@@ -80,7 +80,7 @@ void WayCheck::turn_from_anywhere(const NcMotion& motion) {
   if (motion.from.z_mm < safe_mm - rounding_slack(motion, 'Z'))
     findings_.add("turn_too_low", motion.place.line,
                   fmt::format("the axes turn from where they happen to be while Z stands at {} mm, below {} mm",
-                              shortest(motion.from.z_mm), shortest(safe_mm)),
+                              fixed_apart(motion.from.z_mm, safe_mm, 3), shortest(safe_mm)),
                   motion.from.z_mm, safe_mm);
 }
 

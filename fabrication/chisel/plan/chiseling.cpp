@@ -11,10 +11,10 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/chisel/on_machine.h"
 #include "fabrication/chisel/plan/process_facts.h"
 #include "fabrication/chisel/plan/routines.h"
 #include "fabrication/job/cube_corner.h"
-#include "fabrication/job/fins.h"
 #include "fabrication/job/v_tool.h"
 #include "geometry/elements/element_cells.h"
 
@@ -111,31 +111,13 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
   return routine;
 }
 
-namespace {
-
-/// Refuses poses in which the cuts, as positions are rounded, may leave a fin that is higher than the strip that is
-/// measured along edges.
-void check_fins(const Job& job, const std::array<CuttingPose, 3>& poses, const Stance& stance) {
-  const double step_mm = 1e-6 * static_cast<double>(poses[0].section.step_nm);
-  const CubeCorner& corner = poses[0].corner;
-  const std::array<Vec3, 3> spines =
-      spines_of(corner, job.tool, {poses[0].root_tilt, poses[1].root_tilt, poses[2].root_tilt});
-  const double fin_mm = highest_fin_mm(edge_covers(corner.normals, spines), step_mm);
-  if (fin_mm <= max_fin_mm(step_mm)) return;
-  throw InputError(
-      job.where("machine"),
-      fmt::format("{}the tool is turned in the facets so that {} may stay between its cuts as positions "
-                  "are rounded to {} um, at most {} um are allowed: tool.wedge_deg must be larger",
-                  stance.who(), fin_text(fin_mm), shortest(1e3 * step_mm), shortest(1e3 * max_fin_mm(step_mm))));
-}
-
-}  // namespace
-
-void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, const Stance& stance) {
-  if (stance.element < 0) {
-    check_fins(job, poses, stance);
-    return;
-  }
+void check_v_in_poses(const Job& job, const Machine& machine, const std::array<CuttingPose, 3>& poses,
+                      const Stance& stance) {
+  const auto check_fins_in_poses = [&] {
+    check_fins(job, machine, poses[0].corner, {poses[0].root_tilt, poses[1].root_tilt, poses[2].root_tilt},
+               stance.who());
+  };
+  if (stance.element < 0) return check_fins_in_poses();
   const InputLocation where = job.where("machine");
   const VToolEdges edges = v_tool_edges(job.tool);
   const double error_deg = poses[0].corner.largest_error_deg();
@@ -166,10 +148,10 @@ void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, c
     if (covered_deg < 90.0 + error_deg)
       throw InputError(where,
                        fmt::format("{}the cuts along facets {} and {} would leave a fin of {} degrees between them, "
-                                   "0 are allowed: tool.wedge_deg must be larger",
+                                   "0 are allowed: tool.wedge_deg must be larger, or the base less inclined",
                                    stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 + error_deg - covered_deg, 3)));
   }
-  check_fins(job, poses, stance);
+  check_fins_in_poses();
   double most_turned = 0.0;
   for (const CuttingPose& pose : poses) most_turned = std::max(most_turned, std::abs(pose.root_tilt.rad()));
   const double half_nose = Angle::from_deg(0.5 * job.tool.nose_angle_deg).rad();

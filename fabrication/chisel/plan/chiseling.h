@@ -29,7 +29,8 @@ CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetCh
 /// That the tool, which B and C lay on the facets but cannot turn in them, keeps clear of the other facets, leaves no
 /// fin between two and comes out of the blank. \param poses of the three facets of elements that stand alike
 /// \throw InputError naming element, tilt and limit
-void check_v_in_poses(const Job& job, const std::array<CuttingPose, 3>& poses, const Stance& stance);
+void check_v_in_poses(const Job& job, const Machine& machine, const std::array<CuttingPose, 3>& poses,
+                      const Stance& stance);
 
 /// Down one edge and up the other of a cube corner that leaves `left_mm` on all facets.
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,

@@ -112,7 +112,7 @@ class StageMaker {
     for (const auto& [group, stance] : groups_) {
       const std::size_t first = plan_.poses.size();
       for (int facet = 1; facet <= 3; ++facet) plan_.poses.push_back(next_pose(group, facet));
-      check_v_in_poses(job_, {plan_.poses[first], plan_.poses[first + 1], plan_.poses[first + 2]}, stance);
+      check_v_in_poses(job_, machine_, {plan_.poses[first], plan_.poses[first + 1], plan_.poses[first + 2]}, stance);
     }
   }
 
@@ -123,7 +123,7 @@ class StageMaker {
     std::size_t k = 0;
     const std::size_t count = groups_.size();
     for (const auto& [group, stance] : groups_) {
-      check_v_in_poses(job_, {plan_.poses[k], plan_.poses[k + count], plan_.poses[k + 2 * count]}, stance);
+      check_v_in_poses(job_, machine_, {plan_.poses[k], plan_.poses[k + count], plan_.poses[k + 2 * count]}, stance);
       ++k;
     }
   }

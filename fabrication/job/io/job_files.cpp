@@ -44,7 +44,7 @@ constexpr Words kElements = {"rtp", "hexagonal_icc", "triangular_icc"};
 constexpr Kind kSize = Number{{.low = 1e-4, .high = 1e4}};
 constexpr Kind kGap = Number{{.low = 0.0, .high = 1e4}};
 constexpr Kind kThreeErrors = Numbers{3, {.low = -300.0, .high = 300.0}};
-constexpr Kind kWedge = Number{{.low = 10.0, .high = 80.0}};
+constexpr Kind kWedge = Number{{.low = 10.0, .high = kMaxWedgeDeg}};
 /// Keeps the memory of a plan within reason: about 1 KiB an element.
 constexpr double kMostElements = 2e6;
 constexpr std::size_t kMostZoneElements = 2'000'000;
@@ -325,24 +325,26 @@ void check_chips(const Job& job, const Refuse& refuse) {
 void check_chisel(const Job& job, const Refuse& refuse) {
   const double width_mm = blank_prism(job).width_mm;
   if (job.tool.width_mm > width_mm + kFitToleranceMm)
-    refuse("tool.width_mm",
-           fmt::format("must be <= {}, the element's width, got {}", shortest(width_mm), shortest(job.tool.width_mm)));
+    refuse("tool.width_mm", fmt::format("must be <= {}, the element's width, got {}",
+                                        fixed_apart(width_mm, job.tool.width_mm, 6), shortest(job.tool.width_mm)));
   const double apex_deg = prism_of(job).apex_angle_deg;
   const double taken_deg = job.tool.wedge_deg + job.tool.clearance_deg;
   if (taken_deg >= apex_deg)
     refuse("tool.wedge_deg", fmt::format("with clearance_deg must be < {}, the element's apex angle, for the tool "
                                          "to fit the root, got {}",
-                                         shortest(apex_deg), shortest(taken_deg)));
+                                         shortest(apex_deg), fixed_apart(taken_deg, apex_deg, 3)));
   if (apex_deg - taken_deg < kChipRoomDeg)
     refuse("tool.wedge_deg", fmt::format("with clearance_deg must be <= {} for chips to leave between rake face "
                                          "and facet, got {}",
-                                         shortest(apex_deg - kChipRoomDeg), shortest(taken_deg)));
+                                         fixed_apart(apex_deg - kChipRoomDeg, taken_deg, 3),
+                                         fixed_apart(taken_deg, apex_deg - kChipRoomDeg, 3)));
   // Where both facets are plunged, the rake faces of both cuts must meet above the root.
   if (job.strategy != Strategy::unidirectional && 2.0 * taken_deg < apex_deg)
     refuse("tool.wedge_deg",
            fmt::format("with clearance_deg must be >= {}, half the apex angle, or a fin of {} degrees "
                        "stays between the plunges of both facets, got {}",
-                       shortest(0.5 * apex_deg), shortest(apex_deg - 2.0 * taken_deg), shortest(taken_deg)));
+                       shortest(0.5 * apex_deg), fixed_visible(apex_deg - 2.0 * taken_deg, 3),
+                       fixed_apart(taken_deg, 0.5 * apex_deg, 3)));
   // The diamond narrows towards its shank and must still be there where it leaves the element.
   const double half_apex_rad = 0.5 * Angle::from_deg(apex_deg).rad();
   const double facet_mm = 0.5 * blank_prism(job).base_mm / std::sin(half_apex_rad);

@@ -166,7 +166,8 @@ void check_sizes(const Document& file) {
   const double step_mm = part.lens.wavelength_mm / (part.lens.refractive_index - 1.0);
   const auto refuse_form = [&](std::string_view limit, double limit_mm) {
     file.fail("tolerance.form_mm",
-              fmt::format("must be {}, {}, got {}", limit, shortest(limit_mm), shortest(part.tolerance_mm)));
+              fmt::format("must be {}, {}, got {}", limit, fixed_apart(limit_mm, part.tolerance_mm, 6),
+                          shortest(part.tolerance_mm)));
   };
   if (part.tolerance_mm > 0.5 * step_mm) refuse_form("<= half the depth of a zone", 0.5 * step_mm);
   if (part.mill && part.tolerance_mm < 2.0 * grid) refuse_form(">= two steps of the machine's grid", 2.0 * grid);
@@ -174,9 +175,10 @@ void check_sizes(const Document& file) {
     refuse_form(fmt::format("<= {} steps of the machine's grid", kMostQuanta), kMostQuanta * grid);
   const double width_mm = 2.0 * part.lens.half_width_mm;
   if (width_mm > 2.0 * kMostSteps * grid)
-    file.fail("element.width_mm", fmt::format("must be <= {} with a {} of {}, got {}",
-                                              shortest(2.0 * kMostSteps * grid), part.mill ? "grid_mm" : "form_mm",
-                                              shortest(part.mill ? grid : part.tolerance_mm), shortest(width_mm)));
+    file.fail("element.width_mm",
+              fmt::format("must be <= {} with a {} of {}, got {}", fixed_apart(2.0 * kMostSteps * grid, width_mm, 3),
+                          part.mill ? "grid_mm" : "form_mm", shortest(part.mill ? grid : part.tolerance_mm),
+                          fixed_apart(width_mm, 2.0 * kMostSteps * grid, 3)));
 }
 
 void check_zones(const Document& file) {
@@ -185,8 +187,9 @@ void check_zones(const Document& file) {
   const double least_mm = kLeastStepsOfZone * (part.mill ? part.mill->grid_mm : 0.1 * part.tolerance_mm);
   for (const Zone& zone : profile.zones())
     if (zone.to_mm - zone.from_mm < least_mm && zone.to_mm < part.lens.half_width_mm)
-      file.fail("element.width_mm", fmt::format("zones must be >= {} wide, got one of {} at {}", shortest(least_mm),
-                                                fixed(zone.to_mm - zone.from_mm, 4), fixed(zone.from_mm, 3)));
+      file.fail("element.width_mm",
+                fmt::format("zones must be >= {} wide, got one of {} at {}", fixed(least_mm, 4),
+                            fixed_apart(zone.to_mm - zone.from_mm, least_mm, 4), fixed(zone.from_mm, 3)));
   if (part.lathe && !nose_fits(profile, part.lathe->nose_radius_mm))
     file.fail("lathe.nose_radius_mm",
               fmt::format("must be <= {}, or the nose does not reach the bottom of every zone, got {}",

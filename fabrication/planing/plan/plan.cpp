@@ -108,8 +108,8 @@ void check_travel(const PlanedPart& part, const PlaningPlan& plan) {
     if (high[k] - low[k] > travel[k] + 1e-9)
       throw InputError(
           {part.source, 0, "mill.travel_mm"},
-          fmt::format("must reach from {} to {} along {}, which is {} mm, got {}", shortest(low[k]), shortest(high[k]),
-                      std::string(1, "XYZ"[k]), shortest(high[k] - low[k]), shortest(travel[k])));
+          fmt::format("must reach from {} to {} along {}, which is {} mm, got {}", fixed(low[k], 3), fixed(high[k], 3),
+                      std::string(1, "XYZ"[k]), fixed_apart(high[k] - low[k], travel[k], 3), shortest(travel[k])));
 }
 
 PlaningPlan plan_mill(const PlanedPart& part) {

@@ -166,7 +166,7 @@ class CoverageCheck {
     if (inside_mm <= limit_mm + kPlacesMm) return;
     add_uncut(pass.program, line,
               fmt::format("{} of the part by {} um, at most half the feed is allowed, {} um", what,
-                          fixed(1e3 * inside_mm, 3), shortest(1e3 * limit_mm)),
+                          fixed_apart(1e3 * inside_mm, 1e3 * limit_mm, 3), fixed(1e3 * limit_mm, 3)),
               inside_mm, limit_mm);
   }
 
@@ -176,8 +176,8 @@ class CoverageCheck {
     const bool is_wide = step_mm > path_.feed_mm + kPlacesMm;
     if (is_wide && !was_wide_)
       add("feed_step", pass, i,
-          fmt::format("the cut lies {} um from the one before it, the feed is {}", fixed(1e3 * step_mm, 3),
-                      shortest(1e3 * path_.feed_mm)),
+          fmt::format("the cut lies {} um from the one before it, the feed is {}",
+                      fixed_apart(1e3 * step_mm, 1e3 * path_.feed_mm, 3), fixed(1e3 * path_.feed_mm, 3)),
           step_mm, path_.feed_mm);
     was_wide_ = is_wide;
     // A gap of which nothing is known is one that leaves a place uncut.

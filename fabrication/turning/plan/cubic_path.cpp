@@ -132,11 +132,11 @@ CubicPath cubic_path(const geometry::FreeformSurface& surface, const TurningTool
       guess =
           std::max<std::int64_t>(1, static_cast<std::int64_t>(static_cast<double>(units) * growth(most_mm, error_mm)));
       if (error_mm > most_mm && units == 1)
-        throw InputError(where,
-                         fmt::format("is less than a cubic of {} ms leaves at a radius of {} mm, {} nm: wants a "
-                                     "lower spindle_rpm",
-                                     shortest(1e3 * unit_s), fixed(std::hypot(point.place.x_mm, point.place.y_mm), 4),
-                                     fixed(kNmPerMm * error_mm, 2)));
+        throw InputError(
+            where, fmt::format("is less than a cubic of {} ms leaves at a radius of {} mm, {} nm: wants a "
+                               "lower spindle_rpm",
+                               fixed_visible(1e3 * unit_s, 3), fixed(std::hypot(point.place.x_mm, point.place.y_mm), 4),
+                               fixed(kNmPerMm * error_mm, 2)));
       if (error_mm > most_mm) {
         guess = std::min(guess, units - 1);
         continue;

@@ -267,14 +267,14 @@ class Measurer {
   /// \param along position of the point along the root, in mm
   /// \param slant distance of the point from the root along the facet, in mm
   Interval ploughed_height(std::size_t facet, double along, double slant) const {
-    const double slope = prediction_.plough_slope[facet];
-    const double half = wedge_.half_width_mm;
-    const double most = 2.0 * half * std::abs(slope);
-    Interval height{most, most};
+    const PloughedFloor& floor = prediction_.ploughed[facet];
+    const double half = floor.half_width_mm;
+    const double rise = half * std::abs(floor.slope);
+    Interval height{2.0 * rise, 2.0 * rise};
     for (const double at_root : stations_.pass_middles_mm) {
-      const double middle = at_root + prediction_.plough_drift[facet] * slant;
+      const double middle = at_root + floor.shift_mm + floor.drift * slant;
       const double off = std::abs(along - middle);
-      const double left = std::clamp(half * std::abs(slope) + slope * (along - middle), 0.0, most);
+      const double left = std::clamp(rise + floor.slope * (along - middle), 0.0, 2.0 * rise);
       if (off <= half + prediction_.wall_mm + kSamePassMm) height.low = std::min(height.low, left);
       if (off <= half - prediction_.wall_mm - 0.5 * kSamePassMm) height.high = std::min(height.high, left);
     }
