@@ -196,6 +196,49 @@ TEST(BadInput, MissingFilesAreReportedWithWhatNamesThem) {
   expect_refused(folder, cases, {}, {});
 }
 
+/// If the design of a study names a file that is missing, the study is refused before any point is computed. The
+/// message begins with the position of the key, which is in the design, in a parameter of the study or in an override.
+TEST(BadInput, MissingFilesOfTheDesignsOfAStudyAreReportedWithWhatNamesThem) {
+  const std::string cells = "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 10\n";
+  const std::string rest = "y_length_mm = 10\n[body]\nthickness_mm = 2.0\nrefractive_index = 1.49\n";
+  const std::string design = cells + rest;
+  const std::vector<std::pair<std::string, std::string>> designs = {
+      {"[body]\nrefractive_index = 1.49\n[part]\nmesh = \"none\"\n", "d.toml:4: part.mesh"},
+      {cells + "mask = \"none\"\n" + rest, "d.toml:7: array.mask"},
+      {design + "material = \"K7\"\ncatalogue = \"none\"\n", "d.toml:12: body.catalogue"},
+      {design + "[part]\nfacets = \"none\"\n", "d.toml:12: part.facets"},
+      {design + "[front]\nmesh = \"none\"\n", "d.toml:12: front.mesh"},
+      {design + "[front]\nturned = \"none\"\n", "d.toml:12: front.turned"},
+      {design + "[light]\nspectrum = \"none.csv\"\n", "d.toml:12: light.spectrum"},
+      {design + "[form]\nmap = \"none\"\n", "d.toml:12: form.map"},
+      {design + "[surface]\nmodel = \"height_map\"\nheight_map = \"none\"\n", "d.toml:13: surface.height_map"},
+  };
+  const auto study = [](const std::string& key, const std::string& values) {
+    return "schema = \"retrace.study/1\"\ndesign = \"d.toml\"\n[[parameter]]\nkey = \"" + key + "\"\nvalues = [" +
+           values + "]\n[[quantity]]\nkind = \"elements_full\"\n";
+  };
+  const auto expect_named = [](const TemporaryFolder& folder, const std::string& where, const Arguments& more = {}) {
+    for (const std::string command : {"sweep", "tolerance", "optimize", "compose"})
+      expect_refused(folder, {{with({command, "study.toml"}, more), where + ": "}}, {});
+  };
+  for (const auto& [text, where] : designs) {
+    const TemporaryFolder folder;
+    folder.write("d.toml", text);
+    folder.write("study.toml", study("body.back_index", "1, 1.1"));
+    const std::string file = text.find("none.csv") != std::string::npos ? "none.csv" : "none";
+    expect_named(folder, where + ": " + file + ": cannot be read: No such file or directory");
+  }
+  const TemporaryFolder folder;
+  folder.write("d.toml", design + "[surface]\nmodel = \"height_map\"\nheight_map = \"map.txt\"\n");
+  folder.write("map.txt", read_text(example("facet_height_map.txt")));
+  folder.write("study.toml", study("surface.height_map", "\"map.txt\", \"none\""));
+  expect_named(folder, "study.toml:5: parameter[1].values: none: cannot be read");
+  folder.write("study.toml", study("body.back_index", "1"));
+  expect_named(folder, "--set surface.height_map=none: surface.height_map: none: cannot be read",
+               {"--set", "surface.height_map=none"});
+  EXPECT_EQ(retrace(folder, {"sweep", "study.toml"}).code, 0) << "all its files exist";
+}
+
 /// Messages shorten every value that is longer than 80 characters.
 TEST(BadInput, LongValuesAreClipped) {
   const std::string value(5000, 'q');

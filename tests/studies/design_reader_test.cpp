@@ -313,13 +313,17 @@ TEST(DesignReader, AnOverrideMendsAFileThatIsWrongThere) {
 }
 
 TEST(DesignReader, FilesAreNamedInTheOrderThatStoresOfStudiesHave) {
+  const auto paths = [](const std::string& design) {
+    std::vector<std::filesystem::path> files;
+    for (const NamedFile& named : files_named(design, "d/d.toml", {})) files.push_back(named.file);
+    return files;
+  };
   const std::string text =
       "[front]\nturned = \"f.toml\"\n[light]\nspectrum = \"l.csv\"\n[part]\nfacets = \"p.csv\"\n"
       "[surface]\nheight_map = \"h.txt\"\n[array]\nmask = \"m.png\"\n[element]\nkind = \"rtp\"\n";
   const std::vector<std::filesystem::path> expected = {"d/m.png", "d/h.txt", "d/p.csv", "d/l.csv", "d/f.toml"};
-  EXPECT_EQ(files_named(text, "d/d.toml", {}), expected);
-  EXPECT_EQ(files_named("[light]\nspectrum = \"A\"\n[element]\nkind = \"rtp\"\n", "d/d.toml", {}),
-            std::vector<std::filesystem::path>{});
+  EXPECT_EQ(paths(text), expected);
+  EXPECT_EQ(paths("[light]\nspectrum = \"A\"\n[element]\nkind = \"rtp\"\n"), std::vector<std::filesystem::path>{});
 }
 
 // Unsetting a key has the same effect as removing it from the file. The last override of a key wins.

@@ -401,17 +401,13 @@ constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",   "arra
                                                             "part.facets", "light.spectrum", "front.turned",
                                                             "front.mesh",  "body.catalogue", "form.map"};
 
-std::vector<fs::path> files_named(std::string_view text, const std::string& source_name,
-                                  std::span<const std::string> overrides) {
+std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
+                                   std::span<const std::string> overrides) {
   const Document document = schema::unchecked_names(design_format(), text, source_name, kMostDesignBytes, overrides);
-  const std::vector<fs::path> all = document.files();
-  std::vector<fs::path> files;
-  const auto add = [&](const fs::path& file) {
-    if (std::ranges::count(all, file) > std::ranges::count(files, file)) files.push_back(file);
-  };
-  for (const std::string_view key : kFilesOfStores)
-    if (!document.text_if(key).empty()) add(document.file(key));
-  for (const fs::path& file : all) add(file);
+  std::vector<std::string> keys = document.keys_of_files();
+  std::ranges::stable_sort(keys, {}, [](const std::string& key) { return std::ranges::find(kFilesOfStores, key); });
+  std::vector<NamedFile> files;
+  for (const std::string& key : keys) files.push_back({document.file(key), key, document.where(key)});
   return files;
 }
 

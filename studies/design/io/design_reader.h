@@ -26,9 +26,16 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
 /// \pre if it is from a file, it is as that file says \param overrides as of read_design() \throw InputError likewise
 Design with(const Design& design, std::span<const std::string> overrides);
 
-/// The files that a design names, though it may be none: those that its keys name up to the first that is wrong.
-std::vector<std::filesystem::path> files_named(std::string_view text, const std::string& source_name,
-                                               std::span<const std::string> overrides = {});
+/// A file that a key of a design names.
+struct NamedFile {
+  std::filesystem::path file;
+  std::string key;
+  InputLocation where;  ///< position of the key
+};
+
+/// Returns the files that the keys of a design name, up to the first wrong key. The text need not be a valid design.
+std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
+                                   std::span<const std::string> overrides = {});
 
 /// The text of a TOML file as read_design() reads it: "-" is standard input, and no more is read of it or of any other
 /// file without an end than shows that it is too long. \throw InputError

@@ -6,8 +6,6 @@
 #include <array>
 #include <set>
 
-#include "studies/design/io/design_reader.h"
-
 namespace retrace::studies {
 namespace {
 
@@ -23,6 +21,15 @@ std::vector<PointValues> points_of_texts(const Study& study) {
         points.back()[k] = value;
       }
   return points;
+}
+
+/// Returns the position of the parameter that sets the key of a file. Returns the position of the key in the design if
+/// no parameter sets it.
+InputLocation where_named(const Study& study, const NamedFile& named) {
+  for (std::size_t k = 0; k < study.parameters.size(); ++k)
+    if (std::ranges::count(study.parameters[k].keys, named.key) > 0)
+      return study.document->where(schema::path_of_entry("parameter", k) + ".values");
+  return named.where;
 }
 
 }  // namespace
@@ -58,14 +65,16 @@ PointTexts texts_at(const Study& study, std::span<const ParameterValue> values) 
   return texts;
 }
 
-std::vector<std::filesystem::path> files_of_designs(const Study& study) {
-  std::vector<std::filesystem::path> files;
+std::vector<NamedFile> files_of_designs(const Study& study) {
+  std::vector<NamedFile> files;
   std::set<std::filesystem::path> known;
   for (const PointValues& values : points_of_texts(study)) {
     const PointTexts texts = texts_at(study, values);
-    for (const std::filesystem::path& file :
-         files_named(study.design_texts.at(texts.design), texts.design, texts.for_design))
-      if (known.insert(file).second) files.push_back(file);
+    for (NamedFile& named : files_named(study.design_texts.at(texts.design), texts.design, texts.for_design))
+      if (known.insert(named.file).second) {
+        named.where = where_named(study, named);
+        files.push_back(std::move(named));
+      }
   }
   return files;
 }

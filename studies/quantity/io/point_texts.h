@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/design/io/design_reader.h"
 #include "studies/quantity/study.h"
 
 namespace retrace::studies {
@@ -31,7 +32,8 @@ struct PointTexts {
 /// \param values one for each parameter
 PointTexts texts_at(const Study& study, std::span<const ParameterValue> values);
 
-/// Files that the designs of a study name, each once, with those that texts of its parameters name.
-std::vector<std::filesystem::path> files_of_designs(const Study& study);
+/// Returns the files that the designs of a study name, each once. If a parameter of the study sets the key of a file,
+/// the files of all its values are included, and their positions are that of the parameter.
+std::vector<NamedFile> files_of_designs(const Study& study);
 
 }  // namespace retrace::studies

@@ -110,14 +110,15 @@ std::optional<std::string> optional_text(const Document& document, const std::st
 }
 
 std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& document, const std::string& at,
-                                                               std::vector<std::filesystem::path>& files) {
+                                                               std::vector<NamedFile>& files) {
   PhotometricTable table;
   StandardChoice choice;
   // A word is a shipped standard; anything else a file.
   choice.standard = document.text(at + ".standard");
   if (find_standard(choice.standard) == nullptr) {
-    files.push_back(document.file(at + ".standard"));
-    choice.standard = files.back().string();
+    const std::string key = at + ".standard";
+    files.push_back({document.file(key), key, document.where(key)});
+    choice.standard = files.back().file.string();
   }
   choice.part_class = optional_text(document, at + ".class");
   choice.colour = optional_text(document, at + ".colour");
@@ -136,7 +137,8 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& d
   const std::optional<std::string> dye = optional_text(document, at + ".dye");
   const std::filesystem::path dye_file =
       with_keys(document, at, [&] { return dye_file_of(dye, false, request.programme.colour); });
-  if (dye && dye_file == *dye) files.push_back(dye_file);  // not a shipped one
+  if (dye && dye_file == *dye)  // not a shipped one
+    files.push_back({dye_file, at + ".dye", document.where(at + ".dye")});
   set_dye(request, dye, dye_file);
   table.dye_unless_coloured = !dye;
   table.key =
@@ -147,7 +149,7 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& d
 }
 
 Quantities read_photometric(const std::string& name, const Document& document, const std::string& at,
-                            std::vector<std::filesystem::path>& files) {
+                            std::vector<NamedFile>& files) {
   const auto figure = document.choice<PhotometricFigure>(at + ".figure");
   const auto table = read_photometric_table(document, at, files);
   const std::size_t points = table->request.programme.points.size();
@@ -176,7 +178,7 @@ bool is_name(const std::string& text) {
 
 }  // namespace
 
-Quantities read_quantity(const Document& document, const std::string& at, std::vector<std::filesystem::path>& files) {
+Quantities read_quantity(const Document& document, const std::string& at, std::vector<NamedFile>& files) {
   const std::string kind = document.text(at + ".kind");
   const std::string name = optional_text(document, at + ".name").value_or(kind);
   if (!is_name(name))

@@ -202,20 +202,18 @@ std::string fingerprint(const std::string& text) {
   return fmt::format("{} bytes, {:016x}", text.size(), hash);
 }
 
-/// What is in files, which need not be there: a point that wants them fails.
-std::string fingerprints(const std::vector<fs::path>& files) {
+/// Returns the fingerprints of the files that the designs and quantities of a study name.
+/// \throw InputError with the position at which a file is named if the file cannot be read
+std::string fingerprints(const std::vector<NamedFile>& files) {
   std::string parts;
-  for (const fs::path& file : files) {
-    try {
-      parts += file.filename().string() + ": " + fingerprint(read_file(file, kMostDataBytes)) + "\n";
-    } catch (const InputError&) {
-      parts += file.filename().string() + ": cannot be read\n";
-    }
+  for (const auto& [file, key, where] : files) {
+    const std::string content = read_named(where, [&] { return read_file(file, kMostDataBytes); });
+    parts += file.filename().string() + ": " + fingerprint(content) + "\n";
   }
   return parts;
 }
 
-std::vector<std::pair<std::string, std::string>> parts_of(const Study& study, const std::vector<fs::path>& named) {
+std::vector<std::pair<std::string, std::string>> parts_of(const Study& study, const std::vector<NamedFile>& named) {
   std::vector<std::pair<std::string, std::string>> parts;
   const Document::Origin& origin = study.document->origin();
   const TomlTable as_given = parse_toml(origin.text, study.source, kMostDesignBytes, origin.overrides);
@@ -265,7 +263,7 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
   for (const std::string& at : entries_of(document, "parameter"))
     study.parameters.push_back(read_parameter(document, at));
   std::vector<InputLocation> quantity_locations;
-  std::vector<fs::path> of_quantities;
+  std::vector<NamedFile> of_quantities;
   for (const std::string& at : entries_of(document, "quantity"))
     for (auto& quantity : read_quantity(document, at, of_quantities)) {
       study.quantities.push_back(std::move(quantity));
@@ -275,11 +273,11 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
   check_keys_once(study);
   analysis_of(document, seed);  // refuses settings that exclude each other before any point is computed
   read_designs(document, designs, study);
-  std::vector<fs::path> named = files_of_designs(study);
+  std::vector<NamedFile> named = files_of_designs(study);
   named.insert(named.end(), of_quantities.begin(), of_quantities.end());
   study.files = {source_name};
   for (const auto& [file, design] : study.design_texts) study.files.push_back(file);
-  for (const fs::path& file : named) study.files.push_back(file.string());
+  for (const NamedFile& each : named) study.files.push_back(each.file.string());
   study.parts = parts_of(study, named);
   return study;
 }
