@@ -32,13 +32,15 @@ void refuse_input(const std::string& option, const fs::path& output, const std::
   if (!fs::is_regular_file(output, ignored)) return;
   for (const std::string& input : inputs)
     if (input != "-" && is_same_file(output, input))
-      throw InputError({"", 0, option}, output.string() + " is a file that is read; it would be overwritten");
+      throw InputError({"", 0, option},
+                       printable(output.string()) + " is a file that is read; it would be overwritten");
 }
 
 /// Refuses a file of an option that is an output of another one.
 void refuse_second(const std::string& own, const fs::path& file, const std::string& option, const fs::path& output) {
   if (own != option && !file.empty() && is_same_file(file, output))
-    throw InputError({"", 0, own}, file.string() + " is a file that " + option + " writes; give another name");
+    throw InputError({"", 0, own},
+                     printable(file.string()) + " is a file that " + option + " writes; give another name");
 }
 
 /// Refuses a document that cannot be written, unless it goes to the folder that is to be made.

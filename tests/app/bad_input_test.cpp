@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -239,11 +240,39 @@ TEST(BadInput, MissingFilesOfTheDesignsOfAStudyAreReportedWithWhatNamesThem) {
   EXPECT_EQ(retrace(folder, {"sweep", "study.toml"}).code, 0) << "all its files exist";
 }
 
+/// A limits file and a file of a dye that cannot be read are reported with the key or the option that names them.
+TEST(BadInput, UnreadableFilesOfPhotometryAreReportedWithWhatNamesThem) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", design_with(0, ""));
+  fs::create_directory(folder.path() / "folder");
+  ASSERT_EQ(::mkfifo((folder.path() / "fifo").c_str(), 0600), 0);
+  const std::string before =
+      "design = \"d.toml\"\n[[parameter]]\nkey = \"element.base_mm\"\nvalues = [0.5]\n[[quantity]]\n"
+      "kind = \"photometry\"\narea_cm2 = 1\n";
+  const Arguments photometry = {"photometry", "d.toml", "--area-cm2", "1"};
+  const Arguments r150 = {"--standard", "r150", "--class", "IA", "--colour", "red", "--dye"};
+  for (const auto& [name, why] :
+       {std::pair<std::string, std::string>("folder", "it is a folder"), {"fifo", "it is no regular file"}}) {
+    const std::string complaint = ": " + name + ": cannot be read: " + why + "\n";
+    folder.write("standard.toml", before + "standard = \"" + name + "\"\n");
+    folder.write("dye.toml",
+                 before + "standard = \"r150\"\nclass = \"IA\"\ncolour = \"red\"\ndye = \"" + name + "\"\n");
+    expect_refused(folder,
+                   {{{"sweep", "standard.toml"}, "standard.toml:8: quantity[1].standard" + complaint},
+                    {{"sweep", "dye.toml"}, "dye.toml:11: quantity[1].dye" + complaint},
+                    {with(photometry, {"--standard", name}), "--standard" + complaint},
+                    {with(with(photometry, r150), {name}), "--dye" + complaint}},
+                   {});
+  }
+}
+
 /// Messages shorten every value that is longer than 80 characters.
 TEST(BadInput, LongValuesAreClipped) {
   const std::string value(5000, 'q');
   const TemporaryFolder folder;
   const std::string design = example("rtp_single_0p45mm.toml");
+  const std::string name = value.substr(0, 200) + ".toml";
+  folder.write(name, design_with(0, ""));
   folder.write("word.toml", design_with(7, "arrangement = \"" + value + "\""));
   folder.write("key.toml", design_with(3, value + " = 1"));
   folder.write("number.toml", design_with(3, "base_mm = \"" + value + "\""));
@@ -272,6 +301,7 @@ TEST(BadInput, LongValuesAreClipped) {
       {"photometry", design, "--area-cm2", "1", "--standard", value},
       {"job", design, "--tool-width-mm", "0.5", "--machine", value},
       {"export", design, "--what", value},
+      {"inspect", name, "--json", name},
   };
   for (const Arguments& arguments : cases) {
     const Outcome outcome = retrace(folder, arguments);

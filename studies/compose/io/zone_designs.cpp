@@ -88,6 +88,12 @@ std::string changes_text(const Study& study, const PointValues& values) {
   return text.empty() ? text : fmt::format("set = [{}]\n", text);
 }
 
+/// Returns the option that sets a key of the design of the whole part.
+std::string_view option_of(std::string_view key) {
+  if (key == "array.x_length_mm") return "--x-length-mm";
+  return key == "array.y_length_mm" ? "--y-length-mm" : "--design";
+}
+
 /// The design all over the part, finite and of that size.
 Design whole_design(const Study& study, const PointValues& values, const ZonedDesignRequest& request) {
   const Design design = make_candidate(study, values).design();
@@ -97,7 +103,8 @@ Design whole_design(const Study& study, const PointValues& values, const ZonedDe
                                                  fmt::format("array.x_length_mm={}", shortest(request.size_mm->x())),
                                                  fmt::format("array.y_length_mm={}", shortest(request.size_mm->y()))});
   } catch (const InputError& error) {
-    throw InputError({"", 0, "--design"}, fmt::format("{}: {}", error.where().key, error.text()));
+    const std::string option(option_of(error.where().key));
+    throw InputError({"", 0, option}, option == "--design" ? error.where().key + ": " + error.text() : error.text());
   }
 }
 

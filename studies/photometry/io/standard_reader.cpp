@@ -6,6 +6,7 @@
 #include "core/data_directory.h"
 #include "core/error.h"
 #include "core/message_text.h"
+#include "core/named_file.h"
 #include "materials/io/spectrum_reader.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/standards.h"
@@ -37,7 +38,8 @@ PhotometryRequest photometry_request(const StandardChoice& choice) {
   const ShippedStandard* const shipped = find_standard(choice.standard);
   const auto in_table = shipped != nullptr ? std::optional(std::string(shipped->in_table)) : std::nullopt;
   PhotometryRequest request;
-  request.programme = programme_of(read_limits(file), in_table, choice.part_class, choice.colour);
+  const auto limits = read_named({"", 0, "--standard"}, [&] { return read_limits(file); });
+  request.programme = programme_of(limits, in_table, choice.part_class, choice.colour);
   request.limits_source = shipped != nullptr ? choice.standard : file.string();
   request.apertures = shipped != nullptr ? shipped->apertures : default_apertures();
   if (shipped != nullptr) request.rotation_deg = shipped->rotation_deg;
@@ -58,7 +60,8 @@ fs::path dye_file_of(const std::optional<std::string>& dye, bool design_is_colou
 void set_dye(PhotometryRequest& request, const std::optional<std::string>& dye, const fs::path& file) {
   if (file.empty()) return;
   request.dye = dye.value_or(request.programme.colour);
-  request.dye_absorption_per_mm = materials::read_spectral_absorption(file);
+  request.dye_absorption_per_mm =
+      read_named({"", 0, "--dye"}, [&] { return materials::read_spectral_absorption(file); });
 }
 
 }  // namespace retrace::studies

@@ -30,7 +30,7 @@ PhotometryRequest photometry_request(const StandardChoice& choice);
 std::filesystem::path dye_file_of(const std::optional<std::string>& dye, bool design_is_coloured,
                                   const std::string& colour);
 
-/// Gives a request its dye. \param file as dye_file_of() has it
+/// Gives a request its dye. \param file as dye_file_of() has it \throw InputError at --dye if it cannot be read
 void set_dye(PhotometryRequest& request, const std::optional<std::string>& dye, const std::filesystem::path& file);
 
 }  // namespace retrace::studies

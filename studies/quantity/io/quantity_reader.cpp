@@ -139,7 +139,7 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& d
       with_keys(document, at, [&] { return dye_file_of(dye, false, request.programme.colour); });
   if (dye && dye_file == *dye)  // not a shipped one
     files.push_back({dye_file, at + ".dye", document.where(at + ".dye")});
-  set_dye(request, dye, dye_file);
+  with_keys(document, at, [&] { set_dye(request, dye, dye_file); });
   table.dye_unless_coloured = !dye;
   table.key =
       fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", choice.standard, choice.part_class.value_or(""),

@@ -140,8 +140,13 @@ TEST(ComposeCommand, RefusesPartsOfZonesThatMeanNothing) {
             "retrace: --layout: must be \"stripes\", \"blocks\" or \"rows\", got \"spirals\"\n");
   EXPECT_EQ(
       refused({"--design", "part.toml", "--x-length-mm", "1", "--y-length-mm", "1"}),
-      "retrace: --design: array.x_length_mm: must be >= 1.632993161855452 to hold one element of 1.632993161855452 "
-      "mm, got 1\n");
+      "retrace: --x-length-mm: must be >= 1.632993161855452 to hold one element of 1.632993161855452 mm, got 1\n");
+  for (const std::string value : {"nan", "inf", "-1", "0"}) {
+    EXPECT_TRUE(refused({"--design", "part.toml", "--x-length-mm=" + value, "--y-length-mm", "60"})
+                    .starts_with("retrace: --x-length-mm: must be "));
+    EXPECT_TRUE(refused({"--design", "part.toml", "--x-length-mm", "90", "--y-length-mm=" + value})
+                    .starts_with("retrace: --y-length-mm: must be "));
+  }
   for (const std::string name : {"out/zone_1.toml", "out/composition.json"})
     EXPECT_EQ(refused({"--design", name, "--x-length-mm", "90", "--y-length-mm", "60"}),
               "retrace: --design: " + name + " is a file that --out writes; give another name\n");
