@@ -70,7 +70,7 @@ class PhotometricQuantity final : public Quantity {
     PhotometryRequest request = table_->request;
     const AnalysisSettings& analysis = candidate.analysis();
     request.engine = analysis.engine;
-    // Quantities of RRE share these settings, and their rays have a cut-off.
+    // Rays of photometry have no cut-off. The study reader refuses one that no other quantity uses.
     if (is_one_of(request.engine, kExactEngines)) request.cutoff = analysis.cutoff;
     request.rays = analysis.rays;
     request.seed = analysis.seed;

@@ -144,8 +144,8 @@ constexpr Row kAnalysisRows[] = {
     {"target_error", Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}}, Computed{"1e-4"},
      "As `retrace rre --target-error`."},
     {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Rays, as `retrace rre --samples`.", kOfRays},
-    {"cutoff", Number{{.low = 0.0, .high = 1.0, .high_included = false}}, kNone, "As `retrace rre --cutoff`.",
-     kOfCutoff}};
+    {"cutoff", Number{{.low = 0.0, .high = 1.0, .high_included = false}}, kNone,
+     "As `retrace rre --cutoff`. Rays of photometry have none.", kOfCutoff}};
 
 constexpr Words kStrategies = {"two-step", "unidirectional"};
 constexpr Words kUnidirectional = {"unidirectional"};

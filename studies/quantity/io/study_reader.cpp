@@ -45,6 +45,25 @@ AnalysisSettings analysis_of(const Document& document, std::uint32_t seed) {
   return analysis;
 }
 
+/// Refuses analysis.cutoff if only photometry by rays uses the settings of the analysis. Its rays have no cut-off.
+void check_cutoff_has_effect(const Document& document, const Study& study) {
+  const auto parameter_of = [&](std::string_view key) {
+    return std::ranges::find_if(study.parameters,
+                                [key](const Parameter& p) { return std::ranges::count(p.keys, key) > 0; });
+  };
+  const auto varied = parameter_of("analysis.cutoff");
+  const bool is_given = document.has("analysis.cutoff") || varied != study.parameters.end();
+  const bool is_exact = is_one_of(document.choice<Engine>("analysis.engine"), kExactEngines) ||
+                        parameter_of("analysis.engine") != study.parameters.end();
+  const auto has_kind = [&](std::string_view kind) {
+    return std::ranges::any_of(study.quantities, [kind](const auto& q) { return q->tracing().starts_with(kind); });
+  };
+  if (!is_given || is_exact || !has_kind("photometry") || has_kind("rre")) return;
+  throw InputError(varied != study.parameters.end() ? varied->location : document.where("analysis.cutoff"),
+                   fmt::format("analysis.cutoff needs analysis.engine = \"auto\" or \"exact\" for photometry, got {}",
+                               in_quotes(document.text("analysis.engine"))));
+}
+
 MachiningProcess machining_of(const Document& document) {
   MachiningProcess process;
   schema::fill(document, *schema::table_at(study_format().root, "machining"), "machining", &process);
@@ -271,6 +290,7 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
     }
   check_columns(study, quantity_locations);
   check_keys_once(study);
+  check_cutoff_has_effect(document, study);
   analysis_of(document, seed);  // refuses settings that exclude each other before any point is computed
   read_designs(document, designs, study);
   std::vector<NamedFile> named = files_of_designs(study);

@@ -213,6 +213,32 @@ TEST(StudyReader, WhatIsWrongIsSaidWithItsLine) {
   }
 }
 
+/// Rays of photometry have no cut-off. It is refused unless another quantity or another engine of the study uses it.
+TEST(StudyReader, ACutoffThatNothingUsesIsRefused) {
+  const std::string photometry =
+      "[[quantity]]\nkind = \"photometry\"\nstandard = \"r150\"\nclass = \"IA\"\ncolour = \"red\"\narea_cm2 = 1\n";
+  const std::string text = kDesign + kParameter + photometry;  // 10 lines
+  const auto analysis = [](const std::string& engine) {
+    return "[analysis]\ncutoff = 1e-4\nengine = \"" + engine + "\"\n";
+  };
+  const std::string refused = "analysis.cutoff needs analysis.engine = \"auto\" or \"exact\" for photometry, got ";
+  for (const std::string engine : {"montecarlo", "embree"}) {
+    EXPECT_EQ(message(text + analysis(engine)), "study.toml:12: analysis.cutoff: " + refused + "\"" + engine + "\"");
+    EXPECT_EQ(message(text + analysis(engine) + kQuantity), "") << "RRE by rays has a cut-off";
+    EXPECT_EQ(message(text + "[[parameter]]\nkey = \"analysis.engine\"\nvalues = [\"exact\", \"montecarlo\"]\n" +
+                      "[analysis]\ncutoff = 1e-4\n"),
+              "");
+    EXPECT_EQ(
+        message(text + "[[parameter]]\nkey = \"analysis.cutoff\"\nvalues = [1e-4, 1e-5]\n[analysis]\nengine = \"" +
+                engine + "\"\n"),
+        "study.toml:11: parameter[2]: " + refused + "\"" + engine + "\"");
+  }
+  for (const std::string engine : {"auto", "exact"}) EXPECT_EQ(message(text + analysis(engine)), "");
+  EXPECT_EQ(message(text + "[analysis]\nengine = \"montecarlo\"\n"), "");
+  EXPECT_EQ(message(text + "[analysis]\nengine = \"montecarlo\"\n", {"analysis.cutoff=1e-4"}),
+            "--set analysis.cutoff=1e-4: analysis.cutoff: " + refused + "\"montecarlo\"");
+}
+
 TEST(StudyReader, AnOverrideOfAVariedKeyIsRefused) {
   EXPECT_EQ(message(kDesign + kParameter + kQuantity, {"element.base_mm=3"}),
             "--set element.base_mm=3: the study varies this key");
