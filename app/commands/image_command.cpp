@@ -51,7 +51,7 @@ struct ImageOptions {
   std::string engine = "auto";
   std::optional<std::string> eye_mm;
   std::optional<std::string> lamp_mm;
-  std::string film_mm = "100x100";
+  std::optional<std::string> film_mm;
   bool false_colour = false;
   std::string road_distance_m = "10,30,100";
   std::optional<std::string> lamp;
@@ -105,7 +105,10 @@ std::vector<Argument> camera_arguments(ImageOptions& o) {
           {"--ambient-lx E", "camera: even light from in front, on the face", &o.photographed.ambient_lx},
           {"--backlight-lx E", "camera: even light from behind and round the part", &o.photographed.backlight_lx},
           {"--field-mm W", "camera: width shown at the part [the part and a margin]", &o.photographed.field_mm},
-          {"--film-mm WxH", "camera: size of the sheet that an endless design is seen as", &o.film_mm},
+          {"--film-mm WxH",
+           fmt::format("camera: size of the sheet that an infinite design is seen as [{}x{}]", studies::kUsualFilmMm[0],
+                       studies::kUsualFilmMm[1]),
+           &o.film_mm},
           {"--cylinder-mm R", "camera: radius of the cylinder that the sheet is bent over; negative: inside it [plane]",
            &o.photographed.cylinder_mm},
           {"--noise E", "camera: relative noise of pixels to reach", &o.photographed.noise},
@@ -199,8 +202,10 @@ studies::CameraRequest camera_request(const ImageOptions& options, const CommonO
     request.columns = n[0];
     request.rows = n[1];
   }
-  const auto film = numbers_of(options.film_mm, 'x', 2, "--film-mm", "width and height, such as 100x100");
-  request.film_mm = {film[0], film[1]};
+  if (options.film_mm) {
+    const auto film = numbers_of(*options.film_mm, 'x', 2, "--film-mm", "width and height, such as 100x100");
+    request.film_mm = {film[0], film[1]};
+  }
   request.lamp = lamp_of(options);
   request.lamp_aim_deg = options.lamp_aim_deg;
   request.seed = common.seed;

@@ -67,22 +67,23 @@ void check(const CameraRequest& r) {
   check_coordinates(r.lamp_mm, "--lamp-mm");
   require(!r.cylinder_mm || std::abs(*r.cylinder_mm) <= kFarthestMm, "--cylinder-mm", "be -1e9 to 1e9",
           r.cylinder_mm.value_or(0.0));
-  for (const double length : r.film_mm)
+  for (const double length : r.film_size_mm())
     require(length > 0.0 && length <= 1e5, "--film-mm", "be above 0 and at most 1e5", length);
 }
 
 /// Width over height of the sheet must not go round more than half the cylinder.
 void check_film(const CameraRequest& r, bool is_infinite) {
   if (!is_infinite) {
+    constexpr std::string_view need = "needs a design with extent = \"infinite\": ";
     if (r.cylinder_mm)
-      throw InputError({"", 0, "--cylinder-mm"},
-                       "needs a design with extent = \"infinite\": finite parts are plane in this version");
+      throw InputError({"", 0, "--cylinder-mm"}, fmt::format("{}finite parts are plane in this version", need));
+    if (r.film_mm) throw InputError({"", 0, "--film-mm"}, fmt::format("{}a finite part is seen in its own size", need));
     return;
   }
   if (!r.cylinder_mm) return;
-  require(std::abs(*r.cylinder_mm) >= r.film_mm[0] / std::numbers::pi, "--cylinder-mm",
+  require(std::abs(*r.cylinder_mm) >= r.film_size_mm()[0] / std::numbers::pi, "--cylinder-mm",
           fmt::format("be at least {} or at most its negative, so that the sheet goes half round",
-                      shortest(r.film_mm[0] / std::numbers::pi)),
+                      shortest(r.film_size_mm()[0] / std::numbers::pi)),
           *r.cylinder_mm);
 }
 
@@ -124,7 +125,8 @@ void check_place(const geometry::Part& part, const raytrace::CameraScene& scene,
 
 double shown_width(const CameraRequest& r, const geometry::Part& part) {
   if (r.field_mm) return *r.field_mm;
-  const Vec2 size = part.period_mm ? Vec2(r.film_mm[0], r.film_mm[1]) : geometry::bounding_box(part.outline).size();
+  const auto [film_x_mm, film_y_mm] = r.film_size_mm();
+  const Vec2 size = part.period_mm ? Vec2(film_x_mm, film_y_mm) : geometry::bounding_box(part.outline).size();
   const double aspect = static_cast<double>(r.columns) / static_cast<double>(r.rows);
   return kMargin * std::max(size.x(), size.y() * aspect);
 }
@@ -151,7 +153,8 @@ raytrace::CameraScene scene_of(const CameraRequest& r, const geometry::Part& par
   scene.lamp.diameter = Angle::from_deg(r.lamp_arcmin / 60.0);
   // A half space of even luminance L lights a plane with pi L.
   scene.surroundings = {r.ambient_lx / std::numbers::pi, r.backlight_lx / std::numbers::pi};
-  if (part.period_mm) scene.film = raytrace::Film{r.film_mm[0], r.film_mm[1], r.cylinder_mm};
+  const auto [film_x_mm, film_y_mm] = r.film_size_mm();
+  if (part.period_mm) scene.film = raytrace::Film{film_x_mm, film_y_mm, r.cylinder_mm};
   scene.discs = r.discs;
   return scene;
 }

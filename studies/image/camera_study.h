@@ -18,6 +18,9 @@
 
 namespace retrace::studies {
 
+/// Default width and height of the sheet that an infinite part is seen as.
+inline constexpr std::array<double, 2> kUsualFilmMm = {100.0, 100.0};
+
 /// What is asked of a camera: a picture of the part in the light of a lamp. Positions are those of CameraScene.
 struct CameraRequest {
   double distance_m = 10.0;       ///< of lamp and eye from the middle of the face; > 0
@@ -37,12 +40,15 @@ struct CameraRequest {
   std::size_t columns = 400;
   std::size_t rows = 300;
   std::optional<double> field_mm;  ///< what the picture's width shows at the part; none: the part and some margin
-  std::array<double, 2> film_mm{100.0, 100.0};  ///< width and height of a sheet of an infinite part
+  /// Width and height of the sheet that an infinite part is seen as; none: kUsualFilmMm. Finite parts take none.
+  std::optional<std::array<double, 2>> film_mm;
   std::optional<double> cylinder_mm;    ///< radius of the cylinder that the sheet is bent over; < 0: its hollow side
   double noise = 0.02;                  ///< relative, of a pixel, to reach
   std::optional<std::uint32_t> passes;  ///< in place of it
   std::uint32_t seed = 1;
   raytrace::DiscAverage discs = raytrace::DiscAverage::kernel;
+
+  std::array<double, 2> film_size_mm() const { return film_mm.value_or(kUsualFilmMm); }
 };
 
 struct CameraResult {

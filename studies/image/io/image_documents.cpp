@@ -87,7 +87,7 @@ std::string camera_json(const CameraResult& result) {
   json["ambient_lx"] = asked.ambient_lx;
   json["backlight_lx"] = asked.backlight_lx;
   if (result.scene.film) {
-    json["film_mm"] = asked.film_mm;
+    json["film_mm"] = asked.film_size_mm();
     if (asked.cylinder_mm) json["cylinder_mm"] = *asked.cylinder_mm;
   }
   json["passes"] = result.image.passes;

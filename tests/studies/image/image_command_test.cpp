@@ -211,5 +211,15 @@ TEST_F(Image, WrongSheetsAreRefused) {
   }
 }
 
+/// A finite part is seen in its own size.
+TEST_F(Image, FinitePartsTakeNoSheet) {
+  const Arguments camera = {"image", example("rtp_brick_2mm.toml"), "--camera", "-o", "i", "--json", "i.json"};
+  const auto names = folder_.names();
+  for (const std::string option : {"--film-mm=60x40", "--film-mm=100x100", "--cylinder-mm=40"})
+    expect_refused(retrace(folder_, with(camera, {option})),
+                   option.substr(0, option.find('=')) + ": needs a design with extent = \"infinite\": ");
+  EXPECT_EQ(folder_.names(), names);
+}
+
 }  // namespace
 }  // namespace retrace::test::image_command_test
