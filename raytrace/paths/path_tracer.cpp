@@ -1,10 +1,14 @@
 #include "raytrace/paths/path_tracer.h"
-#include "core/infinity.h"
-#include "geometry/part/chosen_elements.h"
-#include "raytrace/faces/formed_facet.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "core/error.h"
+#include "core/infinity.h"
+#include "geometry/part/chosen_elements.h"
+#include "raytrace/faces/formed_facet.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -15,6 +19,15 @@ using geometry::FacetRole;
 constexpr int kMaxWraps = 1000;
 // Maximum number of reflections on a predicted path to the entrance face. Prisms and cube corners need at most three.
 constexpr int kMostMirrors = 8;
+// Maximum number of branches of the light that one ray brings in. Without a cut-off and with every branch followed,
+// their number grows without limit.
+constexpr std::uint64_t kMaxBranches = 1'000'000;
+
+[[noreturn]] void fail_on_branches() {
+  throw BudgetError(
+      fmt::format("a ray splits into more than {} rays: give a larger --cutoff, or a larger --split of retrace rays",
+                  kMaxBranches));
+}
 
 }  // namespace
 
@@ -79,11 +92,11 @@ void PathWalker::begin(RandomKey key, std::uint32_t replicate, std::uint32_t sam
 }
 
 void PathWalker::follow_pending() {
-  while (!pending_.empty()) {
+  for (std::uint64_t branches = 1; !pending_.empty(); ++branches) {
     State state = pending_.back();
     pending_.pop_back();
-    while (advance(state)) {
-    }
+    while (advance(state))
+      if (branches + pending_.size() > kMaxBranches) fail_on_branches();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/threads.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/paths/path_tracer.h"
@@ -73,8 +74,9 @@ struct RayTracer::Scene {
 /// Follows rays, one after the other, and keeps what becomes of them.
 class RayTracer::Walk : public ExitObserver {
  public:
-  Walk(const Scene& scene, TracedRays& traced)
-      : scene_(scene), from_centre_(scene.centre_mm.x(), scene.centre_mm.y(), 0.0), traced_(traced) {}
+  /// \param memory memory of the leaving rays of all tasks
+  Walk(const Scene& scene, TracedRays& traced, BeamMemory& memory)
+      : scene_(scene), from_centre_(scene.centre_mm.x(), scene.centre_mm.y(), 0.0), traced_(traced), memory_(memory) {}
 
   void trace(const IncidentRay& ray, std::uint64_t number, std::uint32_t incident) {
     const double power = ray.light.power();
@@ -95,6 +97,7 @@ class RayTracer::Walk : public ExitObserver {
   }
 
   void leaves(const Departure& departure) override {
+    if (traced_.leaving.size() % kRaysTogether == 0) add_memory();
     LeavingRay& ray = traced_.leaving.emplace_back();
     ray.incident = incident_;
     ray.account = departure.account;
@@ -107,6 +110,14 @@ class RayTracer::Walk : public ExitObserver {
   }
 
  private:
+  /// Adds the memory of the next kRaysTogether leaving rays. \throw TraceBudgetError if the budget is exceeded
+  void add_memory() {
+    memory_.add(kRaysTogether * sizeof(LeavingRay));
+    if (memory_.is_exceeded())
+      throw TraceBudgetError(fmt::format("the rays that leave the part exceed {}: give a larger --cutoff or --split",
+                                         memory_budget_text()));
+  }
+
   PathWalker& walker_at(std::uint32_t optics) {
     if (walkers_.size() <= optics) walkers_.resize(optics + 1);
     if (!walkers_[optics]) walkers_[optics] = std::make_unique<PathWalker>(scene_.setups[optics], tally_, this);
@@ -132,6 +143,7 @@ class RayTracer::Walk : public ExitObserver {
   Tally tally_{1};
   std::vector<std::unique_ptr<PathWalker>> walkers_;  ///< by wavelength
   TracedRays& traced_;
+  BeamMemory& memory_;
   std::uint32_t incident_ = 0;
   double power_ = 0.0;
 };
@@ -152,13 +164,14 @@ std::uint32_t RayTracer::add(const Optics& optics) {
 TracedRays RayTracer::trace(std::span<const IncidentRay> rays, std::uint64_t first, const Cancellation* cancel) const {
   const std::size_t tasks = (rays.size() + kRaysTogether - 1) / kRaysTogether;
   std::vector<TracedRays> done(tasks);
+  BeamMemory memory;
   for_each_in_parallel(tasks, [&](std::size_t task) {
     if (is_cancelled(cancel)) return;
     const FlushDenormals flush;
     const std::size_t end = std::min(rays.size(), (task + 1) * kRaysTogether);
     done[task].leaving.reserve(end - task * kRaysTogether);
-    Walk walk(*scene_, done[task]);
-    for (std::size_t k = task * kRaysTogether; k < end; ++k)
+    Walk walk(*scene_, done[task], memory);
+    for (std::size_t k = task * kRaysTogether; k < end && !is_cancelled(cancel); ++k)
       walk.trace(rays[k], first + k, static_cast<std::uint32_t>(k));
   });
   if (tasks == 0) return {};

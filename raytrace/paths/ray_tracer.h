@@ -82,6 +82,8 @@ class RayTracer {
   /// Traces in the calling thread's TBB arena. Random choices of a ray depend on the seed and its number alone.
   /// \param first number of the first ray, counted over all calls
   /// \throw BudgetError if power is lost: a ray missed every face from inside
+  /// or splits into too many rays
+  /// \throw TraceBudgetError if the rays that leave exceed the memory budget
   TracedRays trace(std::span<const IncidentRay> rays, std::uint64_t first, const Cancellation* cancel) const;
 
  private:

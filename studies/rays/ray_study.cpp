@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/number_format.h"
 #include "core/version.h"
 #include "raytrace/light/light_setup.h"
 #include "studies/rays/ray_accounts.h"
+#include "studies/rays/ray_limits.h"
 #include "studies/rays/ray_wavelengths.h"
 
 namespace retrace::studies {
@@ -127,7 +129,7 @@ Emitter RayStudy::emitter_of(const EmitterRequest& request) const {
   check(emitter.disc_mm >= 0.0 && emitter.disc_mm <= kFarthestMm, "--disc-mm", ">= 0 and <= 1e9", emitter.disc_mm);
   check(emitter.half_angle_deg >= 0.0 && emitter.half_angle_deg <= 90.0, "--half-angle-deg", ">= 0 and <= 90",
         emitter.half_angle_deg);
-  check(emitter.power > 0.0 && std::isfinite(emitter.power), "--power", "> 0", emitter.power);
+  check(emitter.power > 0.0 && emitter.power <= kMaxTotalPower, "--power", "> 0 and <= 1e150", emitter.power);
   if (emitter.rays < 1 || emitter.rays > kMaxEmitterRays)
     throw InputError({"", 0, "--rays"}, fmt::format("must be 1 to {}, got {}", kMaxEmitterRays, emitter.rays));
   return emitter;
@@ -206,7 +208,7 @@ class RayStudy::Run {
 
   double power_of(const SetRay& ray) const { return is_luminous_ ? ray.luminous_lm : ray.radiant_w; }
 
-  /// \return how many rays leave
+  /// \return number of rays that leave
   std::size_t trace(const Cancellation* cancel) {
     incident_.clear();
     for (std::size_t k = 0; k < rays_.size(); ++k) {
@@ -217,34 +219,49 @@ class RayStudy::Run {
                            light_of(ray, power_of(ray), source_.info().has_stokes, hidden_.design.light.polarisation),
                            optics});
     }
-    const raytrace::TracedRays traced = tracer_.trace(incident_, read_, cancel);
-    if (is_cancelled(cancel)) {
-      result_.complete = false;
-      return 0;
-    }
-    result_.ledger.add(traced.ledger);
-    if (sink_ != nullptr) write(traced);
+    const std::size_t leaving = trace(0, incident_.size(), cancel);
     read_ += rays_.size();
-    return traced.leaving.size();
+    return leaving;
   }
 
-  /// In the order of the rays of the source.
-  void write(const raytrace::TracedRays& traced) {
+  /// Traces some of the rays. If those that leave exceed the memory budget, traces both halves one after the other.
+  /// \return number of rays that leave
+  std::size_t trace(std::size_t begin, std::size_t end, const Cancellation* cancel) {
+    std::optional<raytrace::TracedRays> traced;
+    try {
+      traced = tracer_.trace(std::span(incident_).subspan(begin, end - begin), read_ + begin, cancel);
+    } catch (const TraceBudgetError&) {
+      if (end - begin <= 1) throw;
+    }
+    result_.complete = result_.complete && !is_cancelled(cancel);
+    if (!result_.complete) return 0;
+    if (!traced) {
+      const std::size_t middle = begin + (end - begin) / 2;
+      const std::size_t leaving = trace(begin, middle, cancel);
+      return leaving + trace(middle, end, cancel);
+    }
+    result_.ledger.add(traced->ledger);
+    if (sink_ != nullptr) write(*traced, begin);
+    return traced->leaving.size();
+  }
+
+  /// Writes rays in the order of the rays of the source. \param begin number of the first traced ray in `rays_`
+  void write(const raytrace::TracedRays& traced, std::size_t begin) {
     out_.clear();
     auto missed = hidden_.request.keep_missed ? traced.missed.begin() : traced.missed.end();
     const auto add_missed_before = [&](std::uint32_t incident) {
-      for (; missed != traced.missed.end() && *missed < incident; ++missed) out_.push_back(missed_ray(*missed));
+      for (; missed != traced.missed.end() && *missed < incident; ++missed) out_.push_back(missed_ray(begin + *missed));
     };
     for (const raytrace::LeavingRay& ray : traced.leaving) {
       add_missed_before(ray.incident);
-      out_.push_back(leaving_ray(ray));
+      out_.push_back(leaving_ray(ray, begin + ray.incident));
     }
     add_missed_before(UINT32_MAX);
     sink_->write(out_);
     result_.rays_out += out_.size();
   }
 
-  AccountedRay missed_ray(std::uint32_t incident) const {
+  AccountedRay missed_ray(std::size_t incident) const {
     AccountedRay out{rays_[incident], read_ + incident + 1, kMissedAccount};
     const SetRay& ray = rays_[incident];
     const bool has_stokes = source_.info().has_stokes;
@@ -253,9 +270,9 @@ class RayStudy::Run {
     return out;
   }
 
-  AccountedRay leaving_ray(const raytrace::LeavingRay& ray) const {
-    const SetRay& source = rays_[ray.incident];
-    AccountedRay out{source, read_ + ray.incident + 1, static_cast<std::size_t>(ray.account)};
+  AccountedRay leaving_ray(const raytrace::LeavingRay& ray, std::size_t incident) const {
+    const SetRay& source = rays_[incident];
+    AccountedRay out{source, read_ + incident + 1, static_cast<std::size_t>(ray.account)};
     out.position_mm = ray.position_mm;
     out.direction = ray.direction;
     const double share = ray.light.power() / power_of(source);

@@ -1,6 +1,7 @@
 // Tests of the memory and the time that retrace needs for many elements, and of runs that exceed the memory budget.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <sstream>
 #include <string>
 
@@ -144,6 +145,49 @@ TEST(MemoryBudget, PhotometryOfAMillionElementsGoesOnWithRays) {
   const Measured exact = measured(folder, with(arguments, {"exact"}));
   EXPECT_EQ(exact.code, 3);
   EXPECT_NE(exact.err.find("exceeds the memory budget of 1 GiB (--memory-gib)"), std::string::npos) << exact.err;
+}
+
+// The header of a binary STL file contains the number of its triangles. The file is as long as its header says, or not.
+TEST(MemoryBudget, MeshesOfTooManyTrianglesAreRefusedBeforeTheyAreRead) {
+  const TemporaryFolder folder;
+  folder.write("mesh.toml", "[body]\nrefractive_index = 1.49\n[part]\nmesh = \"part.stl\"\n");
+  const std::string header = std::string(80, '\0') + std::string("\x00\x2d\x31\x01", 4);  // 20 million triangles
+  for (const auto& [bytes, complaint] : {std::pair(1'000'000'084U, "must have at most 10000000 triangles"),
+                                         {1'000'000'000U, "not an STL file: binary STL must have 84 bytes plus 50"}}) {
+    folder.write("part.stl", header);
+    std::filesystem::resize_file(folder.path() / "part.stl", bytes);  // takes no room: the rest is a hole
+    const Measured refused = measured(folder, {"inspect", "mesh.toml"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(refused.err.starts_with(std::string("retrace: mesh.toml:4: part.mesh: part.stl: ") + complaint))
+        << refused.err;
+    EXPECT_LE(refused.peak_mib, 200.0);
+  }
+}
+
+// Without a cut-off, every ray splits without end.
+TEST(MemoryBudget, RaysThatSplitWithoutEndEndWith3) {
+  const TemporaryFolder folder;
+  folder.write("cubes.toml", kInfiniteCubes);
+  const Measured endless = measured(folder, {"rays", "cubes.toml", "--emitter=collimated", "--rays=100000", "--split=0",
+                                             "--cutoff=0", "-o", "out.csv"});
+  EXPECT_EQ(endless.code, 3);
+  EXPECT_TRUE(endless.err.starts_with("retrace: a ray splits into more than 1000000 rays: give a larger --cutoff"))
+      << endless.err;
+  EXPECT_LE(endless.peak_mib, 1024.0);
+  EXPECT_EQ(folder.names(), (Arguments{"cubes.toml"}));
+}
+
+// If the rays that leave exceed the memory budget, fewer rays are traced at a time. Each ray gives the same result.
+TEST(MemoryBudget, RaysThatLeaveStayWithinIt) {
+  const TemporaryFolder folder;
+  folder.write("cubes.toml", kInfiniteCubes);
+  const auto rays = [&](const std::string& budget, const std::string& out) {
+    const Measured traced = measured(folder, {"rays", "cubes.toml", "--emitter=lambertian", "--rays=20000", "--split=0",
+                                              "--cutoff=1e-4", "--memory-gib", budget, "-o", out});
+    EXPECT_EQ(traced.code, 0) << traced.err;
+    return folder.read(out);
+  };
+  EXPECT_TRUE(rays("1", "one.csv") == rays("0.01", "small.csv")) << "the files differ";
 }
 
 TEST(MemoryBudget, SizesOutOfRangeAreRefused) {
