@@ -74,7 +74,10 @@ double ArraySource::share_read() const {
 bool ArraySource::read(std::size_t most, std::vector<SetRay>& rays) {
   rays.clear();
   const std::size_t end = std::min(count_, rays_read_ + most);
-  for (; rays_read_ < end; ++rays_read_) rays.push_back(ray(rays_read_));
+  for (; rays_read_ < end; ++rays_read_) {
+    rays.push_back(ray(rays_read_));
+    if (!total_.add(rays.back())) refuse("stokes", rays_read_, total_power_text(rays.back().radiant_w));
+  }
   return !rays.empty();
 }
 

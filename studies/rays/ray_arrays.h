@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "studies/rays/ray_limits.h"
 #include "studies/rays/ray_source.h"
 
 namespace retrace::studies {
@@ -34,6 +35,7 @@ class ArraySource : public RaySource {
   RaySetInfo info_;
   std::size_t count_ = 0;
   std::size_t rays_read_ = 0;
+  TotalPower total_;
 };
 
 /// Keeps what leaves.

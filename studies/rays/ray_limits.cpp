@@ -46,6 +46,16 @@ Vec3 axis_across(const Vec3& direction) {
   return across.norm() > kLeastAcross ? across.normalized() : direction.unitOrthogonal();
 }
 
+bool TotalPower::add(const SetRay& ray) {
+  radiant_w_ += ray.radiant_w;
+  luminous_lm_ += ray.luminous_lm;
+  return radiant_w_ <= kMaxTotalPower && luminous_lm_ <= kMaxTotalPower;
+}
+
+std::string total_power_text(double power) {
+  return fmt::format("the powers of all rays must add up to at most {}, got {} here", kMaxTotalPower, power);
+}
+
 const char* settle_stokes(SetRay& ray) {
   double sum = 0.0;
   for (const double s : ray.stokes) sum += s * s;

@@ -140,6 +140,8 @@ bool RayCsvSource::read(std::size_t most, std::vector<SetRay>& rays) {
     if (values_.size() != column_count_)
       fail("", fmt::format("must have {} values, got {}", column_count_, values_.size()));
     rays.push_back(ray());
+    const std::size_t larger = rays.back().radiant_w >= rays.back().luminous_lm ? kPower : kLuminous;
+    if (!total_.add(rays.back())) fail(kNames[larger], total_power_text(value(larger)));
   }
   return !rays.empty();
 }

@@ -12,6 +12,7 @@
 
 #include "core/atomic_file.h"
 #include "studies/rays/io/ray_input.h"
+#include "studies/rays/ray_limits.h"
 #include "studies/rays/ray_source.h"
 
 namespace retrace::studies {
@@ -44,6 +45,7 @@ class RayCsvSource : public RaySource {
   std::array<int, 17> columns_ = {};      ///< where the quantities stand; -1: nowhere
   std::size_t column_count_ = 0;
   int line_ = 0;
+  TotalPower total_;
   RaySetInfo info_;
 };
 

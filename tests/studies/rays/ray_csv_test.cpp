@@ -104,7 +104,11 @@ TEST(RayCsv, WhatIsWrongIsRefusedWithItsPlace) {
                    {kNames + "0,1 m,0,0,0,1,1\n", "rays.csv:2: y_mm: must be a number, got \"1 m\""},
                    {kNames + "0,0,0,0,0,0,1\n", "rays.csv:2: dx: a direction must have a length above 0"},
                    {"x_mm,y_mm,z_mm,dx,dy,dz,power_w,wavelength_nm\n0,0,0,0,0,1,1,0.55\n",
-                    "rays.csv:2: wavelength_nm: a wavelength must be 100 to 100000 nm, got 0.55"}});
+                    "rays.csv:2: wavelength_nm: a wavelength must be 100 to 100000 nm, got 0.55"},
+                   {kNames + "0,0,0,0,0,1,1\n0,0,0,0,0,1,1e308\n",
+                    "rays.csv:3: power_w: the powers of all rays must add up to at most 1e+150, got 1e+308 here"},
+                   {kNames + "0,0,0,0,0,1,6e149\n0,0,0,0,0,1,3e149\n0,0,0,0,0,1,6e149\n",
+                    "rays.csv:4: power_w: the powers of all rays must add up to at most 1e+150, got 6e+149 here"}});
   EXPECT_EQ(refusal_of([&] { rays_of(source_of(kNames + std::string(1 << 17, '0'))); }),
             "rays.csv:2: must have at most 65534 characters");
 }

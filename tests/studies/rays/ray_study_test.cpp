@@ -423,7 +423,7 @@ TEST(RayStudy, WhatMakesNoSenseIsRefused) {
   EXPECT_EQ(emitter([](EmitterRequest& r) { r.disc_mm = -1.0; }), "--disc-mm: must be >= 0 and <= 1e9, got -1");
   EXPECT_EQ(emitter([](EmitterRequest& r) { r.half_angle_deg = 91.0; }),
             "--half-angle-deg: must be >= 0 and <= 90, got 91");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.power = 0.0; }), "--power: must be > 0, got 0");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.power = 0.0; }), "--power: must be > 0 and <= 1e150, got 0");
   EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = 0; }), "--rays: must be 1 to 1099511627776, got 0");
   EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = UINT64_MAX; }),
             "--rays: must be 1 to 1099511627776, got 18446744073709551615");
