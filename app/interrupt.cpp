@@ -5,8 +5,10 @@
 #include <atomic>
 #include <csignal>
 #include <ctime>
+#include <string_view>
 
 #include "core/error.h"
+#include "core/temporary_files.h"
 #include "core/threads.h"
 
 namespace retrace::app {
@@ -25,7 +27,12 @@ void set_deadline(const itimerspec& when) {
   if (has_deadline) ::timer_settime(deadline, 0, &when, nullptr);
 }
 
+/// Text of the line on standard error if the process ends at once. On a terminal, it replaces the progress bar.
+std::string_view last_line;
+
 extern "C" void end_now(int) {
+  remove_temporary_files();
+  static_cast<void>(!::write(STDERR_FILENO, last_line.data(), last_line.size()));
   ::_exit(static_cast<int>(ExitCode::interrupted));
 }
 
@@ -40,6 +47,8 @@ extern "C" void on_interrupt(int) {
 }  // namespace
 
 void install_interrupt_handlers() {
+  constexpr std::string_view line = "\r\033[Kretrace: interrupted before the results were written\n";
+  last_line = ::isatty(STDERR_FILENO) != 0 ? line : line.substr(4);
   std::signal(SIGALRM, end_now);
   has_deadline = ::timer_create(CLOCK_MONOTONIC, nullptr, &deadline) == 0;
   std::signal(SIGINT, on_interrupt);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <fstream>
 #include <iostream>
@@ -17,6 +18,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/temporary_files.h"
 
 namespace retrace {
 namespace fs = std::filesystem;
@@ -63,6 +65,47 @@ void remove_abandoned(const fs::path& target) {
     if (is_temporary_name(entry->path().filename().string(), prefix)) remove_if_abandoned(entry->path());
 }
 
+/// Name of a temporary file, stored where a signal handler can read it at any time.
+struct TemporaryName {
+  std::atomic<bool> is_taken{false};  ///< an object uses this entry
+  std::atomic<bool> is_set{false};    ///< `name` is complete
+  std::array<char, 4096> name{};
+};
+/// Files beyond this number are left if a signal handler ends the process. The next run removes them.
+constexpr std::size_t kMaxTemporaryNames = 16;
+std::array<TemporaryName, kMaxTemporaryNames> temporary_names;
+
+/// Keeps the name of a temporary file in `temporary_names`.
+class KnownName {
+ public:
+  KnownName() = default;
+  KnownName(const KnownName&) = delete;
+  KnownName& operator=(const KnownName&) = delete;
+  ~KnownName() { clear(); }
+
+  void set(const fs::path& file) {
+    clear();
+    const std::string& name = file.native();
+    for (TemporaryName& entry : temporary_names) {
+      if (name.size() >= entry.name.size() || entry.is_taken.exchange(true)) continue;
+      std::ranges::copy(name, entry.name.begin());
+      entry.name[name.size()] = '\0';
+      entry.is_set.store(true);
+      entry_ = &entry;
+      return;
+    }
+  }
+  void clear() {
+    if (entry_ == nullptr) return;
+    entry_->is_set.store(false);
+    entry_->is_taken.store(false);
+    entry_ = nullptr;
+  }
+
+ private:
+  TemporaryName* entry_ = nullptr;  ///< null: no name is kept
+};
+
 /// Owns a file under a temporary name until it is moved into place; otherwise removes it. The name is random and the
 /// file is new. Files that others have put into the folder are therefore never opened.
 class TemporaryFile {
@@ -98,6 +141,7 @@ class TemporaryFile {
     if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target);
     // The lock is held until the file has its name, so that no other process removes it as abandoned.
     if (::rename(name_.c_str(), target.c_str()) != 0) fail(target);
+    known_name_.clear();
     name_.clear();
     if (::close(std::exchange(descriptor_, -1)) != 0) fail(target);
   }
@@ -115,6 +159,7 @@ class TemporaryFile {
       descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
       if (descriptor_ < 0 && errno == EEXIST) continue;
       if (descriptor_ < 0) fail(target);
+      known_name_.set(name_);
       // Some network file systems have no locks. Abandoned files are not removed there.
       static_cast<void>(::flock(descriptor_, LOCK_EX));
       struct stat made = {};
@@ -134,10 +179,12 @@ class TemporaryFile {
   void discard() {
     if (descriptor_ < 0) return;
     if (!name_.empty()) ::unlink(name_.c_str());
+    known_name_.clear();
     ::close(std::exchange(descriptor_, -1));
   }
 
   fs::path name_;  ///< empty after the file has been moved into place
+  KnownName known_name_;
   int descriptor_ = -1;
 };
 
@@ -176,6 +223,11 @@ std::string read_all(std::istream& stream, const std::string& name, std::size_t 
 }
 
 }  // namespace
+
+void remove_temporary_files() noexcept {
+  for (const TemporaryName& entry : temporary_names)
+    if (entry.is_set.load()) ::unlink(entry.name.data());
+}
 
 void write_file_atomically(const fs::path& path, std::string_view content) {
   std::error_code ignored;

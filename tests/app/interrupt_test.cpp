@@ -1,6 +1,7 @@
 // What an interrupt does to work that takes long, command by command.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -56,6 +57,7 @@ TEST_P(LongWork, EndsWithinASecondOfAnInterrupt) {
   child.interrupt(GetParam().signal);
   const Outcome outcome = child.wait(kFarTooLong);
   EXPECT_EQ(outcome.code, 130) << outcome.err;
+  for (const std::string& name : folder.names()) EXPECT_FALSE(name.ends_with(".tmp")) << name;
   EXPECT_LT(outcome.processor_time_s - before_s, kAfter_s);
 }
 
@@ -106,8 +108,35 @@ INSTANTIATE_TEST_SUITE_P(
         LongRun{"fabricate", kFabricate, SIGTERM, 1.0, {kJob}},
         LongRun{"validate", {"validate", "--threads=1", "-o", "v.md"}},
         LongRun{"verify", {"verify", "job.toml", "f/program.ngc", "--threads=1"}, SIGINT, 1.0, {kJob, kFabricate}},
+        LongRun{"rays",
+                {"rays", "wide.toml", "--emitter=lambertian", "--threads=1", "--rays=1000000000", "--split=1e-5", "-o",
+                 "r.csv"}},
         LongRun{"roughness", {"roughness", example("facet_quality.toml"), "--threads=1", "--target-error=1e-6"}}),
     [](const auto& run) { return run.param.name; });
+
+/// If work does not stop in time after an interrupt, the process ends. One line says so, and no temporary file is left.
+TEST(Interrupt, WorkThatCannotStopInTimeLeavesNoTemporaryFile) {
+  const TemporaryFolder folder;
+  const Arguments arguments = {RETRACE_PROGRAM,
+                               "rays",
+                               example("rtp_brick_2mm.toml"),
+                               "--emitter=lambertian",
+                               "--rays=1000000000",
+                               "--threads=1",
+                               "-o",
+                               "r.csv"};
+  Child child(folder.path(), arguments);
+  const auto is_temporary = [](const std::string& name) { return name.ends_with(".tmp"); };
+  const auto has_temporary = [&] { return std::ranges::any_of(folder.names(), is_temporary); };
+  while (!child.has_ended() && !has_temporary()) std::this_thread::sleep_for(5ms);
+  ASSERT_TRUE(has_temporary());
+  child.interrupt(SIGALRM);  // the signal of the deadline that an interrupt sets
+  const Outcome outcome = child.wait(kFarTooLong);
+  EXPECT_EQ(outcome.code, 130);
+  EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+  EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(has_temporary());
+}
 
 }  // namespace
 }  // namespace retrace::test::interrupt_test
