@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "core/task_progress.h"
 #include "surface_models/scatter/phase.h"
 
 namespace retrace::studies {
@@ -193,13 +194,16 @@ RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* canc
   RoughnessResult result;
   result.design = p.design;
   result.request = p.request;
-  const RreResult smooth = p.smooth_study->run(nullptr, cancel);
+  // Every point counts alike, the smooth one included.
+  const double smooth_share = 1.0 / static_cast<double>(1 + p.rough.size());
+  PartOfProgress smooth_part(progress, 0.0, smooth_share), rough_part(progress, smooth_share, 1.0);
+  const RreResult smooth = p.smooth_study->run(&smooth_part, cancel);
   add_warnings(result, smooth);
   if (smooth.points.empty()) return result;
   result.smooth_rre = smooth.points.front().rre;
   result.smooth_std_error = smooth.points.front().std_error;
   RreResult traced;
-  if (p.rough_study) traced = share ? trace_shared(progress, share) : p.rough_study->run(progress, cancel);
+  if (p.rough_study) traced = share ? trace_shared(&rough_part, share) : p.rough_study->run(&rough_part, cancel);
   add_warnings(result, traced);
   std::vector<const RrePoint*> found(p.points.size(), nullptr);
   for (const RrePoint& point : traced.points) found[p.rough[point.design]] = &point;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -90,6 +91,26 @@ TEST(RoughnessStudy, SpecularShareIsTheClosedFormOfSa) {
   EXPECT_EQ(result.points[4].measured, 0U);
   EXPECT_NEAR(result.points[4].rre, result.smooth_rre * std::exp(-2.0 * (phase2(index, 6.0) + phase2(index, 12.0))),
               testing::student_bound(4) * result.points[4].std_error + kRounding);
+}
+
+class Reports : public Progress {
+ public:
+  void at(double share) override { shares.push_back(share); }
+  std::vector<double> shares;
+};
+
+// The point of smooth facets is one of all points of the run.
+TEST(RoughnessStudy, ReportsTheProgressOfTheSmoothPointAsWell) {
+  for (const std::vector<double>& sa_nm : {std::vector{0.0}, std::vector{0.0, 4.0, 9.0, 20.0}}) {
+    RoughnessRequest request = request_of(sa_nm);
+    request.rays = 4096;
+    Reports progress;
+    EXPECT_TRUE(RoughnessStudy(parse_design(kPrism, "d.toml"), request).run(&progress, nullptr).complete);
+    ASSERT_FALSE(progress.shares.empty());
+    EXPECT_TRUE(std::ranges::is_sorted(progress.shares));
+    EXPECT_EQ(std::ranges::count(progress.shares, 1.0 / static_cast<double>(sa_nm.size())), 1);
+    EXPECT_EQ(progress.shares.back(), 1.0);
+  }
 }
 
 // Longer roughness scatters into narrower lobes, more of them inside the cone: Sa alone does not fix RRE.
