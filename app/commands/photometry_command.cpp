@@ -131,16 +131,15 @@ void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
   files.add_drawing("r_a", [&] { return report::observation_plot(result); });
 }
 
-/// Options that make the run shorter. \param follows_beams whether beams are followed, as PhotometryStudy reports
-Words what_shortens_photometry(const PhotometryOptions& options, bool follows_beams, bool has_rotations) {
+/// Options that make the run shorter.
+Words what_shortens_photometry(const PhotometryOptions& options, const studies::PhotometryStudy& study,
+                               bool has_rotations) {
   Words advice;
-  if (!follows_beams)
+  if (study.follows_beams())
+    advice.push_back(fmt::format("give a larger --cutoff (now {:.3g})", study.cutoff()));
+  else
     advice.push_back(
         fmt::format("give a smaller --samples (now {})", options.samples.value_or(studies::kUsualRaysOfDirection)));
-  else if (options.cutoff)
-    advice.push_back(fmt::format("give a larger --cutoff (now {})", shortest(*options.cutoff)));
-  else
-    advice.emplace_back("give a --cutoff larger than its default");
   if (has_rotations) advice.emplace_back("give fewer turns (--rotation)");
   return advice;
 }
@@ -171,7 +170,7 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   ResultFiles files(common, inputs, "photometry.json");
   add_files(files, result);
   files.prepare();
-  const RunText text{"tracing", what_shortens_photometry(options, study.follows_beams(), has_rotations)};
+  const RunText text{"tracing", what_shortens_photometry(options, study, has_rotations)};
   {
     ProgressBar bar(text, common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {

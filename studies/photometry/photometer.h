@@ -81,6 +81,9 @@ class Photometer {
   const std::vector<std::string>& warnings() const { return model_.warnings; }
   std::vector<double> wavelengths_nm() const;
   std::string engine_name() const;
+  /// Returns the power below which beams are no longer followed exactly, as a fraction of the power that falls on an
+  /// element.
+  double cutoff_of_element() const;
   /// What makes standard errors smaller.
   std::string remedy_for_noise() const { return is_exact_ ? "give a lower --cutoff" : "give more samples"; }
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
@@ -184,6 +187,7 @@ class Photometer {
   std::size_t middle_wavelength() const;
   std::uint32_t seed_of(std::size_t wavelength) const;
   bool resamples_weak() const;  ///< true: beams below the cut-off are resampled; false: truncated
+  double elements() const;      ///< number of elements that share the light, >= 1
   double cutoff() const;
   std::uint32_t replicates() const;
 

@@ -352,6 +352,10 @@ PhotometryStudy::PhotometryStudy(Design design, PhotometryRequest request) : pre
 
 PhotometryStudy::~PhotometryStudy() = default;
 
+double PhotometryStudy::cutoff() const {
+  return prepared_->photometer->cutoff_of_element();
+}
+
 bool PhotometryStudy::follows_beams() const {
   return prepared_->photometer->is_exact();
 }

@@ -206,6 +206,8 @@ class PhotometryStudy {
   /// Returns true if the light is traced as beams, at least until too many beams are needed, and false if it is traced
   /// by rays.
   bool follows_beams() const;
+  /// Returns the cut-off of beams, given or default, as a fraction of the power that falls on an element.
+  double cutoff() const;
 
   /// \throw BudgetError if power was lost
   PhotometryResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;

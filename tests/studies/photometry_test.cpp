@@ -409,6 +409,31 @@ TEST(Photometry, WhatCannotPassIsToldWithTheBestThatWasTried) {
   EXPECT_NE(photometry_table(result).find("not enough"), std::string::npos);
 }
 
+// The default is that of the manual: 1e-5 of the power on an element; for resampled beams of N elements 5e-5, or 5e-7 N
+// if that is more.
+TEST(Photometry, ReportsItsCutoff) {
+  PhotometryRequest request = request_of(points_at({0.2}, 1.0));
+  const auto cutoff = [&](const geometry::PartSpec& part) {
+    return PhotometryStudy(design_of(part, true), request).cutoff();
+  };
+  const auto finite = [](double length_mm) {
+    geometry::PartSpec part = honeycomb();
+    part.array.extent = geometry::Extent::finite;
+    part.array.x_length_mm = part.array.y_length_mm = length_mm;
+    return part;
+  };
+  EXPECT_DOUBLE_EQ(cutoff(honeycomb()), 1e-5);
+  EXPECT_DOUBLE_EQ(cutoff(finite(4.0)), 5e-5);
+  const geometry::PartSpec large = finite(12.0);
+  const double elements = static_cast<double>(geometry::build_part(large).elements_full);
+  ASSERT_GT(elements, 100.0);
+  EXPECT_DOUBLE_EQ(cutoff(large), 5e-7 * elements);
+  request.engine = Engine::exact;
+  EXPECT_DOUBLE_EQ(cutoff(finite(4.0)), 1e-5);
+  request.cutoff = 3e-4;
+  EXPECT_DOUBLE_EQ(cutoff(finite(4.0)), 3e-4);
+}
+
 TEST(Photometry, RefusesWhatItCannotMeasure) {
   const Design design = design_of(honeycomb(), true);
   const auto refusal = [&](const std::function<void(PhotometryRequest&)>& spoil) -> std::string {
