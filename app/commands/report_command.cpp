@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/output.h"
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "report/page/scene_view.h"
@@ -39,6 +40,15 @@ fs::path page_file(const ReportOptions& options, const CommonOptions& common) {
   return out.extension() == ".html" || out.extension() == ".htm" ? out : out / kPageName;
 }
 
+/// Refuses to follow a link in place of the page. Whoever made the results may have put it there, and only the user
+/// may choose a file outside of the folder. \throw OutputError if `file` is a symbolic link
+void check_is_no_link(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_symlink(file, ignored))
+    throw OutputError(file.string() +
+                      ": cannot be written: it is a symbolic link; remove it, or name a file with --out");
+}
+
 std::vector<std::string> results_read(const report::ResultFolder& folder, const Words& named) {
   std::vector<std::string> files = named;
   for (const auto& document : folder.documents) files.push_back((fs::path(folder.path) / document.name).string());
@@ -70,6 +80,7 @@ ExitCode run(const ReportOptions& options, const CommonOptions& common) {
   const fs::path file = page_file(options, common);
   ResultFiles files(without_folder(common), results_read(folder, options.read));
   files.add_named("report", file, [&] { return html; });
+  if (file != fs::path(common.out)) check_is_no_link(file);
   files.prepare();
   if (!common.out.empty() && file != fs::path(common.out)) make_output_folder(common.out);
   return files.write(report_json(page, folder, file, html.size(), warnings),

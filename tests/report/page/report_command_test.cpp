@@ -40,6 +40,30 @@ TEST(Report, IsWrittenBesideTheResultsOrWhereOneSays) {
   EXPECT_NE(html.find("Permission is hereby granted"), std::string::npos) << "licences of the scripts";
 }
 
+/// Whoever made the results may have put links into their folder. A link that the user names is followed.
+TEST(Report, FollowsNoLinkInPlaceOfThePage) {
+  const TemporaryFolder folder;
+  make_results(folder);
+  folder.write("victim", "precious");
+  fs::create_directory(folder.path() / "pages");
+  for (const std::string place : {"results", "pages"}) {
+    const fs::path page = folder.path() / place / "report.html";
+    for (const std::string target : {"../victim", "../new"}) {
+      fs::create_symlink(target, page);
+      const std::vector<std::string> names = folder.names();
+      expect_refused(retrace(folder, place == "results" ? Arguments{"report", "results"}
+                                                        : Arguments{"report", "results", "-o", "pages"}),
+                     place + "/report.html: cannot be written: it is a symbolic link", 3);
+      EXPECT_EQ(folder.read("victim"), "precious");
+      EXPECT_EQ(folder.names(), names);
+      fs::remove(page);
+    }
+  }
+  fs::create_symlink("victim", folder.path() / "page.html");
+  EXPECT_EQ(retrace(folder, {"report", "results", "-o", "page.html"}).code, 0);
+  EXPECT_TRUE(folder.read("victim").starts_with("<!DOCTYPE html>"));
+}
+
 TEST(Report, SaysWhatIsInIt) {
   const TemporaryFolder folder;
   make_results(folder);
