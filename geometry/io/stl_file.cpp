@@ -7,9 +7,12 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <optional>
+#include <system_error>
 #include <unordered_map>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/leading_number.h"
 #include "core/message_text.h"
@@ -46,6 +49,10 @@ Value value_at(std::string_view text, std::size_t at) {
   return value;
 }
 
+[[noreturn]] void refuse_count(const std::string& name) {
+  throw InputError({name, 0, ""}, fmt::format("must have at most {} triangles", kMostStlTriangles));
+}
+
 class Welder {
  public:
   Welder(const std::string& name, double scale) : name_(name), scale_(scale) {}
@@ -54,9 +61,7 @@ class Welder {
   void add(const std::array<Vec3, 3>& corners, const InputLocation& where, std::string_view what) {
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertex(corners[k], where, what);
-    ++read_;
-    if (read_ > kMostStlTriangles)
-      throw InputError({name_, 0, ""}, fmt::format("must have at most {} triangles", kMostStlTriangles));
+    if (++read_ > kMostStlTriangles) refuse_count(name_);
     if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) return;
     mesh_.triangles.push_back(triangle);
   }
@@ -103,8 +108,9 @@ std::size_t binary_length(std::size_t triangles) {
   return kHeaderBytes + kCountBytes + kTriangleBytes * triangles;
 }
 
-bool is_binary(std::string_view text) {
-  return text.size() >= binary_length(0) && text.size() == binary_length(binary_count(text));
+/// \param begin beginning of the file, at least binary_length(0) bytes of it if the file is as long
+bool is_binary(std::string_view begin, std::uintmax_t file_bytes) {
+  return begin.size() >= binary_length(0) && file_bytes == binary_length(binary_count(begin));
 }
 
 /// Returns true if there is a zero byte in the header or in the number of triangles. Binary files have one, text files
@@ -114,15 +120,15 @@ bool begins_as_binary(std::string_view text) {
 }
 
 /// \throw InputError for a binary file whose length does not fit its number of triangles
-[[noreturn]] void refuse_length(std::string_view text, const std::string& name) {
+[[noreturn]] void refuse_length(std::string_view begin, std::uintmax_t file_bytes, const std::string& name) {
   constexpr std::string_view what = "not an STL file: binary STL must have 84 bytes plus 50 for each triangle";
-  if (text.size() < binary_length(0)) throw InputError({name, 0, ""}, fmt::format("{}, got {}", what, text.size()));
-  const std::size_t wanted = binary_length(binary_count(text));
-  const std::string remedy = text.size() > wanted
-                                 ? fmt::format("remove the {} bytes after the last triangle", text.size() - wanted)
+  if (file_bytes < binary_length(0)) throw InputError({name, 0, ""}, fmt::format("{}, got {}", what, file_bytes));
+  const std::size_t wanted = binary_length(binary_count(begin));
+  const std::string remedy = file_bytes > wanted
+                                 ? fmt::format("remove the {} bytes after the last triangle", file_bytes - wanted)
                                  : "the end of the file is missing, or it has another format";
   throw InputError({name, 0, ""}, fmt::format("{}, which is {} for its {} triangles, got {}: {}", what, wanted,
-                                              binary_count(text), text.size(), remedy));
+                                              binary_count(begin), file_bytes, remedy));
 }
 
 TriangleMesh parse_binary(std::string_view text, const std::string& name, double scale) {
@@ -246,9 +252,26 @@ std::string stl_text(const BoundaryMesh& mesh, std::string_view title) {
 }
 
 TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale) {
-  if (is_binary(text)) return parse_binary(text, name, scale);
-  if (begins_as_binary(text)) refuse_length(text, name);
+  if (is_binary(text, text.size())) return parse_binary(text, name, scale);
+  if (begins_as_binary(text)) refuse_length(text, text.size(), name);
   return parse_ascii(without_byte_order_mark(text), name, scale);
+}
+
+TriangleMesh read_stl(const std::filesystem::path& file, double scale) {
+  const std::string name = file.string();
+  require_short_file(file, kMostDataBytes);
+  std::string begin(binary_length(0), '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(stream.gcount()));
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  // read_file() reports a file that cannot be opened.
+  if (!error && !begin.empty()) {
+    if (is_binary(begin, bytes) && binary_count(begin) > kMostStlTriangles) refuse_count(name);
+    if (!is_binary(begin, bytes) && begins_as_binary(begin)) refuse_length(begin, bytes, name);
+  }
+  return parse_stl(read_file(file, kMostDataBytes), name, scale);
 }
 
 }  // namespace retrace::geometry

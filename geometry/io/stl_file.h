@@ -3,6 +3,7 @@
 // Reads and writes triangle meshes as STL.
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -26,5 +27,10 @@ std::string stl_text(const BoundaryMesh& mesh, std::string_view title);
 /// not a finite number below 1e6 mm, or if there is no triangle or more than kMostStlTriangles. If the file does not
 /// begin like an STL file, the message contains no text of the file.
 TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale = 1.0);
+
+/// Reads an STL file as parse_stl() reads its text. If the number of triangles in the header of a binary file is above
+/// kMostStlTriangles, or does not fit the length of the file, the file is refused before its triangles are read.
+/// \throw InputError as parse_stl(), or if the file cannot be read
+TriangleMesh read_stl(const std::filesystem::path& file, double scale = 1.0);
 
 }  // namespace retrace::geometry

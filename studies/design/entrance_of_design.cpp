@@ -69,7 +69,7 @@ geometry::Entrance turned_entrance(const EntranceFile& file, const geometry::Par
 geometry::Entrance mesh_entrance(const EntranceFile& file, double scale, const geometry::Part& part,
                                  const Vec3& origin_mm) {
   const std::string name = file.file.string();
-  const geometry::TriangleMesh mesh = geometry::parse_stl(read_file(file.file, kMostDataBytes), name, scale);
+  const geometry::TriangleMesh mesh = geometry::read_stl(file.file, scale);
   return read_named({name, 0, ""}, [&] {
     return std::make_shared<const geometry::SurfacePatch>(geometry::entrance_of_mesh(
         mesh, file.mesh_bottom ? geometry::MeshSide::bottom : geometry::MeshSide::top, origin_mm, part.outline));

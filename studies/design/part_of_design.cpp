@@ -128,8 +128,7 @@ geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::str
     return geometry::box_mesh({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
   const std::string name = design.mesh()->file.string();
   return read_named(design.where("part.mesh"), [&] {
-    geometry::TriangleMesh mesh =
-        geometry::parse_stl(read_file(design.mesh()->file, kMostDataBytes), name, mesh_scale(design, "part"));
+    geometry::TriangleMesh mesh = geometry::read_stl(design.mesh()->file, mesh_scale(design, "part"));
     warn_of_unit(design, mesh, warnings);
     return read_named({name, 0, ""}, [&] { return checked(design, std::move(mesh), warnings); });
   });
