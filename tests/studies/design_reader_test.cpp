@@ -374,6 +374,24 @@ TEST(DesignReader, KeysWithoutEffectAreTold) {
   EXPECT_EQ(warnings(joined(kLines), {"idealisation.facets=mirror", "body.facet_coating=aluminium"}).size(), 1U);
 }
 
+// A correlation length or a period needs a height to have an effect.
+TEST(DesignReader, LengthsWithoutHeightsCauseAWarning) {
+  const std::string text = joined(kLines);
+  const auto warnings = [&](const std::string& more) { return parse_design(text + more, "d.toml").warnings(); };
+  using Warnings = std::vector<std::string>;
+  EXPECT_EQ(
+      warnings("[surface]\ncorrelation_length_um = 5\n"),
+      Warnings{"d.toml:12: surface.correlation_length_um: has no effect: give surface.roughness_sq_nm as well, or "
+               "remove it"});
+  EXPECT_EQ(warnings("[surface]\ncorrelation_length_down_um = 5\n").size(), 1U);
+  EXPECT_EQ(warnings("[surface]\nwaviness_length_um = 5\n").size(), 1U);
+  EXPECT_EQ(warnings("[entrance]\ncorrelation_length_um = 5\n").size(), 1U);
+  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 0\n"), Warnings{}) << "the default";
+  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 5\nroughness_sq_nm = 3\n"), Warnings{});
+  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 5\nroughness_sq_nm = 0\n"), Warnings{})
+      << "a study may vary the height from 0 on";
+}
+
 TEST(DesignReader, ErrorsInOverridesNameTheOverride) {
   EXPECT_EQ(set_complaint({"element.base_mm=0"}), "--set element.base_mm=0: element.base_mm: must be > 0, got 0");
   EXPECT_EQ(set_complaint({"element.base_mm=0.4mm"}),

@@ -283,8 +283,27 @@ std::vector<fs::path> Design::files() const {
   return document ? document->files() : std::vector<fs::path>();
 }
 
+/// Returns a warning for each length of roughness or waviness whose height the document does not give. A height of 0
+/// that is given causes no warning: studies vary heights from 0 on.
+std::vector<std::string> lengths_without_heights(const Document& document) {
+  std::vector<std::string> warnings;
+  for (const auto& [length, height] : {std::pair("surface.correlation_length_um", "surface.roughness_sq_nm"),
+                                       {"surface.correlation_length_down_um", "surface.roughness_sq_nm"},
+                                       {"surface.waviness_length_um", "surface.waviness_sq_nm"},
+                                       {"entrance.correlation_length_um", "entrance.roughness_sq_nm"}})
+    if (document.number_if(length).value_or(0.0) > 0.0 && document.has(length) && !document.has(height))
+      warnings.emplace_back(
+          InputError(document.where(length), fmt::format("has no effect: give {} as well, or remove it", height))
+              .what());
+  return warnings;
+}
+
 std::vector<std::string> Design::warnings() const {
-  return document ? schema::superseded_keys(*document) : std::vector<std::string>();
+  if (!document) return {};
+  std::vector<std::string> warnings = schema::superseded_keys(*document);
+  const std::vector<std::string> more = lengths_without_heights(*document);
+  warnings.insert(warnings.end(), more.begin(), more.end());
+  return warnings;
 }
 
 void Design::set_where(const std::string& key, InputLocation place) {
