@@ -259,17 +259,17 @@ TriangleMesh parse_stl(std::string_view text, const std::string& name, double sc
 
 TriangleMesh read_stl(const std::filesystem::path& file, double scale) {
   const std::string name = file.string();
-  require_short_file(file, kMostDataBytes);
-  std::string begin(binary_length(0), '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  begin.resize(static_cast<std::size_t>(stream.gcount()));
   std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-  // read_file() reports a file that cannot be opened.
-  if (!error && !begin.empty()) {
-    if (is_binary(begin, bytes) && binary_count(begin) > kMostStlTriangles) refuse_count(name);
-    if (!is_binary(begin, bytes) && begins_as_binary(begin)) refuse_length(begin, bytes, name);
+  if (std::filesystem::is_regular_file(file, error)) {  // read_file() reports any other
+    require_short_file(file, kMostDataBytes);
+    std::string begin(binary_length(0), '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    begin.resize(static_cast<std::size_t>(stream.gcount()));
+    const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+    const bool is_whole = !error && is_binary(begin, bytes);
+    if (is_whole && binary_count(begin) > kMostStlTriangles) refuse_count(name);
+    if (!error && !is_whole && begins_as_binary(begin)) refuse_length(begin, bytes, name);
   }
   return parse_stl(read_file(file, kMostDataBytes), name, scale);
 }

@@ -21,7 +21,7 @@ constexpr int kMaxWraps = 1000;
 constexpr int kMostMirrors = 8;
 // Maximum number of branches of the light that one ray brings in. Without a cut-off and with every branch followed,
 // their number grows without limit.
-constexpr std::uint64_t kMaxBranches = 1'000'000;
+constexpr std::uint64_t kMaxBranches = 100'000;
 
 [[noreturn]] void fail_on_branches() {
   throw BudgetError(

@@ -186,8 +186,8 @@ class Photometer {
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
   std::size_t middle_wavelength() const;
   std::uint32_t seed_of(std::size_t wavelength) const;
-  bool resamples_weak() const;  ///< true: beams below the cut-off are resampled; false: truncated
-  double elements() const;      ///< number of elements that share the light, >= 1
+  bool resamples_weak() const;   ///< true: beams below the cut-off are resampled; false: truncated
+  double element_count() const;  ///< number of elements that share the light, >= 1
   double cutoff() const;
   std::uint32_t replicates() const;
 

@@ -102,17 +102,17 @@ bool Photometer::resamples_weak() const {
   return is_exact_ && request_.engine == Engine::automatic && traces_all_light() && !has_form_;
 }
 
-double Photometer::elements() const {
+double Photometer::element_count() const {
   return std::max(1.0, static_cast<double>(model_.part.period_mm ? 1 : model_.part.elements_full));
 }
 
 double Photometer::cutoff_of_element() const {
-  return elements() * cutoff();
+  return element_count() * cutoff();
 }
 
 /// As a share of all light.
 double Photometer::cutoff() const {
-  const double elements = this->elements();
+  const double elements = element_count();
   const double given = request_.cutoff.value_or(0.0) / elements;
   if (request_.cutoff && !is_first_answer_) return given;
   const bool is_finite = !model_.part.period_mm && resamples_weak();

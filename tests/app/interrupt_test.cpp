@@ -123,6 +123,7 @@ TEST(Interrupt, WorkThatCannotStopInTimeLeavesNoTemporaryFile) {
                                "--emitter=lambertian",
                                "--rays=1000000000",
                                "--threads=1",
+                               "--quiet",
                                "-o",
                                "r.csv"};
   Child child(folder.path(), arguments);

@@ -108,7 +108,7 @@ TEST(RoughnessStudy, ReportsTheProgressOfTheSmoothPointAsWell) {
     EXPECT_TRUE(RoughnessStudy(parse_design(kPrism, "d.toml"), request).run(&progress, nullptr).complete);
     ASSERT_FALSE(progress.shares.empty());
     EXPECT_TRUE(std::ranges::is_sorted(progress.shares));
-    EXPECT_EQ(std::ranges::count(progress.shares, 1.0 / static_cast<double>(sa_nm.size())), 1);
+    EXPECT_GE(std::ranges::count(progress.shares, 1.0 / static_cast<double>(sa_nm.size())), 1);
     EXPECT_EQ(progress.shares.back(), 1.0);
   }
 }

@@ -283,6 +283,8 @@ std::vector<fs::path> Design::files() const {
   return document ? document->files() : std::vector<fs::path>();
 }
 
+namespace {
+
 /// Returns a warning for each length of roughness or waviness whose height the document does not give. A height of 0
 /// that is given causes no warning: studies vary heights from 0 on.
 std::vector<std::string> lengths_without_heights(const Document& document) {
@@ -297,6 +299,8 @@ std::vector<std::string> lengths_without_heights(const Document& document) {
               .what());
   return warnings;
 }
+
+}  // namespace
 
 std::vector<std::string> Design::warnings() const {
   if (!document) return {};

@@ -60,7 +60,7 @@ void check_cutoff_has_effect(const Document& document, const Study& study) {
   };
   if (!is_given || is_exact || !has_kind("photometry") || has_kind("rre")) return;
   throw InputError(varied != study.parameters.end() ? varied->location : document.where("analysis.cutoff"),
-                   fmt::format("analysis.cutoff needs analysis.engine = \"auto\" or \"exact\" for photometry, got {}",
+                   fmt::format("a cut-off needs analysis.engine = \"auto\" or \"exact\" for photometry, got {}",
                                in_quotes(document.text("analysis.engine"))));
 }
 

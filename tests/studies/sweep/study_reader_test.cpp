@@ -221,7 +221,7 @@ TEST(StudyReader, ACutoffThatNothingUsesIsRefused) {
   const auto analysis = [](const std::string& engine) {
     return "[analysis]\ncutoff = 1e-4\nengine = \"" + engine + "\"\n";
   };
-  const std::string refused = "analysis.cutoff needs analysis.engine = \"auto\" or \"exact\" for photometry, got ";
+  const std::string refused = "a cut-off needs analysis.engine = \"auto\" or \"exact\" for photometry, got ";
   for (const std::string engine : {"montecarlo", "embree"}) {
     EXPECT_EQ(message(text + analysis(engine)), "study.toml:12: analysis.cutoff: " + refused + "\"" + engine + "\"");
     EXPECT_EQ(message(text + analysis(engine) + kQuantity), "") << "RRE by rays has a cut-off";
