@@ -11,7 +11,6 @@
 #include "app/progress_bar.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
-#include "core/number_format.h"
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/photometry/io/limits_reader.h"
