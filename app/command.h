@@ -23,7 +23,7 @@ struct CommonOptions {
   std::string json;  ///< file for the JSON document; "-" is standard output; empty: none
   std::string out;   ///< output folder; empty: none
   std::optional<std::uint32_t> threads;
-  std::optional<double> memory_gib;  ///< memory budget in GiB of beams and elements; none: the default
+  std::optional<double> memory_gib;  ///< memory budget for beams and elements in GiB; empty: 1
   std::uint32_t seed = 1;
   std::vector<std::string> overrides;  ///< --set key=value
   bool quiet = false;
@@ -32,22 +32,24 @@ struct CommonOptions {
 /// Words, in the order to list them.
 using Words = std::vector<std::string>;
 
-/// A condition on another option, which the command line must meet for an option to have an effect.
+/// A condition on another option of the command line.
 struct Condition {
   enum class Kind { given, absent, value };
 
-  Kind kind = Kind::given;  ///< the other option is given, is absent, or has one of the values (given or default)
+  /// Kind of the condition: the option is given, is absent, or has one of `values`, given or by default.
+  Kind kind = Kind::given;
   std::string option;
   Words values = {};
 };
-/// Conditions of which at least one must hold.
+/// A requirement of an option. At least one of its conditions must hold, otherwise the option has no effect and is
+/// refused.
 using Need = std::vector<Condition>;
 
-/// Returns the need that one of the options is given.
+/// Returns the requirement that at least one of the options is given.
 Need any_given(const Words& options);
-/// Returns the need that the option is absent.
+/// Returns the requirement that the option is absent.
 Need absent(const std::string& option);
-/// Returns the text of a need, such as "--camera or --road", "no --lamp" or "--engine auto or exact".
+/// Returns a requirement as text, such as "--camera or --road", "no --lamp" or "--engine auto or exact".
 std::string text_of(const Need& need);
 
 /// What an argument is beside its name, its help and its place.
@@ -58,7 +60,7 @@ struct Traits {
   std::uint64_t most = std::uint64_t{1} << 36;  ///< of a whole number
   bool required = false;                        ///< of an option; what has a place is, unless it is a std::optional
   std::string excludes = {};                    ///< the option that it cannot go with
-  std::vector<Need> needs = {};                 ///< conditions that must all hold for the option to have an effect
+  std::vector<Need> needs = {};                 ///< requirements that must all be met for the option to have an effect
 };
 
 /// Traits of what is one of a set of words. \param files ending of files that it may be as well; none: it is no file

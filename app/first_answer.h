@@ -1,6 +1,6 @@
 #pragma once
 
-// Preliminary results, computed next to work that takes long.
+// Preliminary results, computed in parallel with a long computation.
 
 #include <functional>
 #include <string>
@@ -11,17 +11,19 @@
 
 namespace retrace::app {
 
-/// Computes preliminary results on a thread of its own and writes them to standard error. The thread starts when the
-/// progress bar has reported that the main work will take long. It stops when the main work is interrupted, or when
-/// this object is destroyed. If the computation fails, nothing is written, because the main work reports its own
-/// errors.
+/// Computes preliminary results in a thread of its own and writes them to standard error. The thread starts when the
+/// progress bar has reported that the main computation will take long. It stops when the main computation is
+/// interrupted or this object is destroyed. If the preliminary computation fails, nothing is written.
 class FirstAnswer {
  public:
-  /// Returns the lines to write; empty: nothing is written. It runs at the same time as the main work.
-  /// \param remaining_s estimated remaining time of the main work \param cancel asked whether to stop
+  /// Function that returns the lines to write, or an empty text to write nothing. It runs in parallel with the main
+  /// computation.
+  /// \param remaining_s estimated remaining time of the main computation, in seconds
+  /// \param cancel request to stop; the function must check it regularly
   using Compute = std::function<std::string(double remaining_s, const Cancellation* cancel)>;
 
-  /// \param bar bar of the main work; it must outlive this object \param cancel request to stop the main work
+  /// \param bar progress bar of the main computation; it must outlive this object
+  /// \param cancel request to stop the main computation
   FirstAnswer(ProgressBar& bar, const Cancellation* cancel, Compute compute);
   /// Stops the computation and waits for its end.
   ~FirstAnswer();

@@ -16,8 +16,8 @@ namespace retrace::app {
 /// was ignored before, as it is under nohup, it remains ignored.
 void install_interrupt_handlers();
 
-/// While one exists, the first interrupt only asks for the end, so that work can stop in order and write what it has;
-/// the second ends the program at once.
+/// Handles interrupts while an object exists. The first interrupt requests the work to stop, so that finished results
+/// are written. The second interrupt ends the program immediately.
 class OrderlyInterrupt {
  public:
   OrderlyInterrupt();
@@ -25,11 +25,12 @@ class OrderlyInterrupt {
   OrderlyInterrupt(const OrderlyInterrupt&) = delete;
   OrderlyInterrupt& operator=(const OrderlyInterrupt&) = delete;
 
-  /// Does work that asks whether to stop. Work that has not stopped within a second of the interrupt ends the program
-  /// with it, and nothing is written; once it has stopped, what it has is written however long that takes.
-  /// \param threads none or 0: as many as there are cores
+  /// Runs work that checks regularly whether to stop. If the work has not stopped one second after the interrupt, the
+  /// program ends and nothing is written. If it has stopped in time, its results are written, however long that takes.
+  /// \param threads number of threads; empty or 0: as many as there are cores
   void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;
-  /// Does the same with a progress bar. \param text text of the bar
+  /// Runs work in the same way and shows a progress bar.
+  /// \param text text of the progress bar
   void run(const CommonOptions& common, const RunText& text,
            const std::function<void(Progress*, const Cancellation*)>& work) const;
 };

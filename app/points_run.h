@@ -14,12 +14,12 @@
 
 namespace retrace::app {
 
-/// A command whose points are known beforehand and kept in a store.
+/// A command that computes a known list of points and keeps them in a store.
 struct PointsCommand {
-  std::string doing;              ///< what the progress bar says
+  std::string doing;              ///< activity that the progress bar shows, such as "sweeping"
   std::string fewer_points = {};  ///< advice that reduces the number of points, such as "give fewer values"
-  std::string store;              ///< its file in the output folder
-  /// Reads the study and checks all of it; also on ranks that only compute.
+  std::string store;              ///< name of the store file in the output folder
+  /// Function that reads and checks the study. Under MPI, every rank calls it.
   std::function<studies::Sweep()> read;
   std::string document;  ///< JSON in the output folder
   /// Names further files there, beside the store. \param result is there when they are made

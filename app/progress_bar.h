@@ -13,16 +13,16 @@
 
 namespace retrace::app {
 
-/// What a progress bar shows of a run.
+/// Texts that a progress bar shows.
 struct RunText {
-  std::string doing;  ///< such as "tracing"
-  /// Alternatives that make the run shorter, such as "give a smaller --samples (now 1000000000)".
+  std::string doing;  ///< activity, such as "tracing"
+  /// Changes of options that make the run shorter, such as "give a smaller --samples (now 1000000000)".
   Words to_shorten = {};
 };
 
-/// A bar on standard error with the finished fraction and the remaining time, if standard error is a terminal. One time
-/// in a run, a line reports the estimated duration and what makes the run shorter, see LongRun. This line is also
-/// written if standard error is not a terminal. With --quiet, nothing is written. Several threads may use a bar.
+/// A progress bar on standard error. On a terminal, it shows the finished fraction and the remaining time. If the run
+/// will take long (LongRun), a notice with the estimated duration and advice for a shorter run is written one time,
+/// also if standard error is not a terminal. With --quiet, nothing is written. Several threads may use one bar.
 class ProgressBar : public Progress {
  public:
   ProgressBar(RunText text, const CommonOptions& common);
@@ -31,26 +31,31 @@ class ProgressBar : public Progress {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void at(double share) override;
-  /// Shows the fraction with a remark behind it.
+  /// Shows the finished fraction, followed by a remark.
   void at(double share, const std::string& remark);
-  /// Shows work whose end is not known. \param done what has been done so far
+  /// Shows progress of work of unknown length.
+  /// \param done text about the work that is finished
   void count(const std::string& done);
-  /// Begins a group of tasks of work whose end is not known. \param share fraction of the group that is finished
-  /// already
+  /// Begins a group of tasks within work of unknown length.
+  /// \param share fraction of the group that an earlier run has finished
   void begin_group(double share);
-  /// Reports the finished fraction of the group, for the line about long work. \param group such as "65 designs"
+  /// Reports the finished fraction of the group, from which the notice estimates the duration.
+  /// \param group description of the group, such as "65 designs"
   void at_group(double share, const std::string& group);
 
-  /// Sets the function that is called after the line about long work was written. It must not use the bar.
-  /// \param action receives the estimated remaining time in seconds; empty: nothing is called
+  /// Sets a function that is called after the notice about a long run. The function must not use the bar.
+  /// \param action receives the estimated remaining time in seconds; empty: no function is called
   void after_notice(std::function<void(double)> action);
-  /// Writes lines on standard error and removes the bar until it is drawn again. Control characters are escaped.
+  /// Writes lines to standard error. The bar is removed and appears again at its next update. Control characters are
+  /// escaped.
   void write_lines(const std::string& lines);
 
  private:
   double elapsed_s() const;
   bool is_time_to_draw(bool is_end);
-  /// Writes the line about long work if it is time for it. \param work what takes the time \pre mutex_ is locked
+  /// Writes the notice about a long run when it is due.
+  /// \param work description of the work that takes long
+  /// \pre mutex_ is locked
   void notice(double share, const std::string& work);
   void clear();
 

@@ -27,7 +27,7 @@ Argument dialect_argument(std::string& dialect);
 Traits machine_traits();
 /// --engine of commands whose engines are auto, exact, montecarlo and embree.
 Argument engine_argument(std::string& engine, const std::string& help);
-/// Returns the need that --engine is one of `engines`.
+/// Returns the requirement that --engine is one of `engines`.
 Need engine_need(std::span<const studies::Engine> engines);
 /// --dye: none, a shipped dye, or a file.
 template <class Name>

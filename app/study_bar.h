@@ -1,6 +1,6 @@
 #pragma once
 
-// Progress bar of searches for designs, and advice that makes studies shorter.
+// Progress bar of searches for designs, and advice on shorter studies.
 
 #include <cstdint>
 #include <string>
@@ -11,17 +11,17 @@
 
 namespace retrace::app {
 
-/// Returns alternatives that make a study shorter, such as "give a smaller analysis.samples (now 1000000000)".
-/// \param fewer_points advice that reduces the number of points, such as "give fewer values"; empty: there is none
+/// Returns changes that make a study shorter, such as "give a smaller analysis.samples (now 1000000000)".
+/// \param fewer_points change that reduces the number of points, such as "give fewer values"; empty: there is none
 Words to_shorten_study(const studies::Study& study, const std::string& fewer_points);
 
-/// Progress bar of a search, whose number of designs is not known beforehand.
+/// Progress bar of a search, which evaluates an unknown number of designs.
 class SearchBar : public studies::OptimiseObserver, public studies::SweepObserver {
  public:
-  /// \param of what is counted, such as "designs"
+  /// \param of plural noun for the counted items, such as "designs"
   SearchBar(RunText text, std::string of, const CommonOptions& common);
 
-  /// Reports the points of the first group, which several processes compute together.
+  /// Reports the progress of the first group of designs, which several processes compute together.
   void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) override;
   void at_share(double share) override;
   void at(std::size_t evaluated) override;
@@ -30,7 +30,7 @@ class SearchBar : public studies::OptimiseObserver, public studies::SweepObserve
  private:
   ProgressBar bar_;
   std::string of_;
-  std::uint64_t first_group_ = 0;  ///< size of the first group; 0: not known
+  std::uint64_t first_group_ = 0;  ///< number of designs in the first group; 0 until it is known
 };
 
 }  // namespace retrace::app

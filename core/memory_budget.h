@@ -1,6 +1,7 @@
 #pragma once
 
-// Memory budget of beams and of the structures in which they find elements. All threads of the process share it.
+// Memory budget for beams and for the search structures that find the elements which a beam meets. All threads of the
+// process share this budget.
 
 #include <atomic>
 #include <cstdint>
@@ -22,19 +23,20 @@ std::uint64_t memory_budget_bytes();
 /// \pre bytes > 0
 void set_memory_budget_bytes(std::uint64_t bytes);
 
-/// Maximum memory in bytes of the structures that find the elements of one part: half of the budget.
+/// Maximum memory, in bytes, of the search structures for the elements of one part: half of the budget.
 std::uint64_t element_memory_bytes();
-/// Maximum memory in bytes of the beams of one trace: a quarter of the budget. Traces that run in parallel share
-/// another quarter, see for_each_within_memory().
+/// Maximum memory, in bytes, of the beams of one trace: a quarter of the budget. Traces that run in parallel may
+/// together use another quarter, see for_each_within_memory().
 std::uint64_t beam_memory_bytes();
 
-/// Returns the size of the budget and the option that changes it, for messages.
+/// Returns the size of the budget and the name of the option that changes it, for messages.
 std::string memory_budget_text();
 
-/// Thrown if parallel traces together exceed the memory that they share, although this trace by itself does not.
+/// Exception: the traces that run in parallel exceed their common memory limit, but this trace does not exceed its own.
 struct SharedMemoryShort {};
 
-/// Makes the traces of the current thread share their memory with those of other threads.
+/// While an object exists, traces of the current thread count towards the memory limit that is common to all parallel
+/// traces.
 class SharedMemoryScope {
  public:
   SharedMemoryScope();
@@ -46,7 +48,7 @@ class SharedMemoryScope {
   bool was_shared_;
 };
 
-/// Memory that the beams of one trace occupy.
+/// Counts the memory of the beams of one trace.
 class BeamMemory {
  public:
   BeamMemory();
@@ -56,20 +58,20 @@ class BeamMemory {
 
   void add(std::uint64_t bytes);
   void remove(std::uint64_t bytes);
-  /// Returns true if this trace by itself exceeds beam_memory_bytes().
+  /// Returns true if this trace exceeds beam_memory_bytes().
   bool is_exceeded() const;
-  /// Checks the memory that parallel traces share. Does nothing outside of a SharedMemoryScope.
-  /// \throw SharedMemoryShort if all traces within a SharedMemoryScope together exceed beam_memory_bytes()
+  /// Checks the common memory limit of parallel traces. Does nothing outside of a SharedMemoryScope.
+  /// \throw SharedMemoryShort if the beams of all traces within a SharedMemoryScope exceed beam_memory_bytes()
   void require_shared();
 
  private:
   bool is_shared_;
   std::atomic<std::uint64_t> bytes_{0};
-  std::uint64_t reported_bytes_ = 0;  ///< part of `bytes_` that was added to the total of all threads
+  std::uint64_t reported_bytes_ = 0;  ///< part of `bytes_` that is already included in the total of all threads
 };
 
-/// Returns the mutex that a trace outside of any SharedMemoryScope locks while other traces run within such scopes. At
-/// most one such trace runs at a time.
+/// Returns the mutex for traces that run outside of any SharedMemoryScope, in parallel with traces inside of such
+/// scopes. The mutex ensures that at most one such trace runs at a time.
 std::mutex& lone_trace_mutex();
 
 }  // namespace retrace

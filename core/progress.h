@@ -8,11 +8,12 @@
 
 namespace retrace {
 
-/// Asked between pieces of work whether to stop. Safe to set from a signal handler.
+/// A request to stop, which work checks at regular intervals. It may be set from a signal handler.
 class Cancellation {
  public:
   Cancellation() = default;
-  /// \param whole if its stop is requested, this work stops as well; null: there is none. It must outlive this object.
+  /// \param whole request to stop a larger piece of work that includes this one; null: there is none. It must outlive
+  ///        this object.
   explicit Cancellation(const Cancellation* whole) : whole_(whole) {}
   void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
   bool requested() const noexcept {
@@ -24,16 +25,18 @@ class Cancellation {
   std::atomic<bool> requested_{false};
 };
 
-/// Whether work was asked to stop. \param cancel null: it cannot be stopped
+/// Returns true if the work is requested to stop.
+/// \param cancel null: the work cannot be stopped
 inline bool is_cancelled(const Cancellation* cancel) {
   return cancel != nullptr && cancel->requested();
 }
 
-/// Told how far long work has come. Calls come from one thread at a time.
+/// Receives reports of progress. Only one thread calls it at a time.
 class RETRACE_API Progress {
  public:
   virtual ~Progress() = default;
-  /// `share` in 0..1, never falling.
+  /// Reports the finished fraction of the work.
+  /// \param share 0 to 1, never smaller than in an earlier call
   virtual void at(double share) = 0;
 };
 

@@ -11,8 +11,8 @@
 
 namespace retrace {
 
-/// Reports the progress of one part of the work as progress of the whole work. The values 0 and 1 of the part are
-/// reported as `from` and `to`.
+/// Reports the progress of one part of the work as progress of the whole work. The start and the end of the part
+/// correspond to the fractions `from` and `to` of the whole work.
 class PartOfProgress : public Progress {
  public:
   /// \param whole receives the reports; null: nothing is reported
@@ -26,8 +26,8 @@ class PartOfProgress : public Progress {
   double from_, to_;
 };
 
-/// Progress of work that may be given up and begun again by another method. The new attempt is reported as the part of
-/// the work that the attempt before has not finished.
+/// Progress of work that may be abandoned and started again with another method. The progress of the new attempt is
+/// mapped to the fraction that the earlier attempt left unfinished, so that reported values do not decrease.
 class AttemptProgress : public Progress {
  public:
   /// \param whole receives the reports; null: nothing is reported
@@ -40,20 +40,19 @@ class AttemptProgress : public Progress {
 
  private:
   Progress* whole_;
-  double begin_ = 0.0;     ///< value that stands for the beginning of the current attempt
+  double begin_ = 0.0;     ///< reported value at the start of the current attempt
   double reported_ = 0.0;  ///< last reported value
 };
 
-/// Adds up the progress of tasks of equal weight and reports the mean as progress of the whole work. Tasks may run in
-/// parallel. Reports never fall, even if a task is repeated.
+/// Progress of several tasks of equal weight. The mean of their progress is reported as progress of the whole work.
+/// Tasks may run in parallel. Reported values do not decrease, even if a task is repeated.
 class TaskProgress {
  public:
   /// \param whole receives the reports; null: nothing is reported
   /// \param count number of tasks, > 0
   TaskProgress(Progress* whole, std::size_t count) : whole_(whole), count_(static_cast<double>(count)) {}
 
-  /// Progress of one task. If it is destroyed before finish(), its progress is subtracted again, because the task is
-  /// then repeated or given up.
+  /// Progress of one task. If the object is destroyed before finish(), the task is regarded as not started.
   class Task : public Progress {
    public:
     explicit Task(TaskProgress& all) : all_(all) {}
@@ -80,7 +79,8 @@ class TaskProgress {
   };
 
  private:
-  /// \param running change of the progress of unfinished tasks \param finished number of tasks that have finished
+  /// \param running change of the sum of the progress of unfinished tasks
+  /// \param finished number of tasks that have just finished
   void change(double running, double finished) {
     const std::lock_guard lock(mutex_);
     finished_ += finished;

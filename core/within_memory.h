@@ -1,6 +1,6 @@
 #pragma once
 
-// Loop over traces that run in parallel as long as all of them fit into the memory budget.
+// Parallel loop over traces that share a limited memory.
 
 #include <cstddef>
 #include <functional>
@@ -11,10 +11,10 @@
 
 namespace retrace {
 
-/// Calls work(0), ..., work(count - 1) in parallel, like for_each_in_parallel(). If parallel calls together exceed
-/// their shared memory, the call that detects it is aborted and repeated. Only one call is repeated at a time. The
-/// results therefore do not depend on the number of threads. \pre `work` can be called again after it has thrown
-/// SharedMemoryShort
+/// Calls work(0), ..., work(count - 1) in parallel, like for_each_in_parallel(). If the parallel calls exceed their
+/// common memory limit, the call that detects this is aborted and repeated under its own limit. Only one repetition
+/// runs at a time. The results do not depend on the number of threads.
+/// \pre `work` can be called again after it has thrown SharedMemoryShort
 inline void for_each_within_memory(std::size_t count, const std::function<void(std::size_t)>& work) {
   const auto fits_beside_others = [&work](std::size_t k) {
     const SharedMemoryScope scope;

@@ -16,8 +16,8 @@
 
 namespace retrace::fabrication {
 
-/// Returns the distance, in mm or degrees, by which an axis may exceed a limit because its word is rounded
-/// (docs/theory/verification.md).
+/// Returns the tolerance, in mm or degrees, for comparing the position of an axis with a limit. It allows for the
+/// rounding of the axis word in the program (docs/theory/verification.md).
 double rounding_slack(const NcMotion& motion, char axis);
 
 /// How the spindle is to turn while the tool cuts.
@@ -88,8 +88,8 @@ class ControlCheck {
   bool has_moved_ = false;       ///< since the program began or stopped
   std::uint8_t known_ = 0;       ///< axes whose place was said since then
   double rested_s_ = 0.0;        ///< in the material, since the last move
-  double z_slack_mm_ = 0.0;      ///< allowance for the rounding of the last Z word
-  std::set<std::string> wrong_;  ///< kinds of settings that are wrong now
+  double z_slack_mm_ = 0.0;      ///< tolerance for the rounding of the last Z word
+  std::set<std::string> wrong_;  ///< modal settings that are wrong at present
 };
 
 }  // namespace retrace::fabrication

@@ -1,6 +1,6 @@
 #pragma once
 
-// Planes of the facets and dihedral edges of the cube corners of a job, with errors of angle.
+// Facet planes and dihedral edges of the cube corners of a job, including errors of angle.
 
 #include <array>
 #include <cstddef>
@@ -11,7 +11,8 @@
 namespace retrace::fabrication {
 
 /// A cube corner in a flat blank, in the workpiece frame with the origin at its apex. Without errors, edge k has the
-/// azimuth 120 k - 90 degrees (rotated: 120 k + 90). Facet k is between edges k and k + 1.
+/// azimuth 120 k - 90 degrees, and 120 k + 90 degrees in a rotated element. Facet k is located between edges k and k +
+/// 1.
 struct CubeCorner {
   double depth_mm = 0.0;  ///< depth of the apex below the blank's face
   /// Unit normals of the facets, pointing out of the material.
@@ -19,11 +20,13 @@ struct CubeCorner {
   /// Unit vectors along the dihedral edges, upwards.
   std::array<geometry::Vec3, 3> edges = {geometry::Vec3::Zero(), geometry::Vec3::Zero(), geometry::Vec3::Zero()};
 
-  /// Returns the intersection of the three planes that are parallel to the facets at the given heights above them.
+  /// Returns the intersection of three planes that are parallel to the facets.
+  /// \param facets_mm height of each plane above its facet
   geometry::Vec3 apex_over(const geometry::Vec3& facets_mm) const;
-  /// Returns the height of the apex of a layer that leaves 1 mm on all facets, per mm: sqrt(3) without errors.
+  /// Returns the height of the apex of a layer above the nominal apex, per mm of material that the layer leaves on each
+  /// facet: sqrt(3) without errors of angle.
   double layer_rise() const { return apex_over(geometry::Vec3::Ones()).z(); }
-  /// Returns the largest difference between 90 degrees and an angle between two facets or two edges.
+  /// Returns the largest deviation from 90 degrees of the angles between two facets and between two edges.
   double largest_error_deg() const;
 };
 

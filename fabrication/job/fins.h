@@ -1,7 +1,7 @@
 #pragma once
 
-// Material that the cuts of a V-shaped tool leave between them in a cube corner: fins along its dihedral edges and a
-// peak in its middle (docs/theory/micro_chiseling.md, section "Fins").
+// Residual material between the cuts of a V-shaped tool in a cube corner: fins along the dihedral edges, and a peak
+// over the apex (docs/theory/micro_chiseling.md, section "Fins").
 
 #include <array>
 #include <string>
@@ -12,42 +12,44 @@
 
 namespace retrace::fabrication {
 
-/// Width of the strip along a dihedral edge in which remaining material counts for the edge and not for a facet.
+/// Width of the strip along a dihedral edge in which residual material is attributed to the edge and not to a facet.
 inline constexpr double kEdgeStripMm = 1e-3;
-/// Distances from a dihedral edge at which the strip is measured, in least increments of the control. Rounding moves a
-/// facet by one increment at most.
+/// Distances from a dihedral edge of the lines on which the strip is measured, in least increments of the control. The
+/// rounding of positions shifts a facet by at most one increment.
 inline constexpr double kEdgeLineSteps[] = {1.5, 8.0};
 
-/// Returns the maximum distance by which rounding moves a tip along the facet that it cuts.
+/// Returns the maximum displacement of a tip parallel to the facet that it cuts, caused by the rounding of positions.
 double rounded_along_mm(double step_mm);
-/// Returns the maximum distance by which rounding moves a tip along the normal of the facet that it cuts.
+/// Returns the maximum displacement of a tip normal to the facet that it cuts, caused by the rounding of positions.
 double rounded_across_mm(double step_mm);
 
-/// Angles that the two cuts along a dihedral edge cover, seen along the edge.
+/// Angular sectors that the two cuts along a dihedral edge remove, seen along the edge. If they overlap, no fin
+/// remains.
 struct EdgeCover {
-  Angle first;    ///< angle over the first facet up to which the cut along it reaches
-  Angle second;   ///< angle over the second facet up to which the cut along it reaches
-  Angle between;  ///< angle that the facets include
+  Angle first;    ///< sector of the first cut, measured from the first facet
+  Angle second;   ///< sector of the second cut, measured from the second facet
+  Angle between;  ///< angle between the two facets
 };
 
-/// Returns the angles at the three dihedral edges. Edge k is located between the facets k and (k + 1) % 3.
+/// Returns the sectors at the three dihedral edges. Edge k is located between the facets k and (k + 1) % 3.
 /// \param normals unit normals of the facets, out of the material, in counterclockwise order
-/// \param spines direction of the tool's spine while it cuts each facet, in the frame of the normals
+/// \param spines directions of the tool's spine (the edge between its flanks' rake sides) while it cuts each facet, in
+///        the frame of the normals
 std::array<EdgeCover, 3> edge_covers(const std::array<geometry::Vec3, 3>& normals,
                                      const std::array<geometry::Vec3, 3>& spines);
 
 /// Returns the directions of the tool's spine while it cuts each facet, in the frame of the element.
-/// \param root_tilts angles by which each facet is turned about its normal in the tool's view
+/// \param root_tilts rotations of each facet about its normal, relative to the tool
 std::array<geometry::Vec3, 3> spines_of(const CubeCorner& corner, const Tool& tool,
                                         const std::array<Angle, 3>& root_tilts = {});
 
-/// Returns the height over either facet of the fin that two cuts along a dihedral edge may leave between them because
-/// positions are rounded; infinity if the cuts do not overlap.
+/// Returns the maximum height, above either facet, of the fin that the rounding of positions may leave between two cuts
+/// along a dihedral edge. Returns infinity if the cuts do not overlap.
 /// \param step_mm least increment of the control
 double rounded_fin_mm(const EdgeCover& cover, double step_mm);
 
-/// Returns the height over any facet of the peak that the cuts of all three facets may leave between them because
-/// positions are rounded; infinity if the cuts leave a peak even at exact positions.
+/// Returns the maximum height, above any facet, of the peak that the rounding of positions may leave between the cuts
+/// of all three facets. Returns infinity if a peak remains even without rounding.
 /// \param step_mm least increment of the control
 double rounded_peak_mm(const std::array<EdgeCover, 3>& covers, double step_mm);
 
@@ -55,11 +57,12 @@ double rounded_peak_mm(const std::array<EdgeCover, 3>& covers, double step_mm);
 /// \param step_mm least increment of the control
 double highest_fin_mm(const std::array<EdgeCover, 3>& covers, double step_mm);
 
-/// Returns the height for a message: "a fin of 1.234 um". \param fin_mm infinity: up to the face of the blank
+/// Returns the height of a fin as text for a message, such as "a fin of 1.234 um".
+/// \param fin_mm infinity: the fin extends up to the face of the blank
 std::string fin_text(double fin_mm);
 
-/// Returns the maximum height of a fin that is inside the strip of kEdgeStripMm along the edge, less the distance from
-/// the edge of the farthest measuring line.
+/// Returns the maximum allowed height of a fin: kEdgeStripMm less the distance of the farthest measuring line from the
+/// edge. Such a fin remains within the strip along the edge.
 double max_fin_mm(double step_mm);
 
 }  // namespace retrace::fabrication

@@ -102,7 +102,7 @@ struct Process {
   double finishing_plunge_sa_nm = 48.9;
 };
 
-/// A group of equal cube corners at given positions. A value that is not given is that of the job's element.
+/// A group of equal cube corners at given positions. An empty value means that the value of the job's element applies.
 struct CutZone {
   std::optional<double> aperture_mm;
   std::optional<std::array<double, 3>> dihedral_error_arcmin;
@@ -120,7 +120,8 @@ struct Job {
   geometry::Element element;           ///< of the part, without cant
   geometry::AngleErrors angle_errors;  ///< intended errors of angle; cube corners only
   geometry::ArrayLayout array;         ///< finite; x and y lengths of `single` are those of the element's aperture
-  /// Zones that are cut instead of the array; then only the extent of `array` is used. Empty: the array is cut.
+  /// Zones that are cut instead of the array. If there are zones, `array` only defines the extent. Empty: the array is
+  /// cut.
   std::vector<CutZone> zones;
   /// What the elements stand on, of moulds and of arrays without offsets and patterns; its highest place over the part
   /// is z = 0, and the blank's face has its shape. None: the plane z = 0.
@@ -148,28 +149,30 @@ struct CutElement {
   geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< on the blank: the middle of the aperture, or over the apex
   /// Turns directions of an element on a flat blank into those of this one: the third column is its axis.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  std::int32_t orientation = 0;  ///< equal for elements with the same `turn`; in a job of zones, for those of one zone
-  std::size_t zone = 0;          ///< index of the zone in the job; 0 without zones
+  /// Equal for elements with the same `turn`; in a job with zones, for the elements of one zone.
+  std::int32_t orientation = 0;
+  std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 };
 
 /// The prism that a job cuts. \throw InputError if it cuts cube corners
 const geometry::RtpElement& prism_of(const Job& job);
 geometry::RtpElement& prism_of(Job& job);
 
-/// Returns the elements of the job in the workpiece frame, row by row from y = 0 with x rising, or zone by zone. The
-/// frame of a direct workpiece is mirrored. Partial elements are omitted. The index in the list is the element's number
-/// everywhere. Sizes include shrinkage.
+/// Returns the elements of the job in the workpiece frame: row by row with ascending y and x, or zone by zone. The
+/// index in the list is the number of the element in all programs and reports. Partial elements are omitted. Sizes
+/// include shrinkage. The positions of a direct workpiece are mirrored.
 std::vector<CutElement> cut_elements(const Job& job);
 
 /// By how much the blank is larger than the part: 1 + shrinkage_percent / 100.
 double blank_scale(const Workpiece& workpiece);
 
-/// Returns the number of zones of the job, or 1 if it has none.
+/// Returns the number of zones of the job, or 1 for a job without zones.
 std::size_t zone_count(const Job& job);
 
-/// Returns the element of the job, or of one of its zones, with the sizes in the blank, which include shrinkage.
+/// Returns the element of the job, or of one of its zones, with the sizes that are cut into the blank. They include
+/// shrinkage.
 geometry::Element blank_element(const Job& job, std::size_t zone = 0);
-/// Returns the intended errors of angle of the element; 0 for prisms.
+/// Returns the intended errors of angle of the element. They are 0 for prisms.
 geometry::AngleErrors angle_errors_of(const Job& job, std::size_t zone = 0);
 /// The same of prisms. \throw InputError if the job cuts cube corners
 geometry::RtpElement blank_prism(const Job& job);

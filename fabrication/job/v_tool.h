@@ -25,7 +25,8 @@ struct VToolEdges {
 VToolEdges v_tool_edges(const Tool& tool);
 
 /// Returns the length of the dihedral edges from the apex to the blank's face, without errors of angle. For hexagonal
-/// cube corners this is twice the cube's edge. \pre the element is a cube corner
+/// cube corners, it is twice the edge of the cube.
+/// \pre the element is a cube corner
 double cavity_edge_mm(const geometry::Element& element);
 
 /// Width that a nose of the tool's radius leaves uncut on either facet along a dihedral edge.

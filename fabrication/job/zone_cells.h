@@ -14,12 +14,12 @@ namespace retrace::fabrication {
 /// \pre the job has zones and is a mould
 std::vector<CutElement> elements_of_zones(const Job& job);
 
-/// An error in the position of an element of a zone.
+/// A misplaced element of a zone.
 struct ZoneMisfit {
   std::size_t zone = 0;
   std::string text;  ///< error message, which begins with the position of the element
 };
-/// Returns the error of the first element that is not inside the extent or overlaps another element.
+/// Returns the first element that is not inside the extent of the array or overlaps another element.
 std::optional<ZoneMisfit> misfit_of_zones(const Job& job);
 
 }  // namespace retrace::fabrication

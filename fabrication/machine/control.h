@@ -31,24 +31,24 @@ struct Control {
   std::string mist_off;
   std::string optional_stop;
   std::string stop;
-  bool has_unchecked_lines = false;  ///< the four lines above may be any text
+  bool has_unchecked_lines = false;  ///< true: the four lines above are not checked
   bool rapids_are_straight = false;  ///< axes arrive together; otherwise each goes at its own speed
 };
 
-/// Purpose of a program line that the machine's builder defines: an output, such as mist or the spindle, or a stop.
+/// Purpose of a program line that the machine file defines: an output, such as mist or the spindle, or a stop.
 enum class LineUse : std::uint8_t { output, stop };
 
-/// Checks the characters of a program line that the machine's builder defines, on a Power PMAC or an Aerotech control.
-/// \return an error message unless the line has 1 to 200 printable ASCII characters, no // and no blanks at its ends;
-/// otherwise an empty text
+/// Checks the characters of a program line that the machine file defines for a Power PMAC or an Aerotech control.
+/// \return an empty text if the line has 1 to 200 printable ASCII characters, no // and no blanks at its ends;
+///        otherwise an error message
 std::string unfit_line(std::string_view text);
 
-/// Returns true if a line only sets an output or a variable or calls an M code of the machine's builder. A line for a
-/// stop may also be M0 or M1.
+/// Returns true if a line only sets an output or a variable, or calls an M code that the machine builder defines. A
+/// line for a stop may also be M0 or M1.
 /// \param dialect dialect of the program; empty: any dialect
 bool is_harmless_line(std::string_view text, LineUse use, std::string_view dialect = {});
 
-/// Returns an error message with the allowed forms if is_harmless_line() is false; otherwise an empty text.
+/// Returns an error message with the allowed forms of a line. Returns an empty text if is_harmless_line() is true.
 std::string unknown_line(std::string_view text, LineUse use, std::string_view dialect = {});
 
 /// Those of a Fanuc's increment system.

@@ -28,14 +28,14 @@ struct CutPlane {
   }
 };
 
-/// Returns the axes of the mounted tool as columns in the machine frame. Positions of points of the tool, relative to
-/// its reference point, are given in these axes. The axes of a chisel are the edge, the direction across it, and the
-/// upward direction in the plane of plunging. The tool is touched off after mounting. A rotation about the edge
-/// therefore does not change these axes.
+/// Returns the axes of the mounted tool, as columns, in the machine frame. Points of the tool are given in these axes
+/// relative to its reference point. The axes of a chisel are the edge, the direction across the edge, and the upward
+/// direction in the plane of plunging. A rotation of the tool about its edge does not change these axes, because the
+/// tool is touched off after mounting.
 Eigen::Matrix3d edge_frame(const Machine& machine);
 
-/// Returns the angle by which the mount rotates a chisel about its edge, relative to the plane of plunging. It is added
-/// to the clearance angle.
+/// Returns the change of the clearance angle due to the mount: the rotation of a chisel about its edge relative to the
+/// plane of plunging.
 Angle clearance_change(const Machine& machine);
 
 /// Along the edge that cuts, in the machine frame and of length 1.

@@ -84,8 +84,9 @@ struct MachineBody {
 struct ToolMount {
   /// Of the tool reference point, from where programs take it, along the axes of the machine. Of a head: at B = 0.
   Sourced<geometry::Vec3> offset_mm = {geometry::Vec3::Zero(), Basis::assumed, "the tool is touched off"};
-  /// Rotation vector of the tool about its reference point, as mounted and touched off. A rotation about X changes the
-  /// clearance. A rotation about Y tilts an edge from the horizontal, and one about Z turns it away from X.
+  /// Rotation vector of the mounted tool about its reference point. The tool is touched off after mounting. A rotation
+  /// about X changes the clearance angle, one about Y tilts the edge from the horizontal, and one about Z rotates the
+  /// edge away from X.
   Sourced<geometry::Vec3> turn_deg = {geometry::Vec3::Zero(), Basis::assumed, "the tool is aligned"};
 };
 
@@ -128,7 +129,7 @@ struct Machine {
   Sourced<double> warm_up_s = {0.0, Basis::assumed, "cuts may begin cold, as for every machine that names none"};
   Control control;
   Increments increments;  ///< to which positions are rounded when programs are planned
-  /// Letters of the rotary axes that move to a programmed angle along the shortest path in the chosen dialect.
+  /// Letters of the rotary axes that take the shortest path to a programmed angle, in the chosen dialect.
   std::string shortest_axes;
 
   double first_z_mm() const { return std::min(safe_z_mm.value, z.limits_mm.value.high); }

@@ -50,10 +50,12 @@ struct PlaningLathe {
   double nose_radius_mm = 0.0;  ///< of the tool
   std::int32_t spindle_rpm = 0;
   SpindleDirection spindle_direction = SpindleDirection::clockwise;
-  std::string spindle_start;         ///< program line for dialects without spindle words; empty: none
-  std::string spindle_stop;          ///< given if and only if spindle_start is given
+  /// Program line that starts the spindle, for dialects without spindle words; empty: none.
+  std::string spindle_start;
+  /// Program line that stops the spindle; given if and only if spindle_start is given.
+  std::string spindle_stop;
   InputLocation spindle_start_at;    ///< location of spindle_start in the file
-  bool has_unchecked_lines = false;  ///< spindle_start and spindle_stop may be any text
+  bool has_unchecked_lines = false;  ///< true: spindle_start and spindle_stop are not checked
 };
 
 /// A flat optical element that is to be planed or turned.

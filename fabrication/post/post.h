@@ -38,7 +38,7 @@ void check_words(const Program& program, std::string_view dialect);
 /// \throw InputError likewise
 Increments word_increments(std::string_view dialect, const Control& control);
 
-/// Returns the letters of the rotary axes that move along the shortest path in a dialect.
+/// Returns the letters of the rotary axes that take the shortest path to a programmed angle in a dialect.
 /// \throw InputError for an unknown dialect
 std::string shortest_axes(std::string_view dialect, const Control& control);
 

@@ -103,8 +103,8 @@ struct Visit {
   std::int32_t element = 0;
   std::uint32_t subroutine = 0;  ///< index in Program::subroutines
   Place start = Place::Zero();
-  int pass = 1;    ///< number of the pass, from 1, in the order of cutting
-  int passes = 1;  ///< number of parallel passes that the width of the element needs
+  int pass = 1;    ///< number of this pass, from 1, in the order of cutting
+  int passes = 1;  ///< number of parallel passes that the width of the element requires
 };
 /// Velocities of axes, in mm/s and degrees/s.
 using Velocities = std::array<double, kAxes>;
@@ -134,8 +134,8 @@ struct Spindle {
   std::int32_t rpm = 0;
   bool is_clockwise = true;  ///< M3 of ISO 6983-1, otherwise M4
   std::string start_text;    ///< program line that starts the spindle in a dialect without spindle words; empty: none
-  std::string stop_text;     ///< program line that stops it
-  bool has_unchecked_lines = false;  ///< start_text and stop_text may be any text
+  std::string stop_text;     ///< program line that stops the spindle
+  bool has_unchecked_lines = false;  ///< true: start_text and stop_text are not checked
 };
 
 /// A program that runs alone: preparation, `items` in their order, end. Texts are one line of ASCII without brackets,

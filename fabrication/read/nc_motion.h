@@ -26,20 +26,22 @@ struct NcMotion {
   std::uint8_t known = 0;  ///< bit i: the position of axis i before the move is known; 0 is assumed where it is not
   AxisPositions from;
   AxisPositions to;
-  double feed_mm_per_min = 0.0;  ///< feed of a linear move; 0 if it has no feed or if its time is given
-  double duration_s = 0.0;       ///< of a linear move whose time is given instead of a feed; 0: by the feed
-  bool is_exact_stop = true;     ///< the move ends in its end point
-  bool goes_on = false;          ///< a piece of a move by a cubic, and not its last
-  std::uint8_t shortest = 0;     ///< bit i: axis i goes the shortest way to a place within a turn
-  std::uint8_t absolute = 0;     ///< bit i: axis i goes to the place that its word counts
-  std::uint8_t decimals = 0;     ///< NcBlock::decimals
-  /// Half of the last decimal of the word that gave the position `to` of each axis, in mm or degrees.
+  /// Feed of a linear move; 0 if the program gives no feed or gives the time of the move.
+  double feed_mm_per_min = 0.0;
+  double duration_s = 0.0;    ///< time of a linear move if the program gives it instead of a feed; otherwise 0
+  bool is_exact_stop = true;  ///< the move ends in its end point
+  bool goes_on = false;       ///< a piece of a move by a cubic, and not its last
+  std::uint8_t shortest = 0;  ///< bit i: axis i goes the shortest way to a place within a turn
+  std::uint8_t absolute = 0;  ///< bit i: axis i goes to the place that its word counts
+  std::uint8_t decimals = 0;  ///< NcBlock::decimals
+  /// Maximum rounding error of each axis of `to`, in mm or degrees: half of the last decimal of its word.
   std::array<double, kNcAxes> rounding{};
-  double rate_rounding = 0.0;  ///< maximum relative error of path_speed_per_min() from rounded numbers of the program
+  double rate_rounding = 0.0;  ///< maximum relative error of path_speed_per_min() due to rounded numbers in the program
 
-  /// Returns the length of the move of X, Y and Z in mm. If only rotary axes move, returns their path in degrees.
+  /// Returns the path length of X, Y and Z in mm, or that of the rotary axes in degrees if only these move.
   double path_length() const;
-  /// Returns the given feed, or path_length() divided by the given time, in mm or degrees per minute.
+  /// Returns the speed along the path in mm or degrees per minute: the given feed, or path_length() divided by the
+  /// given time.
   double path_speed_per_min() const { return duration_s > 0.0 ? 60.0 * path_length() / duration_s : feed_mm_per_min; }
 };
 
@@ -81,7 +83,7 @@ struct NcEnd {
 inline constexpr double kCubicPieceMm = 2e-7;
 inline constexpr double kCubicPieceDeg = 2e-7;
 
-/// Maximum number of blocks of a program that are executed.
+/// Maximum number of blocks that are executed, including repeated calls of subroutines.
 inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
 
 /// Carries out a program: calls, modal settings, absolute and incremental words. A move by places, velocities and time

@@ -100,13 +100,14 @@ struct NcBlock {
   std::array<double, kNcAxes> words{};
   std::array<std::uint8_t, kNcAxes> axis_decimals{};  ///< number of decimals of the word of each axis
   Setting<NcMove> move;
-  bool cancels_move = false;  ///< no motion mode: axis words are an error until a block sets `move`
+  /// True: afterwards no motion mode is active, and axis words are an error until a block sets `move`.
+  bool cancels_move = false;
   Setting<bool> absolute;
   Setting<double> unit_mm;      ///< of linear words: 1 or 25.4
   Setting<double> feed;         ///< as written
-  bool clears_feed = false;     ///< the control forgets the feed of earlier blocks
-  double rate_rounding = 0.0;   ///< half of the last decimal of `feed` or `move_time_s`, divided by the value
-  Setting<double> feed_time_s;  ///< time that a feed is per: 60 for mm/min
+  bool clears_feed = false;     ///< true: the control discards the feed of earlier blocks
+  double rate_rounding = 0.0;   ///< maximum relative rounding error of `feed` or `move_time_s`
+  Setting<double> feed_time_s;  ///< time unit of a feed in seconds: 60 for mm/min
   Setting<bool> inverse_time;   ///< feeds are one over the time of their move, per minute
   Setting<double> move_time_s;  ///< time of this and the following moves, until a feed says otherwise
   Setting<bool> exact_stop;     ///< false: blocks are blended

@@ -25,16 +25,18 @@ class NcLines {
   /// The line just handed out is the last one, and nothing ends it: the text may have been cut in it.
   bool is_open_end() const { return rest_.empty() && !ended_by_newline_; }
   const std::string& file() const { return file_; }
-  /// Reports an error in the current line. \throw InputError with the file, the line number, `text` and the whole line
+  /// Reports an error in the current line.
+  /// \throw InputError with the file, the line number, `text` and the complete line
   [[noreturn]] void fail(std::string_view text) const;
   /// Reports that the first word of `rest` is not understood.
-  /// \param rest rest of the current line, perhaps in capitals, without blanks and with marks in place of comments
+  /// \param rest remainder of the current line; it may be in capitals, has no blanks, and has marks in place of
+  ///        comments
   /// \throw InputError as fail()
   [[noreturn]] void fail_word(std::string_view rest) const;
 
  private:
   std::string file_;
-  std::string_view line_;  ///< line that next() returned last
+  std::string_view line_;  ///< line that next() has returned last
   std::string_view rest_;
   std::int32_t number_ = 0;
   bool ended_by_newline_ = true;
@@ -46,7 +48,8 @@ struct NcNumber {
   bool has_point = false;
   std::uint8_t decimals = 0;
   bool is_whole() const;
-  /// Returns half of the last decimal divided by the number; 0 for the number 0.
+  /// Returns the maximum relative rounding error of the number: half of its last decimal, divided by the number.
+  /// Returns 0 for 0.
   double relative_rounding() const;
 };
 
@@ -60,7 +63,7 @@ NcNumber take_number(std::string_view& text, const NcLines& lines);
 struct NcWord {
   char letter = ' ';
   NcNumber number;
-  std::string_view rest = {};  ///< rest of the line, beginning with the letter
+  std::string_view rest = {};  ///< remainder of the line, beginning with `letter`
 };
 
 /// Checks a line number (word N). \throw InputError if it is negative or not a whole number

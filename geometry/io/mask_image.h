@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads a picture as a mask. Its dark pixels determine which elements of an array are cut, or which belong to a zone.
+// Reads a picture as a mask. Dark pixels select the elements of an array that are cut, or that belong to a zone.
 
 #include <filesystem>
 #include <optional>
@@ -12,13 +12,14 @@
 
 namespace retrace::geometry {
 
-/// Which pixels of a picture are dark, `#` in a text for each row, that of largest y first. A pixel is dark when its
-/// grey (0 black .. 255 white; of colours 0.299 R + 0.587 G + 0.114 B, rounded; on white where it is transparent) is
-/// less than threshold * 255. Milliken 2017, section 2.4.
-/// \param cells required numbers of columns and rows, one pixel per cell of the array, as Array::pattern; none: any
-/// size up to 4e7 pixels \param where position of the mask's name, for messages \throw InputError for a file that
-/// cannot be read as a picture, a picture of another size, or one without dark pixels \throw OutputError if pictures
-/// cannot be read at all (picture_files())
+/// Returns the dark pixels of a picture as `#` in one text per row, beginning with the row of largest y. A pixel is
+/// dark if its grey value is less than threshold * 255. The grey value is 0 (black) to 255 (white): 0.299 R + 0.587 G +
+/// 0.114 B, rounded, on a white background (Milliken 2017, section 2.4).
+/// \param cells required numbers of columns and rows, with one pixel per cell of the array as in Array::pattern; empty:
+///        any size up to 4e7 pixels
+/// \param where location of the mask's file name, for messages
+/// \throw InputError if the file is not a readable picture, has another size, or has no dark pixels
+/// \throw OutputError if this build cannot read pictures (picture_files())
 std::vector<std::string> mask_pattern(const std::filesystem::path& file, double threshold,
                                       const std::optional<CellCounts>& cells, const InputLocation& where);
 

@@ -19,13 +19,14 @@ inline constexpr std::size_t kMostStlTriangles = 10'000'000;
 /// header, up to 80 bytes
 std::string stl_text(const BoundaryMesh& mesh, std::string_view title);
 
-/// Reads binary and ASCII STL. A file counts as binary if its length matches the number of triangles stored after its
-/// header, whatever the header begins with. Keywords of ASCII files may be in upper or lower case. Normals are ignored:
-/// the vertices of a triangle are counter-clockwise as seen from outside. Vertices with equal coordinates are merged,
-/// and triangles with two equal corners are dropped. \param name name of the file, for messages \param scale factor
-/// from the unit of the file to mm \throw InputError if the text is neither binary nor ASCII STL, if a coordinate is
-/// not a finite number below 1e6 mm, or if there is no triangle or more than kMostStlTriangles. If the file does not
-/// begin like an STL file, the message contains no text of the file.
+/// Reads binary and ASCII STL. A file is binary if its length matches the number of triangles that follows its header,
+/// whatever the header contains. Keywords of ASCII files may be in upper or lower case. The stored normals are ignored,
+/// because the order of vertices defines the outside: counter-clockwise as seen from there. Vertices with equal
+/// coordinates are merged. Triangles with two equal vertices are removed.
+/// \param name name of the file, for messages
+/// \param scale factor from the unit of the file to mm
+/// \throw InputError if the text is not STL, if a coordinate is not a finite number below 1e6 mm, or if there are no
+///        triangles or more than kMostStlTriangles. The message quotes the file only if it begins like an STL file.
 TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale = 1.0);
 
 /// Reads an STL file as parse_stl() reads its text. If the number of triangles in the header of a binary file is above

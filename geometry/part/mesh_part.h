@@ -24,8 +24,8 @@ ClosedMesh with_openings_closed(const TriangleMesh& mesh);
 /// The mesh as a boundary, all of one role: for check_boundary().
 BoundaryMesh boundary_of(const TriangleMesh& mesh);
 
-/// Returns the midpoint of an edge between two triangles with opposite orientations. Both triangles run along such an
-/// edge in the same direction. Returns nothing if there is no such edge; openings do not count.
+/// Finds two adjacent triangles of opposite orientation, which traverse their common edge in the same direction.
+/// Returns the midpoint of this edge, or nothing if there is no such edge. Edges of openings are ignored.
 std::optional<Vec3> mixed_winding(const TriangleMesh& mesh);
 
 /// The mesh with every triangle turned over.

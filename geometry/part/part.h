@@ -28,10 +28,10 @@ struct ZoneElements {
   std::size_t cells = 0;     ///< of the patch, which has those of zone after zone
 };
 
-/// A region of the plate whose elements form a lattice.
+/// A region of the plate in which the elements form a periodic lattice.
 struct LatticeRegion {
   Polygon outline;                 ///< convex, counter-clockwise
-  std::array<Vec2, 2> periods_mm;  ///< two periods, at right angles to each other
+  std::array<Vec2, 2> periods_mm;  ///< two lattice vectors at right angles
 };
 
 /// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below it
@@ -57,7 +57,7 @@ struct Part {
   std::int64_t elements_full = 0;  ///< finite: whole elements; infinite: elements per period
   std::int64_t elements_partial = 0;
   std::vector<ZoneElements> zones;             ///< parts of zones
-  std::vector<LatticeRegion> lattice_regions;  ///< parts of zones: regions that together cover the plate
+  std::vector<LatticeRegion> lattice_regions;  ///< parts with zones: regions that together cover the plate
   double entrance_area_mm2 = 0.0;              ///< infinite parts: area of one period
   double retro_facet_area_mm2 = 0.0;           ///< infinite parts: area in one period
 

@@ -57,20 +57,21 @@ struct ZoneFault {
   std::string text;  ///< "reaches beyond the part", "overlaps zone 1"
   Of what = Of::zone;
 };
-/// Returns the first fault of the zones, or nothing. Zones must cover the plate without overlap. For zones by cell, the
-/// arrays must have cells at the positions of the first array's cells, rotations must map each outline to itself, and
-/// each zone must have elements.
+/// Returns the first fault of the zones, or nothing. The zones must cover the plate without overlap. If zones consist
+/// of cells, three more conditions hold. The array of each zone must have its cells at the positions of the first
+/// array's cells. The rotation of a zone must map the outline of each element to itself. Each zone must have elements.
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec);
 
 /// About how many elements its zones have.
 double element_estimate(const ZonedSpec& spec);
 
-/// Position and rotation of an element in the part.
+/// Position and rotation of a complete element in the part.
 struct StandingElement {
   Vec2 apex_mm = Vec2::Zero();  ///< in the part frame
-  double rotation_deg = 0.0;    ///< rotation of its zone, plus 180 if the zone's array rotates the element
+  /// Rotation of its zone, plus 180 for an element that is rotated within the array of the zone.
+  double rotation_deg = 0.0;
 };
-/// Returns the whole elements of each zone, which are also those of the part.
+/// Returns the complete elements of each zone. Partial elements are omitted.
 /// \pre as of build_part(); all elements are cube corners
 std::vector<std::vector<StandingElement>> whole_elements(const ZonedSpec& spec);
 

@@ -21,12 +21,13 @@ namespace retrace {
 struct DetectorRequest {
   double incidence_deg = 0.0;  ///< in (-90, 90)
   double azimuth_deg = 0.0;
-  std::size_t pixels = 400;                   ///< along the longer side of the face
-  std::size_t angle_pixels = 201;             ///< along either side of the angular map
-  double window_deg = 1.0;                    ///< half width of the angular map
-  std::string engine = "auto";                ///< auto, exact, montecarlo or embree
-  std::optional<double> cutoff = {};          ///< exact: least power that is followed, as a share of the incident power
-  std::optional<std::uint64_t> samples = {};  ///< rays, by Monte Carlo; by default 2^22
+  std::size_t pixels = 400;        ///< along the longer side of the face
+  std::size_t angle_pixels = 201;  ///< along either side of the angular map
+  double window_deg = 1.0;         ///< half width of the angular map
+  std::string engine = "auto";     ///< auto, exact, montecarlo or embree
+  /// Exact engine: minimum power of a beam that is followed, as a fraction of the incident power.
+  std::optional<double> cutoff = {};
+  std::optional<std::uint64_t> samples = {};  ///< number of rays of the Monte Carlo engines; empty: 2^22
   std::uint32_t seed = 1;
 };
 

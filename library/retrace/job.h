@@ -40,7 +40,7 @@ struct FabricationRequest {
   std::string dialect = "rs274ngc";  ///< rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1
   std::string phase = "all";
   std::optional<std::uint64_t> from_element = {};
-  std::optional<std::uint64_t> from_pass = {};  ///< first pass in the visit of `from_element`, counted from 1
+  std::optional<std::uint64_t> from_pass = {};  ///< first pass, counted from 1, of the first visit of `from_element`
   std::optional<std::uint64_t> stop_every = {};
   std::optional<double> split_hours = {};
   std::optional<std::string> job_text = {};  ///< of the job, whose file is then a name alone

@@ -27,7 +27,7 @@ struct PhotometryRequest {
   std::string light = "a";                     ///< a, d65: a CIE illuminant as the eye sees it; design: the design's
   std::string engine = "auto";                 ///< auto, exact, montecarlo or embree
   std::optional<double> cutoff = {};           ///< least power that is followed, as a share of what falls on an element
-  std::optional<std::uint64_t> samples = {};   ///< rays of a direction, by Monte Carlo; by default 2^20
+  std::optional<std::uint64_t> samples = {};   ///< number of rays per direction of the Monte Carlo engine; empty: 2^20
   std::uint32_t seed = 1;
   bool diffraction = true;
   bool window_power = false;  ///< power in the far field's window and outside of it, as a check

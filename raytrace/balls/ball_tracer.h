@@ -16,9 +16,10 @@ class BallTracer {
  public:
   explicit BallTracer(const BallLayer& layer) : layer_(layer) {}
 
-  /// \param optics lossless_entrance: every clear interface passes all; mirror_facets or an opaque layer of
-  /// facet_layers: the mirror \param score of the directions in which light leaves; null: nothing
-  /// \param progress as that of Rounds
+  /// \param optics lossless_entrance: clear interfaces transmit all light; mirror_facets or an opaque layer of
+  ///        facet_layers: the mirror behind the balls
+  /// \param score function of the directions in which light leaves; null: none
+  /// \param progress as in the constructor of Rounds
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
                          const DirectionScore* score = nullptr, Progress* progress = nullptr) const;

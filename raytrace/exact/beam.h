@@ -121,9 +121,10 @@ struct Beam {
   CoherentLight light;    ///< before absorption
   double phase_mm = 0.0;  ///< of the field at the origin, with the wave continued there: an optical path
   CellTrail trail;
-  double share = 1.0;             ///< of the entrance's cross-section
-  double transmission = 1.0;      ///< of the material up to the start of this beam; mean over the start polygon
-  double power = 0.0;             ///< that it starts with, as a share of the incident
+  double share = 1.0;  ///< of the entrance's cross-section
+  /// Transmittance of the material up to the start of this beam; mean over the polygon at the start.
+  double transmission = 1.0;
+  double power = 0.0;             ///< power at the start, as a fraction of the incident power
   PathLength path_length;         ///< in the material
   EntryPoint entry;               ///< where it came in
   std::vector<TexturedHit> hits;  ///< in their order: with BeamPolicy::keeps_phases, and of facets with a form
@@ -134,7 +135,8 @@ struct Beam {
   std::uint32_t level_steps = 0;                                        ///< without an interface
   /// At equal elements of an array: where the same beam goes, this one, at the offset 0, included. Null: here alone.
   std::shared_ptr<const BeamPlaces> places;
-  std::uint32_t region = 0;  ///< index of the region of EqualPlaces that contains the positions
+  /// Parts with zones: index, in EqualPlaces::regions(), of the region that contains `places`.
+  std::uint32_t region = 0;
 
   double place_count() const { return places ? static_cast<double>(places->size()) : 1.0; }
   /// Of this beam and those like it.

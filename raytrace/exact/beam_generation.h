@@ -14,12 +14,13 @@ namespace retrace::raytrace {
 
 class BeamWalk;
 
-/// A generation of weak beams. All of them have met the same number of interfaces since they became too weak to be
-/// followed exactly. They are sorted by direction and position, because similar beams lead to similar results.
-/// Survivors are chosen in this order (Array-RQMC: L'Ecuyer, Lecot and Tuffin, Operations Research 56, 958, 2008).
-/// Beams that represent copies at several positions (Beam::places) have one entry per position, one after the other,
-/// and each survivor has a single position. In an infinite part, a survivor continues at the first position and
-/// represents all of them.
+/// A generation of weak beams, from which a few survivors are selected at random. All beams of a generation have met
+/// the same number of interfaces since their power fell below the threshold of exact tracing. They are sorted by
+/// direction and position, because similar beams lead to similar results, and the survivors are selected in this order
+/// (Array-RQMC: L'Ecuyer, Lecot and Tuffin, Operations Research 56, 958, 2008).
+/// A beam may represent copies at several positions (Beam::places). It then has one entry per position, and each
+/// survivor has a single position. In an infinite part, a survivor starts at the first position and represents all of
+/// them.
 class BeamGeneration {
  public:
   /// \param part whose periods or outline places are compared by \param beams outlive this
@@ -42,7 +43,7 @@ class BeamGeneration {
   struct Entry {
     std::uint64_t order;  ///< of direction and place
     std::size_t beam;
-    double power_up_to;  ///< sum of the powers of all entries up to and including this one
+    double power_up_to;  ///< sum of the powers of all entries up to and including this entry
   };
   const WaitingBeams& beams_;
   bool is_endless_;

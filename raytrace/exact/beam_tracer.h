@@ -127,11 +127,11 @@ class BeamTracer {
   /// \pre `part` outlives the tracer
   explicit BeamTracer(const geometry::Part& part, Elements elements = Elements::each_by_itself);
 
-  /// Of beams above the cut-off, and of weak ones where BeamPolicy::weak asks for them, which the mean over replicates
-  /// counts of.
-  /// \param progress receives the work done as a fraction of the work expected; null: nothing is reported. With
-  ///        BeamPolicy::weak, nothing is reported either
-  /// \throw BudgetError if `max_beams` is reached; the message says what was accounted for
+  /// Traces beams above the cut-off. If BeamPolicy::weak is set, weak beams are resampled and contribute the mean over
+  /// the replicates.
+  /// \param progress receives the finished fraction of the expected work; null, or with BeamPolicy::weak: nothing is
+  ///        reported
+  /// \throw BudgetError if `max_beams` is reached; the message contains the power that was accounted for
   BeamResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                    const BeamPolicy& policy, const Cancellation* cancel = nullptr, const BeamObserver& observer = {},
                    Progress* progress = nullptr) const;

@@ -122,14 +122,14 @@ class BeamWalk {
   double enter_region(const Beam& whole, std::uint32_t region, const Vec2& most_step_mm);
   void enter_regions(const Beam& whole, double parts);
   void pend(Beam&& beam);
-  /// Removes the last waiting beam and returns it.
+  /// Removes and returns the beam that was queued last.
   Beam next_pending();
   void keep_equal_places(Beam& beam);
-  /// Returns a shared list of the positions, or null if there is only one position. The memory of the list counts until
-  /// the last beam that uses the list is destroyed.
+  /// Returns a shared list of the positions, or null for a single position. The memory of the list is counted until the
+  /// last beam with this list is destroyed.
   std::shared_ptr<const BeamPlaces> shared(BeamPlaces places) const;
-  /// Returns true if the list of beams below the cut-off is full. Further beams are then not stored. If a lower cut-off
-  /// is needed, the walk must start again.
+  /// Returns true if the list of beams below the cut-off is full. Further beams are then discarded. To use a lower
+  /// cut-off, the walk must start again.
   bool has_many_deferred() const;
   void defer(Beam&& beam);
   /// Power of beams that wait, in this pass or below its cut-off.
@@ -177,7 +177,7 @@ class BeamWalk {
   double index_at(bool inside) const { return inside ? setup_.optics.index : setup_.optics.back_index; }
   void observe_front() const;
   [[noreturn]] void fail_on_budget() const;
-  /// Checks the memory of the beams.
+  /// Checks the memory that the queued beams occupy.
   /// \throw BudgetError if the beams of this walk exceed the memory budget
   /// \throw SharedMemoryShort as BeamMemory::require_shared()
   void require_memory() const;
@@ -193,7 +193,7 @@ class BeamWalk {
   std::vector<ScatterSite>* sites_ = nullptr;
   std::optional<std::uint32_t> replicate_;
   Tally tally_;
-  /// Queue of beams, with their total power and the memory that they occupy.
+  /// Queue of beams, their total power, and the memory that they occupy.
   struct Waiting {
     WaitingBeams beams;
     double power = 0.0;
@@ -206,7 +206,7 @@ class BeamWalk {
     }
   };
   Waiting pending_;
-  Waiting deferred_;  ///< below the cut-off
+  Waiting deferred_;  ///< beams below the cut-off, kept for a lower cut-off
   std::shared_ptr<BeamMemory> memory_ = std::make_shared<BeamMemory>();
   std::size_t most_kept_ = std::numeric_limits<std::size_t>::max();
   double cutoff_ = 0.0;

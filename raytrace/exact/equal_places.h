@@ -15,12 +15,12 @@
 
 namespace retrace::raytrace {
 
-/// Translational symmetry of an array: identical cells, and the region within which the part does not change when it is
-/// shifted by a period. In a part of zones, each region has a symmetry of its own.
+/// Translational symmetry of an array: the identical cells, and the region within which a shift by one period maps the
+/// part to itself. A part with zones has a separate symmetry for each region.
 class EqualPlaces {
  public:
-  /// Returns the symmetry of a part. Returns nothing if the elements differ or are too few, or if the outline is not a
-  /// rectangle along the axes. For a part of zones, returns nothing if no region repeats.
+  /// Returns the symmetry of a part, or nothing if it has none: if the elements differ, are too few, or have an outline
+  /// that is not a rectangle along the axes. For a part with zones, returns nothing if no region is periodic.
   /// \param centre_mm point of the plane z = 0 that becomes the origin
   static std::optional<EqualPlaces> of(const geometry::Part& part, const geometry::Vec2& centre_mm);
 
@@ -31,16 +31,16 @@ class EqualPlaces {
 
   /// Period of a part that is a single array.
   const geometry::Vec2& period_mm() const { return period_mm_; }
-  /// Regions of a part of zones, which together cover the part; empty for a part that is a single array.
+  /// Regions of a part with zones, which together cover the part. Empty for a part with a single array.
   const std::vector<RepeatRegion>& regions() const { return regions_; }
   /// Of a part that repeats without end: by what it may be moved besides, within its period, and stay the same.
   const std::optional<geometry::Vec2>& within_period_mm() const { return within_period_mm_; }
 
-  /// Divides the positions of a beam into groups. Within a group, all copies of the beam meet identical facets.
+  /// Divides the copies of a beam into groups that meet identical facets.
   /// \param places offsets of the beam and its copies, which differ by whole periods
-  /// \param sweep box, in projection along z, that contains everything that the first copy may meet
-  /// \param region index of the region that contains the positions, for parts of zones
-  /// \return empty if all copies meet identical facets
+  /// \param sweep box, in projection along z, around all facets that the first copy may meet
+  /// \param region parts with zones: index of the region that contains the copies
+  /// \return the offsets of each group; empty if all copies form one group
   std::vector<BeamPlaces> divided(const BeamPlaces& places, const geometry::Rectangle& sweep,
                                   std::uint32_t region) const;
 

@@ -14,10 +14,11 @@ namespace retrace::raytrace {
 
 class WayToSource;
 
-/// Launches rays where beams meet rough facets. A ray carries only scattered power. It starts at a random point of the
-/// polygon on the facet, in a random direction of the lobe, and is traced with all physics. It never becomes a beam
-/// again, so that no light is counted twice. If light is diffracted once at the site and reflections lead from there to
-/// the source, light in cones much narrower than the lobe is scored by expected value: a second ray starts in a
+/// Starts rays for the light that rough facets scatter out of beams. A ray starts at a random point of the beam's
+/// polygon on the facet, in a random direction of the scattering lobe, and is traced like a Monte Carlo ray. It never
+/// becomes a beam again, so that no light is counted twice.
+/// Cones much narrower than the lobe receive few random rays. If the light is diffracted one time and then only
+/// reflected on its path to the source, it is therefore scored by expected value: an additional ray starts in a
 /// direction that leads into the cone, with the power of the lobe in this direction (docs/theory/beams.md). For one
 /// replicate and one thread.
 class ScatteredRays : public ScatteredReplicate {
@@ -45,7 +46,7 @@ class ScatteredRays : public ScatteredReplicate {
   const Cancellation* cancel_;
   Tally tally_;
   PathWalker walker_;
-  Tally apart_;  ///< tally of a single ray; see follow_scored()
+  Tally apart_;  ///< tally of one ray at a time; see follow_scored()
   PathWalker walker_apart_;
 };
 

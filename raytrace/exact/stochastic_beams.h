@@ -20,12 +20,11 @@ class BeamGeneration;
 /// One direction of a BeamTracer, traced round by round at falling thresholds until the standard error of RRE is below
 /// a target.
 ///
-/// Beams of a power above the threshold w are followed as BeamTrace follows them. A generation of weaker ones, with the
-/// power P together, is resampled: of it n = ceil(P / (kThinning w)) survive with P / n each, chosen by systematic
-/// resampling, which is unbiased and keeps the power (BeamGeneration). Replicates, each with
-/// random numbers of its own, give the standard error. The standard error is at least the power of one survivor, or of
-/// one ray of scattered light, divided by the number of replicates. This allows for light that no replicate has traced
-/// (docs/theory/beams.md).
+/// Beams with more power than the threshold w are followed as BeamTrace does. Each generation of weaker beams, of total
+/// power P, is resampled: n = ceil(P / (kThinning w)) beams survive with the power P / n each. Systematic resampling
+/// selects them, which is unbiased and preserves the power (BeamGeneration). The standard error is estimated from
+/// independent replicates. It is at least the power of one survivor, or of one ray of scattered light, divided by the
+/// number of replicates. This term allows for light that no replicate has traced (docs/theory/beams.md).
 ///
 /// At rough facets beams keep their specular light, and what is scattered goes on by itself, in each replicate of its
 /// own (ScatteredLight).
@@ -49,9 +48,10 @@ class StochasticBeams {
                   const Cancellation* cancel = nullptr, BeamObserver observer = {});
   ~StochasticBeams();
 
-  /// Traces one more round, at a lower threshold. If the round exceeds the memory budget, the result of the round
-  /// before is kept. \return true if no further round is needed or possible, or if tracing was cancelled \throw
-  /// BudgetError if the first round exceeds the memory budget
+  /// Traces one more round at a lower threshold. If the round exceeds the memory budget, the result of the preceding
+  /// round is kept.
+  /// \return true if no further round is needed or possible, or if tracing was cancelled
+  /// \throw BudgetError if the first round exceeds the memory budget
   bool advance();
   /// Of the last round, without rays. 1.96 standard errors hold the truth in 95 of 100 cases.
   const MonteCarloResult& result() const { return result_; }

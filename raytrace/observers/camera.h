@@ -122,10 +122,12 @@ class CameraTracer {
   /// Whether many paths are followed together.
   bool is_by_cells() const;
   CameraImage empty_image() const;
-  /// Traces a pass with all available threads. Returns nothing if it was cancelled. The result depends only on the
-  /// seed, the scene and the number of the pass. In the cell engine, PixelGuide selects half of the points of a pixel
-  /// if it reduces noise. The guide learns from a training pass, which is not part of the picture, and from pass 0. The
-  /// first call traces these passes. Only one call may run at a time. \throw BudgetError if power is lost
+  /// Traces one pass over the picture with all available threads. Returns nothing if it was cancelled. The result
+  /// depends only on the seed, the scene and the number of the pass.
+  /// In the cell engine, PixelGuide selects half of the points of a pixel where this reduces noise. It is trained with
+  /// pass 0 and with a training pass that is not part of the picture. The first call traces both. Only one call may run
+  /// at a time.
+  /// \throw BudgetError if power is lost
   std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;
   /// Adds the next pass; false and nothing added if it was cancelled.
   bool add_pass(CameraImage& image, const Cancellation* cancel = nullptr) const;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to CameraTracer: the lens from which rays start, the point at which a ray meets the sheet, and the lamp.
+// Internal to CameraTracer: the lens at which rays start, the intersection of a ray with the sheet, and the lamp.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -18,7 +18,7 @@ struct WorldRay {
   Vec3 direction;
 };
 
-/// Point at which a ray of the camera meets the part. The local frame is the frame in which light is traced.
+/// Intersection of a camera ray with the sheet. The local frame is the part frame, in which light is traced.
 struct Contact {
   enum class What { nothing, face, side, outside, dark };
   What what = What::nothing;
@@ -44,7 +44,7 @@ class Lens {
 
   /// Returns the ray through a point of the picture.
   /// \param at position in pixels, from the upper left corner of the picture
-  /// \param pupil point of the unit disc, which represents the pupil
+  /// \param pupil point of the unit disc, which is mapped to the pupil
   WorldRay ray(const Vec2& at, const Vec2& pupil) const {
     const Vec3 origin = eye_ + pupil_radius_mm_ * (pupil.x() * right_ + pupil.y() * up_);
     const Vec3 focus = target_ + pixel_mm_ * ((at.x() - half_.x()) * right_ + (half_.y() - at.y()) * up_);
@@ -61,7 +61,7 @@ class Lens {
   double pupil_radius_mm_ = 0.0;
 };
 
-/// Luminance of the lamp, seen along a ray that leaves the part.
+/// Luminance of the lamp in the direction of a ray that leaves the part.
 class Luminaire {
  public:
   Luminaire(const LampDisc& lamp, const CameraView& view, DiscAverage discs)
@@ -74,7 +74,7 @@ class Luminaire {
     intensity_ = lamp.illuminance_lx * distance * distance;
   }
 
-  /// Returns the luminance of the lamp along a ray, averaged over the discs, in cd/m^2.
+  /// Returns the luminance of the lamp in the direction of a ray, averaged over the discs of lamp and pupil, in cd/m^2.
   double luminance(const Vec3& from, const Vec3& direction) const {
     if (!(intensity_ > 0.0)) return 0.0;
     return discs_ == DiscAverage::kernel ? averaged(from, direction) : met(from, direction);
@@ -89,8 +89,8 @@ class Luminaire {
     const double chord = (direction - way / distance).norm();
     if (chord > 1.01 * (lamp_rad + pupil_rad)) return 0.0;
     const ApertureKernel kernel({Angle::from_rad(2.0 * lamp_rad), Angle::from_rad(2.0 * pupil_rad)});
-    // Illuminance at this point, times the probability density per steradian of this direction. The density is that
-    // of rays from a random point of the lamp's disc to a random point of the pupil's disc.
+    // Illuminance at this point, times the probability density of this direction per steradian. The density is that of
+    // rays from a random point of the lamp's disc to a random point of the pupil's disc.
     return intensity_ / (distance * distance) * kernel.per_sr(2.0 * std::asin(0.5 * chord));
   }
 
@@ -111,8 +111,8 @@ class Luminaire {
   double intensity_ = 0.0;  ///< towards the target, lx mm^2
 };
 
-/// Returns the first point at which a ray meets a curved or plane sheet. At the target point, the face of the sheet is
-/// tangent to the plane z = thickness_mm.
+/// Returns the first intersection of a ray with a curved or plane sheet. The surface of the sheet touches the plane z =
+/// thickness_mm at the target point.
 inline Contact contact_with(const Film& film, double thickness_mm, const WorldRay& ray) {
   Contact contact;
   const auto is_on_it = [&](double u, double v) {

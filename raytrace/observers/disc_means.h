@@ -1,6 +1,6 @@
 #pragma once
 
-// Averages far fields over the discs of source and receiver, at all points of a square of directions.
+// Averages far fields over the discs (apertures) of source and receiver, at all points of a square grid of directions.
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace retrace::raytrace {
 
-/// Grid of points in the x and y components of unit vectors. Points are stored row by row, with ascending y and x.
+/// Square grid in the x and y components of unit vectors. Points are stored row by row, with ascending y and x.
 struct CosineSquare {
   geometry::Vec2 middle = geometry::Vec2::Zero();
   double half_width = 0.0;  ///< > 0
@@ -23,17 +23,18 @@ struct CosineSquare {
   geometry::Vec2 at(std::size_t index) const;
 };
 
-/// A far field, and the weights of its intensities in three bands, such as red, green and blue.
+/// A far field and the weights with which it contributes to three bands, such as red, green and blue.
 struct BandedField {
   const FarField* field = nullptr;
   std::array<double, 3> weights{};
 };
 
-/// Returns, for each point and band, the sum over the fields of weight times FarField::intensity(), per steradian. The
-/// error is at most 2e-4 of the maximum. Points below the horizon have the value 0. The diffracted light is computed
-/// one time on a lattice that resolves its details. Means over the discs are sums over this lattice
-/// (docs/theory/appearance.md). If the computation is cancelled, the result is invalid.
-/// \pre all fields have the same direction of light
+/// Returns the intensity per steradian of each band at each grid point, averaged over the discs of source and receiver.
+/// The intensity of a band is the sum of FarField::intensity() over all fields, each times its weight for the band. The
+/// error is at most 2e-4 of the maximum. Points below the horizon have the value 0.
+/// The diffracted light is computed one time, on a lattice that resolves its details. The averages are sums over the
+/// points of this lattice (docs/theory/appearance.md). If the computation is cancelled, the result is invalid.
+/// \pre all fields have the same direction of incident light
 std::vector<std::array<double, 3>> disc_means(std::span<const BandedField> fields, const CosineSquare& square,
                                               const ApertureKernel& kernel, const Cancellation* cancel);
 

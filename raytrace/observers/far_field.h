@@ -26,8 +26,8 @@ struct FarFieldPolicy {
   /// Light of one cell whose optical paths differ by more does not interfere: the coherence length of a lamp (a few um)
   /// and what the errors of angle of a part make of equal paths.
   double coherence_length_mm = 0.02;
-  /// Maximum fraction of the power in the window that is not diffracted. It is the power of the faintest beams. A far
-  /// field of few polygons is diffracted completely.
+  /// Maximum fraction of the power in the window that is treated without diffraction. The faintest beams are selected.
+  /// If there are few polygons, all beams are diffracted.
   double undiffracted_share = 1e-4;
   std::size_t most_polygons = 20'000;  ///< that are diffracted; the faintest beyond are not
   /// Cells so large that their pattern is finer than this are not diffracted: the discs of source and receiver hide it.
@@ -73,7 +73,8 @@ class FarField {
   std::vector<double> diffracted_per_sr(const std::vector<Vec3>& directions) const;
   /// The lobes of what scatters, likewise.
   double scattered_per_sr(const Vec3& direction) const;
-  double scattered_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;  ///< mean over the discs
+  /// Mean over the discs of source and receiver.
+  double scattered_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;
 
   /// Power by the bins of a grid, and outside of it at the end. Undiffracted light goes where its direction is;
   /// diffracted light by its density in the middle of a bin.

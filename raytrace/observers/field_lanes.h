@@ -1,6 +1,7 @@
 #pragma once
 
-// Internal to the far field: Fourier transforms of polygons and powers of fields, for many directions at once by SIMD.
+// Internal to the far field: Fourier transforms of polygons and power of fields, for many directions at a time with
+// SIMD.
 
 #include <Eigen/Core>
 #include <array>
@@ -21,7 +22,7 @@ struct ComplexBlock {
   Block re, im;
 };
 
-/// The polygon of a PolygonTransform.
+/// Corners and size of the polygon of a PolygonTransform.
 struct Outline {
   explicit Outline(const PolygonTransform& transform);
 
@@ -45,21 +46,23 @@ struct Use {
 void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& transforms,
                const std::array<double, 4>& coherency, double copies, Block& sum);
 
-/// Interference fringes of scattered light: two paths meet the same places of a facet. Light that has met a place
-/// leaves the entrance face at r along one path, and at turn r + shift along the other (docs/theory/photometry.md).
+/// Interference fringes of scattered light. They arise if two paths, such as a path and its reverse, meet the same
+/// points of a rough facet. Light of such a point leaves the entrance face at r after one path, and at turn r + shift
+/// after the other (docs/theory/photometry.md).
 struct Fringes {
-  Outline outline;  ///< polygon of all r
+  Outline outline;  ///< all positions r
   Eigen::Matrix2d turn;
   geometry::Vec2 shift_mm;
-  geometry::Vec2 cosines_here, cosines_there;  ///< direction cosines of the specular light of both paths
-  std::array<double, 2> coefficient;           ///< real and imaginary part
+  geometry::Vec2 cosines_here, cosines_there;  ///< direction cosines of the specular light of the two paths
+  std::array<double, 2> coefficient;           ///< real and imaginary part of the fringe amplitude
   Eigen::Matrix2d spread_mm2;                  ///< second moments of the covariance; symmetric
-  Eigen::Matrix2d dip_mm2;   ///< second moments of what is subtracted where both places coincide; symmetric
-  double dip_mm2_of_places;  ///< area of the places for which it is subtracted
+  Eigen::Matrix2d dip_mm2;   ///< second moments of the term that is subtracted where both points coincide; symmetric
+  double dip_mm2_of_places;  ///< area of the points from which that term is subtracted
 };
 
-/// Adds the power of fringes per unit area of direction cosines.
-/// \param wave_number in radians per mm \param x, y direction cosines
+/// Adds the power of the fringes per unit area of direction cosines to `sum`.
+/// \param wave_number in radians per mm
+/// \param x, y direction cosines
 void add_fringes(const Fringes& fringes, double wave_number, const Block& x, const Block& y, Block& sum);
 
 }  // namespace retrace::raytrace::field_lanes

@@ -37,7 +37,7 @@ class ScatteredField {
   ///        than the discs of source and receiver
   void add(const CoherentGroup& group, bool with_fringes);
 
-  /// Power of the lobes per unit area of direction cosines.
+  /// Returns the power of the scattering lobes per unit area of direction cosines.
   double lobes_per_cosines(const geometry::Vec2& cosines) const;
   /// Returns the power of the lobes per unit area of direction cosines, averaged with the kernel. Element 0 is the
   /// contribution of beams without a replicate. Element 1 + k is the contribution of replicate k, divided by the number
@@ -45,14 +45,15 @@ class ScatteredField {
   /// \param cosines_per_rad derivatives of the direction cosines by two rotation angles of the direction
   Eigen::ArrayXd lobes_by_replicate(const geometry::Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
                                     const ApertureKernel& kernel) const;
-  /// Power of the lobes within an ellipse of direction cosines.
+  /// Returns the power of the scattering lobes within an ellipse of direction cosines.
   /// \param middle centre of the ellipse
   /// \param axes matrix that maps the unit disc to the ellipse
   double lobes_within(const geometry::Vec2& middle, const Eigen::Matrix2d& axes) const;
-  /// Returns the power of the fringes per unit area of direction cosines. It is negative between bright fringes, and
-  /// its integral over all directions is 0. The result contains zeros if the calculation was cancelled.
+  /// Returns the power of the interference fringes per unit area of direction cosines. It is positive in bright fringes
+  /// and negative in dark ones; the integral over all directions is 0. If the computation was cancelled, the result
+  /// contains zeros.
   std::vector<double> fringes_per_cosines(std::span<const geometry::Vec2> cosines, const Cancellation* cancel) const;
-  /// Total power of the lobes over all directions.
+  /// Returns the total power of the scattering lobes over all directions.
   double power() const { return power_; }
 
  private:

@@ -48,10 +48,11 @@ struct LightPath {
 /// Function that returns the first facet that a ray meets, or nothing.
 using HitFinder = std::function<std::optional<SurfaceHit>(const SurfaceRay& ray)>;
 
-/// Follows the stronger branch at every interface from a point of the entrance face: how one would draw the light. For
-/// explaining a part, not for adding up power. \pre part is finite, facets are smooth
+/// Follows the stronger branch at every interface, from a point of the entrance face. The resulting path is a drawing
+/// aid and does not give the distribution of power.
 /// \param first_hit finds facets of the part, in coordinates with the origin `centre_mm`
 /// \param cone_deg half angle of the acceptance cone
+/// \pre the part is finite and its facets are smooth
 LightPath strongest_path(const geometry::Part& part, const HitFinder& first_hit, const Vec2& centre_mm,
                          const Optics& optics, const Illumination& illumination, double cone_deg, const Vec2& entry_mm);
 

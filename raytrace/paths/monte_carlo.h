@@ -56,10 +56,11 @@ class MonteCarlo {
                       const geometry::Entrance* entrance_face = nullptr) = delete;
   ~MonteCarlo();
 
-  /// Traces in the calling thread's TBB arena. \pre for Engine::cell: cell_serves()
-  /// \param score what is asked of the directions in which light leaves the entrance face; null: nothing
-  /// \param progress as that of Rounds
-  /// \throw BudgetError if power is lost: a ray missed every face from inside
+  /// Traces rays in the TBB arena of the calling thread.
+  /// \param score function of the directions in which light leaves the entrance face; null: none
+  /// \param progress as in the constructor of Rounds
+  /// \pre for Engine::cell: cell_serves()
+  /// \throw BudgetError if power is lost because a ray inside the part missed every face
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
                          const DirectionScore* score = nullptr, Progress* progress = nullptr) const;
@@ -67,7 +68,8 @@ class MonteCarlo {
   /// The same round by round, to be dropped if something else is quicker.
   class Run {
    public:
-    /// Parameters as those of trace(). \pre `tracer`, `cancel`, `score` and `progress` outlive the run
+    /// The parameters are those of trace().
+    /// \pre `tracer`, `cancel`, `score` and `progress` outlive the run
     Run(const MonteCarlo& tracer, const Optics& optics, const Illumination& illumination,
         const std::vector<double>& cones_deg, const Sampling& sampling, const PathPolicy& policy,
         const Cancellation* cancel = nullptr, const DirectionScore* score = nullptr, Progress* progress = nullptr);

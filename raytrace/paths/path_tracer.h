@@ -51,9 +51,9 @@ class PathWalker {
   void resume(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample,
               std::uint32_t& choices);
 
-  /// Returns the product of the reflections from a point inside the part to the entrance face, assuming that light is
-  /// reflected at every face. The matrix maps a direction at the point to the direction at the entrance face. Returns
-  /// nothing if light does not reach the entrance face after at most kMostMirrors reflections.
+  /// Returns the product of the reflection matrices along the path from a point inside the part to the entrance face.
+  /// All faces are assumed to reflect. The product maps the direction at the point to the direction at the entrance
+  /// face. Returns nothing if the path has more than kMostMirrors reflections.
   /// \pre all faces are plane
   std::optional<Eigen::Matrix3d> mirrors_to_entrance(const Vec3& position, const Vec3& direction) const;
 

@@ -41,9 +41,11 @@ Branch choose_branch(Light& reflected, Light& transmitted, double split_power, c
 struct TexturedReturn {
   std::array<Ray, 5> rays;  ///< the first `count` of them
   std::size_t count = 0;
-  std::optional<std::size_t> once;  ///< index of the ray that roughness between dielectrics has diffracted once
-  double truncated = 0.0;           ///< power that the texture model removes, or adds if negative
-  double absorbed = 0.0;            ///< power that layers absorb
+  /// Index in `rays` of the light that roughness between dielectrics has diffracted exactly one time.
+  std::optional<std::size_t> once;
+  /// Power by which the texture model falls short of the incident power; may be negative.
+  double truncated = 0.0;
+  double absorbed = 0.0;  ///< power absorbed in layers
 
   /// Mirrors at the facet's plane the directions that its form has turned to the wrong side of it: light that grazes
   /// the facet. \param plane_normal unit, out of the part
@@ -57,7 +59,7 @@ struct TexturedReturn {
 TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
                                    surface_models::RandomStream& random);
 
-/// Returns the light that is diffracted once into a direction. Its power is per steradian.
+/// Returns the light that the facet diffracts one time into a given direction, with its power per steradian.
 /// \param direction unit vector
 /// \pre surface_models::first_order_model(optics.facet_scatter) without waviness, and the ray has power
 Ray diffracted_once_into(const Optics& optics, const Vec3& normal, const Ray& ray, const Vec3& direction);

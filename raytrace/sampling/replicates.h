@@ -26,9 +26,10 @@ std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t rep
 using ReplicateTask =
     std::function<std::optional<Tally>(std::uint32_t replicate, std::uint32_t first, std::uint32_t last)>;
 
-/// Adds rays from..until-1 of every replicate to its tally, on the threads at hand; sums do not depend on their number.
-/// The tallies of all tasks are kept until the end. Rounds therefore calls this function for few rays at a time.
-/// False if cancelled: the tallies are then of no use.
+/// Traces the rays from..until-1 of every replicate and adds their results to the tallies, with all available threads.
+/// The sums do not depend on the number of threads. The tallies of all tasks are kept until the end, so that callers
+/// should request few rays at a time.
+/// \return false if cancelled; the tallies are then invalid
 bool trace_replicates(std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates,
                       const ReplicateTask& trace);
 
@@ -38,8 +39,8 @@ using TraceRange = std::function<bool(std::uint32_t from, std::uint32_t until, s
 /// Doubles the rays round by round until the target error is reached, or as many are traced as are requested.
 class Rounds {
  public:
-  /// \param progress receives the fraction of the rays that are traced. Without Sampling::rays, it receives an
-  ///        estimate, because the number of rays is not known. Null: nothing is reported
+  /// \param progress receives the traced fraction of the rays. Without Sampling::rays, the number of rays is unknown
+  ///        and an estimate is reported. Null: nothing is reported
   Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::size_t score_size, TraceRange trace_range,
          Progress* progress = nullptr);
 
@@ -53,7 +54,7 @@ class Rounds {
 
  private:
   std::uint32_t next_end() const;
-  /// \param rays number of rays of each replicate that are traced
+  /// \param rays number of traced rays of each replicate
   void report(std::uint32_t rays);
 
   Sampling sampling_;

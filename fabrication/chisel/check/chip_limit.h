@@ -10,7 +10,7 @@
 
 namespace retrace::fabrication {
 
-/// The most that a cut may take along a line square to the plane that its edge sweeps.
+/// Maximum allowed chip thickness of a cut, measured perpendicular to the plane that the cutting edge sweeps.
 class ChipLimit {
  public:
   /// Of a move in one pose. \param cut the facet along which it cuts \param back from the machine's frame
@@ -20,7 +20,7 @@ class ChipLimit {
   /// \param from_tip_mm of the line, along the path from where the tip goes deepest; of a V along the section
   /// \param beside_mm of that place from the section in which the line lies
   double at(double from_tip_mm, double beside_mm) const;
-  /// Where the limit bends or jumps, from the tip.
+  /// Distances from the tip, in mm, at which the limit has a kink or a jump.
   const std::array<double, 2>& bends_mm() const { return bends_mm_; }
   double depth_mm() const { return depth_mm_; }
 
@@ -34,8 +34,8 @@ class ChipLimit {
   double slack_mm_ = 0.0;    ///< tolerance, and what tilted edges make unavoidable
   double rake_slope_ = 0.0;  ///< of the rake face against the plunged facet
   Angle apex_;
-  double share_ = 0.0;     ///< ratio of limit and depth, for kinds with a constant ratio
-  double reach_mm_ = 0.0;  ///< V-shaped tool: distance from an edge up to which the ratio is valid
+  double share_ = 0.0;     ///< limit divided by depth of cut, for kinds with a constant ratio
+  double reach_mm_ = 0.0;  ///< V-shaped tool: distance from the neighbouring dihedral edge up to which `share_` applies
   std::array<double, 2> bends_mm_{};
 };
 

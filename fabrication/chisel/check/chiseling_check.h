@@ -22,7 +22,7 @@ class ChiselingCheck : public CutCheck {
   void finish() override;
 
  private:
-  /// Down one edge to the apex of a layer, and up the other.
+  /// A cut down one dihedral edge to the apex of a layer and up another edge.
   struct OpenCut {
     std::size_t element = 0;
     std::size_t facet = 0;
@@ -31,17 +31,19 @@ class ChiselingCheck : public CutCheck {
     double rest_s = 0.0;  ///< at the apex
     bool went_up = false;
   };
-  /// What stands on the facets of an element.
+  /// Material that remains on the facets of an element.
   struct State {
     std::array<double, 3> left_mm{};
     NcPlace last;
   };
 
   void open(const CutMove& move);
-  /// Returns the distance by which the tip of a right cut may stop short of its layer's apex over another facet: the
-  /// tolerance, or what rounding to the increments of the control does if that is more.
+  /// Returns the tolerance, in mm, for the position of the tip at the apex of a layer: the largest allowed excess of
+  /// its height over the facet `other` above its height over the facet that is cut. It allows for the rounding to the
+  /// increments of the control.
   double short_limit_mm(const OpenCut& cut, std::size_t other) const;
-  /// Returns the distance by which right cuts of one layer may differ in height over their facets.
+  /// Returns the tolerance, in mm, for the difference in remaining material between the facets of one element after a
+  /// complete layer.
   double layer_limit_mm(std::size_t element) const;
   void check_layer(const OpenCut& cut, const State& state);
 

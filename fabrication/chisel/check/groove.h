@@ -26,7 +26,7 @@ struct DesignFacet {
   double height_mm(const geometry::Vec3& p) const { return normal.dot(p) - offset_mm; }
 };
 
-/// An element as designed, in the blank's face: the groove of a prism, or the cavity of a cube corner.
+/// An element as designed, in the frame of the blank: the groove of a prism or the cavity of a cube corner.
 struct Groove {
   /// Where the blank begins, seen from the element: a plane across its axis that no part of the blank stands over
   /// within what its cut opens. On a flat blank the blank's face, z_w = 0.
@@ -42,14 +42,16 @@ struct Groove {
   std::vector<DesignFacet> facets;
   double half_width_mm = 0.0;  ///< along the root; of a cube corner the radius of its aperture
   double half_base_mm = 0.0;   ///< across the root; of a cube corner the radius of its aperture
-  /// Length of a facet from the root to the rim. For a cube corner: length of a dihedral edge from the apex to the
-  /// plane of the rims, without errors of angle.
+  /// Length of a facet from the root to the rim. Cube corner: length of a dihedral edge from the apex to the plane of
+  /// the rims, without errors of angle.
   double facet_length_mm = 0.0;
-  std::size_t group = 0;  ///< index in Workpiece3d::predictions; equal for elements of one kind and orientation
-  std::size_t zone = 0;   ///< index of the zone in the job; 0 without zones
+  /// Index in Workpiece3d::predictions; elements of equal shape and orientation have the same index.
+  std::size_t group = 0;
+  std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
   /// Of a cube corner: the three dihedral edges, of length 1, from the apex. Facet k lies between k - 1 and k.
   std::vector<geometry::Vec3> edges;
-  /// Cube corner: distance, along its axis, of the apex of a layer that leaves 1 mm on all facets, per mm.
+  /// Cube corner: distance along its axis between the nominal apex and the apex of a layer, per mm of material that the
+  /// layer leaves on each facet.
   double layer_rise = 0.0;
 
   bool is_cube() const { return !edges.empty(); }
@@ -62,8 +64,8 @@ struct Groove {
   }
   /// Returns the length of a dihedral edge of a cube corner from the apex to the plane of the rims.
   double edge_length_mm(std::size_t edge) const { return depth_mm / axis.dot(edges[edge]); }
-  /// Returns the height, along z, of the planes of a cube corner on a flat blank at a point. The point may be outside
-  /// of the aperture.
+  /// Returns the height above a point of the plane z = 0, along z, at which the deepest facet plane of a cube corner on
+  /// a flat blank is located. The point may be outside of the aperture.
   double cavity_height_mm(const geometry::Vec2& place) const;
   /// Along the root, from its middle.
   double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }

@@ -26,14 +26,14 @@ struct PloughedFloor {
 struct Prediction {
   std::vector<PlungePose> poses;          ///< in which facets 1, 2 and, of cube corners, 3 are cut
   std::array<PloughedFloor, 2> ploughed;  ///< surfaces of facets 1 and 2, each ploughed in the pose of the other facet
-  /// Normal, in the machine frame, of the plane in which Y and Z move the tool while X does not move.
+  /// Normal, in the machine frame, of the plane in which the tool moves when only Y and Z move.
   geometry::Vec3 pass_normal = geometry::Vec3::UnitX();
   /// Of prisms. A V follows the dihedral edges themselves and its planes hold the facets: it leaves nothing.
   double root_mm = 0.0;                ///< by which the ends of the tilted edge stay up a facet at the root at most
   std::array<double, 2> root_of_mm{};  ///< the same, up each facet
-  double wall_mm = 0.0;  ///< maximum depth to which the ends of the edge, or the tool above them, cut into a wall
+  double wall_mm = 0.0;  ///< maximum depth by which an end of the edge, or the tool above it, cuts into a wall
   double fin_mm =
-      0.0;  ///< cube corners: height of the fin that rounding of positions may leave between the cuts of facets
+      0.0;  ///< cube corners: height of the fin between the cuts of two facets that the rounding of positions may leave
   double step_mm = 0.0;  ///< least increment of the control
 };
 

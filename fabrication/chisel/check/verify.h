@@ -59,8 +59,8 @@ struct Verification {
   double border_overcut_mm3 = 0.0;
   /// By which cuts of neighbours go under an element's rims where these stand at different heights, as they must.
   double rim_overcut_um_max = 0.0;
-  /// Job of zones: area and maximum depth of material that cavities unavoidably remove from elements of other zones,
-  /// and the number of these elements.
+  /// Job with zones: maximum depth and area (in plan) of the material that cavities unavoidably remove from elements of
+  /// other zones, and the number of these elements.
   double zone_overcut_mm2 = 0.0;
   double zone_overcut_um_max = 0.0;
   std::int64_t elements_overcut = 0;

@@ -17,7 +17,7 @@ struct Workpiece3d {
   const Job* job = nullptr;
   const Machine* machine = nullptr;
   std::vector<Groove> grooves;
-  std::vector<Prediction> predictions;  ///< one for each kind and orientation of elements (Groove::group)
+  std::vector<Prediction> predictions;  ///< one for each combination of element shape and orientation (Groove::group)
   std::vector<CutElement> elements;
   double tolerance_mm = 1e-5;
 

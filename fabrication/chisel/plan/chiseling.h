@@ -14,8 +14,10 @@ namespace retrace::fabrication {
 
 /// What layers of roughing leave on all facets for the finishing layers.
 double chiseling_allowance_mm(const Job& job);
-/// Returns the total thickness of all roughing layers, in mm, along the normal of each facet of a zone's elements.
-/// \throw InputError if finishing leaves nothing
+/// Returns the total thickness, in mm, that roughing removes from an element of a zone, measured along the normal of
+/// each facet.
+/// \param stock_mm height of the blank's face above the rims
+/// \throw InputError if finishing would have nothing to remove
 double chiseling_across_mm(const Job& job, std::size_t zone, double stock_mm);
 /// Roughing layers: nested cube corners, each `roughing_depth_um` further along the normals of all three facets.
 /// \param stock_mm by which the blank stands over the rims
@@ -36,7 +38,8 @@ void check_v_in_poses(const Job& job, const Machine& machine, const std::array<C
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
                           double feed_mm_per_min);
 
-/// Describes a zone for the header of a program. \pre the job has zones
+/// Returns a description of the elements of a zone, for the header of a program.
+/// \pre the job has zones
 std::string zone_description(const Job& job, std::size_t zone);
 
 /// Words in whole steps: each rounded by itself where `along` is 0, else that of the eight neighbours with the least

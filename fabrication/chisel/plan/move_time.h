@@ -7,7 +7,8 @@
 
 namespace retrace::fabrication {
 
-/// Returns the time, in s, of a linear move by (x, y, z) mm that ends with an exact stop, as in all planned programs.
+/// Returns the time, in s, of a linear move by (x, y, z) mm that ends with an exact stop. All planned programs move in
+/// this way.
 /// \param feed_mm_per_min feed along the path; empty: a rapid move
 double linear_move_s(const Machine& machine, const geometry::Vec3& by_mm, std::optional<double> feed_mm_per_min);
 

@@ -21,8 +21,8 @@ struct PlanOptions {
   /// "all"; "roughing" or "finishing"; the name of one stage, such as "finishing-1-facet-2"; or such a name with "+":
   /// that stage and all after it.
   std::string phase = "all";
-  std::optional<std::int64_t> from_element;  ///< the program starts at the first visit of this element
-  std::optional<std::int64_t> from_pass;     ///< number, from 1, of the pass of that visit at which the program starts
+  std::optional<std::int64_t> from_element;  ///< number of the element at whose first visit the program starts
+  std::optional<std::int64_t> from_pass;     ///< number, from 1, of the pass of this visit at which the program starts
   std::optional<std::int64_t> stop_every;    ///< an optional stop after so many visits of elements
   std::optional<double> split_hours;         ///< no program takes longer, if one visit does not
   std::string before;  ///< only the stages before that one, or before all of its group; empty: all

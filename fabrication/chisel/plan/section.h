@@ -38,7 +38,7 @@ struct Section {
   double lift_mm = 0.0;            ///< by which the tool stays up so that the deeper end of its edge touches the floor
   double edge_mm = 0.0;            ///< the floor's distance that the edge's radius asks of the reference point
   Angle apex;
-  Angle rake;              ///< angle from the wall to the rake face
+  Angle rake;              ///< angle between the wall and the rake face
   Nanometres step_nm = 1;  ///< positions are whole multiples of it
 
   double floor_z(double y, double left_mm) const {
@@ -55,8 +55,9 @@ struct CuttingPose {
   FacetChoice facet;
   std::int32_t orientation = 0;                        ///< of the elements that are cut in it
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< theirs
-  CubeCorner corner;                                   ///< cube corner that is cut, at C = 0; micro chiseling only
-  RotaryUnits a = 0;                                   ///< as written, after rounding
+  /// Micro chiseling: the cube corner that is cut, as oriented at C = 0.
+  CubeCorner corner;
+  RotaryUnits a = 0;  ///< as written, after rounding
   RotaryUnits c = 0;
   RotaryPose rounded;   ///< the same in degrees: what positions are computed from
   Angle root_tilt;      ///< of the root line against the tool's edge

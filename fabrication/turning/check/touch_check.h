@@ -10,12 +10,13 @@
 
 namespace retrace::fabrication::turning {
 
-/// A point on the border of the region, below the path of one block of the program. The block should touch the surface
-/// outside of the region, and the edge does not reach the surface inside the region.
+/// A point at the border of the region, below the path of a block whose planned point of contact is outside of the
+/// region. Inside the region, the edge does not reach the surface at this pose.
 struct BorderPlace {
   geometry::Vec2 at_mm = geometry::Vec2::Zero();
-  double edge_nm = 0.0;      ///< height of the edge above the surface at this point, normal to the surface
-  double touching_nm = 0.0;  ///< the same height if the edge reached the surface at its intended point of contact
+  double edge_nm = 0.0;  ///< height of the edge above the surface at this point, along the surface normal
+  /// The height that the edge would have here if it touched the surface at its planned point of contact.
+  double touching_nm = 0.0;
   std::size_t program = 0;
   std::int32_t line = 0;
 };
@@ -25,22 +26,23 @@ struct TouchFigures {
   double high_nm = 0.0;  ///< farthest that it stays off where it is to touch
   /// Highest Z word at which a block would touch the surface; nothing without blocks.
   std::optional<double> highest_mm;
-  std::vector<BorderPlace> border;  ///< input for check_border()
+  std::vector<BorderPlace> border;  ///< points that check_border() evaluates
 };
 
 /// The region of a part that is judged.
 InspectedRegion region_of(const PathOptions& path);
 
-/// Computes the distance between the cutting edge and the surface for every block: at its end, half-way, and where the
-/// point of contact crosses the border of the region. The point of contact is the point of the edge that is closest to
-/// the surface. If the edge is below the surface inside the region by more than the part's tolerance, the finding is
-/// `gouge`. If it is above the surface by more than the tolerance, the finding is `excess`. Consecutive blocks give one
-/// finding. Moves of only Z downwards are checked only for `gouge`.
+/// Computes the distance between cutting edge and surface for every block: at its end, at half its length, and where
+/// the point of contact crosses the border of the region. The point of contact is the point of the edge that is closest
+/// to the surface. Adds a finding `gouge` if the edge is below the surface inside the region by more than the part's
+/// tolerance, and `excess` if it is above the surface by more than the tolerance. Consecutive blocks give one finding.
+/// Blocks that only lower Z are checked only for `gouge`.
 TouchFigures check_touch(const TurnedPart& part, const TurningCuts& cuts, FindingList& findings);
 
-/// Checks the material at the border of the region below blocks whose intended point of contact is outside of the
-/// region and that do not reach the surface. The height of the material that all cuts leave is compared with the height
-/// that the block would leave with contact. If the difference is larger than the tolerance, the finding is `excess`.
+/// Checks the remaining material at the border of the region below TouchFigures::border. These blocks have their
+/// planned point of contact outside of the region and do not reach the surface. The height of the material after all
+/// cuts is compared with the height after a cut that touches the surface. Adds a finding `excess` if the difference is
+/// larger than the tolerance.
 void check_border(const TurnedPart& part, const TurningCuts& cuts, const Envelope& envelope, TouchFigures& figures,
                   FindingList& findings);
 
