@@ -177,7 +177,7 @@ TEST(Rates, FeedsOfRotaryAxesAreDegrees) {
 /// acceleration since the start and its deceleration before the end allow.
 /// \param axes travel, maximum speed and maximum acceleration of each axis
 double integrated_s(const std::vector<std::array<double, 3>>& axes) {
-  constexpr int kSteps = 20000;
+  constexpr int kSteps = 4000;
   double seconds = 0.0;
   for (int k = 0; k < kSteps; ++k) {
     const double done = (k + 0.5) / kSteps;
