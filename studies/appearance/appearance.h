@@ -1,0 +1,68 @@
+#pragma once
+
+// The reflection of a part as a material for renderers and simulators of lidar. The study behind `retrace export` to a
+// file of a material.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/observers/aperture_kernel.h"
+#include "studies/appearance/reflection_table.h"
+#include "studies/design/design.h"
+
+namespace retrace::studies {
+
+struct AppearanceRequest {
+  /// Of the source and the receiver that values are means over.
+  raytrace::PhotometricApertures apertures{Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)};
+  /// Half-width, at normal incidence, of the square range of view directions around the central direction; 0.1 to 5.
+  double window_deg = 1.0;
+  double entrance_deg = 20.0;          ///< maximum entrance angle of the table; 1 to 40
+  double error = 0.02;                 ///< maximum relative error of interpolated values; 0.001 to 0.5
+  std::size_t most_directions = 1000;  ///< maximum number of directions of light; 64 to 10000
+};
+
+/// How far a table, or what was fitted to it, is from the photometer, at random directions of light and of view. Of a
+/// value, or of this share of the greatest one with that light where the value is smaller.
+struct AppearanceError {
+  static constexpr double kFloor = 0.01;
+  std::size_t geometries = 0;
+  double median = 0.0;
+  double of_95_percent = 0.0;
+  double greatest = 0.0;
+};
+
+/// A random geometry and what the photometer reads there.
+struct AppearanceProbe {
+  geometry::Vec3 to_source;
+  geometry::Vec3 to_observer;
+  double r_a = 0.0;       ///< weighed by the eye
+  double r_a_most = 0.0;  ///< the greatest of the table for that light
+};
+
+struct AppearanceResult {
+  Design design;
+  AppearanceRequest request;
+  ReflectionTable table;
+  std::vector<AppearanceProbe> probes;
+  AppearanceError error;        ///< of the table
+  double least_cell_deg = 0.0;  ///< extent of the smallest cell in entrance angle
+  double elapsed_s = 0.0;
+  bool complete = true;  ///< else it was cancelled, and the table is of no use
+  std::vector<std::string> warnings;
+};
+
+/// \param r_a of each probe \pre as many as probes, > 0
+AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, const std::vector<double>& r_a);
+
+/// Computes the table with the exact engine and diffraction, for CIE D65 and the CIE 1931 observer.
+/// First, the grid of view directions is refined until interpolation between its points is accurate. Then cells of
+/// light directions are halved if interpolation within them has an error above `error`, beginning with the cells that
+/// return most light. Refinement ends when all cells are accurate, or after `most_directions` directions of light.
+/// \throw InputError for numbers out of range, and for designs that the exact engine does not support
+AppearanceResult compute_appearance(const Design& design, const AppearanceRequest& request,
+                                    Progress* progress = nullptr, const Cancellation* cancel = nullptr);
+
+}  // namespace retrace::studies
