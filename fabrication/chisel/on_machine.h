@@ -12,6 +12,11 @@
 
 namespace retrace::fabrication {
 
+/// Minimum cosine of the angle between a facet and the plane that the edge sweeps along it, about cos 10 degrees. A cut
+/// at a larger angle belongs to no facet: axes of machines are off by minutes of arc, and facets are at least 60
+/// degrees apart.
+inline constexpr double kAlongFacet = 0.985;
+
 /// Whether a job's strategy has finishing cuts.
 bool has_finishing_cuts(const Job& job);
 

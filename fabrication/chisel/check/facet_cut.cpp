@@ -11,8 +11,6 @@ namespace {
 
 using geometry::Vec3;
 
-/// cos 10 degrees: axes of machines are off by minutes of arc, facets stand 60 degrees apart at least.
-constexpr double kAlongFacet = 0.985;
 /// Rounding of positions in the text.
 constexpr double kRoundingMm = 2e-6;
 

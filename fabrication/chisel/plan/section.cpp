@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/chisel/on_machine.h"
 #include "fabrication/machine/edge_cut.h"
 
 namespace retrace::fabrication {
@@ -66,6 +67,25 @@ void check_root(const Job& job, const Machine& machine, const CuttingPose& pose,
                   stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4),
                   fixed(Angle::from_rad(std::atan(strip_mm / job.tool.width_mm)).deg(), 4), fixed(1e3 * strip_mm, 3),
                   fixed(strip_mm / tangent, 4)));
+}
+
+/// Refuses a pose in which the plane that a plough sweeps is at too large an angle to the facet that it ploughs.
+void check_ploughed_facet(const Job& job, const Machine& machine, const CuttingPose& pose, const Vec3& design_floor,
+                          const InputLocation& where, const Stance& stance) {
+  if (job.strategy == Strategy::bidirectional) return;
+  const Vec3 edge = edge_direction(machine);
+  const geometry::Vec2& along = pose.section.floor_direction;
+  const Vec3 travel = along.x() * machine.y.direction.value + along.y() * machine.z.direction.value;
+  const Vec3 swept = edge.cross(travel).normalized();
+  const double cosine = std::abs(swept.dot(design_floor));
+  if (cosine > kAlongFacet) return;
+  const double at_deg = Angle::from_rad(std::acos(cosine)).deg();
+  const double max_deg = Angle::from_rad(std::acos(kAlongFacet)).deg();
+  throw InputError(where,
+                   fmt::format("{}the root is at {} degrees to the tool's edge, and A and C cannot correct this angle; "
+                               "the ploughed facet would be off by {} degrees, at most {} are allowed",
+                               stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4), fixed_apart(at_deg, max_deg, 4),
+                               fixed(max_deg, 4)));
 }
 
 }  // namespace
@@ -150,6 +170,7 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   const Vec3 floor = in_words(machine, design_floor);
   section.floor_normal = Vec2(floor.y(), floor.z()).normalized();
   section.floor_direction = {-section.floor_normal.y(), section.floor_normal.x()};
+  check_ploughed_facet(job, machine, pose, design_floor, where, stance);
   section.bisector = (Vec2::UnitY() + section.floor_direction).normalized();
   section.lift_mm = std::abs(design_floor.dot(edge_direction(machine)) / floor.z()) * 0.5 * job.tool.width_mm;
   const Vec3 face = in_words(machine, motion.direction(pose.turn.col(2)));
