@@ -270,11 +270,12 @@ Machine with_root_slope(const Job& job, double slope) {
   const auto lean = [&](double angle) {
     m.a.direction.value = geometry::Vec3(std::cos(angle), std::sin(angle), 0.6 * std::sin(angle));
     m.a.direction.value.normalize();
-    Job ploughed = job;
-    ploughed.strategy = Strategy::unidirectional;
     double largest = 0.0;
-    for (const int facet : {1, 2})
-      largest = std::max(largest, std::abs(std::tan(cutting_pose(ploughed, m, {false, facet}, 0.0).root_tilt.rad())));
+    for (const int facet : {1, 2}) {
+      const PlungePose pose = solve_plunge_pose(m, facet_normal(prism_of(job), {false, facet}),
+                                                root_direction({false, facet}), {45.0, facet == 1 ? 0.0 : 180.0});
+      largest = std::max(largest, std::abs(std::tan(pose.root_tilt.rad())));
+    }
     return largest;
   };
   double angle = 1e-4;
@@ -285,10 +286,10 @@ Machine with_root_slope(const Job& job, double slope) {
 
 /// A plunge separates its chip only if the strip that the tilted edge leaves at the root is narrower than the depth of
 /// cut. Jobs with wider strips are refused, and programs of all other jobs pass. A plough separates chips of any strip,
-/// so unidirectional jobs are refused only if an end of the edge comes too near to the blank in rapid moves.
+/// so unidirectional jobs are refused only if the ploughed facet would be off by more than acos 0.985 = 9.94 degrees.
 TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
   for (const Strategy strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step})
-    for (const double share : {0.3, 0.9, 0.99, 1.01, 1.3, 2.5, 5.0, 10.0}) {
+    for (const double share : {0.3, 0.9, 0.99, 1.01, 1.3, 2.5, 3.5, 5.0, 10.0}) {
       Job job = square_job(1);
       job.strategy = strategy;
       job.process.roughing_depth_um = 20.0;
@@ -301,22 +302,19 @@ TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
       try {
         const Verification v = verified(job, job, m);
         EXPECT_TRUE(v.passes()) << static_cast<int>(strategy) << ' ' << share << "\n" << listed(v);
-        EXPECT_LT(share, strategy == Strategy::unidirectional ? 6.0 : 1.0) << static_cast<int>(strategy);
+        EXPECT_LT(share, strategy == Strategy::unidirectional ? 5.0 : 1.0) << static_cast<int>(strategy);
       } catch (const InputError& error) {
-        const bool is_ploughed = strategy == Strategy::unidirectional;
-        EXPECT_GT(share, is_ploughed ? 6.0 : 1.0) << error.what();
-        const char* const text =
-            is_ploughed ? "machine: element 0: the tool cannot come down" : "machine: the root is at";
-        EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+        EXPECT_GT(share, strategy == Strategy::unidirectional ? 3.5 : 1.0) << error.what();
+        EXPECT_NE(std::string(error.what()).find("machine: the root is at"), std::string::npos) << error.what();
       }
     }
 }
 
 /// The floor that a plough leaves at an oblique root is known exactly, with slides that are not square and several
 /// passes as well: right programs pass, and programs 30 nm too high or too low do not. Terms of third order are up to
-/// 0.9 um here.
+/// 0.4 um here.
 TEST(PlannedJobs, PloughedFloorsOfObliqueRootsAreAsDerived) {
-  for (const double slope : {0.01, 0.05, 0.1, 0.2})
+  for (const double slope : {0.01, 0.05, 0.1, 0.15})
     for (const double lean : {0.0, 0.002})
       for (const double width_share : {1.0, 0.6}) {
         Job job = square_job(1);
