@@ -236,7 +236,9 @@ TEST(Rates, RapidMovesOfAllAxesAreIntegrated) {
       ProgramTime time;
       time.add(machine, motion);
       EXPECT_NEAR(time.total_s() / expected_s, 1.0, 0.01) << tried << ' ' << is_straight;
-      if (!is_linear) EXPECT_NEAR(rotary_move_s(machine, a_deg, c_deg), time.total_s(), 1e-12);
+      if (!is_linear) {
+        EXPECT_NEAR(rotary_move_s(machine, a_deg, c_deg), time.total_s(), 1e-12);
+      }
     }
   }
   EXPECT_GT(largest_excess, 0.1) << "the two rules differ";

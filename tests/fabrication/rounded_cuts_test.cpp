@@ -332,7 +332,9 @@ TEST(RoundedCuts, RefusalsNameValuesThatAreAccepted) {
         ++steps;
         const double allowed_nm = 1e3 * *allowed_um;
         m.increments.linear_nm = static_cast<std::int64_t>(std::floor(allowed_nm + 1e-6));
-        if (m.increments.linear_nm >= 1) EXPECT_EQ(refusal(job, m), "") << text;
+        if (m.increments.linear_nm >= 1) {
+          EXPECT_EQ(refusal(job, m), "") << text;
+        }
         m.increments.linear_nm = static_cast<std::int64_t>(std::floor(allowed_nm + 1e-6)) + 1;
         EXPECT_NE(refusal(job, m), "") << text;
       }
