@@ -33,8 +33,8 @@ struct EdgeCover {
 
 /// Returns the sectors at the three dihedral edges. Edge k is located between the facets k and (k + 1) % 3.
 /// \param normals unit normals of the facets, out of the material, in counterclockwise order
-/// \param spines directions of the tool's spine (the edge between its flanks' rake sides) while it cuts each facet, in
-///        the frame of the normals
+/// \param spines directions of the tool's spine, in which its two flanks meet, while it cuts each facet; in the frame
+///        of the normals
 std::array<EdgeCover, 3> edge_covers(const std::array<geometry::Vec3, 3>& normals,
                                      const std::array<geometry::Vec3, 3>& spines);
 

@@ -79,7 +79,7 @@ inline constexpr std::uint16_t kFeedMode = 1U << 13U;     ///< feeds are speeds,
 inline constexpr std::uint16_t kRoundingOff = 1U << 14U;  ///< no arcs between lines
 }  // namespace nc_said
 
-/// Returns half of the last decimal of a number with `decimals` decimals. This is its maximum rounding error.
+/// Returns the maximum rounding error of a number that is written with `decimals` decimals: half of its last decimal.
 double half_decimal(std::uint8_t decimals);
 
 /// A setting that a block may make. Nothing: the block does not say.

@@ -23,13 +23,15 @@ double luminous(const Rgb& rgb);
 /// Values that a cubic is laid through, and directions along each side of a cell.
 inline constexpr std::size_t kPerSide = 4;
 
-/// R_A in cd/(lx m^2) around the direction to the source or, for prisms, around the direction into which they reflect
-/// the light. For each direction of light, the table has a square grid of R_A over the deviation o - back s, where o
-/// and s are the x and y components of the unit vectors to observer and source in the part frame. R_A depends least on
-/// the direction of light in these coordinates, because refraction at the entrance face scales all components by the
-/// same factor (docs/theory/appearance.md). The directions of light are the corners and thirds of cells in entrance
-/// angle and azimuth. Cubic interpolation between four points per axis is used between grid points and between
-/// directions.
+/// Table of R_A, in cd/(lx m^2), for views close to a central direction. The central direction is the direction to the
+/// source or, for prisms, the direction into which they reflect the light.
+/// Let s and o be the x and y components of the unit vectors to source and observer, in the part frame. For each
+/// direction of light, the table has a square grid of R_A over the deviation o - back s. Refraction at the entrance
+/// face scales all these components by one factor. In these coordinates, R_A therefore varies slowly with the direction
+/// of light (docs/theory/appearance.md).
+/// Cells divide the range of light directions in entrance angle and azimuth. Each cell has 4 x 4 directions, at its
+/// corners and at thirds of its sides. Values between grid points and between directions are interpolated with cubics
+/// through four points per axis.
 struct ReflectionTable {
   /// The R_A of one direction of light, row by row of rising y, x rising.
   struct Direction {
@@ -47,8 +49,10 @@ struct ReflectionTable {
   double half_width = 0.0;  ///< of the square of deviations: a share of a unit vector
   std::size_t columns = 0;  ///< and rows; >= 4
   Angle most_entrance;
-  geometry::Vec2 back = geometry::Vec2::Ones();  ///< 1 for an axis whose direction component is reversed, otherwise -1
-  std::array<bool, 2> mirrors{};                 ///< for x and y: true if the part is mirror-symmetric in that axis
+  /// 1 for an axis along which the part reverses the direction of light, otherwise -1.
+  geometry::Vec2 back = geometry::Vec2::Ones();
+  /// For x and y: true if the part is symmetric under reflection of that axis.
+  std::array<bool, 2> mirrors{};
   std::vector<Direction> directions;
   std::vector<Cell> cells;
 

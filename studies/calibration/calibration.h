@@ -68,10 +68,10 @@ std::vector<std::string> untold_words(const Estimate& estimate, fabrication::Til
 /// The parts of measurements, as Measurement::part counts them, each with the elements that are measured.
 std::vector<CutPart> cut_parts(const MeasuredParts& measured);
 
-/// Estimates the set-up by Gauss-Newton steps. Measurements that miss what the others say by more than chance are left
-/// out one by one (Baarda's data snooping: W. Baarda, A testing procedure for use in geodetic networks, 1968).
-/// \throw InputError naming the lines if too many measurements contradict each other, or if all measurements of one
-///        quantity of a facet do, because their sign is then likely to be wrong
+/// Estimates the set-up by Gauss-Newton steps. Outliers are removed one by one: measurements that deviate from the fit
+/// by more than chance explains (data snooping: W. Baarda, A testing procedure for use in geodetic networks, 1968).
+/// \throw InputError, which names the lines, if too many measurements contradict each other. It is also thrown if all
+///        measurements of one quantity of a facet are outliers, because their sign is then probably wrong
 Calibration calibrate(MeasuredParts parts);
 
 }  // namespace retrace::studies

@@ -84,7 +84,8 @@ class CutPart {
 
   /// What is wrong with a measurement of this part; empty: nothing.
   std::string fault_of(const Measurement& measurement) const;
-  /// Describes a positive value, in the axes of the machine at A0 (or B0) C0: "rises towards +Y".
+  /// Returns what a positive value of the measurement means, in the machine axes at A0 (or B0) and C0, such as "rises
+  /// towards +Y".
   /// \pre fault_of() is empty
   std::string positive_sense(const Measurement& measurement) const;
   /// What would be measured. \pre fault_of() is empty

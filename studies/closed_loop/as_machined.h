@@ -30,7 +30,7 @@ struct AsMachined {
   /// Opening is positive; of a prism towards -x and +x of the part, of a cube corner in the order of its facets.
   std::vector<double> facet_tilt_arcmin;
   std::optional<geometry::FacetPlanes> planes;
-  std::optional<ZonedPart> zones;  ///< set only for a job with zones; replaces the two members above
+  std::optional<ZonedPart> zones;  ///< only for a job with zones; then used instead of the two members above
   double root_radius_um = 0.0, root_chamfer_um = 0.0;
   PredictedTexture texture;
   std::vector<geometry::Scratch> scratches;  ///< that the chips of the tool's edge leave

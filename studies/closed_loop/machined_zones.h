@@ -1,6 +1,6 @@
 #pragma once
 
-// Computes the as-machined design of a part of zones.
+// Computes the as-machined design of a part with zones.
 
 #include <array>
 #include <filesystem>
@@ -13,15 +13,16 @@
 
 namespace retrace::studies {
 
-/// Tilts of the three facets of an element relative to the job, in minutes of arc, positive if the facet opens; none:
+/// Tilts of the three facets of an element relative to the job, in arcmin. A positive tilt opens the facet. Empty if
 /// the element is not cut.
 using ElementTilts = std::optional<std::array<double, 3>>;
 
-/// Returns the zones of the job's design without partial elements. The facets have the angles given in the job plus the
-/// mean tilts over the elements of each zone.
-/// \param elements tilts of the elements, in the order of cut_elements()
-/// \param warnings receives a warning about each difference that the result does not contain
-/// \throw InputError if the design named by the job does not exist or has no zones, or if the job cuts an element that
+/// Returns the zones of the design as machined, without partial elements. The facet angles of a zone are those of the
+/// job plus the mean tilts of its elements.
+/// \param elements tilts of each element, in the order of cut_elements()
+/// \param warnings receives a warning about each deviation that the result does not represent
+/// \throw InputError if the job's design does not exist or has no zones, or if the job cuts an element that the design
+///        does not have
 /// the design does not have
 ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
                          const std::vector<ElementTilts>& elements, std::vector<std::string>& warnings);

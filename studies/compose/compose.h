@@ -17,10 +17,11 @@ namespace retrace::studies {
 
 /// How the angles between facets are spread, Gaussian and independent: in minutes of arc.
 struct ErrorSpread {
-  double cell_sigma_arcmin = 0.0;     ///< from cell to cell, which averages out over a zone
-  double zone_sigma_arcmin = 0.0;     ///< from zone to zone, the same in all cells of one, which does not
-  std::size_t parts = 1024;           ///< that are drawn
-  std::optional<double> worst_share;  ///< fraction of the drawn parts, the worst ones, for which a part is optimized
+  double cell_sigma_arcmin = 0.0;  ///< from cell to cell, which averages out over a zone
+  double zone_sigma_arcmin = 0.0;  ///< from zone to zone, the same in all cells of one, which does not
+  std::size_t parts = 1024;        ///< that are drawn
+  /// Fraction of the random parts that counts as the worst; if given, a part is optimized for it.
+  std::optional<double> worst_share;
 };
 
 struct ComposeRequest {
@@ -74,8 +75,8 @@ struct PartYield {
   std::optional<double> mean_of_worst;  ///< of the share of the worst that is asked for
 };
 
-/// The part that is optimal for the worst of the drawn parts. Its cells are taken from the best parts of all numbers of
-/// zones.
+/// The composition with the best mean over the worst of the random parts. Its cells are chosen from the best
+/// compositions of all numbers of zones.
 struct PartForWorst {
   std::vector<Zone> zones;  ///< the largest first
   PartYield yield;
@@ -114,7 +115,7 @@ struct Composition {
   bool complete = true;
 };
 
-/// Returns the zones of PartForWorst. Empty if the composition has no such part.
+/// Returns the zones of PartForWorst, or an empty list if there is no such part.
 std::vector<Zone> zones_for_worst(const Composition& composition);
 
 StoreLayout compose_layout(const Study& study);

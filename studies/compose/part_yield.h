@@ -38,13 +38,13 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
 /// Cells and their shares, the largest first.
 using CellShares = std::vector<std::pair<std::size_t, double>>;
 
-/// Returns the best shares, as best_shares(), over all sets of at most `most_zones` cells.
-/// \param parts drawn parts with one zone for each cell; all sets of cells are tried, so their number must be small
+/// Finds the set of at most `most_zones` cells, and the fractions of area, with the best result of best_shares().
+/// \param parts random parts with one zone for each cell. All sets of cells are tried, so that there must be few cells
 /// \return nothing if the computation was cancelled or no set is allowed
 std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,
                                    const Bounds& bounds, const Cancellation* cancel);
 
-/// Returns the drawn parts with only the given zones, in the given order.
+/// Returns the random parts with only the given zones, in the given order.
 DrawnParts parts_of(const DrawnParts& parts, const std::vector<std::size_t>& zones);
 
 }  // namespace retrace::studies

@@ -1,11 +1,11 @@
 #pragma once
 
-// Largest lengths that requests of several studies have in common.
+// Upper limits of lengths that several studies use.
 
 namespace retrace::studies {
 
-/// Largest coordinate, distance and diameter, in mm, of lamps, eyes and ray sources. At larger distances, rays have too
-/// few digits to meet the part, and squares of coordinates overflow in Embree.
+/// Maximum coordinate, distance and diameter, in mm, of lamps, eyes and ray sources. At larger distances, double
+/// precision is too coarse for rays to meet the part, and squares of coordinates overflow in Embree.
 inline constexpr double kFarthestMm = 1e9;
 
 }  // namespace retrace::studies

@@ -34,16 +34,17 @@ struct MadeJob {
 /// What can be told of a request without a design: its words, machine and process. \throw InputError
 void check_making(const JobRequest& request);
 
-/// Checks that the strategy can cut parts of zones.
-/// \throw InputError at --strategy if it cannot
+/// Checks that the strategy supports designs with zones.
+/// \throw InputError at --strategy if it does not
 void check_cuts_zones(const JobRequest& request);
 
 /// Whether the strategy cuts the design's element. \throw InputError at --strategy, and for designs that nothing cuts
 void check_element(const Design& design, const JobRequest& request);
 
-/// Returns the fabrication job of a design, which may be a part of zones of cube corners. The job contains dihedral
-/// errors and, for cube corners, facet tilts. It contains no other errors or edges of [surface] and no partial
-/// elements. \throw InputError for designs and requests that cannot be cut
+/// Returns the fabrication job of a design, which is an array of elements or has zones of cube corners. The job
+/// contains the dihedral errors of the design and, for cube corners, its facet tilts. It does not contain random
+/// errors, edge radii or scratches from [surface], and it omits partial elements. Warnings name what is not cut. \throw
+/// InputError for designs and requests that cannot be cut
 MadeJob make_job(const Design& design, const JobRequest& request);
 
 }  // namespace retrace::studies

@@ -14,7 +14,7 @@
 
 namespace retrace::studies {
 
-/// Number of rays of a detector if a request gives none.
+/// Default number of rays of a detector.
 inline constexpr std::uint64_t kUsualDetectorRays = std::uint64_t{1} << 22;
 
 /// What is asked of a detector: maps of the light that comes back, for one direction of incidence.
@@ -26,7 +26,7 @@ struct DetectorRequest {
   double window_deg = 1.0;            ///< half width of the angular map; > 0, up to 90
   Engine engine = Engine::automatic;  ///< neither stochastic nor cell
   std::optional<double> cutoff;       ///< exact engine: least power of a beam, as a share of the incident
-  std::optional<std::uint64_t> rays;  ///< Monte Carlo; by default kUsualDetectorRays
+  std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays; empty: kUsualDetectorRays
   std::uint32_t seed = 1;
 };
 

@@ -23,15 +23,15 @@ class Evaluator {
   /// The designs, in the order given; several are computed at a time. \throw Interrupted, OutputError
   std::vector<Variant> look_at(const std::vector<PointValues>& designs);
   Variant look_at(const PointValues& design) { return look_at(std::vector<PointValues>{design}).front(); }
-  /// Adds the designs that another search of the same study has evaluated.
+  /// Adds designs that another search of this study has already evaluated.
   void take_in(const std::vector<Variant>& seen);
 
   /// Everything looked at so far, in the order of its first look.
   const std::vector<Variant>& seen() const { return seen_; }
-  /// Number of designs that failed because a budget of memory or beams ran out. They are not stored, so that a resumed
-  /// search with a larger budget tries them again.
+  /// Returns the number of designs that failed because the budget of memory or beams was exhausted. They are not
+  /// stored. A resumed search with a larger budget evaluates them again.
   std::size_t ran_out() const { return ran_out_; }
-  /// Message of the first of them; empty if there is none.
+  /// Returns the error message of the first of these designs; empty if there is none.
   const std::string& ran_out_because() const { return ran_out_because_; }
   /// What a quantity came to; nothing if it has no value.
   std::optional<double> value(const Variant& variant, const std::string& quantity) const;
@@ -58,8 +58,8 @@ class Evaluator {
   std::uint64_t next_ = 0;
 };
 
-/// Runs the search of optimise() with an evaluator for the same study and request. Afterwards, the evaluator has all
-/// designs of the search.
+/// Runs the search of optimise() with an evaluator of the same study and request. Afterwards, the evaluator contains
+/// all designs of the search.
 Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Cancellation* cancel);
 
 }  // namespace retrace::studies

@@ -75,7 +75,7 @@ struct Optimum {
   std::vector<ToleranceBand> bands;
   std::string method;  ///< of the refinement: "exact slopes" or "no slopes"
   std::size_t evaluations = 0;
-  std::size_t ran_out = 0;      ///< designs that failed because a budget of memory or beams ran out
+  std::size_t ran_out = 0;      ///< number of designs that failed because the budget of memory or beams was exhausted
   std::string ran_out_because;  ///< error message of the first of these designs
   bool complete = true;
 };
@@ -85,8 +85,9 @@ class OptimiseObserver {
  public:
   virtual ~OptimiseObserver() = default;
   virtual void at(std::size_t evaluated) = 0;
-  /// Called while a group of designs is computed. \param share finished fraction of the group; 0 begins a group
-  /// \param designs size of the group
+  /// Reports the progress of a group of designs that are computed together.
+  /// \param share finished fraction of the group; 0 when the group begins
+  /// \param designs number of designs in the group
   virtual void at_group(double share, std::size_t designs) {
     static_cast<void>(share);
     static_cast<void>(designs);

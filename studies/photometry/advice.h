@@ -19,11 +19,11 @@ using TableOfDesign =
 /// The least of value over limit, where an undetermined point is no more than 1; infinite if there are none.
 double least_ratio(const std::vector<PhotometricPoint>& points);
 
-/// Searches for a change of one parameter that makes a failing design pass. The first parameter is the error of the
-/// angles between facets, the second the size of the elements. The search ends with the smallest change of the first
-/// parameter that makes the design pass. If no change makes it pass, the best change that was tried is returned. The
-/// search uses few wavelengths, the returned readings use all. Returns nothing if no other part can be made, or if the
-/// search was cancelled.
+/// Searches for a change of one parameter with which a failing design passes. The first parameter is the error of the
+/// angles between facets, the second is the size of the elements. Returns the smallest passing change of the first
+/// parameter that has one. Otherwise, returns the best change that was tried. The search uses few wavelengths; the
+/// returned readings use all wavelengths. Returns nothing if no changed part can be made, or if the search was
+/// cancelled.
 std::optional<PhotometricChange> change_that_passes(const Design& design, const TestProgramme& programme,
                                                     const TableOfDesign& table);
 

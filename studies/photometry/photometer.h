@@ -57,19 +57,19 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
                                                         Progress* progress, const Cancellation* cancel) const;
 
-  /// A far field of one wavelength, and the weight of this wavelength in the response.
+  /// Far field at one wavelength, and the weight of this wavelength in the response.
   struct WeighedField {
     raytrace::FarField field;
     double weight = 0.0;
   };
-  /// Returns the far fields at all wavelengths for light from one direction. measure() computes readings from them.
+  /// Computes the far fields at all wavelengths, for light from one direction. Readings are computed from such fields.
   /// Returns nothing if the computation was cancelled.
   /// \param tracer tracer from make_tracer()
   /// \pre is_exact()
   std::optional<std::vector<WeighedField>> far_fields(const geometry::Vec3& to_source,
                                                       const raytrace::BeamTracer& tracer,
                                                       const Cancellation* cancel) const;
-  /// Returns a tracer that any number of threads may use. The photometer must outlive the tracer.
+  /// Returns a beam tracer that several threads may use. This photometer must outlive it.
   raytrace::BeamTracer make_tracer() const;
   const raytrace::ApertureKernel& kernel() const { return kernel_; }
 
@@ -98,12 +98,12 @@ class Photometer {
   /// From now on by Monte Carlo.
   void leave_exact() { is_exact_ = false; }
   bool is_exact() const { return is_exact_; }
-  /// Makes later measurements faster and less accurate by resampling fewer weak beams. Their values only guide a search
-  /// and are not shown to the user.
+  /// Makes later measurements faster and less accurate: fewer survivors represent the weak beams. Such values may guide
+  /// a search, but must not be shown to the user.
   void only_guide() { is_guide_ = true; }
   /// Makes later measurements faster than only_guide() does, for preliminary values that are shown with their errors.
-  /// The cut-off is larger for all parts. The elements of the part take at most half of their memory, because another
-  /// photometer measures the same part at the same time.
+  /// The cut-off of beams is higher. The search structures of the part may use at most half of their memory budget,
+  /// because another photometer measures the same part at the same time.
   void only_first_answer() { is_guide_ = is_first_answer_ = true; }
   /// From now on without the mirror image of the light: what the entrance face reflects, from outside and, between
   /// elements that send it back, from inside. \pre is_exact()
@@ -144,18 +144,18 @@ class Photometer {
   raytrace::FarFieldPolicy far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const;
   /// \param coarseness factor of the cut-off
   raytrace::BeamPolicy beam_policy(std::size_t wavelength, double coarseness) const;
-  /// Returned light of one wavelength.
+  /// Traced light of one wavelength.
   struct Traced {
     raytrace::BeamResult beams;
     raytrace::FarField field;
-    double scattered_from_cone = 0.0;  ///< power that textures scatter out of the widest cone of the detector
+    double scattered_from_cone = 0.0;  ///< power that textures scatter out of the detector's widest cone
   };
   /// Traces the light of one wavelength. Returns nothing if the trace was cancelled.
   /// \param coarseness factor of the cut-off
   std::optional<Traced> traced(const geometry::Vec3& to_source, std::size_t wavelength,
                                const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                                double coarseness = 1.0) const;
-  /// Measures settings that share their traced light. The results are in the order of the settings.
+  /// Measures settings that share one traced far field. Returns one piece per setting, in the order of the settings.
   std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
                                      std::size_t wavelength, const raytrace::BeamTracer& tracer,
                                      const Cancellation* cancel) const;
@@ -167,7 +167,7 @@ class Photometer {
                         std::vector<Piece>& pieces) const;
   void look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
             std::size_t wavelength, Piece& piece) const;
-  /// \param tracer null for balls, which have a tracer of their own
+  /// \param tracer null for balls, which have their own tracer
   Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
                         Progress& progress, const Cancellation* cancel) const;
   /// All of them. \param pieces by setting and wavelength; filled. False if it was cancelled

@@ -30,7 +30,7 @@ std::string_view light_name(PhotometricLight light);
 /// \throw InputError for a name that is none of them
 PhotometricLight light_from_name(std::string_view name);
 
-/// Number of rays of a direction if a request gives none.
+/// Default number of rays per direction.
 inline constexpr std::uint64_t kUsualRaysOfDirection = std::uint64_t{1} << 20;
 
 /// What is asked: the coefficients of retroreflection of a part at the test points of a standard.
@@ -47,7 +47,7 @@ struct PhotometryRequest {
   bool diffraction = true;
   Engine engine = Engine::automatic;  ///< neither stochastic nor cell
   std::optional<double> cutoff;       ///< least power of beams that are followed exactly, as a share of an element's
-  std::optional<std::uint64_t> rays;  ///< of a direction, by Monte Carlo; by default kUsualRaysOfDirection
+  std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays per direction; empty: kUsualRaysOfDirection
   std::uint32_t seed = 1;
   bool pictures = false;      ///< maps and curves
   bool window_power = false;  ///< power in the window and outside of it, by integrations: a check that takes long
@@ -177,15 +177,16 @@ struct PhotometryResult {
   bool passes() const { return every_point_holds(verdict) && !(colour && colour->verdict() == Verdict::fail); }
 };
 
-/// Systematic error of preliminary readings, as a fraction of the value, that their standard errors do not contain. It
-/// comes from the few wavelengths, except at the design's own light, and from weak beams, which do not interfere.
+/// Approximate systematic error of preliminary readings, as a fraction of the value. The standard error does not
+/// include it. It has two sources: few wavelengths (unless the design's own light is used), and weak beams, whose
+/// interference is ignored.
 inline constexpr double kSystematicErrorOfFirstAnswer = 0.02;
 
-/// Preliminary readings at the test points, from a computation that takes much less time.
+/// Preliminary readings at the test points, from a much faster computation.
 struct PhotometricFirstAnswer {
-  std::vector<PhotometricPoint> points;  ///< one for each test point; their verdicts mean nothing
+  std::vector<PhotometricPoint> points;  ///< one for each test point; the verdicts are not valid
   std::vector<double> wavelengths_nm;
-  bool lacks_diffraction = false;  ///< although the request asks for it
+  bool lacks_diffraction = false;  ///< true if diffraction is omitted although the request includes it
 };
 
 /// What points say together: one that fails decides, then one that is undetermined. Points of recalled limits, and
@@ -203,8 +204,8 @@ class PhotometryStudy {
   PhotometryStudy(Design design, PhotometryRequest request);
   ~PhotometryStudy();
 
-  /// Returns true if the light is traced as beams, at least until too many beams are needed, and false if it is traced
-  /// by rays.
+  /// Returns true if the light is traced as beams and false if it is traced as rays. Beam tracing may later be replaced
+  /// by rays if it needs too many beams.
   bool follows_beams() const;
   /// Returns the cut-off of beams, given or default, as a fraction of the power that falls on an element.
   double cutoff() const;
@@ -212,11 +213,10 @@ class PhotometryStudy {
   /// \throw BudgetError if power was lost
   PhotometryResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
-  /// Computes preliminary readings at fewer wavelengths, with fewer rays or with a larger cut-off of beams. It may be
-  /// called while run() is running on another thread, and does not change what run() returns. Returns nothing if it was
-  /// cancelled.
-  /// \param ray_share number of rays divided by the number of rays of run(), > 0 and at most 1
-  /// \throw BudgetError if the memory does not suffice next to run()
+  /// Computes preliminary readings with fewer wavelengths, fewer rays or a higher cut-off of beams. It may run in
+  /// parallel with run() and does not change the result of run(). Returns nothing if it was cancelled.
+  /// \param ray_share number of rays divided by that of run(), > 0 and at most 1
+  /// \throw BudgetError if the memory does not suffice for both computations
   std::optional<PhotometricFirstAnswer> first_answer(double ray_share, const Cancellation* cancel = nullptr) const;
 
  private:

@@ -39,9 +39,10 @@ class Candidate {
   const Design& design() const { return design_; }
   const AnalysisSettings& analysis() const { return analysis_; }
   const MachiningProcess& machining() const { return machining_; }
-  /// Sets what is informed of the progress of long quantities. \param progress null: nothing is
+  /// Sets the receiver of progress reports of long computations.
+  /// \param progress null: nothing is reported
   void report_to(Progress* progress) { progress_ = progress; }
-  /// Progress of the quantity that is being measured; may be null.
+  /// Returns the receiver of progress reports for the quantity that is being measured; may be null.
   Progress* progress() const { return progress_; }
   /// Built when it is first requested. \throw InputError as part_of_design()
   const geometry::Part& part() const {

@@ -37,7 +37,7 @@ struct Emitter {
 /// \throw InputError for another name
 EmitterKind emitter_from_name(std::string_view name);
 
-/// Largest number of rays of an emitter.
+/// Maximum number of rays of an emitter.
 inline constexpr std::uint64_t kMaxEmitterRays = std::uint64_t{1} << 40;
 
 /// What is asked of one.

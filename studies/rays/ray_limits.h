@@ -14,8 +14,8 @@ bool is_wavelength(double nm);
 /// A message of one that is none.
 std::string wavelength_text(double nm);
 
-/// Returns the unit vector along a direction. Its length may be any finite number above 0: squares of coordinates
-/// neither overflow nor vanish. Returns nothing if the length is 0 or not finite.
+/// Returns the unit vector in the direction of a vector of any finite length above 0. Very long and very short vectors
+/// cause no overflow or underflow. Returns nothing if the length is 0 or not finite.
 std::optional<Vec3> unit_along(const Vec3& direction);
 
 /// +x, seen across a direction; another axis where the direction lies along it.

@@ -16,7 +16,8 @@ namespace retrace::studies {
 /// Of a part's cells, in the mean.
 double facets_of_cell(const geometry::Part& part);
 
-/// Expected time of making the BeamTracer of a part, in nanoseconds; infinite if its elements exceed the memory budget.
+/// Returns the expected time, in ns, of constructing the BeamTracer of a part. It is infinite if the search structures
+/// exceed the memory budget.
 double beam_tracer_ns(const geometry::Part& part);
 
 /// One direction at one wavelength, traced until the exact engine's goal or the stochastic one's target error is
@@ -39,9 +40,9 @@ class BeamRace {
 
   /// What the quicker way is expected to take in all; infinite if neither may do.
   double expected_ns() const;
-  /// Returns the completed fraction of the expected work of the quicker method; 0 before the work begins.
+  /// Returns the finished fraction of the expected work of the faster method; 0 before the work begins.
   double share_done() const;
-  /// Runs one step of the method that is expected to finish first. A method that exceeds a budget is abandoned.
+  /// Runs one step of the method with the smaller expected remaining time. A method that exceeds a budget is abandoned.
   /// \return true if the method has reached its goal
   /// \throw BudgetError if both methods are abandoned
   bool advance();

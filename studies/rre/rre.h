@@ -33,21 +33,22 @@ Engine engine_from_name(std::string_view name);
 raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
-/// Engines of RRE that trace rays, and may therefore use a number of rays.
+/// Engines of RRE that trace rays and for which a request may therefore give a number of rays.
 inline constexpr Engine kRayEngines[] = {Engine::automatic, Engine::montecarlo, Engine::cell, Engine::embree};
 /// Engines of photometry and pictures that trace rays.
 inline constexpr Engine kRayEnginesOfParts[] = {Engine::automatic, Engine::montecarlo, Engine::embree};
-/// Engines that may follow all light as beams.
+/// Engines that may trace all light as beams.
 inline constexpr Engine kExactEngines[] = {Engine::exact, Engine::automatic};
-/// Engines of RRE that stop following light below a power of their own choice or of the request.
+/// Engines of RRE that truncate light below a cut-off power.
 inline constexpr Engine kCutoffEngines[] = {Engine::automatic, Engine::exact, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
-/// Engines of RRE that use a target error. They also use it if the request gives a cut-off.
+/// Engines of RRE that use a target error. They use it also if the request gives a cut-off.
 inline constexpr Engine kTargetEngines[] = {Engine::automatic, Engine::stochastic, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
-/// True if `engine` is one of `engines`.
+/// Returns true if `engine` is one of `engines`.
 bool is_one_of(Engine engine, std::span<const Engine> engines);
-/// Refuses an option that has no effect with the engine of a request. \throw InputError at `option`
+/// Refuses an option that has no effect with the requested engine.
+/// \throw InputError at `option`
 void check_has_effect(const char* option, bool is_given, Engine engine, std::span<const Engine> engines);
 
 /// Of a share of power. \throw InputError at `option` unless it lies between 0 and 1

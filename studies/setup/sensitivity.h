@@ -35,10 +35,11 @@ struct Sensitivity {
   double chip_nm = 0.0;       ///< by which the chip of a cut changes most, from how the material was left before it
   double root_left_nm = 0.0;  ///< at most, that an end of the edge stops short of another facet
   double root_cut_nm = 0.0;   ///< at most, that it goes below one
-  double wall_nm = 0.0;       ///< maximum motion along the root of an edge end or of the tool above it
+  /// Maximum displacement, along the root, of an end of the edge or of the tool above this end.
+  double wall_nm = 0.0;
 
   double farthest_nm() const;  ///< of all facets, unsigned
-  double largest_nm() const;   ///< maximum change at facets, chips and roots, without walls
+  double largest_nm() const;   ///< maximum change of facets, chips and roots; walls are excluded
 };
 
 struct Sensitivities {

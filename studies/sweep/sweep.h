@@ -63,10 +63,12 @@ class Sweep {
   std::optional<UnitSamples> samples_;
 };
 
-/// Computes one point of a study; what is wrong with it is recorded, not thrown. Nothing if it was cancelled.
-/// \throw std::bad_alloc: the same point may succeed when more memory is available
-/// \param ran_out set to true if the point failed because a budget of memory or beams ran out; null: not requested
+/// Computes one point of a study. An error is recorded in the point and not thrown. Returns nothing if it was
+/// cancelled.
+/// \param ran_out receives true if the point failed because the budget of memory or beams was exhausted; null: not
+///        needed
 /// \param progress receives the finished fraction of the point; null: nothing is reported
+/// \throw std::bad_alloc: a later attempt with more free memory may succeed
 std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
                                          const Cancellation* cancel, bool* ran_out = nullptr,
                                          Progress* progress = nullptr);
@@ -76,8 +78,8 @@ class SweepObserver {
  public:
   virtual ~SweepObserver() = default;
   virtual void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) = 0;
-  /// Called in addition to at() while points are computed. \param share finished fraction of all points; points that
-  /// are being computed count in part
+  /// Reports the finished fraction of all points while points are being computed, in addition to at().
+  /// \param share finished fraction, in which unfinished points count with their own progress
   virtual void at_share(double share) { static_cast<void>(share); }
 };
 
@@ -87,7 +89,7 @@ class SweepCount {
   SweepCount(const Sweep& sweep, const ResultStore& store, SweepObserver* observer);
   ~SweepCount();
   void finished(bool failed);
-  /// Adds up the progress of points that are being computed, and calls SweepObserver::at_share().
+  /// Returns the sum of the progress of unfinished points, which calls SweepObserver::at_share().
   TaskProgress& points();
 
  private:
