@@ -88,7 +88,7 @@ class KnownName {
     const std::string& name = file.native();
     for (TemporaryName& entry : temporary_names) {
       if (name.size() >= entry.name.size() || entry.is_taken.exchange(true)) continue;
-      std::ranges::copy(name, entry.name.begin());
+      std::copy(name.begin(), name.end(), entry.name.begin());
       entry.name[name.size()] = '\0';
       entry.is_set.store(true);
       entry_ = &entry;
