@@ -428,7 +428,9 @@ std::vector<NamedFile> files_named(std::string_view text, const std::string& sou
                                    std::span<const std::string> overrides) {
   const Document document = schema::unchecked_names(design_format(), text, source_name, kMostDesignBytes, overrides);
   std::vector<std::string> keys = document.keys_of_files();
-  std::ranges::stable_sort(keys, {}, [](const std::string& key) { return std::ranges::find(kFilesOfStores, key); });
+  const auto rank = [](const std::string& key) { return std::ranges::find(kFilesOfStores, key); };
+  std::stable_sort(keys.begin(), keys.end(),
+                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
   std::vector<NamedFile> files;
   for (const std::string& key : keys) files.push_back({document.file(key), key, document.where(key)});
   return files;
