@@ -320,7 +320,7 @@ void add_changed_numbers(const std::string& text, std::vector<fabrication::test:
 /// Changes one line or number of a program. The test interpolates the moves by cubics of its own and computes how much
 /// the change alters the part. The verifier must find every change that alters the part by more than the tolerance.
 TEST(CubicPath, NoFaultOfAMovePasses) {
-  // One of so many changes is tried.
+  // Only every seventh change is tried in a usual run, and every change in a long run.
   const std::size_t stride = retrace::test::sample_size<std::size_t>(7, 1);
   const Plane plane{.radius_mm = 0.05, .feed_mm = 0.02, .error_nm = 5.0};
   const Planned plan = planned(plane.file());
