@@ -189,7 +189,8 @@ std::vector<fs::path> pages() {
   return found;
 }
 
-/// Returns the questions of the examples that pages before `page` show. The tests of those pages run them.
+/// Returns the commands, without the name of their output, of the examples on pages before `page`. The tests of these
+/// pages run these examples.
 std::set<std::string> questions_before(const fs::path& page) {
   std::set<std::string> questions;
   for (const fs::path& earlier : pages()) {
