@@ -57,6 +57,19 @@ TEST(Inspect, OddRowsShiftedGiveTheCountOfThePaper) {
   EXPECT_EQ(json["warnings"].size(), 1U) << "elements that the border cuts";
 }
 
+/// A fillet of radius r in a root of 90 degrees touches the facets at the distance r from the root. It therefore takes
+/// a strip of width sqrt(2) r of each base, also if this is a large fraction of the base.
+TEST(Inspect, ReportsTheFractionThatARootTakesOfPrisms) {
+  for (const double fraction : {0.01, 0.1, 0.3}) {
+    const double radius_um = 1e3 * fraction / std::sqrt(2.0);
+    const Json json = inspect(
+        "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"aligned\"\n"
+        "extent = \"infinite\"\n[body]\nthickness_mm = 1\nrefractive_index = 1.5\n[surface]\nroot_radius_um = " +
+        std::to_string(radius_um) + "\n");
+    EXPECT_NEAR(json["dead_zone_share"].get<double>(), fraction, 1e-8);
+  }
+}
+
 // Strips of r / sqrt(2) on either side of three roots of length a sqrt(2/3), and beside the six rims of a hexagon; of
 // sqrt(2/3) r beside the three rims of a triangle. What is left over, where strips meet, is of second order.
 TEST(Inspect, TellsWhatEdgesTakeOfCubeCorners) {

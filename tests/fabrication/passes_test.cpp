@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -79,6 +80,26 @@ RC_GTEST_PROP(Passes, AMissingPassAndAPassThatIsTooHighAreFound, ()) {
     std::get<Visit>(wrong.items[visits[k]]).start.z() += 1000;
     RC_LOG() << "with visit " << k << " raised by 1 um\n";
     RC_ASSERT(!verified(job, machine, wrong).passes());
+  }
+}
+
+/// Flanks of 45 degrees that are moved along Z by d move along their normals by d / sqrt(2). The verifier reports this
+/// distance if it is greater than the tolerance.
+TEST(Passes, AnElementThatIsTooDeepOrTooHighIsFoundBeyondTheTolerance) {
+  const Job job = wide_prism(Strategy::unidirectional, 0.95);
+  const Machine machine = machine_of("ideal");
+  const Program right = make_plan(job, machine).programs.front();
+  const double tolerance_nm = verified(job, machine, right).tolerance_nm;
+  ASSERT_GE(tolerance_nm, 4.0) << "positions have steps of 1 nm";
+  for (const double tolerances : {-1.5, -0.5, 0.5, 1.5}) {
+    Program moved = right;
+    for (const std::size_t visit : visits_of(right))
+      std::get<Visit>(moved.items[visit]).start.z() += std::llround(tolerances * tolerance_nm * std::sqrt(2.0));
+    const Verification v = verified(job, machine, moved);
+    const std::string kind = tolerances < 0.0 ? "gouge" : "excess";
+    const bool is_found = std::ranges::any_of(v.findings, [&](const Finding& f) { return f.kind == kind; });
+    EXPECT_EQ(is_found, std::abs(tolerances) > 1.0) << tolerances << "\n" << listed(v);
+    EXPECT_EQ(v.passes(), std::abs(tolerances) < 1.0) << tolerances << "\n" << listed(v);
   }
 }
 

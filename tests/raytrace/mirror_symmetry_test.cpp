@@ -42,6 +42,8 @@ std::vector<Question> questions() {
   const RtpElement prism{0.5, 0.4, 90.0};
   PartSpec tilted = infinite(prism, Arrangement::aligned, 1.0);
   tilted.angle_errors.facet_tilt_arcmin = {10.0, 0.0, 0.0};
+  PartSpec slightly_tilted = tilted;
+  slightly_tilted.angle_errors.facet_tilt_arcmin = {0.1, 0.0, 0.0};
   PartSpec at_random = finite(prism, Arrangement::aligned, 2.0, 2.0, 1.0);
   at_random.random_tilts = {1.0, 1};
   return {
@@ -51,6 +53,7 @@ std::vector<Question> questions() {
       {"triangles", infinite(triangle, Arrangement::triangular, 1.0), true, true},
       {"prisms", infinite(prism, Arrangement::aligned, 1.0), true, true},
       {"one facet tilted", tilted, false, true},
+      {"one facet tilted slightly", slightly_tilted, false, true},
       {"bricks", bricks(infinite(prism, Arrangement::offset, 1.0), 50.0), true, true},
       {"bricks by a quarter", bricks(infinite(prism, Arrangement::offset, 1.0), 25.0), false, true},
       {"one cube", single(hexagon, 1.0), false, true},

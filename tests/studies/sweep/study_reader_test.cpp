@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -48,6 +49,19 @@ std::vector<double> numbers(const Parameter& parameter) {
   std::vector<double> values;
   for (const ParameterValue& value : parameter.values) values.push_back(std::get<double>(value.shown));
   return values;
+}
+
+TEST(StudyReader, AQuantityWithoutAnAzimuthHasThatOfTheAnalysis) {
+  const auto rre = [](const std::string& of_quantity, const std::string& of_analysis) {
+    const Study study = parse_study(kDesign + kParameter + kQuantity + "incidence_deg = 20\n" + of_quantity +
+                                        "[analysis]\nengine = \"exact\"\n" + of_analysis,
+                                    kFolder + "study.toml");
+    const Candidate candidate = make_candidate(study, {Parameter::value_of(1.0)});
+    return study.quantities[0]->measure(candidate, nullptr)->value.value();
+  };
+  const std::string azimuth = "azimuth_deg = 30\n";
+  EXPECT_EQ(rre("", azimuth), rre(azimuth, ""));
+  EXPECT_GT(std::abs(rre("", azimuth) - rre("", "")), 1e-3);
 }
 
 TEST(StudyReader, RangesAreThoseOfLists) {
