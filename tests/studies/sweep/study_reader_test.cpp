@@ -56,7 +56,8 @@ TEST(StudyReader, AQuantityWithoutAnAzimuthHasThatOfTheAnalysis) {
     const Study study = parse_study(kDesign + kParameter + kQuantity + "incidence_deg = 20\n" + of_quantity +
                                         "[analysis]\nengine = \"exact\"\n" + of_analysis,
                                     kFolder + "study.toml");
-    const Candidate candidate = make_candidate(study, {Parameter::value_of(1.0)});
+    const PointValues values = {Parameter::value_of(1.0)};
+    const Candidate candidate = make_candidate(study, values);
     return study.quantities[0]->measure(candidate, nullptr)->value.value();
   };
   const std::string azimuth = "azimuth_deg = 30\n";
