@@ -25,7 +25,7 @@ void FirstAnswer::begin(double remaining_s) try {
     }
   });
 } catch (const std::system_error&) {
-  // The system has no further thread, and there is no first answer.
+  // If the system cannot start another thread, preliminary results are omitted.
 }
 
 }  // namespace retrace::app

@@ -32,7 +32,7 @@ std::vector<Argument> arguments(CalibrateOptions& options) {
                                 "settle; without a table: write programs to be timed",
                                 &options.times, machine_traits()}};
   all.push_back(dialect_argument(options.dialect));
-  // Only programs to be timed are written in a dialect; a table of times names the programs that were run.
+  // The dialect only matters for programs whose times are predicted. A table of times names its programs itself.
   all.back().traits.needs = {any_given({"--times"}), absent("MEASUREMENTS")};
   return all;
 }

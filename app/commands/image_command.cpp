@@ -218,7 +218,7 @@ void check_can_draw(const CommonOptions& common) {
   if (!common.out.empty()) picture_files();
 }
 
-/// Options that make a run with --detector shorter.
+/// Returns changes of options that make a run with --detector shorter.
 Words what_shortens_detector(const ImageOptions& options) {
   const bool may_be_exact = options.engine == "exact" || options.engine == "auto";
   Words advice;
@@ -229,7 +229,7 @@ Words what_shortens_detector(const ImageOptions& options) {
   return advice;
 }
 
-/// Options that make a run with --camera shorter.
+/// Returns changes of options that make a run with --camera shorter.
 Words what_shortens_camera(const ImageOptions& options) {
   const studies::CameraRequest& request = options.photographed;
   return {request.passes ? fmt::format("give fewer --passes (now {})", *request.passes)

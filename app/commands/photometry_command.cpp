@@ -130,7 +130,7 @@ void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
   files.add_drawing("r_a", [&] { return report::observation_plot(result); });
 }
 
-/// Options that make the run shorter.
+/// Returns changes of options that make the run shorter.
 Words what_shortens_photometry(const PhotometryOptions& options, const studies::PhotometryStudy& study,
                                bool has_rotations) {
   Words advice;
@@ -145,7 +145,8 @@ Words what_shortens_photometry(const PhotometryOptions& options, const studies::
 
 /// Returns the table of preliminary readings, or an empty text if it was cancelled. It is ready after some seconds.
 std::string first_answer_of(const studies::PhotometryStudy& study, double remaining_s, const Cancellation* cancel) {
-  // Time of its rays without other work. The main measurement runs at the same time, so that it is about doubled.
+  // Tracing time of the preliminary readings, in s, if nothing else runs. It about doubles next to the main
+  // measurement.
   constexpr double first_answer_s = 3.0;
   const auto answer = study.first_answer(first_answer_s / remaining_s, cancel);
   return answer ? studies::first_answer_table(*answer) : std::string();

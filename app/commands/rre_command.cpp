@@ -31,7 +31,7 @@ std::vector<Argument> arguments(RreOptions& options) {
   const Need of_beams = engine_need(studies::kExactEngines);
   Traits samples = whole(1), sampling = one_of(Words{"stratified", "plain"}), target = not_with("--samples");
   samples.needs = sampling.needs = {of_rays};
-  // With a cut-off the exact engine has no target.
+  // If a cut-off is given, the exact engine does not use a target error.
   Need cutoff_or_target = engine_need(studies::kTargetEngines);
   cutoff_or_target.push_back(absent("--cutoff").front());
   target.needs = {cutoff_or_target};
@@ -106,7 +106,7 @@ void add_files(ResultFiles& files, const studies::RreRequest& asked, const studi
   }
 }
 
-/// Options that make the run shorter.
+/// Returns changes of options that make the run shorter.
 Words what_shortens_rre(const studies::RreRequest& request) {
   Words advice;
   if (request.rays) {

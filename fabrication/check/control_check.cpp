@@ -17,9 +17,9 @@ constexpr std::uint8_t kZBit = 0b100;
 constexpr std::uint8_t kLinearBits = 0b111;
 /// Allowance for the rounding errors of floating-point sums, in mm or degrees.
 constexpr double kSlack = 1e-9;
-/// Maximum allowance for the rounding of a printed position (in mm or degrees) and of a printed feed (relative). A word
-/// in inches or an inverse time is rounded, so it may exceed a limit by half of its last decimal. If half of the last
-/// decimal is larger than these values, the number counts as exact: half of 1e-4 inch is 1.3e-3 mm.
+/// Maximum tolerance for the rounding of a number in a program: absolute for positions (mm or degrees) and relative for
+/// feeds. A position in inches or an inverse time is rounded and may exceed a limit by half of its last decimal. A
+/// number with a coarser last decimal is taken as exact. Example: half of 1e-4 inch is 1.3e-3 mm, which is tolerated.
 constexpr double kMaxRounding = 2e-3;
 constexpr double kMaxRelativeRounding = 1e-3;
 

@@ -15,7 +15,8 @@ namespace {
 constexpr double kClearance = 1e-9;
 // Numbers of the rays of one round; those of the next follow.
 constexpr std::uint32_t kRaysOfRound = 1U << 26;
-// Maximum fraction of a site's scattered power in the widest cone for the cone to be scored by expected value.
+// Maximum fraction of a site's scattered power in the widest cone. Above this fraction, ordinary rays sample the cone
+// well enough.
 constexpr double kNarrow = 0.1;
 // Minimum power of a ray to the source, as a fraction of an ordinary ray's power. Weaker rays undergo Russian roulette.
 constexpr double kLeastShare = 0.05;
@@ -78,8 +79,8 @@ namespace {
 std::optional<WayToSource> way_to_source(const PathSetup& setup, const PathWalker& walker, const Vec3& position,
                                          const Vec3& normal, const Ray& met, double power) {
   if (!met.inside || surface_models::first_order_model(setup.optics.facet_scatter) == nullptr) return std::nullopt;
-  // The width of the cone is tested before the mirrors are searched. The specular direction, where the lobe is densest,
-  // is therefore used.
+  // The width of the cone is tested first, because the search for reflections takes longer. The specular direction is
+  // used for this test, because the lobe has its maximum there.
   const Vec3 specular = mirrored(met.direction, normal);
   const double density = diffracted_once_into(setup.optics, normal, met, specular).light.power();
   const double in_cone = density * narrowing(setup, setup.to_source) * solid_angle(setup);
@@ -194,8 +195,8 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
     walker_.resume(start, ray, key_, replicate_, number, choices);
 }
 
-/// Traces an ordinary ray. score() has already counted the light that reaches the cones from the place where this ray
-/// starts. If this ray itself ends in a cone, its power is therefore counted as scattered outside of the cones.
+/// Traces an ordinary ray. score() has already counted the light of this site that is diffracted one time and reaches
+/// the cones. If this ray also ends in a cone, its power is therefore counted as scattered outside of the cones.
 void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uint32_t number, std::uint32_t& choices) {
   apart_.clear();
   walker_apart_.resume(position, ray, key_, replicate_, number, choices);
@@ -204,8 +205,9 @@ void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uin
   tally_.add(apart_);
 }
 
-/// Traces one ray that represents all light of this site that is diffracted once towards the widest cone. Its power in
-/// the cones is subtracted from the power scattered elsewhere, which contains it due to follow_scored().
+/// Traces one ray that represents all light of this site that is diffracted one time towards the widest cone.
+/// follow_scored() has counted this light as scattered outside of the cones. The power that reaches the cones is
+/// therefore subtracted there.
 void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met,
                           double power, std::uint32_t number, std::uint32_t& choices) {
   surface_models::RandomStream random(key_, replicate_, number, choices++);

@@ -395,7 +395,7 @@ std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden
   if (is_guided(pixel)) {
     const auto words = philox({seed, kGuideStream}, pass, pixel);
     auto points = guide->points(*place_of(pixel), {words[0], words[1], words[2], words[3]});
-    // Over the passes, points of each kind are traced at all wavelengths.
+    // The points that the guide selects rotate among the wavelengths from pass to pass.
     const auto turn = static_cast<std::ptrdiff_t>(philox({seed, kGuideStream}, pass, pixel, 1)[0] % kPointsPerPass);
     std::rotate(points.begin(), points.begin() + turn, points.end());
     return points;

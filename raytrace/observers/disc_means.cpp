@@ -12,9 +12,9 @@ namespace {
 using geometry::Vec2;
 using Bands = std::array<double, 3>;
 
-// Number of lattice steps per finest detail of the diffracted light, and per reach of the kernel. The diffracted light
-// is band-limited, so that two steps per detail determine it. The spectrum of the kernel falls with the cube of
-// frequency.
+// Number of lattice steps per finest detail of the diffracted light, and per radius of the kernel. The diffracted light
+// is band-limited, so that two steps per detail are sufficient. The spectrum of the kernel decreases with the third
+// power of the frequency.
 constexpr double kStepsToADetail = 2.0;
 constexpr double kStepsToTheReach = 12.0;
 // Maximum distance between rays that are merged, as a fraction of the kernel's reach.

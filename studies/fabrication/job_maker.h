@@ -41,10 +41,10 @@ void check_cuts_zones(const JobRequest& request);
 /// Whether the strategy cuts the design's element. \throw InputError at --strategy, and for designs that nothing cuts
 void check_element(const Design& design, const JobRequest& request);
 
-/// Returns the fabrication job of a design, which is an array of elements or has zones of cube corners. The job
-/// contains the dihedral errors of the design and, for cube corners, its facet tilts. It does not contain random
-/// errors, edge radii or scratches from [surface], and it omits partial elements. Warnings name what is not cut. \throw
-/// InputError for designs and requests that cannot be cut
+/// Returns the fabrication job of a design. The design is an array of elements or has zones of cube corners. The job
+/// contains the dihedral errors of the design and, for cube corners, its facet tilts. It does not contain the random
+/// errors, edge radii and scratches of [surface], and it omits partial elements. Warnings name what is not cut.
+/// \throw InputError for designs and requests that cannot be cut
 MadeJob make_job(const Design& design, const JobRequest& request);
 
 }  // namespace retrace::studies

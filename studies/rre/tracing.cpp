@@ -30,8 +30,8 @@ constexpr SegmentCost kCellOfFinite{220.0, 25.0};
 constexpr SegmentCost kEmbree{350.0, 25.0};
 /// Straight pieces of a first round of Monte Carlo, before there was one.
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
-/// Maximum time for making the beam tracer, as a fraction of the expected remaining time of rays. If beams turn out to
-/// be slower, this time and the time of BeamRace until it is abandoned are together at most half of the time of rays.
+/// Maximum time for constructing the beam tracer, as a fraction of the expected remaining time of ray tracing. With
+/// this limit, an unsuccessful attempt with beams takes at most half of the time of ray tracing.
 constexpr double kMaxTracerShare = 0.3;
 /// What beams may take below the error that was requested: some 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;

@@ -103,9 +103,10 @@ void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut&
   }
 }
 
-/// Returns positions in the workpiece frame: the ends of the cutting edge at the root and at the rims of both facets,
-/// and points of the tool above its ends at the root, at the distance of a facet length. \param machine machine that
-/// executes the axis positions planned for `planned`
+/// Returns points of the tool in the workpiece frame: the ends of the cutting edge at the root and at the rims of both
+/// facets, and the points of the tool that are one facet length above these ends at the root.
+/// \param machine machine that executes the axis positions
+/// \param planned machine for which the axis positions were planned
 std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, const PlacedCut& ending,
                               double half_width_mm) {
   const Groove& groove = ending.groove();
@@ -125,8 +126,8 @@ std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, co
   return places;
 }
 
-/// Computes how far the ends of the tool move into the walls. If the whole edge moves along the root, one of its ends
-/// moves into a wall.
+/// Computes by how much the ends of the tool cut into the walls. A displacement of the edge along the root moves one of
+/// its ends into a wall.
 void tell_walls(const Machine& machine, const PlacedCut& ending, double half_width_mm, const SetupQuantity& quantity,
                 Sensitivity& row) {
   if (machine.tilt == Tilt::head) return;

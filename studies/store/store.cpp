@@ -150,8 +150,8 @@ bool ResultStore::Database::is_empty() const {
          sqlite->execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
 }
 
-/// Sets whether closing the file keeps the write-ahead log that a killed process left. Otherwise the log is
-/// merged into the file.
+/// Sets whether closing the file keeps the write-ahead log that a killed process has left. If not, SQLite merges the
+/// log into the file.
 void ResultStore::Database::keep_log(bool keep) const {
   sqlite3_db_config(sqlite->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
 }

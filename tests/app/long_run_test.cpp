@@ -54,8 +54,7 @@ TEST(LongRunOfTheProgram, OfAStudyIsReportedBeforeItsFirstPointIsFinished) {
   EXPECT_NE(outcome.err.find("analysis.samples (now 1000000000)"), std::string::npos) << outcome.err;
 }
 
-// The preliminary readings come while the run goes on. What an interrupted run writes to standard output does not
-// depend on them.
+// Preliminary readings appear during the run. The standard output of an interrupted run does not depend on them.
 TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadings) {
   const TemporaryFolder folder;
   const Arguments arguments = {"photometry",

@@ -1,4 +1,4 @@
-// Options that have an effect only with other options: each condition that a command declares is checked.
+// Tests of the conditions under which options have an effect. Every condition that a command declares is checked.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace retrace::test::option_needs_test {
 namespace {
 
-/// The name of an argument: the last name of an option, or the word of a positional argument.
+/// Returns the name of an argument: the last name of an option, or the word of a positional argument.
 std::string name_of(const Json& argument) {
   return argument["names"].empty() ? argument["value"] : argument["names"].back();
 }
@@ -38,7 +38,7 @@ class Line {
                                                 : "1";
   }
 
-  /// Makes a need fail, which no later call may make hold.
+  /// Adds options with which the requirement is not met, and fixes them.
   void violate(const Json& need) {
     for (const Json& condition : need) {
       const std::string option = condition["option"];
@@ -53,7 +53,8 @@ class Line {
     }
   }
 
-  /// Adds options until every need of every given option holds. \param but the need that was made to fail, or null
+  /// Adds options until the requirements of all given options are met.
+  /// \param but requirement that shall not be met; null: none
   void satisfy(const Json& but) {
     for (bool changed = true; changed;) {
       changed = false;
@@ -83,7 +84,7 @@ class Line {
     });
   }
 
-  /// Returns false if no condition may be made to hold.
+  /// Adds options that meet a requirement. Returns false if other conditions exclude them.
   bool make_hold(const Json& need) {
     for (const Json& condition : need) {
       const std::string option = condition["option"];
@@ -113,7 +114,7 @@ std::string text_of(const Arguments& arguments) {
   return text;
 }
 
-/// The design files do not exist: an accepted command line fails where it reads them.
+/// The design files do not exist, so that an accepted command line fails when it reads them.
 TEST(OptionNeeds, AreCheckedForEveryOptionOfEveryCommand) {
   const TemporaryFolder folder;
   const Json manual = retrace_json(folder, {"manual"});
@@ -144,7 +145,7 @@ TEST(OptionNeeds, AreCheckedForEveryOptionOfEveryCommand) {
     EXPECT_EQ(checked.count(known), 1U) << known;
 }
 
-/// The engine `auto` may choose any engine: it accepts the options of all of them.
+/// The engine `auto` may use any engine, so that it accepts the options of all engines.
 TEST(OptionNeeds, TheEngineAutoTakesTheOptionsOfAllEngines) {
   const TemporaryFolder folder;
   for (const Arguments& more : std::vector<Arguments>{

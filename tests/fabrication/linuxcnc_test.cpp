@@ -139,7 +139,7 @@ TEST(LinuxCnc, WhatItRefusesIsRefused) {
   }
 }
 
-/// Every randomly edited program that retrace accepts is also accepted by LinuxCNC.
+/// LinuxCNC accepts every randomly edited program that retrace accepts.
 TEST(LinuxCnc, TakesEveryEditedProgramThatIsRead) {
   const std::vector<std::string> lines_put_in = {
       "G94",       "G93",       "F50.000",     "G80",         "G80 G90",
@@ -247,8 +247,8 @@ TEST(Dialects, AreComplete) {
   EXPECT_THROW(text("kugler"), InputError);
 }
 
-/// A line of the machine file may be harmless in one dialect and unknown in another. If the machine file permits
-/// unknown lines, the header of the program names them.
+/// A line of the machine file may be recognized as harmless in one dialect and unknown in another one. If the machine
+/// file permits unknown lines, the header of the program names them.
 TEST(Dialects, NameLinesThatNobodyChecked) {
   Machine on = for_dialect(machine("ideal"), "a3200");
   const auto text = [&](std::string_view dialect) {

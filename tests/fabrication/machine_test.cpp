@@ -154,8 +154,8 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
             "m.toml:3: schema: must be \"retrace.machine/1\", got \"retrace.machine/2\"");
 }
 
-/// Programs contain the lines of the machine's builder unchanged. A line needs the permission of the machine file
-/// unless retrace recognizes it as harmless: it neither moves an axis nor waits.
+/// Programs contain the lines of the machine file unchanged. retrace recognizes lines that neither move an axis nor
+/// wait. Other lines are refused unless the machine file permits them.
 TEST(MachineFile, LinesOfAnIntegratorAreKnownOrPermitted) {
   const auto file_with = [](const std::string& lines) { return refusal("[z]", "[control]\n" + lines + "[z]"); };
   for (const char* line : {"linear Z-3 F100",

@@ -339,8 +339,8 @@ TEST(NcReader, APmacsSpindleIsTakenLetterByLetter) {
   EXPECT_THROW(settings_after("M105\n" + text, NcDialect::pmac, texts), InputError) << "outside of the program";
 }
 
-/// LinuxCNC may leave the path by P at corners, and by a further Q where it merges blocks. Q defaults to P. Both are in
-/// the unit of the program.
+/// P of G64 is the tolerance for rounding corners, and Q that for merging blocks. The path may deviate by P + Q. Q
+/// defaults to P. Both are in the unit of the program.
 TEST(NcReader, BlendingOfLinuxCncIsPAndQ) {
   const auto blend_mm = [](const std::string& words) {
     return settings_after("G21\n" + words + "\nM2\n", NcDialect::rs274ngc).blend_mm;

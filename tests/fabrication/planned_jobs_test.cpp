@@ -264,7 +264,8 @@ TEST(PlannedJobs, RootsAreAsPredictedAtEveryApex) {
   }
 }
 
-/// Returns a machine with an oblique axis A. The tangent of the largest angle between a root and the edge is `slope`.
+/// Returns a machine with an oblique axis A.
+/// \param slope tangent of the largest angle between a root and the tool's edge
 Machine with_root_slope(const Job& job, double slope) {
   Machine m = machine("ideal");
   const auto lean = [&](double angle) {
@@ -284,9 +285,10 @@ Machine with_root_slope(const Job& job, double slope) {
   return m;
 }
 
-/// A plunge separates its chip only if the strip that the tilted edge leaves at the root is narrower than the depth of
-/// cut. Jobs with wider strips are refused, and programs of all other jobs pass. A plough separates chips of any strip,
-/// so unidirectional jobs are refused only if the ploughed facet would be off by more than acos 0.985 = 9.94 degrees.
+/// A tilted edge leaves a strip at the root. A plunge separates its chip only if this strip is narrower than the depth
+/// of cut. Jobs with wider strips are refused. The programs of all other jobs pass verification. A plough separates its
+/// chip whatever the width of the strip. Unidirectional jobs are therefore refused only if the ploughed facet deviates
+/// by more than acos 0.985 = 9.94 degrees.
 TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
   for (const Strategy strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step})
     for (const double share : {0.3, 0.9, 0.99, 1.01, 1.3, 2.5, 3.5, 5.0, 10.0}) {
@@ -294,8 +296,8 @@ TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
       job.strategy = strategy;
       job.process.roughing_depth_um = 20.0;
       job.process.finishing_depth_um = 4.0;
-      // One end of the oblique edge comes nearer to the blank than the tool's reference point, of which rapid moves
-      // allow 5 %.
+      // One end of the oblique edge is closer to the blank than the tool's reference point. Rapid moves tolerate only
+      // 5 % of the clearance for this, so that a larger clearance is needed.
       job.process.clearance_mm = 1.0;
       const double depth_mm = strategy == Strategy::two_step ? 4e-3 : 20e-3;
       const Machine m = with_root_slope(job, share * depth_mm / job.tool.width_mm);

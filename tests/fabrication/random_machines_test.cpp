@@ -39,8 +39,8 @@ Machine machine_with(const char* key, double amount) {
   return with_error(machine("ideal"), *setup_quantity(Tilt::table, key), amount);
 }
 
-/// Verifies the programs of a job after a shift of all cuts.
-/// \param along_x_nm distance by which the cuts are shifted along X
+/// Verifies the programs of a job on a machine.
+/// \param along_x_nm distance by which all cuts are shifted along X
 Verification verified(const Job& job, const Machine& m, Nanometres along_x_nm = 0) {
   std::vector<NcProgram> programs;
   for (Program& program : make_plan(job, m).programs) {
@@ -64,11 +64,11 @@ struct Lean {
   double least_share;  ///< minimum ratio of the simulated to the predicted cut into a wall
 };
 
-/// The depth of cut into a wall is the tilt of the slide times the travel along the slide: Z moves up facet 1, and Y
-/// moves along facet 2. If the edge is tilted, the side of the tool is tilted towards the wall by the same angle. The
+/// The depth of cut into a wall is the tilt of a slide times the travel along this slide: Z moves up facet 1, and Y
+/// moves along facet 2. A tilted edge additionally tilts the side of the tool towards the wall by the same angle. The
 /// simulated depth is less than the prediction in two cases. The first roughing cuts begin below the rim, which
-/// shortens the travel of Y. The clearance face is 3 degrees off the wall, so only cos 3 sin 45 / sin 48 = 0.95 of its
-/// length is in the blank.
+/// shortens the travel of Y. The clearance face is at 3 degrees to the wall, so that only cos 3 sin 45 / sin 48 = 0.95
+/// of its length is in the blank.
 TEST(RandomMachines, WhatGoesIntoWallsIsTheDirectionOfTravel) {
   const double facet_nm = 1e6 * 0.451 / std::numbers::sqrt2;
   for (const auto& [key, strategy, least_share] :
@@ -97,8 +97,8 @@ TEST(RandomMachines, AnEdgeTooFarInAWallIsFound) {
   }
 }
 
-/// If a tilted edge ploughs while the slides are tilted along the edge, the edge stays on the design's facet and moves
-/// along the root as predicted.
+/// An edge is tilted, and the slides are tilted in the same plane. While it ploughs, the edge remains on the facet of
+/// the design and moves along the root as predicted.
 TEST(RandomMachines, PloughsKeepToTheFacetWhereSlidesLeanAlongATiltedEdge) {
   for (const double tilt_arcsec : {-1000.0, 1000.0})
     for (const double lean_arcsec : {-1000.0, 1000.0}) {
@@ -192,8 +192,8 @@ TEST(RandomMachines, ATurnedToolCutsWhereItWasTouchedOff) {
   }
 }
 
-/// A known rotation of the tool about its edge changes only the clearance. A rounded edge then cuts facets of any apex
-/// angle as designed.
+/// A rotation of the tool about its edge, which the machine file contains, changes only the clearance angle. A rounded
+/// edge then cuts facets with any apex angle as designed.
 TEST(RandomMachines, ATurnAboutTheEdgeMovesNoFacet) {
   for (const double turn_deg : {-1.0, 1.0})
     for (const double apex_deg : {80.0, 90.0, 100.0}) {

@@ -27,8 +27,8 @@
 #include "tests/fabrication/nc_record.h"
 #include "tests/fabrication/substrate_jobs.h"
 
-// Tests of feeds and times. The verifier gives the same result for feeds per minute, inverse times and inches. The time
-// of a plan equals the time of its program, and the closed-form time of its moves.
+// Tests of feeds and times. The verifier gives equal results for feeds per minute, inverse times and inches. The time
+// of a plan agrees with that of its program, and with closed forms.
 
 namespace retrace::fabrication::test::rates_test {
 namespace {
@@ -112,7 +112,7 @@ TEST(Rates, InverseTimesAreFeedsOverLengths) {
   }
 }
 
-/// Limits allow for the rounding of printed numbers, but for at most 0.1 % of a feed.
+/// Checks of limits tolerate the rounding of printed numbers, but not more than 0.1 % of a feed.
 TEST(Rates, ProgramsInInchesPass) {
   const Machine machine = shipped("ideal");
   const auto in_inches = [](const std::string& text, int decimals, int decimals_of_feeds, double factor) {

@@ -23,8 +23,8 @@
 #include "tests/fabrication/findings_text.h"
 #include "tests/support/sample_size.h"
 
-// Tests of cuts with V-shaped tools at rounded positions. The bound on the fin along a dihedral edge is compared with
-// randomly displaced cuts, and correct jobs with random tools pass.
+// Tests of V-shaped tools at rounded positions. Bounds on the height of fins are compared with randomly displaced cuts.
+// Correct jobs with random tools pass verification.
 
 namespace retrace::fabrication::test::rounded_cuts_test {
 namespace {
@@ -74,7 +74,7 @@ TEST(RoundedCuts, FinsAreNoHigherThanTheFormula) {
   }
 }
 
-/// Three planes with random errors of angle, and the spine of a random tool in each.
+/// Three facet planes with random errors of angle, and the direction of a random tool's spine while it cuts each facet.
 struct RandomCuts {
   std::array<geometry::Vec3, 3> normals;
   std::array<geometry::Vec3, 3> spines;
@@ -89,7 +89,7 @@ RandomCuts random_cuts(std::mt19937& bits) {
     geometry::Vec3 normal(uniform(-0.01, 0.01), uniform(-0.01, 0.01), uniform(-0.01, 0.01));
     normal[k] = 1.0;
     cuts.normals[facet] = normal.normalized();
-    // The dihedral edges of facet k are the two axes after k.
+    // The two dihedral edges of facet k are the two coordinate axes that follow axis k.
     cuts.spines[facet][(k + 1) % 3] = spine.x();
     cuts.spines[facet][(k + 2) % 3] = spine.y();
     cuts.spines[facet][k] = spine.z();
@@ -98,8 +98,8 @@ RandomCuts random_cuts(std::mt19937& bits) {
   return cuts;
 }
 
-/// True if the cut along a facet removes a point: the cone of the facet's two edges and the spine, moved by `tip`,
-/// holds it. The cone is computed from its own three planes.
+/// Returns true if the cut along a facet removes a point. The cut removes the cone that is spanned by the two edges of
+/// the facet and the spine, displaced by `tip`. The cone is computed from its own three planes.
 bool removes(const RandomCuts& cuts, std::size_t facet, const geometry::Vec3& tip, const geometry::Vec3& point) {
   const geometry::Vec3& normal = cuts.normals[facet];
   const geometry::Vec3 first = cuts.normals[(facet + 2) % 3].cross(normal);
@@ -109,7 +109,8 @@ bool removes(const RandomCuts& cuts, std::size_t facet, const geometry::Vec3& ti
   return (cone.inverse() * (point - tip)).minCoeff() >= 0.0;
 }
 
-/// Points are searched from all cuts at exact positions: directions from the apex on a fine grid.
+/// Returns true if cuts at exact positions leave a peak. Directions from the apex are searched on a fine grid for
+/// points that no cut removes.
 bool leaves_a_peak(const RandomCuts& cuts) {
   constexpr int kSteps = 160;
   for (int i = 1; i < kSteps; ++i)
@@ -125,7 +126,7 @@ bool leaves_a_peak(const RandomCuts& cuts) {
   return false;
 }
 
-/// Tools whose cuts overlap along every edge may still leave a peak in the middle.
+/// Cuts may overlap along every dihedral edge and still leave a peak over the apex.
 TEST(RoundedCuts, PeaksAreWhereTheFormulaHasThem) {
   std::mt19937 bits(5);
   int peaks = 0;
@@ -150,8 +151,7 @@ TEST(RoundedCuts, PeaksAreWhereTheFormulaHasThem) {
   EXPECT_GE(peaks, 20);
 }
 
-/// Tips are displaced as rounding may displace them. No point that is higher than the formula over two facets
-/// remains.
+/// Displaces tips by random rounding errors. No material remains that is higher than the bound above two facets.
 TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
   std::mt19937 bits(7);
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
@@ -169,8 +169,8 @@ TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
         along = (along - along.dot(normal) * normal).normalized();
         tips[f] = std::copysign(rounded_across_mm(1.0), uniform(-1, 1)) * normal + rounded_along_mm(1.0) * along;
       }
-      // Points beyond the bound over two facets, and anywhere over the third. A point within the bound of two facets
-      // may belong to the fin along their edge.
+      // Samples are higher than the bound above two facets and have any height above the third facet. Material lower
+      // than the bound above two facets may belong to the fin along their edge.
       geometry::Vec3 heights(uniform(0, 2), uniform(0, 2), uniform(0, 2));
       heights = (heights * bound).cwiseMax(3.0 * rounded_along_mm(1.0));
       for (const int facet : {k % 3, (k + 1) % 3}) heights[facet] = std::max(heights[facet], bound * 1.0001);
@@ -209,8 +209,8 @@ bool fits(const Job& job) {
   return true;
 }
 
-/// Correct jobs with a blunt nose pass, even if rounding leaves a fin of 10 nm. Measuring lines near the apex run along
-/// the dihedral edge of the two other facets and must end before its fin.
+/// Correct jobs of tools with a blunt nose pass, even if rounding leaves a fin of 10 nm. Near the apex, measuring lines
+/// run along the dihedral edge of the two other facets. They must end before the fin at that edge.
 TEST(RoundedCuts, RightCutsOfABluntNosePass) {
   for (const auto& [clearance_deg, apex] :
        {std::pair{3.0, geometry::Vec2(0.844313, 0.5911)}, {2.0, geometry::Vec2(0.51237, 0.5031)}}) {
@@ -264,8 +264,8 @@ TEST(RoundedCuts, RandomNosesPass) {
   EXPECT_EQ(cut, noses);
 }
 
-/// A Fanuc rounds positions to its increments. A job of cube corners is either refused with the key to change, or
-/// passes.
+/// A Fanuc rounds positions to its increments. A job of cube corners passes verification, or is refused with the name
+/// of the key to change.
 TEST(RoundedCuts, CubeCornersOfEveryIncrementSystemPassOrAreRefused) {
   for (const IncrementSystem system : {IncrementSystem::b, IncrementSystem::c, IncrementSystem::d, IncrementSystem::e})
     for (const bool is_hexagonal : {false, true})

@@ -270,7 +270,7 @@ std::int32_t line_of_visit(const Lines& lines, std::int64_t n) {
   return 0;
 }
 
-/// After a stop behind any pass of an element, a program that restarts at the next pass cuts nothing twice.
+/// A program that restarts after any pass of an element repeats no cut.
 TEST_P(Stops, RestartsFromAnyVisit) {
   for (Case c : cases()) {
     const Machine machine = machine_of(c, 5.0);

@@ -22,8 +22,8 @@
 #include "tests/fabrication/chiseling_programs.h"
 #include "tests/fabrication/findings_text.h"
 
-// Tests of cube corners with intended errors of angle, and in zones. The references are closed forms and the path of
-// the tool. A change of any number of a job must be found.
+// Tests of jobs with cube corners that have intended errors of angle or belong to zones. The references are closed
+// forms and the path of the tool. The verifier must find a change of any number of a job.
 
 namespace retrace::fabrication::test::zone_jobs_test {
 namespace {
@@ -160,7 +160,7 @@ TEST(ZoneJobs, EveryDialectCutsTheSame) {
   }
 }
 
-/// Records the fed moves of the tip, in the workpiece frame.
+/// Records the feed moves of the tool's tip, in the workpiece frame.
 struct TipWays : NcSink {
   explicit TipWays(const Machine& m) : machine_of(m) {}
   void motion(const NcMotion& motion, const NcSettings&) override {
@@ -174,8 +174,8 @@ struct TipWays : NcSink {
   std::vector<std::pair<Vec3, Vec3>> ways;
 };
 
-/// Independent of planner and verifier: the deepest moves of the tip down and up each facet span the plane of the
-/// facet.
+/// Reference that is independent of planner and verifier: the deepest moves of the tip, down and up each facet, span
+/// the plane of this facet.
 TEST(ZoneJobs, TheTipSpansPlanesWithTheAnglesOfEachZone) {
   const Job job = zoned_job();
   const Machine m = machine();
@@ -247,7 +247,7 @@ TEST(ZoneJobs, EveryNumberOfEveryZoneMatters) {
   }
 }
 
-/// C rotates in one direction and omits only the widest gap between two poses. The facets of each zone are cut in the
+/// Over all poses, C rotates in one direction and skips only the widest gap. The facets of each zone are cut in the
 /// order 1, 2, 3.
 TEST(ZoneJobs, PosesTurnAsLittleAsTheyCan) {
   const Plan plan = make_plan(zoned_job(), machine());

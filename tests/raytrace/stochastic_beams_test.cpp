@@ -160,8 +160,8 @@ TEST(StochasticBeams, IntervalsHoldOverSeedsForRoughFacets) {
   expect_truth(questions()[0], rough(10.0, 5.0), 2e-3);
 }
 
-/// If little light is scattered, the first rays may all miss the cone. The standard error must not be 0 then. The
-/// reference is a more accurate result with other seeds. RoughFacetsAgreeWithRays has an independent reference.
+/// With little scattered light, the first rays may all miss the cone. Even then, the standard error must not be 0. The
+/// reference is a more accurate result with other seeds; RoughFacetsAgreeWithRays has an independent reference.
 TEST(StochasticBeams, IntervalsHoldWhereFewScatteredRaysReachTheCone) {
   const Part part = build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 2.0));
   const Optics optics = rough(10.0, 1.0);
@@ -224,10 +224,10 @@ TEST(StochasticBeams, RoughFacetsAgreeWithRays) {
   }
 }
 
-/// Prisms at normal incidence, whose two facets totally reflect at 45 degrees. Light that a facet scatters into the
-/// direction of the mean field comes back, except for the part that the facets scatter again. Part of it is reflected
-/// by the entrance face and makes a second round trip. The power in a narrow cone is the density of first-order
-/// scattering in this direction, times the solid angle of the cone inside the part.
+/// Prisms at normal incidence: both facets are at 45 degrees and reflect totally. Light that a facet scatters into the
+/// direction of the mean field returns, unless a facet scatters it again. The entrance face reflects a fraction of the
+/// light, which then makes a second round trip. The power in a narrow cone is the density of first-order scattering in
+/// this direction, times the solid angle of the cone inside the part.
 TEST(StochasticBeams, PrismsScatterIntoNarrowConesAsFirstOrderSays) {
   using std::numbers::pi, surface_models::Lobe, surface_models::Polarisation2;
   const Optics optics = rough(4.0, 0.3);

@@ -84,8 +84,8 @@ TEST(UnseenPaths, SmallRegionsLieWithinTheError) {
   }
 }
 
-// If no ray of n meets the region, its share is below 3 / n with 95 % confidence. This bound determines the number of
-// rays, which is rounded up to a power of two.
+// If none of n rays meets a region, its fraction of the light is below 3 / n with 95 % confidence. This bound
+// determines the number of rays, which is rounded up to a power of two.
 TEST(UnseenPaths, ATargetOf1e5StaysAffordable) {
   std::mt19937 random(1);
   const MonteCarloResult result = sampled(ReturningRegion(random, 1e-9), 1e-5, 1);

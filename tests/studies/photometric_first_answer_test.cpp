@@ -1,4 +1,4 @@
-// Preliminary readings of photometry, which are computed next to a measurement that takes long.
+// Preliminary readings of photometry, which are computed in parallel with a long measurement.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -18,15 +18,15 @@ namespace {
 
 using namespace photometric_requests;
 
-/// Fraction of the rays that the preliminary readings use.
+/// Number of rays of the preliminary readings, divided by that of the measurement.
 constexpr double kRayShare = 1.0 / 32.0;
 
 Design cubes() {
   return design_of(honeycomb(2.0));
 }
 
-/// Returns a request of two readings at an angle at which light is trapped in the part. Beams are diffracted and have
-/// the wavelengths of CIE A. Rays have one wavelength.
+/// Returns a photometry request with two observation angles, at an entrance angle at which some light is trapped in the
+/// part. Requests by beams use diffraction and the wavelengths of CIE A. Requests by rays use one wavelength.
 PhotometryRequest request_by(Engine engine) {
   TestProgramme programme = points_at({0.1, 0.2}, 1.0);
   for (TestPoint& point : programme.points) point.h_deg = 20.0;
@@ -69,7 +69,7 @@ TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
 TEST(PhotometricFirstAnswer, CostsLess) {
   const PhotometryStudy by_beams(cubes(), request_by(Engine::automatic));
   EXPECT_LT(3 * by_beams.first_answer(kRayShare)->wavelengths_nm.size(), by_beams.run().wavelengths_nm.size());
-  // Fewer rays have a larger error: 32 times fewer rays have 5.7 times the error.
+  // With 32 times fewer rays, the standard error is 5.7 times as large.
   const PhotometryStudy by_rays(cubes(), request_by(Engine::montecarlo));
   const PhotometryResult result = by_rays.run();
   EXPECT_GT(by_rays.first_answer(kRayShare)->points[0].std_error_mcd_per_lx,
@@ -77,7 +77,7 @@ TEST(PhotometricFirstAnswer, CostsLess) {
   EXPECT_EQ(by_rays.first_answer(1.0)->points[0].r_a, result.points[0].r_a) << "with all rays it is the final reading";
 }
 
-/// Computes preliminary readings on another thread as soon as a measurement reports progress.
+/// Starts the computation of preliminary readings on another thread when a measurement first reports progress.
 class Meanwhile : public Progress {
  public:
   explicit Meanwhile(const PhotometryStudy& study) : study_(study) {}

@@ -31,7 +31,8 @@ Vec2 deepest_place(const SectionPlane& plane, const Groove& groove, const ToolWe
   const Vec3 to = back.point(sweep.to_mm);
   const Vec3 tip = groove.over_face_mm(from) < groove.over_face_mm(to) ? from : to;
   if (groove.is_cube()) {
-    // Project along the dihedral edge that crosses the section. With errors of angle it is not normal to the section.
+    // Project lengths along the dihedral edge that crosses the section. With errors of angle, this edge is not normal
+    // to the section.
     const auto across = [&](const Vec3& edge) { return std::abs(plane.normal.dot(edge)); };
     const Vec3& edge = *std::ranges::max_element(groove.edges, {}, across);
     return plane.point(tip - plane.beside_mm(tip) / plane.normal.dot(edge) * edge);
@@ -123,8 +124,8 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
     std::vector<double> bends;
     for (const double bend : limit.bends_mm())
       for (const double side : {-1.0, 1.0}) bends.push_back(deepest_mm + side * (bend + 1e-9));
-    // Thicknesses are measured along parallel lines in a cross-section of the element. If the element has errors of
-    // angle, these lines are not exactly parallel to the facet's normal.
+    // Chip thicknesses are measured along parallel lines in a cross-section of the element. With errors of angle, these
+    // lines are not exactly parallel to the facet's normal, so that measured thicknesses are larger.
     const double upright = groove_.is_cube() ? square.norm() : 1.0;
     for (const LineLength& line : line_lengths(removed[s], along, bends)) {
       const double most_mm = limit.at(std::abs(line.at_mm - deepest_mm), beside_mm);

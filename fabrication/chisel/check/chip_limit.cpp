@@ -10,8 +10,8 @@ namespace {
 
 using geometry::Vec3;
 
-/// Chip of a V-shaped tool at a dihedral edge, for a layer of 1 mm: its maximum thickness between the flank and the
-/// material on the neighbouring facet, and the maximum distance of the chip from the edge.
+/// Chip that a V-shaped tool removes at a dihedral edge if the layer is 1 mm thick: its maximum thickness between the
+/// flank and the material on the neighbouring facet, and its maximum distance from the edge.
 struct BesideEdge {
   double thickness = 1.0;
   double reach = 1.0;
@@ -28,8 +28,8 @@ BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spi
     const double away = spine.dot(across.normalized());
     if (away <= 0.0) continue;
     const double slope = spine.dot(normal) / away;
-    // Cosine of the angle between the facet and the material on the neighbouring facet: the larger of its values normal
-    // to the edge and in the plane of the two other edges.
+    // Cosine of the angle between the facet and the material on the neighbouring facet. The chip is evaluated in two
+    // sections: normal to the edge, and in the plane of the two other edges. The larger cosine is used.
     const Vec3& third = cavity.edges[(facet + 2) % 3];
     const double cosine =
         std::max(-normal.dot(cavity.facets[is_second ? next : (facet + 2) % 3].normal), other.dot(third));
@@ -37,7 +37,7 @@ BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spi
     constexpr double kLeast = 1e-3;
     const double thickness = slope / std::max(kLeast, sine - slope * cosine);
     most.thickness = std::max(most.thickness, thickness);
-    // The distance is measured along the other edge, as in sections.
+    // Distances in sections are measured along the other edge, not normal to the edge.
     most.reach = std::max(most.reach, (1.0 + thickness * cosine) / (sine * across.norm()));
   }
   return most;

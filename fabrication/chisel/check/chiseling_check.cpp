@@ -19,7 +19,7 @@ ChiselingCheck::ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& we
     : CutCheck(workpiece, wedge, control, findings) {
   for (const Groove& cavity : workpiece.grooves) {
     State state;
-    // Material that a layer leaves if its apex is in the blank's face.
+    // Before the first cut, the remaining material is that of a layer whose apex is in the face of the blank.
     state.left_mm.fill((cavity.face_mm - cavity.axis.dot(cavity.root_mm)) / cavity.layer_rise);
     states_.push_back(state);
   }

@@ -16,7 +16,7 @@ namespace {
 
 using geometry::Vec2;
 
-/// Number of parts into which each side of a triangle is divided. The triangle is half a corner of a cavity.
+/// Number of divisions of each side of the triangles that are sampled. A triangle is half of a cavity's corner.
 constexpr int kDivisions = 32;
 constexpr double kDeg = std::numbers::pi / 180.0;
 
@@ -50,7 +50,7 @@ class Overcutter {
     return {static_cast<std::int64_t>(std::floor(p.x() / width_mm_)),
             static_cast<std::int64_t>(std::floor(p.y() / width_mm_))};
   }
-  /// Calls `take` for all elements near a point. No cavity extends farther from its apex than an element is wide.
+  /// Calls `take` for all elements near a point. A cavity extends from its apex by at most the width of an element.
   template <class Take>
   void for_each_near(const Vec2& p, const Take& take) const {
     const auto [column, row] = square_of(p);
@@ -105,8 +105,8 @@ class Overcutter {
       for (int n = 0; m + n <= kDivisions; ++n) take(i, a + m * u + n * v, 0.0);
   }
 
-  /// Adds the material that cavity i removes at a point outside of its hexagon. Only the deepest cavity is counted, of
-  /// those whose hexagon does not contain the point.
+  /// Adds the material that cavity i removes at a point outside of its hexagon. If several cavities remove this point,
+  /// only the deepest one is counted.
   void take(std::size_t i, const Vec2& p, double area_mm2) {
     const double own_mm = depth_mm(i, p);
     if (own_mm <= 0.0) return;

@@ -424,8 +424,8 @@ class ProgramMaker {
     return used_.size() >= kMostSubroutines && !used_.contains(stage.subroutine);
   }
 
-  /// Adds only those subroutines that the program calls. Each tilt of elements on a substrate and each zone has its
-  /// own.
+  /// Adds only the subroutines that the program calls. Each zone, and each tilt of elements on a substrate, has its own
+  /// subroutines.
   void add_used_subroutines() {
     std::vector<Subroutine> left;
     std::map<std::uint32_t, std::uint32_t> places;

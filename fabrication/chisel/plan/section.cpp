@@ -163,8 +163,8 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   Section& section = pose.section;
   const Vec3 wall = in_words(machine, motion.direction(normal));
   section.wall_y = 1.0 / wall.y();
-  // Y and Z move the tool parallel to the design's floor. The tilt of the root rotates the floor relative to the edge,
-  // so only the deeper end of the edge touches the floor.
+  // Y and Z move the tool parallel to the floor of the design. If the root is tilted relative to the edge, the floor is
+  // rotated as well, and only the deeper end of the edge touches it.
   const FacetChoice other{facet.rotated, 3 - facet.facet};
   const Vec3 design_floor = motion.direction(pose.turn * facet_normal(element, other));
   const Vec3 floor = in_words(machine, design_floor);

@@ -128,9 +128,9 @@ class StageMaker {
     }
   }
 
-  /// Adds the poses in the order of their angle C, starting after the widest gap between two poses. C therefore always
-  /// rotates in one direction, and the facets of each element are cut in the same cyclic order in every layer. Any
-  /// other order would make chips at dihedral edges thicker.
+  /// Adds the poses in the order of their angle C, beginning after the widest gap between two poses. C then rotates in
+  /// one direction only. The facets of each element are cut in the same cyclic order in every layer; in any other
+  /// order, chips at dihedral edges would be thicker.
   void add_poses_by_turn() {
     std::vector<CuttingPose> poses;
     for (const auto& [group, stance] : groups_)
@@ -151,7 +151,7 @@ class StageMaker {
         first = k;
       }
     std::rotate(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(first), poses.end());
-    // Choose the number of full turns for which C stays as near to 0 as its limits allow.
+    // Select the number of full turns with which C remains as close to 0 as its limits allow.
     const double begin_deg = poses.front().rounded.c_deg;
     const double span_deg = -sense * (360.0 - widest_deg);
     double farthest_deg = std::numeric_limits<double>::infinity();

@@ -100,8 +100,8 @@ class EdgeProbe {
     stand.angle_within_rad = angle;
   }
 
-  /// A part of the nose's arc is inside the region. Returns the angle of the middle of this part. Seen from above, the
-  /// arc is assumed to be straight, which is exact without rake.
+  /// Returns the angle of the center of the part of the nose's arc that is inside the region. In plan, the arc is
+  /// approximated by a straight line, which is exact for tools without rake.
   double inner_angle(const Pose& at) const {
     const Vec2 tip = place(at, 0.0);
     const Vec2 across(std::cos(at.c_rad), -std::sin(at.c_rad));
@@ -124,8 +124,8 @@ class EdgeProbe {
     return std::asin(std::clamp(0.5 * (low + high), -reach, reach) / radius_mm_);
   }
 
-  /// Takes into account both points at which the arc crosses the border of the region. If the arc is closest to the
-  /// surface outside of the region, then its closest point inside the region is one of these two points.
+  /// Updates the closest point with the two points at which the arc crosses the border of the region. If the closest
+  /// point of the arc is outside of the region, the closest point inside the region is one of these two.
   void look_at_border(const Pose& at, Stand& stand) const {
     const double inner = inner_angle(at);
     if (!is_within(at, inner)) return;
@@ -219,7 +219,8 @@ class EdgeProbe {
 struct Standing {
   double low_nm = 0.0;
   double high_nm = 0.0;
-  double beyond_nm = 0.0;  ///< distance between edge and surface at a point of contact outside of the region
+  /// Distance between edge and surface at the point of contact, if this point is outside of the region.
+  double beyond_nm = 0.0;
   double touches_mm = kNowhere;
   double angle_rad = 0.0;  ///< angle, on the arc, of the point of contact at the end of the block
   bool is_within = false;  ///< true if this point of contact is inside the region

@@ -21,7 +21,8 @@ using fabrication::test::border_places;
 using fabrication::test::deviations;
 using fabrication::test::PlainCut;
 
-/// A bowl with a cubic term. Its slope moves the point of contact from the lowest point of the nose outwards.
+/// A bowl with a cubic term. The slope of its surface shifts the point of contact outwards from the lowest point of the
+/// nose.
 const std::string kHead =
     "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"xy_polynomial\"\nterms = [[2, 0, 0.05], [0, 2, 0.03], [3, 0, "
     "0.02]]\n[tool]\nnose_radius_mm = 0.5\nclearance_deg = 15\n";
@@ -137,8 +138,8 @@ TEST(TurningBorder, AMissingOuterLineOfARasterIsFound) {
   }
 }
 
-/// Raises random blocks near the border. The verifier must report every program that leaves more material at the border
-/// than the correct program, by 1.05 times the tolerance.
+/// Raises random blocks near the border. If this leaves 1.05 times the tolerance more material at the border than the
+/// correct program does, the verifier must report it.
 void judge_raised(const Planned& plan, std::size_t first_cut, std::size_t last_cut, std::size_t outer_blocks) {
   EXPECT_TRUE(plan.findings(fabrication::test::text_of_lines(plan.lines)).empty());
   const std::vector<double> right = plan.border_nm(fabrication::test::text_of_lines(plan.lines), 60);
@@ -175,7 +176,7 @@ TEST(TurningBorder, RaisedBlocksOfASpiralThatBeginsBeyondThePartAreFound) {
   judge_raised(Planned(spiral(0.006)), 0, 0, 90);
 }
 
-/// Blocks that are too far outside of the border to cut the part may be raised without a finding.
+/// Blocks that do not cut the part, because they are too far outside of the border, may be raised without a finding.
 TEST(TurningBorder, CutsBeyondThePartAreFree) {
   const Planned plan(spiral(0.04));
   std::vector<std::size_t> blocks = plan.blocks(0);

@@ -97,8 +97,8 @@ std::string form_fault(const PlainProgram& program) {
 }
 
 /// Returns a description of the first fault of a program, or an empty text.
-/// \param border deviations of the correct program at the border. They are the reference for `program`. If `border` is
-/// empty, it is filled with the deviations of `program`.
+/// \param border deviations of the correct program at points of the border. If it is empty, the deviations of `program`
+///        are stored in it
 std::string fault_of(const TurnedPart& part, const PlainProgram& program, std::vector<double>& border) {
   if (const std::string fault = form_fault(program); !fault.empty()) return fault;
   const bool is_spiral = part.path.strategy == Strategy::spiral;
@@ -384,7 +384,7 @@ TEST(TurningCheck, StrokesOfAFastServoBelongToTheirPoints) {
   EXPECT_THROW(found("c_deg,stroke_mm\nx,1\n"), InputError);
 }
 
-// Nothing is checked within one feed of the axis, where the part rotates under a nearly fixed edge.
+// Results are not checked within one feed of the axis, where the part rotates under a nearly fixed edge.
 TEST(TurningCheck, PartsOfFewTurnsAreNotJudgedAtTheirAxis) {
   for (const double radius_mm : {0.04, 0.08, 0.12, 0.135, 0.15, 0.2}) {
     const Planned plan = planned(fmt::format(

@@ -334,8 +334,8 @@ TEST(FarField, TellsWhatTheBudgetOfPolygonsLeavesUndiffracted) {
   EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
 }
 
-/// Returns the mean over the kernel. Gauss's rule is used along radii on both sides of the kernel's kink, with enough
-/// points to resolve the field.
+/// Returns the mean of a far field over the kernel. The reference uses Gauss quadrature along radii, separately on both
+/// sides of the kernel's kink, with enough points to resolve the field.
 double mean_over(const FarField& field, const Vec3& direction, const ApertureKernel& kernel, double kink_rad) {
   constexpr int kRound = 300;
   const GaussRule rule = gauss_legendre(80);

@@ -1,4 +1,5 @@
-// Tests of pixel points that are selected by a map: mean luminances do not change, and rare bright strips are sampled.
+// Tests of pixel points that an importance map selects: mean luminances do not change, and rare bright strips are
+// sampled.
 #include "raytrace/observers/pixel_guide.h"
 
 #include <gtest/gtest.h>

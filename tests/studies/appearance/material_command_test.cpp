@@ -147,7 +147,7 @@ TEST(Material, IsWithinTwoPercentOfPhotometryByItsExampleReader) {
 }
 
 /// Prisms reverse the component of the light direction across their roof edge and keep the component along it. The
-/// table is centred on the resulting direction.
+/// table must be centred on the direction of this reflected light.
 TEST(Material, PrismsAreToldWhereTheySendTheLight) {
   const TemporaryFolder folder;
   folder.write("d.toml",
@@ -159,8 +159,8 @@ TEST(Material, PrismsAreToldWhereTheySendTheLight) {
   ASSERT_EQ(retrace(folder, arguments).code, 0);
   const Json header = folder.json("m.json");
   EXPECT_EQ(header.at("back"), Json::array({1.0, -1.0}));
-  // For light inclined along the roof edge, almost nothing returns to the source, but all light that the facets reflect
-  // is in the table.
+  // If the light is inclined along the roof edge, almost none returns to the source, but the table contains all light
+  // that the facets reflect.
   for (const Json& at : header.at("directions"))
     if (at.at("azimuth_deg") == 90.0 && at.at("entrance_deg") == 4.0) {
       EXPECT_GT(at.at("returned"), 0.85);

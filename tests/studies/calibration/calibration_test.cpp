@@ -185,9 +185,9 @@ std::string refusal_of(const MeasuredParts& parts) {
   return "accepted";
 }
 
-/// A user enters the tilts along the roots of rotated prisms with the wrong sign, on one part. Four rows of 72 are
-/// wrong. These are too few outliers to refuse the table, but after their removal no measurement of this quantity
-/// remains.
+/// On one part, the user enters the tilts along the roots of rotated prisms with the wrong sign. Only 4 of 72 rows are
+/// wrong, which are too few outliers to refuse the table for. Without them, however, no measurement of this quantity
+/// remains, so that the table is refused.
 TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
   const Machine& ideal = test_cuts().plans.front().machine;
   const Machine real = with_error(ideal, *setup_quantity(Tilt::table, "tool_turn_z_arcsec"), 60.0);
@@ -212,8 +212,8 @@ TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
   }
 }
 
-/// Compares the described sense of a positive tilt along the root with the part: if the part is tilted so that its +X
-/// or +Y side rises, its facets rise in this direction.
+/// The test tilts a part so that its +X or +Y side rises. The facets then rise in this direction, which must agree with
+/// the described sense of a positive tilt.
 TEST(Calibration, TiltsAlongTheRootArePositiveWhereTheWordsSay) {
   const FabricationResult& plan = test_cuts().plans.front();
   const CutPart part(plan, {});

@@ -66,7 +66,7 @@ TEST(Optimise, ReachesTheTopOfAParaboloid) {
   EXPECT_NEAR(*optimum.best->objective, 1.0, 2e-6);
 }
 
-/// Groups of designs that an optimisation computes.
+/// Records the groups of designs that an optimization computes.
 class Groups : public OptimiseObserver {
  public:
   void at(std::size_t) override {}

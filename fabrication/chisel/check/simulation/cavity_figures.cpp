@@ -27,7 +27,7 @@ constexpr double kBesideLeadingRad = 1e-5;
 class Places {
  public:
   /// \param edges_mm lengths of the two dihedral edges
-  /// \param turn rotation of the facet in its plane, relative to the tool
+  /// \param turn angle by which the facet is rotated about its normal, relative to the tool
   /// \param step_mm least increment of the control
   Places(const Vec2& edges_mm, bool is_hexagonal, double nose_angle_deg, Angle turn, double step_mm)
       : edges_mm_(edges_mm),
@@ -87,11 +87,11 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
   return surface_along(spans, exit);
 }
 
-/// Returns the height, along the normal of a facet, up to which material counts as material on this facet. The height
-/// is limited by the blank's face, and by another facet if the angle to that facet is less than 90 degrees. For a point
-/// close to a dihedral edge, the limit is the end of the strip along this edge. For a point close to both other facets,
-/// the normal runs along their dihedral edge. The limit is then the fin that may remain there because the control
-/// rounds positions.
+/// Returns the height above a facet, along its normal, up to which material is attributed to this facet. The height is
+/// limited by the blank's face, and by another facet if that facet overhangs (less than 90 degrees between the facets).
+/// Close to a dihedral edge, the limit is the boundary of the strip along this edge. Close to both other facets, the
+/// normal runs along their common dihedral edge. The limit is then the height of the fin that the rounding of positions
+/// may leave there.
 double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge, double fin_mm) {
   constexpr double kParallel = 1e-9;
   const Vec3& normal = cavity.facets[facet].normal;

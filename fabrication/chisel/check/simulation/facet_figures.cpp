@@ -125,8 +125,7 @@ class Measurer {
     burr_height_mm_ = strip_mm_ + end_mm * slope;
   }
 
-  /// Returns the position, along the root line, of its intersection with the plane in which the center of the edge
-  /// moves.
+  /// Returns the position, along the root line, of the plane in which the center of the edge moves.
   double middle_of(const SweptVolume& sweep) const {
     const Vec3& normal = prediction_.pass_normal;
     const RigidMotion& pose = poses_[sweep.pose];
@@ -281,8 +280,8 @@ class Measurer {
     return height;
   }
 
-  /// \param predicted heights over the design's facet between which the surface must lie, but for the blank's face:
-  /// close to the rim a ploughed facet that rises along the edge leaves the blank, and nothing is left up there
+  /// \param predicted range of heights above the design's facet in which the surface must be located. Points above the
+  ///        blank's face are excluded: close to the rim, a ploughed facet that rises along the edge leaves the blank
   void take(FacetFigures& figures, const LineSurface& surface, double slant, const Interval& predicted) const {
     const double lowest_mm = std::min(surface.lowest, surface.top);
     if (slant <= strip_mm_) {
