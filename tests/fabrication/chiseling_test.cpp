@@ -520,7 +520,7 @@ TEST(ChiselingJobs, WhatIsWrongIsRefusedWithFileLineAndKey) {
        "tool.nose_angle_deg: must be < 90, the angle between the dihedral edges of a facet"},
       {"wedge_deg = 65", "wedge_deg = 40", "tool.wedge_deg: is too narrow"},
       {"width_mm = 0.42", "width_mm = 0.2", "tool.width_mm: must be >= 0.242301"},
-      {"edge_radius_um = 0", "edge_radius_um = 31", "tool.edge_radius_um: must be <= 30, a tenth of the element's"},
+      {"edge_radius_um = 0", "edge_radius_um = 31", "tool.edge_radius_um: must be <= 30.000, a tenth of the element's"},
       {"aperture_mm = 0.3", "aperture_mm = -1", "element.aperture_mm: must be"},
       {"aperture_mm = 0.3", "aperture_mm = 9", "array.x_length_mm: with y_length_mm must hold one whole element"},
       {"arrangement = \"honeycomb\"", "arrangement = \"offset\"", "array.arrangement: must be"},

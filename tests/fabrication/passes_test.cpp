@@ -86,7 +86,7 @@ RC_GTEST_PROP(Passes, AMissingPassAndAPassThatIsTooHighAreFound, ()) {
 /// Flanks of 45 degrees that are moved along Z by d move along their normals by d / sqrt(2). The verifier reports this
 /// distance if it is greater than the tolerance.
 TEST(Passes, AnElementThatIsTooDeepOrTooHighIsFoundBeyondTheTolerance) {
-  const Job job = wide_prism(Strategy::unidirectional, 0.95);
+  const Job job = wide_prism(Strategy::unidirectional, 1.0);
   const Machine machine = machine_of("ideal");
   const Program right = make_plan(job, machine).programs.front();
   const double tolerance_nm = verified(job, machine, right).tolerance_nm;
