@@ -220,7 +220,7 @@ TEST(BadInput, MissingFilesOfTheDesignsOfAStudyAreReportedWithWhatNamesThem) {
   };
   const auto expect_named = [](const TemporaryFolder& folder, const std::string& where, const Arguments& more = {}) {
     for (const std::string command : {"sweep", "tolerance", "optimize", "compose"})
-      expect_refused(folder, {{with({command, "study.toml"}, more), where + ": "}}, {});
+      expect_refused(folder, {{with({command, "study.toml"}, more), where}}, {});
   };
   for (const auto& [text, where] : designs) {
     const TemporaryFolder folder;

@@ -248,7 +248,7 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
   folder.write("zero_axis.toml", machine);
   const std::vector<Refused> cases = {
       {{"job", "d.toml", "--tool-width-mm", "0.46"},
-       "--tool-width-mm: must be <= 0.451, the element's width, got 0.46"},
+       "--tool-width-mm: must be <= 0.451000, the element's width, got 0.46"},
       {{"job", "d.toml", "--tool-width-mm", "3"}, "--tool-width-mm: must be >= 0.1 and <= 2, got 3"},
       {{"job", "d.toml"}, "--tool-width-mm is required"},
       {{"job", "d.toml", "--tool-width-mm", "0.4", "--machine", "kugler"}, "--machine: must be"},
@@ -288,7 +288,7 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
       {{"fabricate", "missing.toml"}, "missing.toml: cannot be read"},
       {{"fabricate", "d.toml"}, "d.toml: schema: missing"},
       {{"fabricate", "doc0.toml"}, "doc0.toml:42: process.roughing_depth_um: must be > 0 and <= 1000, got 0"},
-      {{"fabricate", "wide.toml"}, "wide.toml:32: tool.width_mm: must be <= 0.451, the element's width, got 0.5"},
+      {{"fabricate", "wide.toml"}, "wide.toml:32: tool.width_mm: must be <= 0.451000, the element's width, got 0.5"},
       {{"fabricate", "far.toml"}, "far.toml:7: machine: element 0: axis X of machine ideal would go to -0.451"},
       {{"fabricate", "zero.toml"}, "zero.toml:7: machine: zero_axis.toml:"},
       {{"fabricate", "unknown.toml"}, "unknown.toml:7: machine: must be"},

@@ -170,7 +170,7 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
   const Wrong cases[] = {
       {"roughing_depth_um = 15", "roughing_depth_um = 0", "process.roughing_depth_um: must be > 0 and <= 1000, got 0"},
       {"\nwidth_mm = 0.451\nwedge", "\nwidth_mm = 0.46\nwedge",
-       "tool.width_mm: must be <= 0.451, the element's width, got 0.46"},
+       "tool.width_mm: must be <= 0.451000, the element's width, got 0.46"},
       {"wedge_deg = 50", "wedge_deg = 80", "tool.wedge_deg: with clearance_deg must be <= 77.500 for chips"},
       {"wedge_deg = 50", "wedge_deg = 41",
        "tool.wedge_deg: with clearance_deg must be >= 45, half the apex angle, or a fin of 2.000 degrees"},

@@ -121,11 +121,11 @@ TEST(PlanedPart, BadInputIsOneLineWithItsPlace) {
   EXPECT_EQ(refusal("refractive_index = 1.5", "refractive_index = 1"),
             "p.toml:6: element.refractive_index: must be >= 1.01 and <= 5, got 1");
   EXPECT_EQ(refusal("form_mm = 0.2", "form_mm = 0.015"),
-            "p.toml:10: tolerance.form_mm: must be >= two steps of the machine's grid, 0.02, got 0.015");
+            "p.toml:10: tolerance.form_mm: must be >= two steps of the machine's grid, 0.020000, got 0.015");
   EXPECT_EQ(refusal("form_mm = 0.2", "form_mm = 6"),
-            "p.toml:10: tolerance.form_mm: must be <= half the depth of a zone, 5, got 6");
+            "p.toml:10: tolerance.form_mm: must be <= half the depth of a zone, 5.000000, got 6");
   EXPECT_EQ(refusal("form_mm = 0.2", "form_mm = 4"),
-            "p.toml:10: tolerance.form_mm: must be <= 200 steps of the machine's grid, 2, got 4");
+            "p.toml:10: tolerance.form_mm: must be <= 200 steps of the machine's grid, 2.000000, got 4");
   EXPECT_EQ(refusal("[mill]\n", "[mill]\nclear_mm = 3\n"),
             "p.toml:12: mill.clear_mm: must be at least the least move of Z, 6, got 3");
   EXPECT_EQ(refusal("[mill]\nfast_feed_mm_per_min = 3000\n", ""), "p.toml: mill: missing, must be a table");

@@ -180,7 +180,7 @@ TEST(Planing, TravelThatIsTooShortIsToldWithWhatItTakes) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "part.toml: mill.travel_mm: must reach from -20 to 120 along Y, which is 140 mm, got 120");
+                 "part.toml: mill.travel_mm: must reach from -20.000 to 120.000 along Y, which is 140.000 mm, got 120");
   }
 }
 

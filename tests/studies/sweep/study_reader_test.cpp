@@ -54,7 +54,7 @@ std::vector<double> numbers(const Parameter& parameter) {
 TEST(StudyReader, AQuantityWithoutAnAzimuthHasThatOfTheAnalysis) {
   const auto rre = [](const std::string& of_quantity, const std::string& of_analysis) {
     const Study study = parse_study(kDesign + kParameter + kQuantity + "incidence_deg = 20\n" + of_quantity +
-                                        "[analysis]\nengine = \"exact\"\n" + of_analysis,
+                                        "[analysis]\nengine = \"montecarlo\"\nsamples = 4096\n" + of_analysis,
                                     kFolder + "study.toml");
     const PointValues values = {Parameter::value_of(1.0)};
     const Candidate candidate = make_candidate(study, values);
