@@ -164,19 +164,6 @@ TEST(MemoryBudget, MeshesOfTooManyTrianglesAreRefusedBeforeTheyAreRead) {
   }
 }
 
-// Without a cut-off, every ray splits without end.
-TEST(MemoryBudget, RaysThatSplitWithoutEndEndWith3) {
-  const TemporaryFolder folder;
-  folder.write("cubes.toml", kInfiniteCubes);
-  const Measured endless = measured(folder, {"rays", "cubes.toml", "--emitter=collimated", "--rays=100000", "--split=0",
-                                             "--cutoff=0", "-o", "out.csv"});
-  EXPECT_EQ(endless.code, 3);
-  EXPECT_TRUE(endless.err.starts_with("retrace: a ray splits into more than 100000 rays: give a larger --cutoff"))
-      << endless.err;
-  EXPECT_LE(endless.peak_mib, 300.0);
-  EXPECT_EQ(folder.names(), (Arguments{"cubes.toml"}));
-}
-
 // If the rays that leave exceed the memory budget, fewer rays are traced at a time. Each ray gives the same result.
 TEST(MemoryBudget, RaysThatLeaveStayWithinIt) {
   const TemporaryFolder folder;
