@@ -248,7 +248,7 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
   folder.write("zero_axis.toml", machine);
   const std::vector<Refused> cases = {
       {{"job", "d.toml", "--tool-width-mm", "0.46"},
-       "--tool-width-mm: must be <= 0.451000, the element's width, got 0.46"},
+       "--tool-width-mm: must be <= 0.451, the element's width, got 0.46"},
       {{"job", "d.toml", "--tool-width-mm", "3"}, "--tool-width-mm: must be >= 0.1 and <= 2, got 3"},
       {{"job", "d.toml"}, "--tool-width-mm is required"},
       {{"job", "d.toml", "--tool-width-mm", "0.4", "--machine", "kugler"}, "--machine: must be"},
