@@ -29,7 +29,7 @@ class OrderlyInterrupt {
   /// program ends and nothing is written. If it has stopped in time, its results are written, however long that takes.
   /// \param threads number of threads; empty or 0: as many as there are cores
   void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;
-  /// Runs work in the same way and shows a progress bar.
+  /// Does the same as the overload above and also shows a progress bar.
   /// \param text text of the progress bar
   void run(const CommonOptions& common, const RunText& text,
            const std::function<void(Progress*, const Cancellation*)>& work) const;

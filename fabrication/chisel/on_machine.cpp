@@ -93,7 +93,7 @@ void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner
     throw InputError(job.where("tool.nose_angle_deg"),
                      fmt::format("{}with clearance_deg does not fit the element: {}, and {}, got {}", who, fin, none,
                                  shortest(job.tool.nose_angle_deg)));
-  // Fins grow in proportion to the increment. Limits are rounded down.
+  // The height of a fin is proportional to the increment. The message gives the maximum increment rounded down.
   const double max_step_um = 1e3 * kEdgeStripMm / (fin_mm(job.tool, 1.0) + kEdgeStripMm - max_fin_mm(1.0));
   throw InputError(
       job.where("machine"),

@@ -17,14 +17,14 @@ struct PloughedFloor {
   double slope = 0.0;          ///< rise of the surface along the root, in mm per mm
   double half_width_mm = 0.0;  ///< half of the width of the pass, along the root
   double drift = 0.0;          ///< movement of the pass along the root, in mm, for each mm up the facet
-  double shift_mm =
-      0.0;  ///< distance along the root from the plane of the pass, at the facet, to the center of the edge
+  /// Distance, along the root, from the plane of the pass at the facet to the center of the edge.
+  double shift_mm = 0.0;
 };
 
 /// What a machine's axes make unavoidable for the elements of one orientation, from the poses that this machine needs -
 /// not from those of the program (docs/theory/verification.md).
 struct Prediction {
-  std::vector<PlungePose> poses;          ///< in which facets 1, 2 and, of cube corners, 3 are cut
+  std::vector<PlungePose> poses;          ///< poses in which the two or three facets are cut
   std::array<PloughedFloor, 2> ploughed;  ///< surfaces of facets 1 and 2, each ploughed in the pose of the other facet
   /// Normal, in the machine frame, of the plane in which the tool moves when only Y and Z move.
   geometry::Vec3 pass_normal = geometry::Vec3::UnitX();
