@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 namespace retrace {
 namespace {
@@ -58,6 +59,14 @@ std::string shortest_of(double magnitude) {
   return plain.size() > text.size() ? text : plain;
 }
 
+/// Returns the decimal text without the zeros at its end that say nothing.
+std::string without_trailing_zeros(std::string text) {
+  if (text.find('.') == std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
 }  // namespace
 
 std::string shortest(double value) {
@@ -85,7 +94,7 @@ std::string fixed_apart(double value, double other, int digits) {
   for (; digits <= kMostDigits; ++digits) {
     std::string text = fixed(value, digits);
     const double shown = std::strtod(text.c_str(), nullptr);
-    if ((shown < other) == (value < other) && (shown > other) == (value > other)) return text;
+    if ((shown < other) == (value < other) && (shown > other) == (value > other)) return without_trailing_zeros(std::move(text));
   }
   return shortest(value);
 }

@@ -18,9 +18,9 @@ std::string fixed(double value, int digits);
 /// 1e-6 counts as a rounding error of 0; for such a `value`, fixed(value, digits) is returned.
 std::string fixed_visible(double value, int digits);
 
-/// Returns `value` with at least `digits` digits after the decimal point. More digits are used if rounding to `digits`
-/// digits would make `value` equal to `other` or move it to the other side of `other`. This prevents messages that
-/// state, for example, that 88.00 exceeds 88.
+/// Returns `value` rounded to `digits` digits after the decimal point, without zeros at its end. More digits are used
+/// if rounding to `digits` digits would make `value` equal to `other` or move it to the other side of `other`. This
+/// prevents messages that state, for example, that 88 exceeds 88.
 std::string fixed_apart(double value, double other, int digits);
 
 }  // namespace retrace

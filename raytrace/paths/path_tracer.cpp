@@ -19,14 +19,12 @@ using geometry::FacetRole;
 constexpr int kMaxWraps = 1000;
 // Maximum number of reflections on a predicted path to the entrance face. Prisms and cube corners need at most three.
 constexpr int kMostMirrors = 8;
-// Maximum number of branches of the light that one ray brings in. Without a cut-off and with every branch followed,
-// their number grows without limit.
-constexpr std::uint64_t kMaxBranches = 100'000;
 
-[[noreturn]] void fail_on_branches() {
-  throw BudgetError(
-      fmt::format("a ray splits into more than {} rays: give a larger --cutoff, or a larger --split of retrace rays",
-                  kMaxBranches));
+// Without a cut-off, and with every branch followed, the paths of a ray split without end.
+[[noreturn]] void fail_on_segments(std::uint64_t max_segments) {
+  throw BudgetError(fmt::format(
+      "a ray has more than {} segments after it has split: give a larger --cutoff, or a larger --split of retrace rays",
+      max_segments));
 }
 
 }  // namespace
@@ -92,11 +90,12 @@ void PathWalker::begin(RandomKey key, std::uint32_t replicate, std::uint32_t sam
 }
 
 void PathWalker::follow_pending() {
-  for (std::uint64_t branches = 1; !pending_.empty(); ++branches) {
+  std::uint64_t segments = 0;
+  while (!pending_.empty()) {
     State state = pending_.back();
     pending_.pop_back();
     while (advance(state))
-      if (branches + pending_.size() > kMaxBranches) fail_on_branches();
+      if (++segments > setup_.policy.max_segments) fail_on_segments(setup_.policy.max_segments);
   }
 }
 

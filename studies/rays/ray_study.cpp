@@ -23,6 +23,9 @@ namespace {
 // Rays that are read at a time, and of those that leave about as many: what bounds memory.
 constexpr std::size_t kRaysAtATime = 16384;
 constexpr std::size_t kFewestAtATime = 1024;
+// Maximum number of surfaces that a branch of a ray meets, and maximum number of segments of all branches of a ray.
+constexpr std::uint32_t kMaxSurfaces = 10'000;
+constexpr std::uint64_t kMaxSegments = 1'000'000;
 
 void require_share(double value, const char* option) {
   if (!(value >= 0.0 && value <= 1.0))
@@ -168,6 +171,8 @@ class RayStudy::Run {
     raytrace::PathPolicy policy;
     policy.cutoff = request.cutoff;
     policy.split_power = request.split;
+    policy.max_events = kMaxSurfaces;
+    policy.max_segments = kMaxSegments;
     return policy;
   }
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "core/error.h"
 #include "core/threads.h"
 #include "raytrace/light/light_setup.h"
 #include "tests/support/designs.h"
@@ -310,6 +311,35 @@ TEST(RayTracer, RaysThatPassThePartAreMissed) {
   EXPECT_EQ(traced.missed.size(), passing.size());
   EXPECT_EQ(traced.ledger.missed, static_cast<double>(passing.size()));
   EXPECT_TRUE(traced.leaving.empty());
+}
+
+// All facets and the entrance face reflect this ray totally, for ever: its path has to end, without a loss of power.
+TEST(RayTracer, ATrappedPathEndsAsTruncated) {
+  const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.4));
+  PathPolicy policy;
+  policy.cutoff = 0.0;
+  policy.split_power = 0.0;
+  policy.max_events = 1'000;
+  RayTracer tracer(part, nullptr, 0.5, policy, 1);
+  tracer.add(pmma());
+  const IncidentRay along_the_ridges{{0.1, 0.0, 0.2}, Vec3(0.0, 0.9, 0.436).normalized(), {}, 0};
+  const TracedRays traced = tracer.trace({&along_the_ridges, 1}, 0, nullptr);
+  EXPECT_NEAR(traced.ledger.ledger[Account::truncated], 1.0, 1e-9);
+  EXPECT_TRUE(traced.leaving.empty());
+}
+
+TEST(RayTracer, ARayWithTooManySegmentsIsRefused) {
+  const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.3));
+  const IncidentRay ray{{0.1, 0.2, 1.0}, {0.0, 0.0, -1.0}, {}, 0};
+  const auto trace = [&](std::uint64_t max_segments) {
+    PathPolicy policy = every_branch();
+    policy.max_segments = max_segments;
+    RayTracer tracer(part, nullptr, 0.5, policy, 1);
+    tracer.add(pmma());
+    return tracer.trace({&ray, 1}, 0, nullptr);
+  };
+  EXPECT_NEAR(trace(1'000).ledger.ledger.total(), 1.0, 1e-9);
+  EXPECT_THROW(trace(4), BudgetError);
 }
 
 }  // namespace
