@@ -45,21 +45,33 @@ AnalysisSettings analysis_of(const Document& document, std::uint32_t seed) {
   return analysis;
 }
 
-/// Refuses analysis.cutoff if only photometry by rays uses the settings of the analysis. Its rays have no cut-off.
-void check_cutoff_has_effect(const Document& document, const Study& study) {
-  const auto parameter_of = [&](std::string_view key) {
-    return std::ranges::find_if(study.parameters,
-                                [key](const Parameter& p) { return std::ranges::count(p.keys, key) > 0; });
-  };
-  const auto varied = parameter_of("analysis.cutoff");
-  const bool is_given = document.has("analysis.cutoff") || varied != study.parameters.end();
+/// Returns the parameter that varies a key, or null.
+const Parameter* parameter_of(const Study& study, std::string_view key) {
+  const auto found =
+      std::ranges::find_if(study.parameters, [key](const Parameter& p) { return std::ranges::count(p.keys, key) > 0; });
+  return found == study.parameters.end() ? nullptr : &*found;
+}
+
+/// Returns whether rays or beams are traced for a quantity of this kind: "rre" or "photometry".
+bool is_traced(const Study& study, std::string_view kind) {
+  return std::ranges::any_of(study.quantities, [kind](const auto& q) { return q->tracing().starts_with(kind); });
+}
+
+/// Refuses a setting of the analysis that no quantity of the study uses, if the study contains it or varies it.
+void refuse_setting(const Document& document, const Study& study, const std::string& key, const std::string& reason) {
+  const Parameter* const varied = parameter_of(study, key);
+  if (varied == nullptr && !document.has(key)) return;
+  throw InputError(varied != nullptr ? varied->location : document.where(key), reason);
+}
+
+/// Refuses settings without effect. Photometry by rays has no cut-off, and only RRE is traced to a target error.
+void check_settings_have_effect(const Document& document, const Study& study) {
+  if (is_traced(study, "rre")) return;
+  refuse_setting(document, study, "analysis.target_error", "needs a quantity of RRE: nothing else is traced to a target");
   const bool is_exact = is_one_of(document.choice<Engine>("analysis.engine"), kExactEngines) ||
-                        parameter_of("analysis.engine") != study.parameters.end();
-  const auto has_kind = [&](std::string_view kind) {
-    return std::ranges::any_of(study.quantities, [kind](const auto& q) { return q->tracing().starts_with(kind); });
-  };
-  if (!is_given || is_exact || !has_kind("photometry") || has_kind("rre")) return;
-  throw InputError(varied != study.parameters.end() ? varied->location : document.where("analysis.cutoff"),
+                        parameter_of(study, "analysis.engine") != nullptr;
+  if (!is_exact && is_traced(study, "photometry"))
+    refuse_setting(document, study, "analysis.cutoff",
                    fmt::format("a cut-off needs analysis.engine = \"auto\" or \"exact\" for photometry, got {}",
                                in_quotes(document.text("analysis.engine"))));
 }
@@ -290,7 +302,7 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
     }
   check_columns(study, quantity_locations);
   check_keys_once(study);
-  check_cutoff_has_effect(document, study);
+  check_settings_have_effect(document, study);
   analysis_of(document, seed);  // refuses settings that exclude each other before any point is computed
   read_designs(document, designs, study);
   std::vector<NamedFile> named = files_of_designs(study);

@@ -254,6 +254,17 @@ TEST(StudyReader, ACutoffThatNothingUsesIsRefused) {
             "--set analysis.cutoff=1e-4: analysis.cutoff: " + refused + "\"montecarlo\"");
 }
 
+TEST(StudyReader, ATargetErrorThatNothingUsesIsRefused) {
+  const std::string photometry =
+      "[[quantity]]\nkind = \"photometry\"\nstandard = \"r150\"\nclass = \"IA\"\ncolour = \"red\"\narea_cm2 = 1\n";
+  const std::string text = kDesign + kParameter + photometry;  // 10 lines
+  const std::string analysis = "[analysis]\ntarget_error = 1e-3\n";
+  const std::string refused = "analysis.target_error: needs a quantity of RRE: nothing else is traced to a target";
+  EXPECT_EQ(message(text + analysis), "study.toml:12: " + refused);
+  EXPECT_EQ(message(text, {"analysis.target_error=1e-3"}), "--set analysis.target_error=1e-3: " + refused);
+  EXPECT_EQ(message(text + analysis + kQuantity), "");
+}
+
 TEST(StudyReader, AnOverrideOfAVariedKeyIsRefused) {
   EXPECT_EQ(message(kDesign + kParameter + kQuantity, {"element.base_mm=3"}),
             "--set element.base_mm=3: the study varies this key");
