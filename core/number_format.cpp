@@ -94,7 +94,8 @@ std::string fixed_apart(double value, double other, int digits) {
   for (; digits <= kMostDigits; ++digits) {
     std::string text = fixed(value, digits);
     const double shown = std::strtod(text.c_str(), nullptr);
-    if ((shown < other) == (value < other) && (shown > other) == (value > other)) return without_trailing_zeros(std::move(text));
+    if ((shown < other) == (value < other) && (shown > other) == (value > other))
+      return without_trailing_zeros(std::move(text));
   }
   return shortest(value);
 }

@@ -67,7 +67,8 @@ void refuse_setting(const Document& document, const Study& study, const std::str
 /// Refuses settings without effect. Photometry by rays has no cut-off, and only RRE is traced to a target error.
 void check_settings_have_effect(const Document& document, const Study& study) {
   if (is_traced(study, "rre")) return;
-  refuse_setting(document, study, "analysis.target_error", "needs a quantity of RRE: nothing else is traced to a target");
+  refuse_setting(document, study, "analysis.target_error",
+                 "needs a quantity of RRE: nothing else is traced to a target");
   const bool is_exact = is_one_of(document.choice<Engine>("analysis.engine"), kExactEngines) ||
                         parameter_of(study, "analysis.engine") != nullptr;
   if (!is_exact && is_traced(study, "photometry"))

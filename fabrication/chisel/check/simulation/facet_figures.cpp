@@ -27,6 +27,8 @@ constexpr int kEvenLines = 12;
 constexpr double kSamePassMm = 3e-6;
 /// Inner part of the width from which a facet's plane is taken.
 constexpr double kPlaneShare = 0.8;
+/// Distance from the root, in lengths of a facet, up to which a sweep beside a station is known to miss its lines.
+constexpr double kReachShare = 4.0;
 
 /// Where sections are taken, along the root, and which passes of the tool cover them.
 struct Stations {
@@ -39,9 +41,8 @@ class Measurer {
   Measurer(const Groove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
            const ToolWedge& wedge, const Prediction& prediction, double tolerance_mm)
       : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
-    for (const SweptVolume& sweep : sweeps) used_poses_.push_back(sweep.pose);
-    std::sort(used_poses_.begin(), used_poses_.end());
-    used_poses_.erase(std::unique(used_poses_.begin(), used_poses_.end()), used_poses_.end());
+    for (const SweptVolume& sweep : sweeps) by_pose_.push_back(&sweep);
+    std::ranges::stable_sort(by_pose_, {}, &SweptVolume::pose);
     find_stations(std::min(tolerance_mm, kMostEndShare * groove.half_width_mm));
     const double layer_mm = std::min(tolerance_mm / sine_between(), kMostLayerShare * groove.facet_length_mm);
     layer_end_mm_ = kLeastStripMm + layer_mm;
@@ -65,6 +66,7 @@ class Measurer {
     for (std::size_t k = 0; k < stations_.along_mm.size(); ++k) {
       const double along = stations_.along_mm[k];
       const double width_mm = width_of_station(k);
+      select_sweeps(along);
       double previous_slant = 0.0;
       double previous_top = 0.0;
       for (const double slant : slants) {
@@ -198,6 +200,26 @@ class Measurer {
     return slants;
   }
 
+  /// Selects the sweeps that can meet the lines of a station.
+  void select_sweeps(double along) {
+    near_.clear();
+    for (const SweptVolume* sweep : by_pose_)
+      if (!is_beside(*sweep, along)) near_.push_back(sweep);
+  }
+
+  /// Returns whether a sweep misses all lines of a station because the tool, which is as wide as its edge, moves beside
+  /// them. This is known for points up to kReachShare facet lengths from the root.
+  bool is_beside(const SweptVolume& sweep, double along) const {
+    const RigidMotion& pose = poses_[sweep.pose];
+    const Vec3 root = pose.direction(groove_.root_direction);
+    const Vec3 at = pose.point(groove_.root_mm) + along * root;
+    const double oblique = wedge_.edge.cross(root).norm();
+    const double allowed_mm = wedge_.half_width_mm + kReachShare * groove_.facet_length_mm * oblique;
+    const double at_start_mm = wedge_.edge.dot(at - sweep.from_mm);
+    const double at_end_mm = wedge_.edge.dot(at - sweep.to_mm);
+    return std::min(at_start_mm, at_end_mm) > allowed_mm || std::max(at_start_mm, at_end_mm) < -allowed_mm;
+  }
+
   LineSurface surface_at(std::size_t facet, double along, double slant) {
     return surface_at(facet, along, slant, slant <= strip_mm_);
   }
@@ -207,12 +229,16 @@ class Measurer {
     // What is left at the root is told along the other facet: how far up that its cuts end.
     const Vec3& direction = is_at_root ? groove_.facets[1 - facet].up_slope : design.normal;
     spans_.clear();
-    for (const std::uint32_t pose : used_poses_) {
-      const Vec3 p = poses_[pose].point(point);
-      const Vec3 d = poses_[pose].direction(direction);
-      for (const SweptVolume& sweep : sweeps_)
-        if (sweep.pose == pose)
-          if (const auto span = swept_span(wedge_, sweep, p, d)) spans_.push_back(*span);
+    Vec3 p;
+    Vec3 d;
+    const SweptVolume* previous = nullptr;
+    for (const SweptVolume* sweep : near_) {
+      if (previous == nullptr || previous->pose != sweep->pose) {
+        p = poses_[sweep->pose].point(point);
+        d = poses_[sweep->pose].direction(direction);
+      }
+      previous = sweep;
+      if (const auto span = swept_span(wedge_, *sweep, p, d)) spans_.push_back(*span);
     }
     return surface_along(spans_, is_at_root ? groove_.to_face_mm(point, direction) : exit_of(facet, point));
   }
@@ -303,7 +329,8 @@ class Measurer {
   std::span<const RigidMotion> poses_;
   const ToolWedge& wedge_;
   const Prediction& prediction_;
-  std::vector<std::uint32_t> used_poses_;  ///< in which the element is cut
+  std::vector<const SweptVolume*> by_pose_;  ///< all sweeps, ordered by pose
+  std::vector<const SweptVolume*> near_;     ///< the sweeps of select_sweeps(), ordered by pose
   Stations stations_;
   double strip_mm_ = 0.0;
   double layer_end_mm_ = 0.0;  ///< from the root, where the tolerance of the other facet no longer reaches
