@@ -177,6 +177,16 @@ TEST(MemoryBudget, RaysThatLeaveStayWithinIt) {
   EXPECT_TRUE(rays("1", "one.csv") == rays("0.01", "small.csv")) << "the files differ";
 }
 
+// Without a cut-off, and with both branches of every interface followed, the paths of a ray split without end.
+TEST(MemoryBudget, RaysThatSplitWithoutEndEndWith3) {
+  const TemporaryFolder folder;
+  folder.write("cubes.toml", kInfiniteCubes);
+  const Measured ended =
+      measured(folder, {"rays", "cubes.toml", "--emitter=lambertian", "--rays=200", "--split=0", "--cutoff=0"});
+  EXPECT_EQ(ended.code, 3) << ended.out;
+  EXPECT_LT(ended.peak_mib, 500.0);
+}
+
 TEST(MemoryBudget, SizesOutOfRangeAreRefused) {
   const TemporaryFolder folder;
   folder.write("cubes.toml", kInfiniteCubes);
