@@ -313,17 +313,20 @@ TEST(RayTracer, RaysThatPassThePartAreMissed) {
   EXPECT_TRUE(traced.leaving.empty());
 }
 
-// All facets and the entrance face reflect this ray totally, for ever: its path has to end, without a loss of power.
+// Every face of this prism reflects the ray totally: the cosine of each angle of incidence is at most 0.702, and the
+// critical angle has a cosine of 0.742. The path therefore has to end without a loss of power.
 TEST(RayTracer, ATrappedPathEndsAsTruncated) {
-  const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.4));
+  const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.3));
   PathPolicy policy;
   policy.cutoff = 0.0;
   policy.split_power = 0.0;
   policy.max_events = 1'000;
   RayTracer tracer(part, nullptr, 0.5, policy, 1);
   tracer.add(pmma());
-  const IncidentRay along_the_ridges{{0.1, 0.0, 0.2}, Vec3(0.0, 0.9, 0.436).normalized(), {}, 0};
-  const TracedRays traced = tracer.trace({&along_the_ridges, 1}, 0, nullptr);
+  const double in_plane = 22.5 * std::numbers::pi / 180.0;
+  const Vec3 direction(0.76 * std::sin(in_plane), 0.65, 0.76 * std::cos(in_plane));
+  const IncidentRay ray{{0.1, 0.2, 0.1}, direction.normalized(), {}, 0};
+  const TracedRays traced = tracer.trace({&ray, 1}, 0, nullptr);
   EXPECT_NEAR(traced.ledger.ledger[Account::truncated], 1.0, 1e-9);
   EXPECT_TRUE(traced.leaving.empty());
 }
