@@ -13,9 +13,7 @@
 namespace retrace::raytrace {
 namespace {
 
-// Philox stream of choices on the way.
-
-/// Spreads rays over what the beam covers.
+/// Maps random numbers in the unit square to points where rays of the beam start.
 class BallEntry {
  public:
   BallEntry(const BallLayer& layer, const Vec3& to_source) : layer_(layer), lattice_(layer), to_source_(to_source) {
@@ -41,7 +39,8 @@ class BallEntry {
   Vec3 up_;
 };
 
-/// The incident light along its s axis; p = direction x s is the second axis of the source reversed.
+/// Returns the incident light with its polarization along the s axis. The p axis, direction x s, is opposite to the
+/// second axis of the source. The sign of the Stokes parameter U is therefore reversed.
 Light incident_light(const Stokes& stokes, const Vec3& to_source) {
   Light light;
   light.stokes = stokes;

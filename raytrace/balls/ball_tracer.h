@@ -9,17 +9,17 @@
 
 namespace retrace::raytrace {
 
-/// Monte-Carlo estimates of where light goes that falls on balls with mirrors behind (BallWalker), by the replicates of
-/// MonteCarlo. Of a layer the beam covers one period of the plane that touches the balls; of a single ball it covers
-/// the ball, across the beam.
+/// Estimates the RRE and the ledger of balls with mirrors behind them by Monte Carlo tracing (BallWalker). The beam on
+/// a layer covers one period of the plane that touches the balls from above. The beam on a single ball covers the cross
+/// section of the ball. The standard errors are computed from replicates as in MonteCarlo.
 class BallTracer {
  public:
   explicit BallTracer(const BallLayer& layer) : layer_(layer) {}
 
-  /// \param optics lossless_entrance: clear interfaces transmit all light; mirror_facets or an opaque layer of
-  ///        facet_layers: the mirror behind the balls
-  /// \param score function of the directions in which light leaves; null: none
-  /// \param progress as in the constructor of Rounds
+  /// \param optics `lossless_entrance` makes uncoated parts of the balls transmit all light. `mirror_facets`, or an
+  ///        opaque layer in `facet_layers`, defines the mirror behind the balls.
+  /// \param score function of the direction of the light that leaves the balls, which is averaged; null for none
+  /// \param progress receives the finished fraction of the work, as in the constructor of Rounds; null for none
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
                          const DirectionScore* score = nullptr, Progress* progress = nullptr) const;

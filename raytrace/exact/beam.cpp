@@ -7,27 +7,30 @@
 namespace retrace::raytrace {
 namespace {
 
-/// Mean of exp(-x) from a to b. \pre a <= b
+/// Returns the mean of exp(-x) for a <= x <= b.
+/// \pre a <= b
 double mean_exp(double a, double b) {
   const double width = b - a;
   return width > 0.0 ? std::exp(-a) * -std::expm1(-width) / width : std::exp(-a);
 }
 
-// Maximum change of x over a triangle for which the series is used. With kTerms terms, it is exact except for rounding.
+// Maximum change of x over a triangle for which mean_exp() uses its series. For such changes, the first kTerms terms of
+// the series give a result that is exact except for rounding.
 constexpr double kNarrow = 0.5;
 constexpr std::size_t kTerms = 14;
 
-/// Returns the coefficients (-1)^k 2 / (k + 2)! of the series for narrow triangles.
+/// Returns the coefficients (-1)^k 2 / (k + 2)! of the series in mean_exp(a, b, c), for k = 0 to kTerms - 1.
 constexpr std::array<double, kTerms> series_of_triangle() {
   std::array<double, kTerms> factors{1.0};
   for (std::size_t k = 1; k < kTerms; ++k) factors[k] = -factors[k - 1] / (static_cast<double>(k) + 2.0);
   return factors;
 }
 
-/// Mean of exp(-x) over a triangle on which x is linear with the values given at its corners: twice the divided
-/// difference of exp(-x) (Hermite-Genocchi). If x changes by more than kNarrow, the recursion of divided differences is
-/// used, which then has little cancellation. Otherwise a series in h_k(u, v) = u h_(k-1) + v^k is used, the complete
-/// homogeneous symmetric polynomials of the differences from the first corner.
+/// Returns the mean of exp(-x) over a triangle. x is linear on the triangle and has the values a, b and c at its
+/// corners. The mean is twice the divided difference of exp(-x) at a, b and c (Hermite-Genocchi formula).
+/// If x changes by more than kNarrow, the recursion of divided differences is used, because it then has little
+/// cancellation. Otherwise, a series in h_k(u, v) = u h_(k-1) + v^k is used, with u = b - a and v = c - a. The h_k are
+/// the complete homogeneous symmetric polynomials.
 double mean_exp(double a, double b, double c) {
   const double u = b - a;
   const double v = c - a;

@@ -30,39 +30,43 @@ struct Plane {
   double height(const Vec3& p) const { return normal.dot(p) - offset_mm; }
 };
 
-/// The way that light has gone in the material before it comes to a point: linear in the point, since all interfaces
-/// are plane and all light of a beam is parallel. Along the beam it grows by 1 inside and by 0 outside.
+/// Length of the light's path in the material up to a point p. It is a linear function of p, because all interfaces are
+/// plane and all light of a beam is parallel. Along the beam, it increases by 1 per mm inside the part and by 0
+/// outside.
 struct PathLength {
   double constant_mm = 0.0;
   Vec3 slope = Vec3::Zero();
 
   double at(const Vec3& p) const { return constant_mm + slope.dot(p); }
 
-  /// Beyond an interface: equal on its plane, growing by `growth` along the new direction.
+  /// Returns the path length after an interface. It is continuous on the plane of the interface and increases by
+  /// `growth` per mm along the new direction.
   PathLength continued(const Plane& plane, const Vec3& direction, double growth) const {
     const double across = (growth - slope.dot(direction)) / plane.normal.dot(direction);
     return {constant_mm - across * plane.offset_mm, slope + across * plane.normal};
   }
 };
 
-/// The point of the entrance face that the light at a place came in through: affine in the place, for the same reason.
+/// Point of the entrance face through which the light at a point p entered. It is an affine function of p, because all
+/// interfaces are plane and all light of a beam is parallel.
 struct EntryPoint {
   Vec2 constant_mm = Vec2::Zero();
   Eigen::Matrix<double, 2, 3> slope = Eigen::Matrix<double, 2, 3>::Zero();
 
   Vec2 of(const Vec3& p) const { return constant_mm + slope * p; }
 
-  /// Beyond an interface: equal on its plane, constant along the new direction.
+  /// Returns the function after an interface. It is continuous on the plane of the interface and constant along the new
+  /// direction.
   EntryPoint continued(const Plane& plane, const Vec3& direction) const {
     const Vec2 across = -(slope * direction) / plane.normal.dot(direction);
     return {constant_mm - across * plane.offset_mm, slope + across * plane.normal.transpose()};
   }
 };
 
-/// A cell of the back surface, wherever it stands.
+/// Identity and position of a cell of the back surface.
 struct CellPlace {
-  std::uint64_t id = 0;           ///< the same for all copies of a patch, or for all cells of a shape
-  Vec2 offset_mm = Vec2::Zero();  ///< by which this copy is moved
+  std::uint64_t id = 0;           ///< identical for all copies of a patch, or for all cells of identical shape
+  Vec2 offset_mm = Vec2::Zero();  ///< displacement of this copy
 
   friend bool operator==(const CellPlace& a, const CellPlace& b) {
     constexpr double kRounding_mm = 1e-10;
@@ -70,11 +74,11 @@ struct CellPlace {
   }
 };
 
-/// Which cells light has met on its way.
+/// Cells that the light has met so far.
 struct CellTrail {
   std::optional<CellPlace> first;
-  bool is_mixed = false;  ///< others as well
-  std::uint64_t met = 0;  ///< tells one order of cells from another, wherever the first of them stands
+  bool is_mixed = false;  ///< true if the light has met cells other than `first`
+  std::uint64_t met = 0;  ///< hash of the sequence of cells, with offsets relative to `first`
 
   void meet(const CellPlace& cell) {
     if (!first) first = cell;
@@ -85,23 +89,25 @@ struct CellTrail {
   }
 
  private:
-  /// Of a length in steps of 1e-9 mm.
+    /// Returns the length as an integer multiple of 1e-9 mm.
   static std::uint64_t bits_of(double length_mm) { return static_cast<std::uint64_t>(std::llround(1e9 * length_mm)); }
 };
 
-/// A facet with a texture or a form that light has met: where, as an affine function of where the light is now (as
-/// EntryPoint), and what the heights there did to its phase.
+/// A facet with a texture or a form that the light has met. It contains the point where the light met the facet, as an
+/// affine function of a point of the present beam (see EntryPoint). It also contains the data for the phase shift that
+/// the heights of the facet cause.
 struct TexturedHit {
   Plane plane;
   Vec3 constant_mm = Vec3::Zero();
   Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
   surface_models::PhaseTexture phase;
-  FacetFrame frame;              ///< of the form
-  double path_per_height = 0.0;  ///< by which a height out of the part lengthens the way; 0: without a form
+  FacetFrame frame;              ///< frame in which the form of the facet is defined
+  double path_per_height = 0.0;  ///< change of the optical path per height out of the part; 0 for facets without form
 
   Vec3 of(const Vec3& p) const { return constant_mm + slope * p; }
 
-  /// Beyond an interface: equal on its plane, constant along the new direction.
+  /// Returns the function after an interface. It is continuous on the plane of the interface and constant along the new
+  /// direction.
   TexturedHit continued(const Plane& at, const Vec3& direction) const {
     const Vec3 across = -(slope * direction) / at.normal.dot(direction);
     TexturedHit hit = *this;
@@ -111,62 +117,67 @@ struct TexturedHit {
   }
 };
 
-/// Offsets in plan, from each of them to others that are alike.
+/// Displacements in x and y from a position to all positions at which an identical beam exists.
 using BeamPlaces = std::vector<Vec2>;
 
-/// Light of one direction and polarisation through a polygon.
+/// Light with one direction and one state of polarization, which passes through a polygon.
 struct Beam {
-  Corners corners;  ///< of the cross-section, on the plane it starts from
+  Corners corners;  ///< corners of the polygon on the plane where the beam starts
   Vec3 direction = Vec3::UnitZ();
-  CoherentLight light;    ///< before absorption
-  double phase_mm = 0.0;  ///< of the field at the origin, with the wave continued there: an optical path
+  CoherentLight light;    ///< light without the absorption in the material
+  double phase_mm = 0.0;  ///< phase of the plane wave, extrapolated to the origin, as an optical path length
   CellTrail trail;
-  double share = 1.0;  ///< of the entrance's cross-section
-  /// Transmittance of the material up to the start of this beam; mean over the polygon at the start.
+  double share = 1.0;  ///< fraction of the area of the entrance face through which the light of this beam entered
+  /// Transmittance of the material along the path from the entrance face to the start of this beam. It is the mean over
+  /// the polygon `corners`.
   double transmission = 1.0;
-  double power = 0.0;             ///< power at the start, as a fraction of the incident power
-  PathLength path_length;         ///< in the material
-  EntryPoint entry;               ///< where it came in
-  std::vector<TexturedHit> hits;  ///< in their order: with BeamPolicy::keeps_phases, and of facets with a form
-  Plane start;                    ///< the beam lies where start.height(p) >= 0
+  double power = 0.0;             ///< power at the start of the beam, as a fraction of the incident power
+  PathLength path_length;         ///< length of the path in the material
+  EntryPoint entry;               ///< point of the entrance face where the light entered
+  std::vector<TexturedHit> hits;  ///< facets met, in order: textured ones with BeamPolicy::keeps_phases, or with form
+  Plane start;                    ///< the beam is in the half space start.height(p) >= 0
   bool inside = true;
-  geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through
-  std::uint32_t depth = 0;                                              ///< interfaces so far
-  std::uint32_t level_steps = 0;                                        ///< without an interface
-  /// At equal elements of an array: where the same beam goes, this one, at the offset 0, included. Null: here alone.
+  geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which it left the part
+  std::uint32_t depth = 0;                                              ///< number of interfaces so far
+  std::uint32_t level_steps = 0;                                        ///< number of steps since the last interface
+  /// Displacements from this beam to all identical beams at identical elements, including the displacement 0 of this
+  /// beam. The pointer is null if the beam represents only itself.
   std::shared_ptr<const BeamPlaces> places;
-  /// Parts with zones: index, in EqualPlaces::regions(), of the region that contains `places`.
+  /// Index in EqualPlaces::regions() of the region that contains all `places`. It is used for parts with zones only.
   std::uint32_t region = 0;
 
   double place_count() const { return places ? static_cast<double>(places->size()) : 1.0; }
-  /// Of this beam and those like it.
+  /// Returns the power of this beam and of all identical beams in `places`, as a fraction of the incident power.
   double total_power() const { return place_count() * power; }
 };
 
-/// Beams that wait. They are large and many, so that they stay where they are when more come.
+/// Queue of beams that have not been traced yet. The queue is a deque, because beams are large and should not be copied
+/// when the queue grows.
 using WaitingBeams =
     boost::container::deque<Beam, void, boost::container::deque_options_t<boost::container::block_size<32>>>;
 
-/// Where light of a beam meets a rough facet: the light before, and what the facet scatters of its power.
+/// Polygon on which a beam meets a rough facet. It contains the light of the beam and the power that the facet
+/// scatters.
 struct ScatterSite {
-  Corners corners;  ///< of the piece of the facet
+  Corners corners;  ///< corners of the illuminated polygon on the facet
   Vec3 direction = Vec3::UnitZ();
-  Light light;                  ///< before absorption
-  PathLength path_length;       ///< in the material
-  Vec3 normal = Vec3::UnitZ();  ///< of the facet, out of the part
-  double share = 0.0;           ///< of the entrance's cross-section
-  double scattered = 0.0;       ///< power, as a share of the incident
+  Light light;                  ///< incident light without the absorption in the material
+  PathLength path_length;       ///< length of the path in the material
+  Vec3 normal = Vec3::UnitZ();  ///< normal of the facet, which points out of the part
+  double share = 0.0;           ///< fraction of the area of the entrance face through which this light entered
+  double scattered = 0.0;       ///< scattered power as a fraction of the incident power
   bool inside = true;
-  /// Displacements in x and y from this site to all sites at which an identical beam meets an identical facet,
-  /// including the displacement 0 to this site. The pointer is null if there is only this site.
+  /// Displacements in x and y from this site to all sites at which an identical beam meets an identical facet. The list
+  /// includes the displacement 0 of this site. The pointer is null if there is no other site.
   std::shared_ptr<const BeamPlaces> places;
 };
 
-/// A beam as it is at another place of an array, and there alone. \param to_source as of the light that came in, of
-/// which it has another phase there \param index of where the beam travels
+/// Returns the copy of a beam at another position of an array. The copy represents only itself.
+/// \param to_source unit vector to the source; the phase of the incident wave at the new position depends on it
+/// \param index refractive index of the medium in which the beam travels
 Beam moved(Beam beam, const Vec2& by_mm, const Vec3& to_source, double index);
 
-/// Coordinates across a beam: (u, v) across, w along.
+/// Coordinate axes of a beam: u and v are perpendicular to the beam, and w is its direction.
 struct Frame {
   Vec3 u, v, w;
 
@@ -177,7 +188,7 @@ struct Frame {
   Vec2 across(const Vec3& p) const { return {u.dot(p), v.dot(p)}; }
 };
 
-/// Distance along a beam to a plane, linear in the coordinates across it.
+/// Distance along a beam to a plane, as a linear function of the coordinates (u, v) of Frame.
 struct Distance {
   double constant = 0.0;
   Vec2 slope = Vec2::Zero();
@@ -190,16 +201,16 @@ struct Distance {
   double at(const Vec2& p) const { return constant + slope.dot(p); }
 };
 
-/// A polygon in space seen along a beam, counter-clockwise; corners nearer than `merge_mm` are one.
+/// Returns the projection of a polygon along the beam, counter-clockwise. Corners closer than `merge_mm` are merged.
 FlatPolygon flattened(const Corners& corners, const Frame& frame, double merge_mm);
 
-/// A polygon across a beam moved along it onto a plane.
+/// Returns the projection of a flat polygon, along the beam, onto a plane.
 Corners lifted(const FlatPolygon& polygon, const Frame& frame, const Distance& distance);
 
-/// The part of a polygon where `plane.height` >= 0; empty if none.
+/// Returns the part of a polygon where `plane.height` >= 0. The result is empty if there is no such part.
 Corners cut(const Corners& corners, const Plane& plane);
 
-/// Mean over a polygon of exp(-absorption * path length). Exact to rounding.
+/// Returns the mean over a polygon of exp(-absorption * path length). The result is exact except for rounding.
 double mean_transmission(const Corners& corners, const PathLength& path_length, double absorption_per_mm);
 
 }  // namespace retrace::raytrace

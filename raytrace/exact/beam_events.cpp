@@ -1,4 +1,5 @@
-// What becomes of a beam where it meets a face: the members of BeamWalk that split, book and send on its light.
+// Interaction of beams with faces: the member functions of BeamWalk that split beams at an interface, add their power
+// to the ledger and queue the new beams.
 #include <fmt/format.h>
 
 #include "raytrace/exact/beam_walk.h"
@@ -8,14 +9,15 @@ namespace retrace::raytrace {
 
 using geometry::FacetRole, surface_models::Lobe;
 
-/// Of a piece of a beam, where the beam starts.
+/// Returns the power of a fragment of a beam at the plane where the beam starts.
 double BeamWalk::power_at_start(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) const {
   const Plane start{from.start.normal, from.start.normal.dot(from.corners[0])};
   const Corners corners = lifted(piece, frame, Distance(frame, start));
   return share * mean_transmission(corners, from.path_length, setup_.optics.absorption_per_mm) * from.light.power();
 }
 
-/// A piece of a beam where it meets a plane, with what the material took on the way booked.
+/// Returns the fragment of a beam that meets a plane. The power that the material absorbs up to the plane is added to
+/// the ledger.
 Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
                        const Plane& plane) {
   Beam beam = from;
@@ -29,10 +31,11 @@ Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& 
   return beam;
 }
 
-/// Sends light on from an interface. \param ahead the plane's normal on the side it goes to
+/// Queues a beam that starts at an interface.
+/// \param ahead normal of the plane, on the side into which the beam travels
 void BeamWalk::send(Beam&& beam, const Plane& plane, const Vec3& ahead, const Vec3& direction,
                     const CoherentLight& light, bool inside) {
-  // Fields are continuous on the plane: their wave vectors differ only along its normal.
+  // The field is continuous on the plane. The wave vectors before and after therefore differ only along the normal.
   beam.phase_mm +=
       (index_at(beam.inside) * beam.direction - index_at(inside) * direction).dot(plane.normal) * plane.offset_mm;
   beam.path_length = beam.path_length.continued(plane, direction, inside ? 1.0 : 0.0);
@@ -79,20 +82,22 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
   send(std::move(beam), candidate.plane, against, mirrored(from.direction, against), left, from.inside);
 }
 
-/// \param beam as it arrives, its light along s and p of the facet
+/// Adds a scattering site, or adds the scattered power to `truncated` if sites are not collected.
+/// \param beam beam that arrives, with its light along the s and p axes of the facet
 void BeamWalk::book_scattered(const Beam& beam, const Plane& plane, double power) {
   if (sites_ == nullptr) {
     book(Account::truncated, power);
     return;
   }
-  // In an infinite part, a beam represents all its periodic copies, and these copies scatter light in the same way. One
-  // scattering site with the total power of the copies is therefore sufficient.
+  // In an infinite part, a beam represents all its periodic copies, and all copies scatter light identically. A single
+  // scattering site is therefore sufficient. It receives the total power of the copies.
   sites_->push_back({beam.corners, beam.direction, beam.light, beam.path_length, plane.normal,
                      place_count_ * beam.share, place_count_ * power, beam.inside,
                      setup_.infinite() ? nullptr : beam.places});
 }
 
-/// \param beam before it is sent on
+/// Records that the beam meets a facet with a texture or a form, if the phases of the facet are needed later.
+/// \param beam beam that arrives at the facet
 void BeamWalk::keep_phases(Beam& beam, const Candidate& candidate, const materials::FresnelCoefficients& f,
                            double cos_incidence, Lobe lobe) const {
   const bool has_texture = policy_.keeps_phases && !setup_.optics.is_smooth();
@@ -103,7 +108,7 @@ void BeamWalk::keep_phases(Beam& beam, const Candidate& candidate, const materia
   if (has_texture) hit.phase = phase_texture(setup_.optics, beam.inside, cos_incidence, lobe);
   if (has_form) {
     hit.frame = FacetFrame(hit.plane.normal, hit.plane.offset_mm, *candidate.middle_mm);
-    // Wave vectors before less those behind, along the normal out of the part.
+    // The path difference is the normal component of the wave vector before the facet minus that after the facet.
     const double before = index_at(beam.inside) * cos_incidence;
     const double behind = lobe == Lobe::reflection ? -before : index_at(!beam.inside) * f.cos_refracted;
     hit.path_per_height = (beam.inside ? 1.0 : -1.0) * (before - behind);
@@ -158,7 +163,8 @@ void BeamWalk::meet_hull(const Beam& from, const Frame& frame, const FlatPolygon
   send(std::move(beam), plane, against, mirrored(from.direction, against), reflected, true);
 }
 
-/// \param direction in air
+/// Records light that leaves through the entrance face.
+/// \param direction direction of the light in air
 void BeamWalk::leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction);
   const Stokes stokes = transmission_of(beam) * seen_from_above(light, direction);
@@ -171,7 +177,7 @@ void BeamWalk::leave_through_entrance(const Beam& beam, const CoherentLight& lig
   observer_(returned);
 }
 
-/// Where it goes and came from, and its field.
+/// Returns the description of a returned beam for the observer, without its power and cone.
 ReturnedBeam BeamWalk::returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const {
   ReturnedBeam returned;
   returned.direction = direction;
@@ -183,13 +189,13 @@ ReturnedBeam BeamWalk::returned_beam(const Beam& beam, CoherentLight light, cons
   returned.entry_from_exit.linear() = beam.entry.slope.leftCols<2>();
   returned.entry_from_exit.translation() = beam.entry.of({0.0, 0.0, setup_.thickness_mm}) - centre_mm_;
   returned.index = setup_.optics.index;
-  // Light that is reflected an odd number of times sees its polygon turned over.
+  // An odd number of reflections reverses the orientation of the polygon.
   for (geometry::Polygon* polygon : {&returned.entered_mm, &returned.left_mm})
     if (geometry::area(*polygon) < 0.0) std::reverse(polygon->begin(), polygon->end());
   light.turn_to_axis(direction, source_axis(direction));
   returned.jones = light.jones;
   returned.transmission = transmission_of(beam);
-  // Continuous on the face, and counted in its plane.
+  // The phase is continuous across the face. It is referred to the plane of the face.
   returned.phase_mm = beam.phase_mm + setup_.optics.index * beam.direction.z() * setup_.thickness_mm;
   returned.replicate = replicate_;
   returned.centre_mm = centre_mm_;

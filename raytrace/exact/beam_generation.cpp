@@ -15,12 +15,13 @@ namespace {
 
 /// Philox stream of the offsets of systematic resampling.
 constexpr std::uint32_t kResamplingStream = 7;
-// Directions whose components differ by less are sorted as one.
+// Directions whose components differ by less than this value are sorted as equal.
 constexpr double kOneDirection = 1e-7;
-// Power that is no longer followed.
+// Generations with less total power than this value are not traced.
 constexpr double kLeastPower = 1e-14;
 
-/// Bits of a and b in turn: neighbours in the plane are mostly neighbours in this order.
+/// Returns the Morton code of a and b, which interleaves their bits. Points close to each other in the plane usually
+/// have similar codes.
 std::uint64_t interleaved(std::uint32_t a, std::uint32_t b) {
   const auto spread = [](std::uint64_t x) {
     x = (x | (x << 16)) & 0x0000ffff0000ffffU;
@@ -32,7 +33,7 @@ std::uint64_t interleaved(std::uint32_t a, std::uint32_t b) {
   return spread(a) | (spread(b) << 1);
 }
 
-/// First sorting key of beams: their direction, rounded.
+/// Rounded direction of a beam, and whether the beam is inside the part. It is the first key by which beams are sorted.
 using Heading = std::tuple<bool, std::int64_t, std::int64_t, std::int64_t>;
 
 Heading heading_of(const Beam& beam) {
@@ -40,7 +41,8 @@ Heading heading_of(const Beam& beam) {
   return {beam.inside, rounded(beam.direction.x()), rounded(beam.direction.y()), rounded(beam.direction.z())};
 }
 
-/// Returns, for each beam, the number of different headings that are sorted before its own heading.
+/// Returns a rank for each beam. Beams with equal headings have equal ranks, and the ranks are in the order of
+/// headings.
 std::vector<std::uint32_t> ranks_of_headings(const WaitingBeams& beams) {
   std::vector<std::pair<Heading, std::size_t>> sorted;
   sorted.reserve(beams.size());
@@ -55,26 +57,28 @@ std::vector<std::uint32_t> ranks_of_headings(const WaitingBeams& beams) {
   return ranks;
 }
 
-/// Over the size of a period or outline.
+/// Returns the reciprocal size of the period, or of the bounding box of the outline, in 1 / mm.
 Vec2 scale_of(const geometry::Part& part) {
   if (part.period_mm) return part.period_mm->cwiseInverse();
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   return (box.upper - box.lower).cwiseInverse();
 }
 
-/// Returns the x and y coordinates of the centroid of the beam's start polygon.
+/// Returns the x and y coordinates of the centroid of the polygon at which the beam starts.
 Vec2 centroid_of(const Beam& beam) {
   return geometry::centroid(std::span<const Vec3>(beam.corners.data(), beam.corners.size())).head<2>();
 }
 
-/// Returns the Morton code of a position in the period or outline. Neighbouring positions usually have similar codes.
+/// Returns the Morton code of a position.
+/// \param scale reciprocal size of the period or outline, in 1 / mm
 std::uint64_t number_of_place(const Vec2& at, const Vec2& scale) {
   const auto share = [](double x) { return static_cast<std::uint32_t>((x - std::floor(x)) * 65535.0); };
   return interleaved(share(at.x() * scale.x()), share(at.y() * scale.y()));
 }
 
-/// Returns the first position from `at` on for which `holds` is true. If `holds` is true for a position, it is true for
-/// all later positions. The search is fast if the result is near `at`.
+/// Returns the first position, beginning with `at`, for which `holds` is true. The search is fast if the result is near
+/// `at`.
+/// \pre `holds` is monotonic: if it is true for a position, it is true for all later positions
 template <typename Iterator, typename Predicate>
 Iterator first_that(Iterator at, Iterator end, const Predicate& holds) {
   std::ptrdiff_t step = 1;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Beams too weak to be followed one by one: resampled generation by generation, in independent replicates.
+// Population control of weak beams: they are resampled generation by generation in independent replicates.
 
 #include <cstdint>
 #include <functional>
@@ -14,36 +14,39 @@ namespace retrace::raytrace {
 
 class BeamWalk;
 
-/// A generation of weak beams, from which a few survivors are selected at random. All beams of a generation have met
-/// the same number of interfaces since their power fell below the threshold of exact tracing. They are sorted by
-/// direction and position, because similar beams lead to similar results, and the survivors are selected in this order
-/// (Array-RQMC: L'Ecuyer, Lecot and Tuffin, Operations Research 56, 958, 2008).
-/// A beam may represent copies at several positions (Beam::places). It then has one entry per position, and each
-/// survivor has a single position. In an infinite part, a survivor starts at the first position and represents all of
-/// them.
+/// A generation of weak beams, from which a few survivors are selected at random. Beams are weak if their power is
+/// below the threshold of exact tracing. All beams of a generation have met the same number of interfaces since they
+/// became weak. The beams are sorted by direction and position, and the survivors are selected in this order. Similar
+/// beams lead to similar results, so that this order reduces the variance (Array-RQMC: L'Ecuyer, Lecot and Tuffin,
+/// Operations Research 56, 958, 2008).
+///
+/// A beam may represent copies at several positions (Beam::places). In a finite part, each copy may survive separately.
+/// In an infinite part, a survivor represents all copies of its beam.
 class BeamGeneration {
  public:
-  /// \param part whose periods or outline places are compared by \param beams outlive this
+  /// \param part the part, whose period or outline is used to compare positions
+  /// \param beams beams of the generation; must outlive this object
   BeamGeneration(const geometry::Part& part, const WaitingBeams& beams);
 
   double power() const { return power_; }
-  /// Whether there is enough of it to be followed.
+  /// Returns true if the generation has enough power to be traced.
   bool counts() const;
-  /// How many survive if each may stand for so much.
+  /// Returns the number of survivors if the power of a survivor must not exceed `most_power`.
   double survivor_count(double most_power) const;
-  /// Chosen by systematic resampling: each stands for `most_power` or less, and all together for what the generation
-  /// has. None if it does not count.
-  /// \param offset in [0, 1): where the first of equally spaced marks falls
-  /// \param walk knows beams at other places
-  /// \param follow is called for each, in their order, with a beam that is good until it returns \return their number
+  /// Selects survivors by systematic resampling and calls `follow` for each of them. Each survivor has at most the
+  /// power `most_power`, and their total power is that of the generation. There are no survivors if counts() is false.
+  /// \param offset position of the first of the equally spaced sampling points, in [0, 1)
+  /// \param walk computes the copy of a beam at another position
+  /// \param follow receives the survivors in order; each reference is valid only during the call
+  /// \return the number of survivors
   std::size_t for_each_survivor(double most_power, double offset, const BeamWalk& walk,
                                 const std::function<void(const Beam&)>& follow) const;
 
  private:
   struct Entry {
-    std::uint64_t order;  ///< of direction and place
+    std::uint64_t order;  ///< sorting key: rank of the direction, then Morton code of the position
     std::size_t beam;
-    double power_up_to;  ///< sum of the powers of all entries up to and including this entry
+    double power_up_to;  ///< cumulative power: sum over all entries up to this entry, which is included
   };
   const WaitingBeams& beams_;
   bool is_endless_;
@@ -51,20 +54,21 @@ class BeamGeneration {
   double power_ = 0.0;
 };
 
-/// What one replicate keeps of weak beams.
+/// Parameters of the resampling of weak beams in one replicate.
 struct Resampling {
-  double most_power = 0.0;  ///< that a survivor stands for
+  double most_power = 0.0;  ///< maximum power of a survivor
   std::uint32_t seed = 1;
   std::uint32_t replicate = 0;
-  std::uint32_t round = 0;  ///< of as many first generations as share seed and replicate
+  std::uint32_t round = 0;  ///< number of the round; each round has a first generation of its own
 
-  /// A random number of its own for each generation.
+  /// Returns the random offset for for_each_survivor(). Each generation has an independent offset.
   double offset(std::uint32_t generation) const;
 };
 
-/// Follows the survivors of a generation, those of the parts that they fall into, and so on, until nothing is left that
-/// counts; that is booked as `truncated`. \param after_each is called after each generation \return false if it was
-/// cancelled
+/// Traces the survivors of a generation, then the survivors of the beams into which these split, and so on. It ends
+/// when the remaining power is negligible, and adds this power to `truncated`.
+/// \param after_each is called after each generation
+/// \return false if the trace was cancelled
 bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGeneration& first, const Resampling& how,
                       const Cancellation* cancel, const std::function<void()>& after_each = {});
 
