@@ -1,5 +1,5 @@
-// Beams that stand for those of equal elements: the members of BeamWalk that let light in at several places at once,
-// and part these where a border tells them apart.
+// Beams that represent copies at identical elements: the member functions of BeamWalk that start one beam for several
+// positions of an array, and that split the positions where their beams meet different facets near a border.
 #include <algorithm>
 
 #include "core/infinity.h"
@@ -8,17 +8,17 @@
 namespace retrace::raytrace {
 namespace {
 
-// Number of positions of a beam whose comparison with the borders counts as one unit of work.
+// Number of positions of a beam that are compared with the borders per unit of BeamWalk::work().
 constexpr std::size_t kPlacesPerWork = 16;
 
-/// A stretch of the entrance along an axis, and by what it is moved to be like others.
+/// An interval of the entrance face along one axis, and the displacements to its copies.
 struct Span {
   double from = 0.0;
   double to = 0.0;
   std::vector<double> shifts;
 };
 
-/// Divides a side into steps, `steps` to a period, of which the last may be less.
+/// Divides a side into intervals, with `steps` intervals per period. The last interval may be shorter.
 std::vector<Span> spans(double lower, double upper, double period, int steps) {
   std::vector<Span> all;
   const double step = period / steps;
@@ -40,7 +40,7 @@ std::vector<Span> spans(double lower, double upper, double period, int steps) {
   return all;
 }
 
-/// Returns the part of a polygon that lies within a convex outline, in projection along z.
+/// Returns the part of a polygon whose projection along z is inside a convex outline.
 Corners within(Corners corners, const geometry::Polygon& outline) {
   for (std::size_t k = 0; k < outline.size() && !corners.empty(); ++k) {
     const Vec2 along = (outline[(k + 1) % outline.size()] - outline[k]).normalized();
@@ -57,7 +57,8 @@ Beam BeamWalk::at_place(const Beam& beam, std::size_t place) const {
   return moved(beam, (*beam.places)[place], setup_.to_source, index_at(beam.inside));
 }
 
-/// \pre the entrance is a rectangle along the axes
+/// Divides the incident beam into fragments, each of which represents its copies at all full periods of the array.
+/// \pre the entrance face is a rectangle with sides along the x and y axes
 void BeamWalk::enter_at_places(const Beam& whole, double parts) {
   const Frame from_above(-Vec3::UnitZ());
   const double whole_area = area(flattened(whole.corners, from_above, merge_mm_));
@@ -87,8 +88,10 @@ void BeamWalk::enter_at_places(const Beam& whole, double parts) {
   book_rest(whole, 1.0 - entered);
 }
 
-/// Starts the beams that enter above one region.
-/// \return the fraction of the light that enters there
+/// Starts the beams that enter through the part of the entrance face above one region.
+/// \param whole incident beam on the whole entrance face
+/// \param number index of the region in EqualPlaces::regions()
+/// \return the fraction of the incident light that enters above the region
 double BeamWalk::enter_region(const Beam& whole, std::uint32_t number, const Vec2& most_step_mm) {
   const RepeatRegion& region = equal_->regions()[number];
   const Frame from_above(-Vec3::UnitZ());
@@ -119,7 +122,7 @@ void BeamWalk::enter_regions(const Beam& whole, double parts) {
   book_rest(whole, 1.0 - entered);
 }
 
-/// One period of an endless part, or its half where both are alike.
+/// Starts the beams that enter one period of an infinite part. If its two halves are identical, one half is traced.
 void BeamWalk::enter_within_period(const Beam& whole, double parts) {
   Beam half = whole;
   if (const auto& by = equal_->within_period_mm()) {
@@ -137,7 +140,8 @@ void BeamWalk::enter_within_period(const Beam& whole, double parts) {
     enter_in_pieces(half, step_of_entrance(parts));
 }
 
-/// In plan, where a beam may meet faces in its next step; all of the plane where it runs level to a side.
+/// Returns a box in x and y around all points at which a beam may meet a face in its next step. The box is the whole
+/// plane if the beam is inside the part and nearly horizontal, and may travel to a side face.
 PlanBox BeamWalk::sweep_of(const Beam& beam) const {
   const Horizon horizon = horizon_of(beam);
   const double dz = beam.direction.z();
@@ -152,9 +156,9 @@ PlanBox BeamWalk::sweep_of(const Beam& beam) const {
   return box;
 }
 
-/// Leaves a beam those of its places where it meets the same next, and sends others on their own ways. Those have the
-/// same horizon: along an axis on which they differ no border lies within it, and on which they do not borders are
-/// alike.
+/// Keeps those copies of a beam that meet the same facets in the next step as the beam itself, and queues the others as
+/// beams of their own. All groups of copies have the same horizon. Along an axis on which they differ, the horizon
+/// contains no border. Along the other axis, they are at the same distance from the borders.
 void BeamWalk::keep_equal_places(Beam& beam) {
   if (setup_.infinite()) return;
   work_ += beam.places->size() / kPlacesPerWork;

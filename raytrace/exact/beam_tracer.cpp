@@ -14,20 +14,22 @@
 namespace retrace::raytrace {
 namespace {
 
-// The cut-off starts at this many times the power that may be left behind, between these limits, and falls.
+// The first cut-off is the power that may be truncated, times kFirstCutoffOfGoal. It is limited to the range from
+// kFirstCutoff to kHighestFirstCutoff. Later cut-offs are lower.
 constexpr double kFirstCutoffOfGoal = 100.0;
 constexpr double kFirstCutoff = 1e-6;
 constexpr double kHighestFirstCutoff = 1e-3;
-// Power left behind falls at least about as the cut-off to this power.
+// The truncated power is assumed to decrease at least as (cut-off)^kSlowestFall.
 constexpr double kSlowestFall = 0.7;
-// Weak beams that wait to be resampled: some 30 MB.
+// Maximum number of weak beams that are queued before they are resampled. They take about 30 MB.
 constexpr std::size_t kMostWaiting = 50'000;
-// Work of BeamTrace between two reports of progress: some 0.1 s at first, then a fraction of the work done so far.
+// Progress is reported when the work of BeamTrace has grown by 5 % and by kWorkBetweenReports (about 0.1 s) since the
+// last report.
 constexpr double kWorkBetweenReports = 3e6;
 constexpr double kGrowthBetweenReports = 1.05;
 
-/// Returns the part.
-/// \throw BudgetError if its elements exceed the memory budget
+/// Returns `part` unchanged if its elements fit into the memory budget.
+/// \throw BudgetError if the elements exceed the memory budget
 const geometry::Part& within_memory(const geometry::Part& part) {
   require_element_memory(part);
   return part;
@@ -69,8 +71,8 @@ BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illuminat
 
 namespace {
 
-/// Beams that were followed exactly, and the replicates of weak ones. \param unseen power that may be in beams that no
-/// replicate has seen
+/// Combines the result of the strong beams, which are traced exactly, with the replicates of the weak beams.
+/// \param unseen minimum of the standard error: power that may be in beams that no replicate has traced
 BeamResult with_replicates(const BeamWalk& strong, const std::vector<BeamWalk>& replicates,
                            const std::vector<double>& cones_deg, double unseen) {
   BeamResult result = strong.result();

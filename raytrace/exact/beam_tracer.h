@@ -1,7 +1,7 @@
 #pragma once
 
-// The exact engine: follows polygonal beams through a part without sampling, and tells RRE, ledger and every returned
-// beam.
+// The exact engine. It traces polygonal beams through a part without sampling. Its results are the RRE, the ledger and
+// every returned beam.
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -21,114 +21,120 @@ namespace retrace::raytrace {
 
 class BeamWalk;
 
-/// Power that the exact engine leaves behind where nothing else is asked: far below what anything else is known to.
+/// Default of BeamPolicy::truncated_goal: maximum power that is not traced. It is much smaller than other errors.
 inline constexpr double kFinestGoal = 1e-10;
 
-/// What becomes of beams below the cut-off where they are not given up: in each replicate they are resampled
-/// (BeamGeneration), so that means over replicates have no bias and their spread tells the error.
+/// Parameters of the resampling of beams below the cut-off (BeamGeneration). The mean over the replicates has no bias,
+/// and the standard error is estimated from the spread of the replicates.
 struct WeakBeams {
   std::uint32_t seed = 1;
   std::uint32_t replicates = 16;  ///< >= 2
-  /// A survivor stands for this many times the cut-off, or less: strong beams are followed once and survivors in every
-  /// replicate.
+  /// Maximum power of a survivor as a multiple of the cut-off. It is large, because strong beams are traced one time
+  /// and survivors in every replicate.
   double thinning = 32.0;
 };
 
-/// How far beams are followed.
+/// Criteria that end the tracing of beams.
 struct BeamPolicy {
-  /// Least power of a beam that is followed, of beams at equal elements of a finite part together. Without one it
-  /// starts at 1e-6 and falls until less than `truncated_goal` is left behind.
+  /// Minimum power of a beam that is traced. In a finite part, identical beams at identical elements count together.
+  /// Without a value, the cut-off starts at 100 times `truncated_goal`, but between 1e-6 and 1e-3. It then decreases
+  /// until the truncated power is at most `truncated_goal`.
   std::optional<double> cutoff;
-  /// Resampling of the beams whose power is below `cutoff`. Without resampling, tracing stops at these beams, and their
-  /// power is booked as `truncated`. Only BeamTracer::trace() supports resampling.
+  /// Resampling of the beams whose power is below `cutoff`. Without a value, these beams are not traced further and
+  /// their power is added to `truncated`. Only BeamTracer::trace() supports resampling.
   /// \pre `cutoff` is set and all facets are plane; rough facets require `keeps_phases`
   std::optional<WeakBeams> weak;
   double truncated_goal = kFinestGoal;
-  /// Work of BeamTrace within which beams are followed below the goal, down to `kFinestGoal`: what costs next to
-  /// nothing is not left behind.
+  /// Amount of BeamTrace::work() up to which beams are traced even after `truncated_goal` is reached, down to
+  /// `kFinestGoal`. Fast traces become more accurate in this way.
   std::uint64_t spare_work = 0;
-  std::uint64_t max_beams = 100'000'000;  ///< followed in all, while the cut-off is being found
-  /// Facets of neighbouring cells are kept apart even where they lie in one plane, so that every returned beam belongs
-  /// to its cell.
+  std::uint64_t max_beams = 100'000'000;  ///< maximum number of traced beams, including the search for the cut-off
+  /// If true, facets of neighbouring cells are treated separately even if they are in one plane. Every returned beam
+  /// then belongs to one cell.
   bool by_cell = false;
-  /// Textured facets leave beams all their light, and every returned beam tells which of them it has met: what is
-  /// specular and what scatters is for the far field to say. For textures with has_phases() alone.
+  /// If true, textured facets do not remove scattered light from the beams. Every returned beam contains the list of
+  /// the textured facets that it has met, from which the far field computes specular and scattered light. It is allowed
+  /// only for textures for which has_phases() is true.
   bool keeps_phases = false;
 };
 
 struct BeamResult {
-  std::vector<Ledger> ledgers;  ///< by cone, in the order given
-  std::vector<Stokes> stokes;   ///< of what is retroreflected, by cone, along source_axis()
-  /// Of RRE, by cone: 1.96 of them hold the truth in 95 of 100 cases. 0 without WeakBeams. Never less than what a
-  /// survivor brings over the number of replicates, as so much may be in beams that none of them has seen.
+  std::vector<Ledger> ledgers;  ///< one per acceptance cone, in the order given
+  std::vector<Stokes> stokes;   ///< Stokes vectors of the retroreflected light per cone, along source_axis()
+  /// Standard error of the RRE per cone. An interval of +-1.96 standard errors has a confidence of 95 %. It is 0
+  /// without WeakBeams. Its minimum is the power of one survivor divided by the number of replicates, because beams
+  /// that no replicate has traced may have this power.
   std::vector<double> std_error;
   std::uint64_t beams = 0;
-  std::uint32_t depth = 0;  ///< interfaces on the longest path
-  double cutoff = 0.0;      ///< that was used in the end
-  bool complete = true;     ///< false if it was cancelled or not taken to its end; the ledgers are then of no use
+  std::uint32_t depth = 0;  ///< number of interfaces on the longest path
+  double cutoff = 0.0;      ///< final cut-off
+  bool complete = true;     ///< false if the trace was cancelled or ended early; the ledgers are then invalid
 };
 
 /// A beam that leaves the part through the entrance face, or is reflected there from outside.
 struct ReturnedBeam {
   Vec3 direction = Vec3::UnitZ();
-  Stokes stokes;            ///< of the whole beam, along source_axis()
-  double efficiency = 0.0;  ///< its power as a share of what fell on the region where it entered
-  std::uint32_t depth = 0;  ///< interfaces inside; 0: never entered
-  std::size_t cone = 0;     ///< the narrowest cone that holds it; their number if none does
-  /// Convex polygons on the entrance face through which the beam enters and leaves, counter-clockwise, in the part
-  /// frame. In an infinite part, `entered_mm` is located within the central period. If the face reflects the beam from
-  /// outside, `entered_mm` is empty. In this case `left_mm` is the whole face of a finite part, and empty for an
-  /// infinite part.
+  Stokes stokes;            ///< Stokes vector of the whole beam, along source_axis()
+  double efficiency = 0.0;  ///< power as a fraction of the light that is incident on the entry region of the beam
+  std::uint32_t depth = 0;  ///< number of interfaces inside the part; 0 if the light never entered
+  std::size_t cone = 0;     ///< index of the narrowest cone that contains the beam, or the number of cones if none does
+  /// Convex polygons on the entrance face through which the beam enters and leaves. They are counter-clockwise and in
+  /// the part frame. In an infinite part, `entered_mm` is located within the central period.
+  /// If the face reflects the beam from outside, `entered_mm` is empty. In this case `left_mm` is the whole face of a
+  /// finite part, and empty for an infinite part.
   geometry::Polygon entered_mm;
   geometry::Polygon left_mm;
-  /// Maps the exit point of light on the entrance face to its entry point. Both points are relative to the part's
-  /// centre. The trace of the linear part is 2 for a plane mirror, -2 for a cube corner, and 0 for a prism, which
-  /// reverses only one axis.
+  /// Maps the point of the entrance face where light leaves to the point where it entered. Both points are relative to
+  /// the part's centre. The trace of the linear part is 2 for a plane mirror, -2 for a cube corner, and 0 for a prism,
+  /// which reverses only one axis.
   Eigen::Affine2d entry_from_exit = Eigen::Affine2d::Identity();
   double index = 1.0;  ///< refractive index of the part
-  /// Of the field: along source_axis() and the axis across it, of its own direction, for unit amplitudes along those
-  /// of the source.
+  /// Jones matrix of the field. Its inputs are the amplitudes along the axes of the source. Its output are the
+  /// amplitudes along source_axis() of `direction` and along the axis perpendicular to both.
   JonesMatrix jones = JonesMatrix::Identity();
-  double transmission = 0.0;  ///< share of the incident power that a matrix of unit gain would bring here
-  /// Of WeakBeams: the mean over replicates counts. None of a beam that was followed exactly.
+  double transmission = 0.0;  ///< power of the beam, as a fraction of the incident power, if `jones` were unitary
+  /// Index of the replicate if the beam was resampled (WeakBeams). Results of such beams are averaged over the
+  /// replicates. Beams that were traced exactly have no replicate.
   std::optional<std::uint32_t> replicate;
-  /// Optical path length that gives the phase of the returned wave at the centre of the entrance face. Let p be a point
-  /// of the face relative to the centre and `to_source` the unit vector towards the source. The incident wave at p is
-  /// exp(-2 pi i to_source . p / wavelength). The returned wave at p is `jones` times
+  /// Optical path length that defines the phase of the returned wave at the centre of the entrance face. Let p be a
+  /// point of the face relative to the centre, and `to_source` the unit vector towards the source. The incident wave at
+  /// p is exp(-2 pi i to_source . p / wavelength). The returned wave at p is `jones` times
   /// exp(2 pi i (phase_mm + direction . p) / wavelength).
   double phase_mm = 0.0;
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();  ///< centre of the entrance face, in the part frame
   CellTrail trail;
-  /// Offsets of the beams like it that this one stands for, itself included; null: for itself alone. Powers are those
-  /// of one.
+  /// Displacements to all identical beams that this beam represents, including the displacement 0. The pointer is null
+  /// if the beam represents only itself. All powers of this structure refer to a single beam.
   std::shared_ptr<const BeamPlaces> places;
-  /// Of places on the entrance face, relative to the part's centre. The field and its power are those before the phases
-  /// of these facets.
+  /// Facets with texture or form that the beam has met, as functions of a point of the entrance face relative to the
+  /// part's centre. The field and the power of the beam do not include the phase shifts of these facets.
   std::vector<TexturedHit> hits;
 
   double place_count() const { return places ? static_cast<double>(places->size()) : 1.0; }
 };
 
-/// Called for every returned beam, as it is found. With a cut-off that has to be found first, that takes a run of its
-/// own.
+/// Function that is called for every returned beam as soon as it is found. If the cut-off is not given, a first trace
+/// finds it and a second trace calls the function.
 using BeamObserver = std::function<void(const ReturnedBeam&)>;
 
-/// Follows parallel beams of polygonal cross-section from facet to facet: plane smooth facets turn one beam into
-/// finitely many, so nothing is sampled. Of facets with a form it follows the planes, and tells where they were met;
-/// with BeamPolicy::by_cell alone these are those of single facets. What is cut off or falls between polygons by
-/// rounding is booked in `truncated`, unless BeamPolicy::weak has weak beams resampled. Of textured facets it follows
-/// the mean field alone (mean_field(), mean_field_share()): what scatters is booked there as well, unless
-/// BeamPolicy::keeps_phases. A value shared by all threads.
+/// Traces parallel beams of polygonal cross-section from facet to facet. Plane smooth facets split a beam into a finite
+/// number of beams, so that no sampling is needed. Power below the cut-off, or lost between polygons by rounding, is
+/// added to `truncated`. Weak beams can be resampled instead (BeamPolicy::weak).
+///
+/// Facets with a form are treated as planes, and the points where beams meet them are recorded. Only with
+/// BeamPolicy::by_cell do these points belong to one facet each.
+/// At textured facets, only the mean field is traced (mean_field(), mean_field_share()). The scattered power is added
+/// to `truncated`, except with BeamPolicy::keeps_phases. All threads may share one tracer.
 class BeamTracer {
  public:
   enum class Elements { each_by_itself, equal_at_once };
-  /// \param elements The value `equal_at_once` traces identical beams in identical elements as one beam, until their
-  ///        paths differ near a border of the array. The observer receives one beam with ReturnedBeam::places.
+  /// \param elements `equal_at_once` traces identical beams in identical elements as one beam. The beam is split near a
+  ///        border of the array, where the paths differ. The observer receives it with ReturnedBeam::places.
   /// \pre `part` outlives the tracer
   explicit BeamTracer(const geometry::Part& part, Elements elements = Elements::each_by_itself);
 
-  /// Traces beams above the cut-off. If BeamPolicy::weak is set, weak beams are resampled and contribute the mean over
-  /// the replicates.
+  /// Traces the beams above the cut-off. If BeamPolicy::weak is set, the beams below it are resampled, and their mean
+  /// over the replicates is added to the result.
   /// \param progress receives the finished fraction of the expected work; null, or with BeamPolicy::weak: nothing is
   ///        reported
   /// \throw BudgetError if `max_beams` is reached; the message contains the power that was accounted for
@@ -137,7 +143,7 @@ class BeamTracer {
                    Progress* progress = nullptr) const;
 
   const geometry::Part& part() const { return part_; }
-  /// Of the part: beams are relative to it.
+  /// Centre of the part in the part frame. Coordinates of beams are relative to this point.
   const Vec2& centre_mm() const { return centre_mm_; }
 
  private:
@@ -155,7 +161,7 @@ class BeamTracer {
   std::optional<EqualPlaces> equal_;
 };
 
-/// One trace of a BeamTracer that can be paused: to be dropped if something else is quicker. For one thread at a time.
+/// A trace of a BeamTracer that can be paused, or abandoned if another method is faster. Not thread-safe.
 class BeamTrace {
  public:
   /// \pre `tracer` outlives the trace
@@ -163,11 +169,12 @@ class BeamTrace {
             const std::vector<double>& cones_deg, const BeamPolicy& policy, BeamObserver observer = {});
   ~BeamTrace();
 
-  /// Goes on until the goal is reached or `most_work` is done in all. \return true when the goal is reached; false as
-  /// well if it was cancelled \throw BudgetError as BeamTracer::trace()
+  /// Continues until the goal is reached or the total work is `most_work`.
+  /// \return true if the goal is reached; false if it is not reached or the trace was cancelled
+  /// \throw BudgetError as BeamTracer::trace()
   bool advance(std::uint64_t most_work, const Cancellation* cancel);
-  /// Done so far and expected in all, in looks at a facet's bounding box: some 20 ns each, and the same number on every
-  /// machine.
+  /// Returns the work done so far; expected_work() returns the estimated total. The unit is one test of a beam against
+  /// the bounding box of a facet, about 20 ns. The number does not depend on the machine.
   double work() const;
   double expected_work() const;
   BeamResult result() const;
@@ -180,7 +187,7 @@ class BeamTrace {
   BeamPolicy policy_;
   BeamObserver observer_;
   double cutoff_;
-  double work_before_ = 0.0;  ///< of walks whose cut-off was too high
+  double work_before_ = 0.0;  ///< work of abandoned walks, whose cut-off was too high
   bool is_done_ = false;
   std::unique_ptr<BeamWalk> walk_;
 };

@@ -13,38 +13,42 @@ namespace {
 
 using geometry::FacetRole, geometry::PatchCell, geometry::PatchFacet, geometry::SurfacePatch;
 
-// Pieces of a cross-section smaller than this share of an element's area are rounding: booked, not followed.
+// Fragments of a cross-section with an area below this fraction of size_mm^2 are caused by rounding. Their power is
+// added to `truncated`, and they are not traced.
 constexpr double kLeastAreaShare = 1e-15;
-// Pieces are joined if their union is convex but for this share of an element's area.
+// Two fragments are joined if their union differs from a convex polygon by less than this fraction of size_mm^2.
 constexpr double kJoinShare = 1e-13;
-// Corners of a cross-section nearer than this share of an element are one.
+// Corners of a cross-section are merged if their distance is less than this fraction of the element size.
 constexpr double kMergeShare = 1e-11;
-// A level beam is followed this many elements at a time, and so often.
+// Maximum length, in element sizes, of one step of a nearly horizontal beam. kMaxLevelSteps limits the number of steps.
 constexpr double kReachInElements = 4.0;
-// One of several places less far, as fewer of them then meet a border.
+// Maximum step length of a beam that represents several positions. It is shorter, because fewer positions then reach a
+// border within the step.
 constexpr double kReachOfShared = 2.0;
-// A beam that falls so flatly that its far side comes into the layer more than this many elements behind its near side
-// is followed in such steps as well. One that is level above the layer never meets anything.
+// A slowly descending beam is traced in such steps as well if its far side enters the layer of elements more than this
+// many element sizes behind its near side. A horizontal beam above the layer meets no facet.
 constexpr double kFarInElements = 64.0;
 constexpr std::uint32_t kMaxLevelSteps = 1000;
 constexpr double kLastCutoff = 1e-25;
-// Facets of an element above which its light is divided, each part for as many.
+// Number of facets of an element above which the incident light is divided into several fragments. Each fragment then
+// meets about this number of facets.
 constexpr double kFacetsOfPiece = 30.0;
-// The cut-off falls by this factor: gently where little is asked, as each pass may settle more than enough.
+// Factors by which the cut-off decreases between passes. The gentle factor is used for coarse goals, because one pass
+// with the other factor may trace much more than is needed.
 constexpr double kFall = 0.1;
 constexpr double kGentleFall = 0.3;
-// Work in looks at a bounding box, as measured: cutting two polygons, and what every beam takes besides.
+// Measured work of clipping two polygons, and the constant work per beam. The unit is a test of a bounding box.
 constexpr std::uint64_t kWorkOfCut = 30;
 constexpr std::uint64_t kWorkOfBeam = 50;
-// Work grows as the power that is left behind falls, to this power, before two passes have told.
+// Assumed exponent until two passes have been measured: the work is proportional to (truncated power)^-kUsualSlope.
 constexpr double kUsualSlope = 0.5;
-// Maximum number of beams below the cut-off that are kept for a lower cut-off. They take about 150 MB. Their memory is
-// also limited to three quarters of that of a trace.
+// Maximum number of beams below the cut-off that are kept for a later pass with a lower cut-off. They take about 150
+// MB. Their memory is also limited to three quarters of beam_memory_bytes().
 constexpr std::size_t kMostDeferred = 200'000;
-// Work of moving one position of a beam from one list to another, in units of BeamWalk::work().
+// Work of moving one position of a beam between lists, in units of BeamWalk::work().
 constexpr std::uint64_t kWorkOfPlace = 1;
 
-/// Memory of a waiting beam without its list of positions, in bytes.
+/// Returns the memory in bytes of a queued beam, without its list of positions.
 std::uint64_t bytes_of(const Beam& beam) {
   return sizeof(Beam) + beam.hits.capacity() * sizeof(TexturedHit);
 }
@@ -75,7 +79,8 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
   Beam whole;
   whole.direction = entry.direction;
   whole.light = entry.light;
-  // The beam starts with the phase of the incident wave, which is 0 at the centre of the entrance face.
+  // The incident wave has phase 0 at the centre of the entrance face. Beam::phase_mm is extrapolated from there to the
+  // origin.
   whole.phase_mm = -setup_.optics.index * entry.direction.z() * setup_.thickness_mm;
   whole.start = {-Vec3::UnitZ(), -setup_.thickness_mm};
   whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
@@ -96,7 +101,7 @@ void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach 
   else
     enter_in_pieces(whole, step_of_entrance(parts));
   pass_ = {0.0, pending_.power};
-  // Where little is asked, the first pass is one of beams that are strong beside those that enter an element.
+  // With a coarse goal, the first cut-off is relative to the mean power of the beams that enter.
   if (approach_ == Approach::falling && policy_.truncated_goal > kFinestGoal)
     cutoff_ *= pending_.power / static_cast<double>(pending_.beams.size());
 }
@@ -143,8 +148,8 @@ void BeamWalk::require_memory() const {
   memory_->require_shared();
 }
 
-/// Into how many parts along either axis light that falls on an element is divided: what facets hide of each other
-/// takes work as the square of their number, and rounded edges make dozens.
+/// Returns the number of parts, along either axis, into which the light on an element is divided. The work of finding
+/// hidden facets grows as the square of the number of facets, and elements with rounded edges have dozens.
 double BeamWalk::parts_of_element() const {
   double facets = 0.0;
   for (const SurfacePatch& patch : part_.patches)
@@ -152,7 +157,8 @@ double BeamWalk::parts_of_element() const {
   return std::max(1.0, std::ceil(std::sqrt(facets / kFacetsOfPiece)));
 }
 
-/// Of pieces of the entrance: an element or less, so that each meets few facets.
+/// Returns the maximum size in x and y of fragments of the incident beam. A fragment covers at most one element, so
+/// that it meets few facets.
 Vec2 BeamWalk::step_of_entrance(double parts) const {
   Vec2 step = Vec2::Constant(part_.size_mm);
   if (const auto* rtp = std::get_if<geometry::RtpElement>(&part_.spec.element))
@@ -212,8 +218,9 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
   return End::done;
 }
 
-/// Enough is settled, and work on more of it would cost something. Power that is open only ever falls, so that this may
-/// be asked at any time; sums of it that are kept up to date are too coarse for the finest goals.
+/// Returns true if enough power has been traced and further work would take time. The function may be called at any
+/// time, because the open power never increases. For the finest goals, the sum `pending_.power` is too inaccurate, and
+/// the queue itself is tested.
 bool BeamWalk::may_stop() const {
   if (approach_ != Approach::falling) return pending_.beams.empty();
   if (policy_.truncated_goal <= kFinestGoal) return pending_.beams.empty() && deferred_.power <= policy_.truncated_goal;
@@ -231,7 +238,7 @@ void BeamWalk::lower_cutoff_to(double cutoff) {
   deferred_.power = 0.0;
 }
 
-/// What is open stays behind.
+/// Ends the trace. The power of all beams that have not been traced is added to `truncated`.
 void BeamWalk::close() {
   for (const Beam& beam : pending_.beams) deferred_.power += beam.total_power();
   memory_->remove(pending_.bytes);
@@ -240,8 +247,8 @@ void BeamWalk::close() {
   tally_.other[Account::truncated] += deferred_.power;
 }
 
-/// Work and open power follow each other as powers do; within a pass both are taken in proportion to the power that it
-/// has been through.
+/// Returns the expected total work. It is extrapolated with a power law between work and open power. The work of the
+/// present pass is extrapolated linearly from the fraction of the power that has been processed.
 double BeamWalk::expected_work() const {
   const auto work = static_cast<double>(work_);
   const double settled = 1.0 - pending_.power / pass_.power;
@@ -266,7 +273,8 @@ BeamResult BeamWalk::result() const {
   return result;
 }
 
-/// Beams below the cut-off are kept for a lower one, unless they are so many that they are better found again.
+/// Keeps a beam below the cut-off for a later pass. If there are too many such beams, the beam is discarded, and the
+/// trace has to start again with a lower cut-off.
 void BeamWalk::defer(Beam&& beam) {
   deferred_.power += beam.total_power();
   if (approach_ != Approach::kept && has_many_deferred()) return;
@@ -291,7 +299,7 @@ void BeamWalk::step(const Beam& beam, const Cancellation* cancel) {
 void BeamWalk::take_waiting(WaitingBeams& into) {
   require_memory();
   memory_->remove(pending_.bytes);
-  Waiting taken;  // clear() of an empty deque of boost would add to a null pointer
+  Waiting taken;  // a new queue replaces the old one, because clear() of an empty boost deque adds to a null pointer
   pending_.swap(taken);
   WaitingBeams().swap(into);
   taken.beams.swap(into);
@@ -329,7 +337,7 @@ void BeamWalk::advance(const Beam& beam) {
   book_rest(beam, beam.share - used);
 }
 
-/// What of a beam's cross-section no candidate stands in.
+/// Returns the parts of a beam's cross-section that no candidate covers.
 FlatPolygons BeamWalk::what_passes(const FlatPolygon& whole) {
   FlatPolygons rest;
   rest.push_back(whole);
@@ -344,7 +352,8 @@ FlatPolygons BeamWalk::what_passes(const FlatPolygon& whole) {
   return rest;
 }
 
-/// To where the whole beam has left the layer of the elements, -depth <= z <= top.
+/// Returns the distance at which the whole beam has left the layer of elements, -depth <= z <= top. The distance is
+/// limited for nearly horizontal beams.
 Horizon BeamWalk::horizon_of(const Beam& beam) const {
   double low = kInfinity;
   double high = -kInfinity;
@@ -355,7 +364,7 @@ Horizon BeamWalk::horizon_of(const Beam& beam) const {
   const double dz = beam.direction.z();
   const double slack = 1e-6 * part_.size_mm;
   if (dz > -kGrazing && low >= setup_.top_mm - merge_mm_) return {};
-  double first = 0.0;  // when the last of the beam has come into the layer, or its first if that takes very long
+  double first = 0.0;  // distance at which the whole beam is in the layer, or its lowest corner if that takes very long
   double last = kInfinity;
   if (dz > 0.0) last = (setup_.top_mm - low) / dz;
   if (dz < 0.0) {
@@ -367,12 +376,13 @@ Horizon BeamWalk::horizon_of(const Beam& beam) const {
   const double reach = first + (is_shared ? kReachOfShared : kReachInElements) * part_.size_mm;
   if (last <= reach) return {last, false};
   if (setup_.infinite()) return {reach, true};
-  // A finite part ends: what leaves it within reach must be looked for to the end, for its exit is not a facet's.
+  // A beam may leave a finite part through its outer faces. If this happens within reach, the horizon must include the
+  // last exit, because the candidates contain only facets and not the outer faces.
   const auto [first_exit, last_exit] = distances_to_hull(beam);
   return reach < first_exit ? Horizon{reach, true} : Horizon{std::min(last, last_exit), false};
 }
 
-/// The least and the greatest way of a beam's corners to the sides and, if it rises, the entrance.
+/// Returns the minimum and maximum distance from a beam's corners to the sides and, if it rises, to the entrance face.
 std::pair<double, double> BeamWalk::distances_to_hull(const Beam& beam) const {
   double least = kInfinity;
   double greatest = 0.0;
@@ -388,13 +398,13 @@ std::pair<double, double> BeamWalk::distances_to_hull(const Beam& beam) const {
   return {least, greatest};
 }
 
-/// Returns the bounding box, in x and y, of the part of the beam's path that is below the plane z = LightSetup::top_mm.
-/// This plane is the top of the layer of elements.
+/// Returns the bounding box in x and y of the beam's path through the layer of elements. The top of this layer is the
+/// plane z = LightSetup::top_mm.
 /// \param horizon maximum distance along the beam at which facets are searched
 PlanBox BeamWalk::sweep_in_layer(const Beam& beam, const Horizon& horizon) const {
-  // Due to rounding, a corner of the beam at the top of the layer may be slightly above the layer. If the beam is
-  // nearly horizontal, its computed entry into the layer would be many elements further on. The search would miss the
-  // facets before that entry. The top is therefore raised by the tolerance `merge_mm_`.
+  // Due to rounding, a corner of a beam that starts at the top of the layer may be slightly above it. For a nearly
+  // horizontal beam, the computed entry into the layer would then be many elements further on, and facets before it
+  // would be missed. The top is therefore raised by the tolerance `merge_mm_`.
   const double top_mm = setup_.top_mm + merge_mm_;
   PlanBox plan;
   for (const Vec3& p : beam.corners) {
@@ -404,7 +414,7 @@ PlanBox BeamWalk::sweep_in_layer(const Beam& beam, const Horizon& horizon) const
     plan.include((p + from * beam.direction).head<2>());
     plan.include((p + horizon.t * beam.direction).head<2>());
   }
-  // If the beam's polygon crosses the top of the layer, the box also includes the line of intersection.
+  // If the beam's polygon intersects the top of the layer, its points on the plane of the top are included as well.
   for (const Vec3& p : cut(beam.corners, {-Vec3::UnitZ(), -top_mm})) plan.include(p.head<2>());
   return plan;
 }
@@ -415,7 +425,7 @@ void BeamWalk::find_candidates(const Beam& beam, const Frame& frame, const FlatP
   const PlanBox plan = sweep_in_layer(beam, horizon);
   double nearest = kInfinity;
   for (const Vec3& p : beam.corners) nearest = std::min(nearest, beam.direction.dot(p));
-  // Beyond the horizon facets may be hidden by others that were not looked for.
+  // Candidates are cut at the horizon, because facets beyond it may be hidden by other facets that were not searched.
   const Plane far{-beam.direction, -(nearest + horizon.t)};
   const PlanBox box = box_of(whole);
   cells_.visit(
@@ -461,13 +471,13 @@ void BeamWalk::consider(const Beam& beam, const Frame& frame, const FlatPolygon&
       {plane, facet.role, cell, Distance(frame, plane), std::move(piece), piece_box, false, middle_mm});
 }
 
-/// Whether all of a candidate's piece is nearer than where the plane of another would be met.
+/// Returns true if all of a candidate's polygon is nearer than the plane of the other candidate.
 bool BeamWalk::is_nearer(const Candidate& own, const Candidate& other) const {
   const auto is_before = [&](const Vec2& p) { return own.distance.at(p) < other.distance.at(p) - merge_mm_; };
   return std::all_of(own.piece.begin(), own.piece.end(), is_before);
 }
 
-/// What of a candidate's piece no nearer candidate covers.
+/// Returns the parts of a candidate's polygon that no nearer candidate covers.
 FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
   const Candidate& own = candidates_[k];
   FlatPolygons visible;
@@ -480,7 +490,7 @@ FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
     if (common.size() < 3 || area(common) <= least_area_) continue;
     const Vec2 at = geometry::centroid(std::span<const Vec2>(common.data(), common.size()));
     const double behind = own.distance.at(at) - other.distance.at(at);
-    // Of two at the same distance the first counts.
+    // If both candidates are at the same distance, the candidate with the lower index is visible.
     if (behind < 0.0 || (behind == 0.0 && k < j)) continue;
     FlatPolygons left;
     work_ += kWorkOfCut * visible.size();
@@ -490,8 +500,9 @@ FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
   return visible;
 }
 
-/// The same for all candidates in one plane: facets of neighbouring elements that continue each other do not divide a
-/// beam. Empty if they have been met with an earlier one.
+/// Returns the visible parts of all candidates in the plane of candidate k. Facets of neighbouring elements that
+/// continue each other do therefore not split a beam. The result is empty if the candidate was processed with an
+/// earlier one.
 FlatPolygons BeamWalk::visible_on_plane_of(std::size_t k) {
   FlatPolygons visible;
   if (candidates_[k].is_met) return visible;
@@ -512,7 +523,7 @@ FlatPolygons BeamWalk::visible_on_plane_of(std::size_t k) {
   return visible;
 }
 
-/// A piece of a beam that no facet within the horizon stands in the way of.
+/// Processes a fragment of a beam that no facet within the horizon blocks.
 void BeamWalk::pass_by(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share,
                        const Horizon& horizon) {
   if (horizon.limited) {
@@ -538,7 +549,8 @@ void BeamWalk::pass_by(const Beam& from, const Frame& frame, const FlatPolygon& 
   book(rises_through_plate ? Account::truncated : account_of_exit(from.left_through), power);
 }
 
-/// Out through the nearest of entrance and sides: each takes the part of the piece to which it is nearest.
+/// Splits a fragment at the entrance face and the sides. Each face receives the part of the fragment for which it is
+/// the nearest face.
 void BeamWalk::leave_hull(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share) {
   struct Exit {
     Plane plane;
@@ -568,7 +580,7 @@ void BeamWalk::leave_hull(const Beam& from, const Frame& frame, const FlatPolygo
       own = clipped(own, {slope.x(), slope.y(), exits[j].distance.constant - exits[k].distance.constant}, merge_mm_);
     }
     if (exits[k].role == FacetRole::side && setup_.optics.border_walls_differ()) {
-      // Below z = 0 the plane is that of border walls: z = up . p + start there, over the coordinates across the beam.
+      // Below z = 0, a side plane belongs to border walls. In the coordinates across the beam, z = up . p + start.
       const Distance& distance = exits[k].distance;
       const Vec2 up = Vec2(frame.u.z(), frame.v.z()) + frame.w.z() * distance.slope;
       const double start = frame.w.z() * distance.constant;

@@ -1,6 +1,6 @@
 #pragma once
 
-// One run of the exact engine: which facets a beam meets, which hide others, and what becomes of its pieces.
+// A run of the exact engine: finds the facets that a beam meets, removes hidden parts, and traces the fragments.
 
 #include <cmath>
 #include <limits>
@@ -16,10 +16,10 @@
 
 namespace retrace::raytrace {
 
-/// Planes seen at a flatter angle than this have no cross-section.
+/// Minimum absolute cosine of incidence. Planes that are closer to parallel to a beam are treated as invisible.
 inline constexpr double kGrazing = 1e-12;
 
-/// A rectangle across a beam or in the plan of the part.
+/// Axis-aligned rectangle, either in the coordinates across a beam or in x and y of the part.
 struct PlanBox {
   Vec2 lower = Vec2::Constant(INFINITY);
   Vec2 upper = Vec2::Constant(-INFINITY);
@@ -40,64 +40,68 @@ PlanBox box_of(const Points& points) {
   return box;
 }
 
-/// A facet that stands in a beam.
+/// A facet that may block a beam.
 struct Candidate {
   Plane plane;
   geometry::FacetRole role = geometry::FacetRole::retro_facet;
   CellPlace cell;
   Distance distance;
-  FlatPolygon piece;  ///< as far as it stands in the beam, hidden or not
+  FlatPolygon piece;  ///< intersection of the facet and the beam, including parts that other facets hide
   PlanBox box;
-  bool is_met = false;                 ///< its light has been sent on
-  std::optional<Vec2> middle_mm = {};  ///< of PatchFacet
+  bool is_met = false;                 ///< true if the candidate has been processed
+  std::optional<Vec2> middle_mm = {};  ///< PatchFacet::middle_mm, displaced to the position of the cell
 };
 
-/// How far ahead of a beam facets are looked for.
+/// Distance along a beam up to which facets are searched.
 struct Horizon {
-  double t = 0.0;        ///< from each corner of the cross-section
-  bool limited = false;  ///< the beam may meet facets beyond
+  double t = 0.0;        ///< distance in mm from each corner of the cross-section
+  bool limited = false;  ///< true if the beam may meet further facets beyond this distance
 };
 
-/// Where light enters a part; an infinite one: the central period.
+/// Returns the outline of the entrance face, or the central period of an infinite part.
 geometry::Polygon entrance_outline(const geometry::Part& part);
 
-/// Follows beams through a part until too little is left of them. Serves one trace() of BeamTracer.
+/// Traces beams through a part until the remaining power is small enough. It is used for one BeamTracer::trace().
 class BeamWalk {
  public:
-  /// \param equal where beams may be followed once for several places; null: nowhere
+  /// \param equal symmetry of the array, with which identical beams are traced one time; null if not used
   BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
            const BeamPolicy& policy, BeamObserver observer, const EqualPlaces* equal = nullptr);
 
   enum class Approach { falling, fixed, kept };
-  /// \param cutoff that is fixed, or the first of those that fall until little enough is left behind; where beams below
-  /// it are kept: until lower_cutoff_to()
+  /// Starts the trace.
+  /// \param cutoff minimum power of traced beams. Approach::fixed does not change it. Approach::falling lowers it until
+  ///        the truncated power is small enough. Approach::kept keeps weaker beams until lower_cutoff_to().
   void enter(const geometry::Polygon& entrance, double cutoff, Approach approach);
   enum class End { done, paused, cancelled, cutoff_too_high };
-  /// Follows beams above the cut-off until the goal is reached, as much work is done in all, or many are kept.
+  /// Traces beams above the cut-off until the goal is reached, the total work is `most_work`, or too many beams are
+  /// kept.
   End run(std::uint64_t most_work, const Cancellation* cancel);
 
-  /// Beams below the cut-off, in the order in which they were found. \pre Approach::kept, and run() is done
+  /// Returns the beams below the cut-off, in the order in which they were found.
+  /// \pre the approach is Approach::kept, and run() has returned End::done
   const WaitingBeams& kept() const { return deferred_.beams; }
-  /// From now on run() pauses where so many are kept, for take_kept().
+  /// Makes run() pause when this number of beams below the cut-off is kept. Then call take_kept().
   void pause_at_kept(std::size_t most) { most_kept_ = most; }
   WaitingBeams take_kept();
-  /// What is below the old cut-off and not below this one is for the next run() to follow. \pre likewise
+  /// Lowers the cut-off. The next run() traces the kept beams that are not below the new cut-off.
+  /// \pre the approach is Approach::kept, and run() has returned End::done
   void lower_cutoff_to(double cutoff);
-  /// Follows a beam that is alone to the next faces that it meets; its parts that go on from there wait.
+  /// Traces a single beam to the next faces. The resulting beams are queued, see take_waiting().
   void step(const Beam& beam, const Cancellation* cancel);
-  /// Those that wait after steps, in place of what the list holds.
+  /// Replaces `into` with the beams queued by step().
   void take_waiting(WaitingBeams& into);
-  /// Beams that it tells of belong to this replicate.
+  /// Sets the replicate number of the returned beams that the observer receives.
   void serve_replicate(std::uint32_t replicate) { replicate_ = replicate; }
   /// Makes the walk append a ScatterSite to `sites` wherever a rough facet scatters light. Without this call, the
-  /// scattered power is booked as `truncated`.
+  /// scattered power is added to `truncated`.
   void collect(std::vector<ScatterSite>& sites) { sites_ = &sites; }
-  /// Power that is given up.
+  /// Adds power that is not traced further to the ledger.
   void book_truncated(double power) { tally_.other[Account::truncated] += power; }
   const Tally& tally() const { return tally_; }
-  /// What is compared with the cut-off.
+  /// Returns the power that is compared with the cut-off.
   double strength_of(const Beam& beam) const { return setup_.infinite() ? beam.power : beam.total_power(); }
-  /// One of the beams that a beam stands for, by itself.
+  /// Returns one of the beams that a beam represents, as a beam for a single position.
   Beam at_place(const Beam& beam, std::size_t place) const;
 
   BeamResult result() const;
@@ -105,13 +109,14 @@ class BeamWalk {
   std::uint32_t depth() const { return depth_; }
   double cutoff() const { return cutoff_; }
   double left_behind() const { return deferred_.power; }
-  /// Done so far, in looks at a facet's bounding box: some 20 ns each. The same on every machine.
+  /// Returns the work done so far. The unit is a test of a facet's bounding box, about 20 ns. The number does not
+  /// depend on the machine.
   std::uint64_t work() const { return work_; }
-  /// Of all until the goal is reached, judged by what has been settled so far.
+  /// Returns the total work until the goal is reached, extrapolated from the work done so far.
   double expected_work() const;
 
  private:
-  /// Share of the power of its light that a beam brings here: by its area, less what was absorbed.
+  /// Returns the transmittance for the light of a beam: its fraction of the entrance area times its transmission.
   static double transmission_of(const Beam& beam) { return beam.share * beam.transmission; }
   static double power_of(const Beam& beam) { return transmission_of(beam) * beam.light.power(); }
   double parts_of_element() const;
@@ -125,20 +130,20 @@ class BeamWalk {
   /// Removes and returns the beam that was queued last.
   Beam next_pending();
   void keep_equal_places(Beam& beam);
-  /// Returns a shared list of the positions, or null for a single position. The memory of the list is counted until the
-  /// last beam with this list is destroyed.
+  /// Returns a shared list of the positions, or null for a single position. The list counts as memory of this walk
+  /// until the last beam that uses it is destroyed.
   std::shared_ptr<const BeamPlaces> shared(BeamPlaces places) const;
-  /// Returns true if the list of beams below the cut-off is full. Further beams are then discarded. To use a lower
-  /// cut-off, the walk must start again.
+  /// Returns true if the list of beams below the cut-off is full. Further beams are then discarded, and a lower cut-off
+  /// requires a new walk.
   bool has_many_deferred() const;
   void defer(Beam&& beam);
-  /// Power of beams that wait, in this pass or below its cut-off.
+  /// Returns the power of all beams that are queued, above or below the cut-off.
   double open_power() const { return pending_.power + deferred_.power; }
   bool may_stop() const;
   void lower_cutoff();
   void close();
   void advance(const Beam& beam);
-  /// Of powers of the beam at hand, which may stand for others.
+  /// Adds the power of the current beam to the ledger, for all positions that the beam represents.
   void book(Account account, double power) { tally_.other[account] += place_count_ * power; }
   Horizon horizon_of(const Beam& beam) const;
   PlanBox sweep_of(const Beam& beam) const;
@@ -158,8 +163,8 @@ class BeamWalk {
   Beam arrived(const Beam& from, const Frame& frame, const FlatPolygon& piece, double share, const Plane& plane);
   void meet_facet(const Beam& from, const Frame& frame, const Candidate& candidate, const FlatPolygon& piece,
                   double share);
-  /// A branch of a beam's light at a facet, less what the texture of a retro facet scatters; with phases that are kept:
-  /// all of it.
+  /// Returns the reflected or transmitted field of a beam at a facet, without the light that the texture of a retro
+  /// facet scatters. With BeamPolicy::keeps_phases, the scattered light is included.
   CoherentLight mean_field(const Beam& beam, const materials::FresnelCoefficients& f, geometry::FacetRole role,
                            double cos_incidence, surface_models::Lobe lobe) const;
   void book_scattered(const Beam& beam, const Plane& plane, double power);
@@ -169,17 +174,17 @@ class BeamWalk {
                  geometry::FacetRole role);
   void send(Beam&& beam, const Plane& plane, const Vec3& ahead, const Vec3& direction, const CoherentLight& light,
             bool inside);
-  /// Light of a beam that found no facet for want of digits. Signed: pieces may overlap by rounding as well.
+  /// Adds light that is lost by rounding to `truncated`. The value may be negative, because fragments may overlap.
   void book_rest(const Beam& beam, double share) { book(Account::truncated, share / beam.share * power_of(beam)); }
   void leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction);
   ReturnedBeam returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const;
-  /// Of where a beam travels behind the entrance face.
+  /// Returns the refractive index of the medium inside the part or behind its back.
   double index_at(bool inside) const { return inside ? setup_.optics.index : setup_.optics.back_index; }
   void observe_front() const;
   [[noreturn]] void fail_on_budget() const;
-  /// Checks the memory that the queued beams occupy.
+  /// Checks the memory of the queued beams.
   /// \throw BudgetError if the beams of this walk exceed the memory budget
-  /// \throw SharedMemoryShort as BeamMemory::require_shared()
+  /// \throw SharedMemoryShort if all parallel traces together exceed their limit, see BeamMemory::require_shared()
   void require_memory() const;
 
   const geometry::Part& part_;
@@ -193,7 +198,7 @@ class BeamWalk {
   std::vector<ScatterSite>* sites_ = nullptr;
   std::optional<std::uint32_t> replicate_;
   Tally tally_;
-  /// Queue of beams, their total power, and the memory that they occupy.
+  /// Queue of beams, with their total power and their memory in bytes.
   struct Waiting {
     WaitingBeams beams;
     double power = 0.0;
@@ -211,14 +216,14 @@ class BeamWalk {
   std::size_t most_kept_ = std::numeric_limits<std::size_t>::max();
   double cutoff_ = 0.0;
   Approach approach_ = Approach::fixed;
-  /// Where the pass of a cut-off began.
+  /// State at the start of the pass with the present cut-off.
   struct Pass {
     double work = 0.0;
-    double power = 1.0;  ///< that was open
+    double power = 1.0;  ///< open power
   };
   Pass pass_;
-  std::vector<Candidate> candidates_;  ///< of the beam at hand
-  double place_count_ = 1.0;           ///< likewise
+  std::vector<Candidate> candidates_;  ///< facets that may block the current beam
+  double place_count_ = 1.0;           ///< number of positions of the current beam
   double least_area_;
   double join_area_;
   double merge_mm_;
