@@ -89,7 +89,7 @@ struct ReturnedBeam {
   /// which reverses only one axis.
   Eigen::Affine2d entry_from_exit = Eigen::Affine2d::Identity();
   double index = 1.0;  ///< refractive index of the part
-  /// Jones matrix of the field. Its inputs are the amplitudes along the axes of the source. Its output are the
+  /// Jones matrix of the field. Its inputs are the amplitudes along the axes of the source. Its outputs are the
   /// amplitudes along source_axis() of `direction` and along the axis perpendicular to both.
   JonesMatrix jones = JonesMatrix::Identity();
   double transmission = 0.0;  ///< power of the beam, as a fraction of the incident power, if `jones` were unitary

@@ -7,12 +7,12 @@
 namespace retrace::raytrace {
 namespace {
 
-/// Memory in bytes of a cell. It includes about five entries of the cell in buckets of CellIndex, and the lookup table
-/// in which EqualPlaces finds identical cells.
+/// Memory in bytes per cell. It includes the lookup table in which EqualPlaces finds identical cells, and about five
+/// entries in CellIndex, because a cell usually overlaps several buckets.
 constexpr double kBytesPerCell = 150.0;
-/// Memory in bytes of a bucket of CellIndex. Cells that are much longer than wide are listed in many buckets.
+/// Memory in bytes per bucket of CellIndex. Cells that are much longer than wide overlap many buckets.
 constexpr double kBytesPerBucket = 24.0;
-/// Work of adding a cell to the index and of comparing it with its neighbours, in units of ElementCost::work; about
+/// Time needed to add a cell to the index and to compare it with its neighbours, in units of ElementCost::work; about
 /// 1.2 us.
 constexpr double kWorkPerCell = 40.0;
 

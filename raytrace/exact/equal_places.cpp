@@ -13,12 +13,12 @@ namespace {
 using geometry::Part, geometry::PatchCell, geometry::PatchFacet, geometry::Placement, geometry::Rectangle,
     geometry::SurfacePatch;
 
-// Corners nearer than this share of an element are one; normals that differ by less, too.
+// Relative tolerance of comparisons: corners match within this fraction of the element size, normals within this value.
 constexpr double kSameCorner = 1e-9;
-// An array of fewer periods along both axes is followed element by element.
+// Minimum number of periods along at least one axis. In smaller arrays, each element is traced separately.
 constexpr double kFewestPeriods = 2.0;
-// Maximum number of periods of an array after which a sequence of different rows or columns repeats. Longer sequences
-// are not searched.
+// Rows or columns may differ and repeat only after several periods of the array. This is the maximum number of periods
+// for which such a repetition is searched.
 constexpr int kMostInTurn = 12;
 
 Vec2 origin_of(const PatchCell& cell) {
@@ -51,7 +51,7 @@ bool is_same(const SurfacePatch& a, const PatchCell& cell_a, const SurfacePatch&
   return true;
 }
 
-/// Whether it is a rectangle along the axes.
+/// Returns true if the outline is a rectangle with sides along the x and y axes.
 bool is_rectangle(const geometry::Polygon& outline, double near_mm) {
   const Rectangle box = geometry::bounding_box(outline);
   const auto is_corner = [&](const Vec2& p) {
@@ -60,7 +60,7 @@ bool is_rectangle(const geometry::Polygon& outline, double near_mm) {
   return outline.size() == 4 && std::all_of(outline.begin(), outline.end(), is_corner);
 }
 
-/// Returns the area of a cell in projection along z.
+/// Returns the area of a cell's projection along z.
 double plan_area(const SurfacePatch& patch, const PatchCell& cell) {
   double area_mm2 = 0.0;
   for (std::uint32_t f = 0; f < cell.facet_count; ++f) {
@@ -73,8 +73,8 @@ double plan_area(const SurfacePatch& patch, const PatchCell& cell) {
   return area_mm2;
 }
 
-/// Returns the region with the smallest multiple of its periods after which a sequence of different rows or columns
-/// repeats.
+/// Returns the region with the smallest multiple of the given periods under which its cells repeat. A multiple is
+/// needed if rows or columns differ. If no multiple is found, the returned region does not repeat.
 RepeatRegion repeating(const geometry::Polygon& outline, const std::array<Vec2, 2>& periods_mm,
                        const std::vector<PlacedCell>& cells, double near_mm) {
   for (int all = 1; all <= kMostInTurn; ++all)
@@ -145,7 +145,8 @@ CellPlace EqualPlaces::place_of(const SurfacePatch& patch, const PatchCell& cell
   return {shape.id, offset_mm + shape.shift_mm};
 }
 
-/// Cells without a like one a period further on bound the region, each from the side that it is on.
+/// Finds the rectangle in which shifts by one period map cells to identical cells. A cell without an identical cell one
+/// period further on limits the rectangle on the side to which the cell is nearer.
 void EqualPlaces::find_region(const Part& part, const Vec2& centre_mm) {
   PointLookup<std::uint64_t> cells(near_mm_);
   const auto visit_all = [&](const auto& visit) {
@@ -195,7 +196,8 @@ void EqualPlaces::find_regions(const Part& part, const Vec2& centre_mm) {
     regions_.push_back(repeating(geometry::moved(region.outline, -centre_mm), region.periods_mm, cells, near_mm_));
 }
 
-/// A shift by half a period along one axis or both, as honeycombs, brick rows and checkers have it.
+/// Searches a shift by half a period, along one or both axes, that maps an infinite part to itself. Honeycombs, brick
+/// rows and checkered arrays have such a shift.
 void EqualPlaces::find_shift_within_period(const Part& part) {
   const SurfacePatch& patch = part.patches.front();
   PointLookup<std::uint64_t> cells(near_mm_);
@@ -236,7 +238,7 @@ std::vector<BeamPlaces> EqualPlaces::divided(const BeamPlaces& places, const Rec
     std::vector<BeamPlaces> finer;
     for (const BeamPlaces& group : groups) {
       BeamPlaces inside;
-      std::map<double, BeamPlaces> beside;  // by where they are
+      std::map<double, BeamPlaces> beside;  // positions outside the region, by their displacement along the axis
       for (const Vec2& by : group) (is_within(sweep, by, axis) ? inside : beside[by[axis]]).push_back(by);
       if (!inside.empty()) finer.push_back(std::move(inside));
       for (auto& [at, own] : beside) finer.push_back(std::move(own));

@@ -1,7 +1,7 @@
 #pragma once
 
-// Where light of an array meets the same: its elements are alike, so that a beam and its copies at other elements are
-// followed once, until a border tells them apart.
+// Translational symmetry of arrays. Identical elements act on light identically. A beam and its copies at other
+// elements are therefore traced as one beam until their paths differ near a border.
 
 #include <array>
 #include <cstdint>
@@ -15,39 +15,40 @@
 
 namespace retrace::raytrace {
 
-/// Translational symmetry of an array: the identical cells, and the region within which a shift by one period maps the
-/// part to itself. A part with zones has a separate symmetry for each region.
+/// Translational symmetry of an array: identical cells, and the region in which a shift by one period maps each cell to
+/// an identical cell. In a part with zones, each region has its own symmetry.
 class EqualPlaces {
  public:
-  /// Returns the symmetry of a part, or nothing if it has none: if the elements differ, are too few, or have an outline
-  /// that is not a rectangle along the axes. For a part with zones, returns nothing if no region is periodic.
+  /// Returns the symmetry of a part, or nothing if it cannot be used. This is the case if the array has too few
+  /// identical elements, or an outline that is not a rectangle along the axes. A part with zones has no symmetry if
+  /// none of its regions is periodic.
   /// \param centre_mm point of the plane z = 0 that becomes the origin
   static std::optional<EqualPlaces> of(const geometry::Part& part, const geometry::Vec2& centre_mm);
 
-  /// A cell as one of those that are like it: the id is that of the first of them. \param offset_mm as CellIndex tells
-  /// it
+  /// Returns the identity and position of a cell. The id is that of the first identical cell.
+  /// \param offset_mm displacement of the cell as given by CellIndex
   CellPlace place_of(const geometry::SurfacePatch& patch, const geometry::PatchCell& cell,
                      const geometry::Vec2& offset_mm) const;
 
-  /// Period of a part that is a single array.
+  /// Returns the period of the array. It is not defined for a part with zones.
   const geometry::Vec2& period_mm() const { return period_mm_; }
-  /// Regions of a part with zones, which together cover the part. Empty for a part with a single array.
+  /// Returns the regions of a part with zones, which together cover the part. The list is empty for a single array.
   const std::vector<RepeatRegion>& regions() const { return regions_; }
-  /// Of a part that repeats without end: by what it may be moved besides, within its period, and stay the same.
+  /// Returns a shift within the period that maps an infinite part to itself, if there is any.
   const std::optional<geometry::Vec2>& within_period_mm() const { return within_period_mm_; }
 
-  /// Divides the copies of a beam into groups that meet identical facets.
-  /// \param places offsets of the beam and its copies, which differ by whole periods
-  /// \param sweep box, in projection along z, around all facets that the first copy may meet
+  /// Divides the copies of a beam into groups. All copies of a group meet identical facets.
+  /// \param places displacements of the copies from the beam; they are multiples of the periods
+  /// \param sweep box in x and y around all facets that the beam itself may meet
   /// \param region parts with zones: index of the region that contains the copies
-  /// \return the offsets of each group; empty if all copies form one group
+  /// \return the displacements of each group; empty if all copies form one group
   std::vector<BeamPlaces> divided(const BeamPlaces& places, const geometry::Rectangle& sweep,
                                   std::uint32_t region) const;
 
  private:
   struct Shape {
     std::uint64_t id = 0;
-    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< from the first of the shape
+    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< displacement from the first cell with this shape
   };
 
   void find_shapes(const geometry::Part& part);
@@ -58,8 +59,9 @@ class EqualPlaces {
 
   const geometry::Part* part_ = nullptr;
   geometry::Vec2 period_mm_ = geometry::Vec2::Zero();
-  std::vector<std::vector<Shape>> shapes_;  ///< by patch and cell
-  /// Along each axis the part is the same moved by a period as long as one stays between these.
+  std::vector<std::vector<Shape>> shapes_;  ///< indexed by patch and cell
+  /// Region in which a shift by one period along an axis maps cells to identical cells, if the shifted cell is also in
+  /// the region.
   geometry::Rectangle region_mm_;
   std::optional<geometry::Vec2> within_period_mm_;
   std::vector<RepeatRegion> regions_;

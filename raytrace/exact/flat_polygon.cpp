@@ -15,9 +15,9 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
 
 using Points = boost::container::small_vector<Vec2, 24>;
 
-/// Sorts points by x. Points whose x coordinates differ only by rounding are sorted by y. Otherwise the points of a
-/// vertical side would be in random order, and convex_hull() could remove an end point of the side as collinear.
-/// \param least_area maximum of twice the area of a triangle for its corners to be treated as collinear
+/// Sorts points by x. Points whose x coordinates differ only by rounding are sorted by y. Without this rule, points on
+/// a vertical side would be in random order, and convex_hull() could remove an end point of the side as collinear.
+/// \param least_area tolerance: corners are collinear if twice the area of their triangle is at most this value
 void sort_along_x(Points& points, double least_area) {
   std::sort(points.begin(), points.end(), [](const Vec2& p, const Vec2& q) { return p.x() < q.x(); });
   const auto is_lower = [](const Vec2& p, const Vec2& q) { return p.y() < q.y(); };
@@ -31,7 +31,9 @@ void sort_along_x(Points& points, double least_area) {
   }
 }
 
-/// Andrew's monotone chain; corners that turn by less than `least_area` are left out.
+/// Returns the convex hull of two polygons by Andrew's monotone chain algorithm.
+/// \param least_area corners at which twice the area of the triangle with both neighbours is at most this value are
+///        omitted
 FlatPolygon convex_hull(const FlatPolygon& a, const FlatPolygon& b, double least_area) {
   Points points(a.begin(), a.end());
   points.insert(points.end(), b.begin(), b.end());
@@ -43,7 +45,7 @@ FlatPolygon convex_hull(const FlatPolygon& a, const FlatPolygon& b, double least
       while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), *p) <= least_area) hull.pop_back();
       hull.push_back(*p);
     }
-    hull.pop_back();  // the next chain begins with it
+    hull.pop_back();  // the last point is the first point of the next chain
   };
   add_chain(points.begin(), points.end());
   add_chain(points.rbegin(), points.rend());
@@ -61,7 +63,7 @@ Box box_around(const FlatPolygon& polygon, double slack_mm) {
 }  // namespace
 
 void make_convex(FlatPolygon& polygon) {
-  // The removal of a corner changes the angles at its two neighbours. Both are therefore checked again.
+  // Removing a corner changes the angles at its two neighbours. Both neighbours are therefore checked again.
   std::size_t unchecked = polygon.size();
   for (std::size_t k = 0; unchecked > 0 && polygon.size() > 3; --unchecked) {
     const std::size_t n = polygon.size();
@@ -77,7 +79,7 @@ void make_convex(FlatPolygon& polygon) {
 
 void join_convex(FlatPolygons& polygons, double least_area) {
   if (polygons.size() < 2) return;
-  // What does not touch has no convex union.
+  // Polygons whose boxes do not touch have no convex union.
   const double slack_mm = std::sqrt(least_area);
   boost::container::small_vector<Box, 16> boxes;
   for (const FlatPolygon& polygon : polygons) boxes.push_back(box_around(polygon, slack_mm));
@@ -96,7 +98,7 @@ void join_convex(FlatPolygons& polygons, double least_area) {
       polygons.erase(polygons.begin() + static_cast<std::ptrdiff_t>(j));
       boxes[i].extend(boxes[j]);
       boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(j));
-      j = i + 1;  // those that did not fit before may fit now
+      j = i + 1;  // polygons that could not be joined before may fit the enlarged polygon
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Convex polygons across a beam, with the clipping and subtraction that split beams at facets.
+// Convex polygons in the coordinates across a beam, with the clipping and subtraction that split beams at facets.
 
 #include <algorithm>
 #include <boost/container/small_vector.hpp>
@@ -11,7 +11,7 @@
 
 namespace retrace::raytrace {
 
-/// A convex polygon across a beam, counter-clockwise; small ones need no allocation.
+/// A convex, counter-clockwise polygon in the coordinates across a beam. Small polygons need no heap memory.
 using FlatPolygon = boost::container::small_vector<geometry::Vec2, 12>;
 using FlatPolygons = std::vector<FlatPolygon>;
 
@@ -34,25 +34,25 @@ inline double area(const FlatPolygon& polygon) {
   return 0.5 * twice;
 }
 
-/// Adds a corner unless it is the last one again. Corners nearer than `merge_mm` are one: the edge between them would
-/// have a direction made of rounding, and cutting along it would be anywhere.
+/// Adds a corner unless its distance from the previous corner is at most `merge_mm`. The direction of a shorter edge
+/// would be determined by rounding, and clipping at such an edge would give arbitrary results.
 inline void add_corner(FlatPolygon& polygon, const geometry::Vec2& p, double merge_mm) {
   if (polygon.empty() || (p - polygon.back()).squaredNorm() > merge_mm * merge_mm) polygon.push_back(p);
 }
 
-/// Ends a polygon made by add_corner(); one without area is empty.
+/// Closes a polygon made by add_corner(). A polygon with fewer than three corners becomes empty.
 inline void close(FlatPolygon& polygon, double merge_mm) {
   while (polygon.size() > 1 && (polygon.front() - polygon.back()).squaredNorm() <= merge_mm * merge_mm)
     polygon.pop_back();
   if (polygon.size() < 3) polygon.clear();
 }
 
-/// Removes corners at which the outline turns clockwise. Rounding causes such corners because it changes the direction
-/// of very short edges. The line through such an edge crosses the polygon. Clipping another polygon at this line would
-/// therefore remove too much.
+/// Removes corners at which the outline turns clockwise. Rounding can cause such corners, because it changes the
+/// direction of very short edges. The line through such an edge may cross the polygon. Clipping another polygon at this
+/// line would then remove too much.
 void make_convex(FlatPolygon& polygon);
 
-/// Cuts a polygon back to a half plane; empty if nothing is in it.
+/// Clips a polygon to a half-plane. The result is empty if the polygon is outside of the half-plane.
 inline void clip(FlatPolygon& polygon, const HalfPlane& half, double merge_mm) {
   const std::size_t n = polygon.size();
   boost::container::small_vector<double, 16> excess(n, boost::container::default_init);
@@ -74,13 +74,13 @@ inline void clip(FlatPolygon& polygon, const HalfPlane& half, double merge_mm) {
   polygon = std::move(kept);
 }
 
-/// The part of a polygon in a half plane; empty if none.
+/// Returns the part of a polygon in a half-plane. The result is empty if the polygon is outside of the half-plane.
 inline FlatPolygon clipped(FlatPolygon polygon, const HalfPlane& half, double merge_mm) {
   clip(polygon, half, merge_mm);
   return polygon;
 }
 
-/// The half plane to the left of the edge from p to q.
+/// Returns the half-plane to the left of the edge from p to q.
 inline HalfPlane left_of(const geometry::Vec2& p, const geometry::Vec2& q) {
   const double a = q.y() - p.y();
   const double b = p.x() - q.x();
@@ -96,11 +96,13 @@ inline FlatPolygon intersection(const FlatPolygon& a, const FlatPolygon& b, doub
   return result;
 }
 
-/// Joins polygons whose union is convex, to within `least_area`. \pre they do not overlap
+/// Joins polygons whose union is convex.
+/// \param least_area maximum difference between the area of the convex hull and the sum of the areas
+/// \pre the polygons do not overlap
 void join_convex(FlatPolygons& polygons, double least_area);
 
-/// Splits the part of `a` outside `b` into convex polygons and appends them to `out`. Polygons whose area is at most
-/// `least_area` are dropped.
+/// Splits the part of `a` outside of `b` into convex polygons and appends them to `out`. Polygons with an area of at
+/// most `least_area` are omitted.
 /// \pre `b` is convex and counter-clockwise; see make_convex()
 void subtract(const FlatPolygon& a, const FlatPolygon& b, double least_area, double merge_mm, FlatPolygons& out);
 

@@ -12,10 +12,10 @@ using geometry::Polygon, geometry::Rectangle;
 
 // Maximum relative difference between the area of a period and the total area of its cells.
 constexpr double kUncovered = 1e-6;
-// Minimum number of periods in a region. In smaller regions, each element is traced separately.
+// Minimum size of a region, in periods. In smaller regions, each element is traced separately.
 constexpr double kFewestPeriodsOfRegion = 4.0;
-// Minimum fraction of the region's area that remains when cells outside the lattice are excluded. In other regions,
-// each element is traced separately.
+// Minimum fraction of the region's area that must remain when cells that do not repeat are excluded. If less remains,
+// each element of the region is traced separately.
 constexpr double kLeastRest = 0.25;
 
 /// Returns the minimum of normal . p over the points p of a box.
@@ -32,7 +32,8 @@ Vec2 outward(const Polygon& outline, std::size_t side) {
   return Vec2(along.y(), -along.x()).normalized();
 }
 
-/// Returns a polygon that covers the half-plane normal . p <= offset_mm as far as `polygon` extends.
+/// Returns the half-plane normal . p <= offset_mm as a rectangle that is large enough to contain the part of `polygon`
+/// in the half-plane.
 Polygon half_plane(const Vec2& normal, double offset_mm, const Polygon& polygon) {
   const Rectangle box = geometry::bounding_box(polygon);
   const double reach_mm = box.size().norm();
@@ -42,6 +43,7 @@ Polygon half_plane(const Vec2& normal, double offset_mm, const Polygon& polygon)
   return {middle - along, middle + along, middle + along - back, middle - along - back};
 }
 
+/// Returns true if a polygon is inside an outline, with the tolerance `near_mm`.
 /// \pre the outline is convex
 bool is_inside(const Polygon& polygon, const Polygon& outline, double near_mm) {
   for (std::size_t side = 0; side < outline.size(); ++side)
@@ -71,8 +73,8 @@ RepeatRegion::RepeatRegion(Polygon outline, const std::array<Vec2, 2>& periods_m
   if (rest.empty() || geometry::area(rest) < kLeastRest * geometry::area(outline_mm_)) sides_.clear();
 }
 
-/// Returns the cells nearest to the centroid of the region that together cover one period. Returns nothing if no set of
-/// cells covers exactly one period.
+/// Returns one representative cell for each position in the period, selected near the centroid of the region. Together
+/// these cells cover one period. The list is empty if the area of the selected cells is not that of one period.
 std::vector<PlacedCell> RepeatRegion::cells_of_a_period(const std::vector<PlacedCell>& cells) const {
   const Vec2 middle = geometry::centroid(outline_mm_);
   const double reach_mm = periods_mm_[0].norm() + periods_mm_[1].norm();
@@ -103,7 +105,7 @@ bool RepeatRegion::is_of_lattice(const PlacedCell& cell, const std::vector<Place
   });
 }
 
-/// Excludes a box from the region: moves inward the side that has to move least.
+/// Excludes a box from the region by moving one side inward. The side is selected for the smallest displacement.
 void RepeatRegion::leave_out(const Rectangle& box_mm) {
   Side* nearest = nullptr;
   double least_loss = std::numeric_limits<double>::infinity();

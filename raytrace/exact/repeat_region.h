@@ -1,7 +1,7 @@
 #pragma once
 
-// A region of the part in which the cells form a periodic lattice. A part with zones has several such regions. Within a
-// region, copies of a beam that are shifted by whole periods meet identical facets.
+// A region of the part in which cells repeat periodically. A part with zones has several such regions. Copies of a beam
+// that are shifted by whole periods within a region meet identical facets.
 
 #include <array>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace retrace::raytrace {
 
-/// A cell of the back surface, placed in the part and projected along z.
+/// A cell of the back surface at its position in the part, projected along z.
 struct PlacedCell {
   geometry::Rectangle box_mm;
   CellPlace place;  ///< identical cells have the same id
@@ -23,29 +23,29 @@ class RepeatRegion {
   /// \param outline convex, counter-clockwise
   /// \param periods_mm two lattice vectors at right angles
   /// \param cells cells of the whole part
-  /// \param near_mm maximum distance of two positions that are regarded as equal
+  /// \param near_mm tolerance for equal positions
   RepeatRegion(geometry::Polygon outline, const std::array<Vec2, 2>& periods_mm, const std::vector<PlacedCell>& cells,
                double near_mm);
 
   const geometry::Polygon& outline_mm() const { return outline_mm_; }
   bool repeats() const { return !sides_.empty(); }
 
-  /// Tiles into which the entrance face above the region is divided. Tiles inside the region repeat with the periods.
+  /// Tiles of the entrance face above the region. Tiles inside the region repeat with the periods.
   struct Tiles {
-    geometry::Polygon first;  ///< one tile that lies completely within the outline
-    BeamPlaces inner;         ///< offsets from `first` to all tiles within the outline, including 0
+    geometry::Polygon first;  ///< first tile found that is completely within the outline
+    BeamPlaces inner;         ///< displacements from `first` to all repetitions within the outline, including 0
     std::vector<geometry::Polygon> at_border;
   };
   /// \param most_step_mm maximum side lengths of a tile
   std::vector<Tiles> tiles(const Vec2& most_step_mm) const;
 
-  /// Divides the copies of a beam as EqualPlaces::divided() does. The copies whose sweep is inside the region form one
-  /// group. Each of the other copies forms a group of its own.
+  /// Divides the copies of a beam into groups, see EqualPlaces::divided(). All copies whose sweep is inside the region
+  /// form one group. Each other copy forms a group of its own.
   std::vector<BeamPlaces> divided(const BeamPlaces& places, const geometry::Rectangle& sweep) const;
 
  private:
-  /// Side of the convex area of the lattice. A cell belongs to the lattice if normal . p <= offset_mm for its points p
-  /// and all sides.
+  /// Side of the convex area in which all cells repeat. A point p is in this area if normal . p <= offset_mm for all
+  /// sides.
   struct Side {
     Vec2 normal;
     double offset_mm = 0.0;

@@ -11,14 +11,15 @@
 namespace retrace::raytrace {
 namespace {
 
-// Rays begin off their facet by this share of an element, as no facet is told to leave them alone.
+// Distance of a ray's start from its facet, as a fraction of the element depth. It prevents that the ray meets the
+// facet from which it starts.
 constexpr double kClearance = 1e-9;
-// Numbers of the rays of one round; those of the next follow.
+// Maximum number of rays per round. It separates the random numbers of different rounds.
 constexpr std::uint32_t kRaysOfRound = 1U << 26;
-// Maximum fraction of a site's scattered power in the widest cone. Above this fraction, ordinary rays sample the cone
-// well enough.
+// Maximum fraction of an ordinary ray's power that may fall into the widest cone if additional rays to the source are
+// used. Above this fraction, ordinary rays sample the cone well enough.
 constexpr double kNarrow = 0.1;
-// Minimum power of a ray to the source, as a fraction of an ordinary ray's power. Weaker rays undergo Russian roulette.
+// Power of a ray to the source, as a fraction of an ordinary ray's power, below which Russian roulette is applied.
 constexpr double kLeastShare = 0.05;
 
 /// Returns the solid angle of the widest cone in air.
@@ -26,7 +27,7 @@ double solid_angle(const PathSetup& setup) {
   return std::numbers::pi * setup.cone_chord2.back();
 }
 
-/// Returns the ratio of a small solid angle inside the part to the same solid angle in air.
+/// Returns the ratio of a small solid angle inside the part to the solid angle into which it is refracted in air.
 /// \param out direction in air of light that leaves the part
 double narrowing(const PathSetup& setup, const Vec3& out) {
   const double n = setup.optics.index;
@@ -35,20 +36,20 @@ double narrowing(const PathSetup& setup, const Vec3& out) {
 
 }  // namespace
 
-/// Path that consists only of reflections, from a point of a facet inside the part into the widest cone about the
-/// source.
+/// A path from a point of a facet, inside the part, into the widest cone about the source. Before the light leaves
+/// through the entrance face, it is only reflected.
 class WayToSource {
  public:
-  /// \param turn result of PathWalker::mirrors_to_entrance() at the start of the path
+  /// \param turn matrix of all reflections on the path, from PathWalker::mirrors_to_entrance()
   WayToSource(const PathSetup& setup, Eigen::Matrix3d turn) : setup_(setup), turn_(std::move(turn)) {}
 
-  /// Returns the direction at the start of the path of light that leaves the part along `out`.
+  /// Returns the direction at the start of the path for light that leaves the part in the direction `out`.
   Vec3 direction_to(const Vec3& out) const {
     const Vec2 across = out.head<2>() / setup_.optics.index;
     return turn_.transpose() * Vec3(across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm()));
   }
 
-  /// Returns true if light with this direction at the start of the path leaves into the cone.
+  /// Returns true if light that starts in this direction leaves the part within the cone.
   bool leads_back(const Vec3& direction) const {
     const Vec3 inside = turn_ * direction;
     const Vec2 across = setup_.optics.index * inside.head<2>();
@@ -57,7 +58,7 @@ class WayToSource {
            setup_.cone_of({across.x(), across.y(), std::sqrt(rest)}) < setup_.cone_chord2.size();
   }
 
-  /// Draws a direction outside the part, uniformly distributed in the cone.
+  /// Returns a random direction in air, uniformly distributed in the cone.
   Vec3 draw(surface_models::RandomStream& random) const {
     const double less = 0.5 * setup_.cone_chord2.back() * random.next();  // 1 - cos
     const double sine = std::sqrt(less * (2.0 - less)), turn = 2.0 * std::numbers::pi * random.next();
@@ -73,14 +74,15 @@ class WayToSource {
 
 namespace {
 
-/// Returns the path from a scattering site to the source. Returns nothing if ordinary rays sample the cone well enough.
+/// Returns the path from a scattering site to the source. Returns nothing if there is none, or if ordinary rays sample
+/// the cone well enough.
 /// \param met light that meets the facet
 /// \param power power of an ordinary ray from this site
 std::optional<WayToSource> way_to_source(const PathSetup& setup, const PathWalker& walker, const Vec3& position,
                                          const Vec3& normal, const Ray& met, double power) {
   if (!met.inside || surface_models::first_order_model(setup.optics.facet_scatter) == nullptr) return std::nullopt;
-  // The width of the cone is tested first, because the search for reflections takes longer. The specular direction is
-  // used for this test, because the lobe has its maximum there.
+  // The power in the cone is tested first, because the search for reflections takes longer. It is estimated for the
+  // specular direction, in which the scattering lobe has its maximum.
   const Vec3 specular = mirrored(met.direction, normal);
   const double density = diffracted_once_into(setup.optics, normal, met, specular).light.power();
   const double in_cone = density * narrowing(setup, setup.to_source) * solid_angle(setup);
@@ -160,7 +162,8 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
   double scattered = 0.0;
   for (std::size_t k = 0; k < back.count; ++k)
     if (back.rays[k].scattered) scattered += back.rays[k].light.power();
-  // The power of a beam is that of its mean: what a place has more or less is what the material took before.
+  // The sites are weighted with the mean transmittance of the beam. The absorption on the path to this point differs
+  // from the mean, and the difference is added to `absorbed`.
   tally_.other[Account::truncated] += back.truncated;
   tally_.other[Account::absorbed] += power - scattered - back.truncated;
   if (scattered <= 0.0) return;
@@ -195,8 +198,9 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
     walker_.resume(start, ray, key_, replicate_, number, choices);
 }
 
-/// Traces an ordinary ray. score() has already counted the light of this site that is diffracted one time and reaches
-/// the cones. If this ray also ends in a cone, its power is therefore counted as scattered outside of the cones.
+/// Traces an ordinary ray from a site for which score() has traced a ray to the source. That ray already represents the
+/// light that is diffracted one time and reaches the cones. If the ordinary ray ends in a cone as well, its power is
+/// therefore added to the light outside of the cones.
 void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uint32_t number, std::uint32_t& choices) {
   apart_.clear();
   walker_apart_.resume(position, ray, key_, replicate_, number, choices);
@@ -205,8 +209,8 @@ void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uin
   tally_.add(apart_);
 }
 
-/// Traces one ray that represents all light of this site that is diffracted one time towards the widest cone.
-/// follow_scored() has counted this light as scattered outside of the cones. The power that reaches the cones is
+/// Traces a ray that represents all light of this site that is diffracted one time towards the widest cone.
+/// follow_scored() adds the same light to the light outside of the cones. The power of this ray that reaches a cone is
 /// therefore subtracted there.
 void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met,
                           double power, std::uint32_t number, std::uint32_t& choices) {

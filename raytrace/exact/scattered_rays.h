@@ -1,6 +1,6 @@
 #pragma once
 
-// The light that rough facets scatter out of beams, followed as rays.
+// Ray tracing of the light that rough facets scatter out of beams.
 
 #include <cstdint>
 #include <memory>
@@ -14,21 +14,23 @@ namespace retrace::raytrace {
 
 class WayToSource;
 
-/// Starts rays for the light that rough facets scatter out of beams. A ray starts at a random point of the beam's
-/// polygon on the facet, in a random direction of the scattering lobe, and is traced like a Monte Carlo ray. It never
+/// Starts rays for the light that rough facets scatter out of beams. Each ray starts at a random point of the beam's
+/// polygon on the facet, in a random direction of the scattering lobe. It is traced like a Monte Carlo ray and never
 /// becomes a beam again, so that no light is counted twice.
-/// Cones much narrower than the lobe receive few random rays. If the light is diffracted one time and then only
-/// reflected on its path to the source, it is therefore scored by expected value: an additional ray starts in a
-/// direction that leads into the cone, with the power of the lobe in this direction (docs/theory/beams.md). For one
-/// replicate and one thread.
+///
+/// Few random rays reach a cone that is much narrower than the lobe. Next-event estimation is therefore used for light
+/// that is diffracted one time and then only reflected on its path to the source. An additional ray starts in a
+/// direction that leads into the cone, with the power of the lobe in this direction (docs/theory/beams.md).
+/// An object serves one replicate and one thread.
 class ScatteredRays : public ScatteredReplicate {
  public:
-  /// \param setup outlives this \param key of the random numbers of this replicate and round
+  /// \param setup must outlive this object
+  /// \param key key of the random numbers of this replicate and round
   ScatteredRays(const PathSetup& setup, RandomKey key, std::uint32_t replicate, std::uint32_t round,
                 const Cancellation* cancel = nullptr);
 
-  /// Rays for all that these sites scatter, each for at most `most_power` of it: the sites get them in proportion to
-  /// what they scatter, by systematic sampling. Stops half way if it was cancelled.
+  /// Traces rays for all light that the sites scatter. Each ray has at most the power `most_power`. The rays are
+  /// distributed over the sites in proportion to the scattered power, by systematic sampling. Stops early if cancelled.
   void launch(const std::vector<ScatterSite>& sites, double most_power) override;
 
   const Tally& tally() const override { return tally_; }
@@ -46,14 +48,14 @@ class ScatteredRays : public ScatteredReplicate {
   const Cancellation* cancel_;
   Tally tally_;
   PathWalker walker_;
-  Tally apart_;  ///< tally of one ray at a time; see follow_scored()
+  Tally apart_;  ///< tally of a single ray; see follow_scored()
   PathWalker walker_apart_;
 };
 
-/// Follows scattered light as rays: ScatteredRays of each replicate.
+/// Traces scattered light as rays. Each replicate has its own ScatteredRays.
 class ScatteredLightByRays : public ScatteredLight {
  public:
-  /// \param surface of `tracer`'s part; both outlive this
+  /// \param surface back surface of the part of `tracer`; both must outlive this object
   ScatteredLightByRays(const BeamTracer& tracer, const BackSurface& surface, const Optics& optics,
                        const Illumination& illumination, const std::vector<double>& cones_deg);
 
@@ -64,7 +66,7 @@ class ScatteredLightByRays : public ScatteredLight {
   PathSetup setup_;
 };
 
-/// A point of a convex polygon: uniform over its area for `u` uniform in the unit square.
+/// Returns a point of a convex polygon. The point is uniformly distributed if `u` is uniform in the unit square.
 Vec3 point_of(const Corners& corners, const Vec2& u);
 
 }  // namespace retrace::raytrace

@@ -15,33 +15,34 @@
 namespace retrace::raytrace {
 namespace {
 
-/// Philox stream of rays of scattered light.
+/// Philox stream of the rays of scattered light.
 constexpr std::uint32_t kScatterStream = 8;
 constexpr double kFirstThreshold = 1e-3;
 constexpr double kLastThreshold = 1e-10;
-// The standard error falls about as the threshold to this power, and the work of a round rises as that to the other.
+// Assumed exponents: the standard error is proportional to threshold^kConvergence, and the work of a round to
+// threshold^-kWorkSlope.
 constexpr double kConvergence = 0.9;
 constexpr double kWorkSlope = 0.5;
-// How far the threshold falls at once, and how much further than the error asks for, as that is known to some 20 %
-// only.
+// Range of the factor by which the threshold decreases between rounds. kMargin is an additional factor, because the
+// standard error is known only to about 20 %.
 constexpr double kSteepestFall = 0.003;
 constexpr double kGentlestFall = 0.5;
 constexpr double kMargin = 0.8;
-// Beams that wait for replicates: some 100 MB.
+// Maximum number of beams that are kept for the replicates. They take about 100 MB.
 constexpr std::size_t kMostKept = 200'000;
-// What the first and the last rays of scattered light stand for.
+// Maximum power of a ray of scattered light in the first round, and in the last round.
 constexpr double kFirstRayPower = 1e-3;
 constexpr double kLastRayPower = 1e-10;
-// Of the target error, that of beams and that of rays where there are both.
+// Fraction of the target error that is allowed for beams and for rays each, if there are both.
 constexpr double kShareOfTarget = 0.7;
-// What a straight piece of a ray takes, in looks.
+// Work of tracing a ray segment, in units of BeamTrace::work().
 constexpr std::uint64_t kLooksPerSegment = 25;
 
 }  // namespace
 
 struct StochasticBeams::Replicate {
   Tally beams;
-  Tally rays;  ///< scattered by beams
+  Tally rays;  ///< light that is scattered out of beams
   std::uint64_t beam_work = 0;
   std::uint64_t beam_count = 0;
 };
@@ -144,8 +145,8 @@ double StochasticBeams::next_ray_power() const {
 double StochasticBeams::expected_work() const {
   if (result_.reached_target) return work();
   const double next = next_threshold();
-  // Of beams that are weaker than the next threshold as well, as all are of an array of many elements, there are as
-  // many more survivors as that is lower.
+  // Kept beams that are also weaker than the next threshold are resampled again. The number of their survivors is
+  // inversely proportional to the threshold. In an array with many elements, all beams may be so weak.
   double still_weak = 0.0;
   for (const Beam& beam : strong_->kept())
     if (strong_->strength_of(beam) < next) still_weak += beam.total_power();
@@ -157,7 +158,7 @@ double StochasticBeams::expected_work() const {
          static_cast<double>(ray_work_) * ray_power_ / next_ray_power();
 }
 
-/// Nothing if it was cancelled.
+/// Traces one replicate. Returns nothing if it was cancelled.
 std::optional<StochasticBeams::Replicate> StochasticBeams::replicate(std::uint32_t number,
                                                                      const BeamGeneration& first) const {
   BeamWalk walk(tracer_.part_, tracer_.centre_mm_, tracer_.cells_, setup_, policy_, BeamObserver{});

@@ -1,7 +1,7 @@
 #pragma once
 
-// The engine of stochastic beams: beams above a threshold are followed exactly, those below it are resampled,
-// generation by generation, in independent replicates.
+// The engine of stochastic beams. Beams above a threshold are traced exactly. Weaker beams are resampled, generation by
+// generation, in independent replicates.
 
 #include <cstdint>
 #include <memory>
@@ -17,46 +17,53 @@ namespace retrace::raytrace {
 
 class BeamGeneration;
 
-/// One direction of a BeamTracer, traced round by round at falling thresholds until the standard error of RRE is below
-/// a target.
+/// Trace of one direction of incidence with a BeamTracer. It is repeated in rounds with lower thresholds until the
+/// standard error of the RRE is below the target.
 ///
-/// Beams with more power than the threshold w are followed as BeamTrace does. Each generation of weaker beams, of total
-/// power P, is resampled: n = ceil(P / (kThinning w)) beams survive with the power P / n each. Systematic resampling
-/// selects them, which is unbiased and preserves the power (BeamGeneration). The standard error is estimated from
-/// independent replicates. It is at least the power of one survivor, or of one ray of scattered light, divided by the
-/// number of replicates. This term allows for light that no replicate has traced (docs/theory/beams.md).
+/// Beams with more power than the threshold w are traced exactly, as BeamTrace does. Each generation of weaker beams
+/// with the total power P is resampled: n = ceil(P / (kThinning w)) beams survive, each with the power P / n. They are
+/// selected by systematic resampling, which is unbiased and preserves the total power (BeamGeneration).
 ///
-/// At rough facets beams keep their specular light, and what is scattered goes on by itself, in each replicate of its
-/// own (ScatteredLight).
+/// The standard error is estimated from independent replicates. Its minimum is the power of one survivor, or of one ray
+/// of scattered light, divided by the number of replicates. This minimum allows for light that no replicate has traced
+/// (docs/theory/beams.md).
 ///
-/// For one thread at a time; replicates are shared out among threads, and results do not depend on their number.
+/// At rough facets, beams keep their specular light. The scattered light is traced separately in each replicate
+/// (ScatteredLight).
+///
+/// An object is not thread-safe. It distributes the replicates over threads. The results do not depend on the number of
+/// threads.
 class StochasticBeams {
  public:
   static constexpr std::uint32_t kReplicates = 16;
-  /// Survivors are stronger than the weakest beams that are followed exactly, by this factor: those are followed once
+  /// Ratio of the maximum power of a survivor to the threshold. It is large, because strong beams are traced one time
   /// and survivors in every replicate.
   static constexpr double kThinning = 32.0;
 
-  /// Whether facets leave enough light specular for beams: smooth ones, and those of `harvey_shack` without waviness.
+  /// Returns true if the facets leave enough specular light in the beams. This is the case for smooth facets, and for
+  /// `harvey_shack` scattering without waviness.
   static bool serves(const Optics& optics);
 
-  /// \param sampling its seed and target error \param scattered of the same part in the same light; null: facets are
-  /// smooth \param observer told of the returned beams that are followed exactly, each once
-  /// \pre serves(optics); `tracer`, `scattered` and `cancel` outlive this
+  /// \param sampling provides the seed and the target error
+  /// \param scattered tracer of the scattered light for the same part and illumination; null if facets are smooth
+  /// \param observer receives each returned beam that is traced exactly, one time
+  /// \pre serves(optics); `tracer`, `scattered` and `cancel` outlive this object
   StochasticBeams(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
                   const Illumination& illumination, const std::vector<double>& cones_deg, const Sampling& sampling,
                   const Cancellation* cancel = nullptr, BeamObserver observer = {});
   ~StochasticBeams();
 
-  /// Traces one more round at a lower threshold. If the round exceeds the memory budget, the result of the preceding
-  /// round is kept.
+  /// Traces one more round at a lower threshold. If a later round than the first exceeds the memory budget, the result
+  /// of the preceding round remains valid.
   /// \return true if no further round is needed or possible, or if tracing was cancelled
   /// \throw BudgetError if the first round exceeds the memory budget
   bool advance();
-  /// Of the last round, without rays. 1.96 standard errors hold the truth in 95 of 100 cases.
+  /// Returns the result of the last round, without the number of rays. An interval of +-1.96 standard errors has a
+  /// confidence of 95 %.
   const MonteCarloResult& result() const { return result_; }
-  std::uint64_t beams() const;  ///< followed so far
-  /// In looks at a facet's bounding box, as BeamTrace: done so far, and expected until the target error is reached.
+  std::uint64_t beams() const;  ///< number of beams traced so far
+  /// Returns the work done so far; expected_work() returns the total until the target error is reached. The unit is
+  /// that of BeamTrace::work(), a test of a facet's bounding box.
   double work() const { return static_cast<double>(work_); }
   double expected_work() const;
   double threshold() const { return threshold_; }
@@ -76,16 +83,16 @@ class StochasticBeams {
   std::vector<double> cones_deg_;
   Sampling sampling_;
   const Cancellation* cancel_;
-  std::unique_ptr<BeamWalk> strong_;  ///< above the threshold
+  std::unique_ptr<BeamWalk> strong_;  ///< trace of the beams above the threshold
   std::vector<ScatterSite> strong_sites_;
   double threshold_;
-  double ray_power_;                           ///< most that a piece of scattered light stands for
-  double beam_error_ = 0.0, ray_error_ = 0.0;  ///< of the last round: the largest of all cones
+  double ray_power_;                           ///< maximum power of a ray of scattered light
+  double beam_error_ = 0.0, ray_error_ = 0.0;  ///< standard errors of the last round, maximum over all cones
   std::uint32_t round_ = 0;
   std::uint64_t work_ = 0;
-  std::uint64_t beam_work_ = 0, ray_work_ = 0;  ///< of the last round alone
+  std::uint64_t beam_work_ = 0, ray_work_ = 0;  ///< work of the last round only
   std::uint64_t weak_beams_ = 0;
-  double first_survivors_ = 1.0;  ///< of a replicate's first generation in the last round
+  double first_survivors_ = 1.0;  ///< number of survivors of a replicate's first generation in the last round
   MonteCarloResult result_;
 };
 
