@@ -11,7 +11,7 @@
 namespace retrace::raytrace {
 namespace {
 
-// Distance of a ray's start from its facet, as a fraction of the element depth. It prevents that the ray meets the
+// Distance of a ray's start from its facet, as a fraction of the element depth. It keeps the ray from meeting the
 // facet from which it starts.
 constexpr double kClearance = 1e-9;
 // Maximum number of rays per round. It separates the random numbers of different rounds.

@@ -19,7 +19,7 @@
 namespace retrace::raytrace {
 namespace {
 
-// Single-precision roundings that may add up in Embree's walk through boxes, relative to the coordinates.
+// Upper bound of the accumulated single-precision rounding errors in Embree's search, relative to the coordinates.
 constexpr double kSinglePrecisionBand = 32.0 * 0x1p-24;
 
 void throw_on_error(void*, RTCError code, const char* text) {
@@ -29,7 +29,7 @@ void throw_on_error(void*, RTCError code, const char* text) {
 
 RTCDevice new_device() {
   RTCDevice device = nullptr;
-  // Embree builds scenes with the number of threads that is allowed when its device is created.
+  // Embree later builds scenes with the number of threads that is allowed now, when its device is created.
   run_with_threads(std::thread::hardware_concurrency(), [&] { device = rtcNewDevice(nullptr); });
   if (device == nullptr) {
     if (rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU)
@@ -40,8 +40,8 @@ RTCDevice new_device() {
   return device;
 }
 
-/// Returns the Embree device of the process. It is never released, because Embree may hang if a device is created while
-/// another device is released.
+/// Returns the Embree device of the process. The device is never released. Embree may hang if a device is created while
+/// another one is released.
 RTCDevice shared_device() {
   static RTCDevice device = new_device();
   return device;
@@ -60,7 +60,7 @@ float above(double value) {
   return std::nextafter(static_cast<float>(value), INFINITY);
 }
 
-/// Of the coordinates of the surface and of where rays to it start, in the plate above.
+/// Returns the maximum absolute coordinate of the surface and of the starting points of rays in the plate above it.
 double greatest_reach_mm(const geometry::Part& part, const std::vector<geometry::Placement>& placements) {
   double reach = part.size_mm + part.element_depth_mm + part.thickness_mm;
   for (const auto& placement : placements) {
@@ -75,7 +75,7 @@ double greatest_reach_mm(const geometry::Part& part, const std::vector<geometry:
   return reach;
 }
 
-/// Passed through Embree to the facets: the ray in double precision, and what it has met.
+/// Data that Embree passes to intersect(): the ray in double precision, and the nearest intersection found so far.
 struct Query {
   RTCIntersectContext substrate;
   const SurfaceRay* ray = nullptr;
@@ -105,8 +105,8 @@ RTCRayHit embree_ray(const SurfaceRay& ray) {
 }  // namespace
 
 struct BackSurface::Boxes {
-  /// What a geometry of Embree's holds: the boxes of a patch, where a placement has it or, for instances, in its own
-  /// frame.
+  /// User data of an Embree geometry: the boxes of a patch. `place` is the position of the patch, or 0 if the geometry
+  /// is used through instances.
   struct Group {
     const Boxes* owner = nullptr;
     std::uint32_t patch = 0;
@@ -134,7 +134,7 @@ struct BackSurface::Boxes {
     return made;
   }
 
-  /// Whether instances save most of the boxes. They are as fast, and faster in large arrays.
+  /// Returns true if instances save most of the boxes. Instances are at least as fast, and faster in large arrays.
   bool repeats_much() const {
     std::size_t different = 0;
     std::size_t all = 0;
@@ -224,12 +224,12 @@ struct BackSurface::Boxes {
 
   const geometry::Part& part;
   const ExactSurface& surface;
-  double band_mm;                                 ///< what single precision may put wrong of rays and boxes
-  std::vector<std::vector<BoxContent>> contents;  ///< by patch
+  double band_mm;                                 ///< bound of the single-precision errors of rays and boxes
+  std::vector<std::vector<BoxContent>> contents;  ///< indexed by patch
   std::vector<Group> groups;
   RTCDevice device = shared_device();
   OwnedScene scene;
-  std::vector<OwnedScene> patch_scenes;  ///< instances
+  std::vector<OwnedScene> patch_scenes;  ///< scenes of the patches if instances are used, otherwise empty
 };
 
 BackSurface::BackSurface(const geometry::Part& part, const Vec2& centre_mm)

@@ -1,6 +1,7 @@
 #pragma once
 
-// The search for the facet of the back that a ray meets: Embree finds the boxes, double precision decides.
+// Search for the first facet of the back surface that a ray meets. Embree finds bounding boxes along the ray. The facet
+// and the point are computed in double precision.
 
 #include <memory>
 #include <optional>
@@ -11,12 +12,13 @@
 
 namespace retrace::raytrace {
 
-/// The part's back surface, ready for rays. Embree says which cells a ray passes; which of their facets it meets, and
-/// where, is found in double precision. Safe to use from many threads.
+/// The part's back surface, prepared for ray tracing. Embree finds the bounding boxes that a ray passes. The facets in
+/// them are tested in double precision. All member functions are thread-safe.
 class BackSurface {
  public:
-  /// \param part must outlive this
-  /// \param centre_mm point of the plane that becomes the origin of rays: keeps single-precision coordinates small
+  /// \param part must outlive this object
+  /// \param centre_mm point of the plane z = 0 that becomes the origin of rays; it keeps coordinates small, which
+  ///        reduces single-precision errors
   /// \throw std::bad_alloc
   BackSurface(const geometry::Part& part, const Vec2& centre_mm);
   BackSurface(geometry::Part&&, const Vec2&) = delete;
@@ -24,15 +26,15 @@ class BackSurface {
   BackSurface& operator=(const BackSurface&) = delete;
   ~BackSurface();
 
-  /// The first facet that the ray meets from its own side, or nothing up to `t_max`.
+  /// Returns the first facet that the ray meets on the side from which it comes, up to the distance `t_max`.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
-  /// For a ray that must meet the surface: as first_hit if that finds any, else with facets slightly widened, as
-  /// rounding may have left a gap between two of them.
+  /// Returns the first facet for a ray that must meet the surface. If first_hit() finds no facet, the search is
+  /// repeated with slightly enlarged facets, because rounding may leave a gap between two facets.
   std::optional<SurfaceHit> certain_first_hit(const SurfaceRay& ray) const;
 
   const ExactSurface::Facet& facet(FacetRef ref) const { return exact_.facet(ref); }
-  /// Where it stands.
+  /// Returns the position of the patch that contains the facet.
   const geometry::Placement& placement(FacetRef ref) const { return exact_.placements()[ref.placement]; }
 
  private:

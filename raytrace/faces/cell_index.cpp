@@ -10,7 +10,7 @@ using geometry::Vec2;
 CellIndex::CellIndex(const geometry::Part& part, const Vec2& centre_mm) : part_(part), centre_mm_(centre_mm) {
   if (part.period_mm) {
     infinite_ = true;
-    // The patch holds its periods row by row; the middle one stands for all.
+    // The patch contains its periods row by row. Only the cells of the central period are stored.
     const auto side = static_cast<std::uint32_t>(2 * part.periods_beyond + 1);
     const auto each = static_cast<std::uint32_t>(part.patches[0].cells.size()) / (side * side);
     const std::uint32_t first = (side * side / 2) * each;
@@ -36,7 +36,7 @@ CellIndex::CellIndex(const geometry::Part& part, const Vec2& centre_mm) : part_(
       }
     }
   };
-  // The entries are counted first, so that the memory for them is allocated only one time.
+  // The entries per bucket are counted first, so that the memory is allocated in one step.
   first_.resize(static_cast<std::size_t>(count_[0] * count_[1]) + 1);
   visit_all([&](std::size_t bucket, const Entry&) { ++first_[bucket + 1]; });
   std::partial_sum(first_.begin(), first_.end(), first_.begin());

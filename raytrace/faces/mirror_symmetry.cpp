@@ -16,13 +16,14 @@ namespace {
 using geometry::Part, geometry::PatchCell, geometry::PatchFacet, geometry::Placement, geometry::SurfacePatch;
 using geometry::Vec2, geometry::Vec3;
 
-// Places nearer than this share of an element are one, normals that differ by less are one.
+// Tolerances: positions are equal if their distance is less than this fraction of the element size, and normals are
+// equal if they differ by less than kSameNormal.
 constexpr double kSamePlace = 1e-8;
 constexpr double kSameNormal = 1e-9;
-// Memory of a facet in FacetsByPlace, in bytes.
+// Memory in bytes per facet of FacetsByPlace.
 constexpr double kBytesPerFacet = 350.0;
 
-/// Returns true if the facets of the part, over all placements, fit into the memory budget.
+/// Returns true if a FacetsByPlace of all facets of the part fits into the memory budget.
 bool fits_memory(const Part& part) {
   double facets = 0.0;
   for (const Placement& placement : part.placements)
@@ -30,7 +31,7 @@ bool fits_memory(const Part& part) {
   return kBytesPerFacet * facets <= static_cast<double>(element_memory_bytes());
 }
 
-/// A facet where it stands.
+/// A facet at its position in the part.
 struct StandingFacet {
   std::vector<Vec3> corners;
   Vec3 middle = Vec3::Zero();  ///< centroid of the corners
@@ -54,7 +55,7 @@ StandingFacet mirror_image(StandingFacet facet, Eigen::Index axis, double about_
   return facet;
 }
 
-/// All facets of a part, to be found again by their middles.
+/// All facets of a part, with a search by their centroids.
 class FacetsByPlace {
  public:
   explicit FacetsByPlace(const Part& part) : near_mm_(kSamePlace * part.size_mm), by_middle_(near_mm_) {
@@ -91,7 +92,7 @@ class FacetsByPlace {
   PointLookup<std::size_t> by_middle_;
 };
 
-/// Those of the central period of a part that repeats without end, which holds its periods row by row.
+/// Returns the facets of the central period of an infinite part. The patch contains its periods row by row.
 std::vector<StandingFacet> central_facets(const Part& part) {
   const SurfacePatch& patch = part.patches.front();
   const auto side = static_cast<std::size_t>(2 * part.periods_beyond + 1);
@@ -112,7 +113,8 @@ bool holds(const FacetsByPlace& part, const std::vector<StandingFacet>& facets, 
                      [&](const StandingFacet& f) { return part.has(mirror_image(f, axis, about_mm)); });
 }
 
-/// A mirror puts the first facet of the period onto a facet of it or of a neighbour.
+/// Returns true if an infinite part is symmetric about a plane normal to `axis`. The mirror plane is searched among the
+/// planes that map the first facet of the central period to a facet of this period or its neighbours.
 bool endless_is_mirrored(const Part& part, Eigen::Index axis) {
   const FacetsByPlace all(part);
   const std::vector<StandingFacet> central = central_facets(part);
@@ -127,7 +129,7 @@ bool endless_is_mirrored(const Part& part, Eigen::Index axis) {
   return false;
 }
 
-/// Whether each corner of an outline is mirrored onto one of them.
+/// Returns true if each corner of an outline has a mirror image among the corners.
 bool is_mirrored(const geometry::Polygon& outline, Eigen::Index axis, double about_mm, double near_mm) {
   return std::all_of(outline.begin(), outline.end(), [&](Vec2 p) {
     p[axis] = 2.0 * about_mm - p[axis];

@@ -10,7 +10,7 @@ namespace retrace::raytrace {
 
 using materials::StackSide;
 
-/// The direction after refraction at a plane whose unit normal `against` faces the ray.
+/// Returns the direction after refraction at a plane. The unit normal `against` faces the ray.
 Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted) {
   return (ratio * direction + (ratio * cos_incidence - cos_refracted) * against).normalized();
 }
@@ -45,7 +45,7 @@ materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::F
 
 namespace {
 
-/// Of the face with its thin layers alone.
+/// Returns the coefficients of the entrance face with its thin layers, but without films.
 materials::FresnelCoefficients fresnel_of_face(const Optics& optics, bool inside, double cos_incidence) {
   if (inside)
     return materials::fresnel_layers(optics.entrance_layers, StackSide::body, optics.index, 1.0, cos_incidence);
@@ -93,7 +93,7 @@ Vec3 source_axis(const Vec3& direction) {
 
 Light light_of_beam(const Stokes& stokes, const Vec3& to_source) {
   Light light{stokes, source_axis(to_source)};
-  light.stokes.u = -stokes.u;  // p = direction x s is the second axis of the source reversed
+  light.stokes.u = -stokes.u;  // the p axis, direction x s, is opposite to the second axis of the source
   return light;
 }
 
@@ -156,7 +156,7 @@ LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const 
   incident = light_of_beam(illumination.stokes, to_source);
   for (const double half_angle_deg : cones_deg) {
     const double chord = 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad());
-    cone_chord2.push_back(chord * chord * (1.0 + 1e-9));  // the cone's edge belongs to it, rounding or not
+    cone_chord2.push_back(chord * chord * (1.0 + 1e-9));  // directions on the edge belong to the cone despite rounding
   }
   for (std::size_t k = 0; k < part.outline.size(); ++k) {
     const Vec2 a = part.outline[k] - centre_mm;
@@ -180,7 +180,7 @@ LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
   const materials::FresnelCoefficients f = fresnel_at_entrance(optics, false, to_source.z());
   CoherentLight light;
   light.stokes = stokes;
-  light.stokes.u = -stokes.u;  // p = direction x s is the second axis of the source reversed
+  light.stokes.u = -stokes.u;  // the p axis, direction x s, is opposite to the second axis of the source
   light.jones(1, 1) = -1.0;
   light.s_axis = source_axis(to_source);
   light.turn_to(down, Vec3::UnitZ());

@@ -1,7 +1,7 @@
 #pragma once
 
-// What all tracers share: the part's bounding planes, the light that enters, acceptance cones, and the sums of power
-// they keep.
+// Data that all tracers use: the bounding planes of the part, the light that enters it, the acceptance cones, and the
+// sums of power.
 
 #include <cstdint>
 #include <vector>
@@ -14,12 +14,11 @@
 
 namespace retrace::raytrace {
 
-/// One part, lit from one direction: what every tracer needs to know of it. Positions are relative to the centre of the
-/// entrance face in x and y.
+/// A part that is illuminated from one direction. Positions are relative to the centre of the entrance face in x and y.
 struct LightSetup {
-  /// A side of the part: a vertical plane.
+  /// A vertical side plane of the part.
   struct Side {
-    Vec3 normal = Vec3::UnitX();  ///< out of the part
+    Vec3 normal = Vec3::UnitX();  ///< points out of the part
     double offset_mm = 0.0;
   };
 
@@ -29,30 +28,31 @@ struct LightSetup {
 
   Optics optics;
   double thickness_mm = 0.0;
-  double depth_mm = 0.0;  ///< the back surface lies in -depth_mm <= z <= top_mm
+  double depth_mm = 0.0;  ///< the back surface is in the range -depth_mm <= z <= top_mm
   double top_mm = 0.0;
   std::vector<Side> sides;  ///< empty for an infinite part
   Vec3 to_source = Vec3::UnitZ();
-  Light incident;                         ///< of the beam, along -to_source
-  const DirectionScore* score = nullptr;  ///< sums over the directions in which light leaves; null: none are kept
-  std::vector<double> cone_chord2;  ///< squared distance of unit vectors at each cone's edge from the one to the source
+  Light incident;                         ///< incident light, which travels along -to_source
+  const DirectionScore* score = nullptr;  ///< function of the directions of leaving light that is summed; may be null
+  std::vector<double> cone_chord2;        ///< per cone: squared distance between unit vectors to its edge and its axis
 
   bool infinite() const { return sides.empty(); }
 
-  /// The narrowest cone that holds a direction; their number if none does.
+  /// Returns the index of the narrowest cone that contains a direction, or the number of cones if none does.
   std::size_t cone_of(const Vec3& direction) const { return cone_of(direction, to_source); }
-  /// The same of light that came from elsewhere. \param back to where it came from
+  /// Returns the index of the narrowest cone about the direction `back` that contains `direction`.
+  /// \param back axis of the cones; use this function for light that does not come from `to_source`
   std::size_t cone_of(const Vec3& direction, const Vec3& back) const;
 
-  /// What the entrance face makes of the incident light.
+  /// Light after the incident light has met the entrance face.
   struct Entry {
-    Vec3 direction = -Vec3::UnitZ();  ///< of what enters
+    Vec3 direction = -Vec3::UnitZ();  ///< direction of the light that enters the part
     CoherentLight light;
-    Vec3 front_direction = Vec3::UnitZ();  ///< direction in which light travels after reflection outside the part
+    Vec3 front_direction = Vec3::UnitZ();  ///< direction in air of the light that the face reflects
     std::size_t front_cone = 0;            ///< narrowest cone that contains `front_direction`, see cone_of()
     Stokes front;  ///< Stokes parameters of the reflected light, with source_axis(front_direction) as first axis
-    /// Jones matrix of the reflection. The first axis is source_axis(to_source) before and
-    /// source_axis(front_direction) after the reflection.
+    /// Jones matrix of the reflection. The first axis of the incident field is source_axis(to_source). The first axis
+    /// of the reflected field is source_axis(front_direction).
     JonesMatrix front_jones = JonesMatrix::Zero();
     double absorbed = 0.0;  ///< power that the layers on the entrance face absorb
   };
@@ -62,81 +62,89 @@ struct LightSetup {
   Entry enter(const Stokes& stokes) const;
 };
 
-/// Sums of power over paths or beams. What leaves through the entrance face is kept by acceptance cone, so that one run
-/// serves several cones.
+/// Sums of power over paths or beams. Light that leaves through the entrance face is stored per acceptance cone, so
+/// that one trace gives the results for several cones.
 struct Tally {
   explicit Tally(std::size_t cone_count = 0, std::size_t score_size = 0)
       : returned(cone_count + 1), scattered(cone_count + 1), front(cone_count + 1), score(score_size, 0.0) {}
 
-  std::vector<Stokes> returned;   ///< through the entrance, by the narrowest cone that holds it; last: outside all
-  std::vector<Stokes> scattered;  ///< the same for light with a non-specular event on its way
-  std::vector<Stokes> front;      ///< first-surface reflection, likewise
-  std::vector<double> score;      ///< of LightSetup::score; empty without one
+  /// Light that left through the entrance face, by the narrowest cone that contains it. The last element is the light
+  /// outside all cones. The following two vectors have the same order.
+  std::vector<Stokes> returned;
+  std::vector<Stokes> scattered;  ///< light with at least one non-specular event on its path
+  std::vector<Stokes> front;      ///< light that the entrance face reflects from outside
+  std::vector<double> score;      ///< sums of LightSetup::score; empty without a score
   Ledger other;                   ///< the remaining accounts
-  std::uint64_t segments = 0;     ///< straight pieces traced
-  std::uint64_t misses = 0;       ///< rays that missed every face although the part or its surface surrounds them
-
+  std::uint64_t segments = 0;     ///< number of straight ray segments traced
+  std::uint64_t misses = 0;       ///< number of rays that missed every face although faces surround them
   void add(const Tally& more);
-  /// Nothing is in it any more.
+  /// Sets all sums to 0.
   void clear();
-  /// The ledger for one cone, in units of the tally. \param cone index into the cones of the set-up
+  /// Returns the ledger for one cone, in units of the tally.
+  /// \param cone index into the cones of the set-up
   Ledger ledger(std::size_t cone) const;
-  /// Of what is retroreflected into one cone.
+  /// Returns the Stokes parameters of the light that is retroreflected into one cone.
   Stokes retroreflected(std::size_t cone) const;
 };
 
-/// The first axis of the Stokes parameters of light that comes from or goes into a direction above the part: +x, seen
-/// across it. The second is `direction` x it, so that both axes are as seen from the source.
-/// \pre direction not along x
+/// Returns the first axis of the Stokes parameters of light above the part that travels along `direction` or against
+/// it. It is the projection of +x perpendicular to `direction`. The second axis is `direction` x first axis. Both axes
+/// are defined as seen from the source.
+/// \pre `direction` is not parallel to x
 Vec3 source_axis(const Vec3& direction);
 
-/// From the part to the source, in the part frame.
+/// Returns the unit vector from the part to the source, in the part frame.
 Vec3 direction_to_source(const Illumination& illumination);
 
-/// Light of the incident beam, which travels along -`to_source`. \param stokes along source_axis(to_source)
+/// Returns the light of the incident beam, which travels along -`to_source`.
+/// \param stokes Stokes parameters with source_axis(to_source) as first axis
 Light light_of_beam(const Stokes& stokes, const Vec3& to_source);
 
-/// Stokes parameters of light that leaves the entrance face, along source_axis().
+/// Returns the Stokes parameters of light that leaves the entrance face, with source_axis(direction) as first axis.
 Stokes seen_from_above(Light light, const Vec3& direction);
 
-/// Where light is booked that left the part for good through a face of this role. \pre not the entrance
+/// Returns the account for light that leaves the part through a face with this role and does not enter again.
+/// \pre the face is not the entrance
 Account account_of_exit(geometry::FacetRole role);
 
-/// What a face of the back surface makes of light on its way, inside the part or outside.
+/// Returns the Fresnel coefficients of a face of the back surface, for light from inside or outside the part.
 materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::FacetRole role, bool inside,
                                                double cos_incidence);
 
-/// What the entrance face makes of light from inside the part or outside; of an ideal one only the directions count.
+/// Returns the Fresnel coefficients of the entrance face for light from inside or outside the part. For
+/// `lossless_entrance`, only the directions are valid.
 materials::FresnelCoefficients fresnel_at_entrance(const Optics& optics, bool inside, double cos_incidence);
 
-/// The same under a drop: of the face with its layers but for the film, next to a medium other than air.
+/// Returns the Fresnel coefficients of the entrance face under a drop of water. The face has its layers except for the
+/// film, and the outer medium is water instead of air.
 materials::FresnelCoefficients fresnel_under_drop(const Optics& optics, bool inside, double cos_incidence);
 
-/// What the mirror behind a ball makes of light that comes from the ball's side, through a medium of index
-/// `from_index`. \pre the facets are mirrors or have an opaque layer
+/// Returns the Fresnel coefficients of the mirror behind a ball, for light from the ball's side.
+/// \param from_index refractive index of the medium in front of the mirror
+/// \pre the facets are mirrors or have an opaque layer
 materials::FresnelCoefficients fresnel_at_mirror(const Optics& optics, double from_index, double cos_incidence);
 
-/// The power that layers on a face took of light that met it.
+/// Returns the power that the layers on a face absorb.
 inline double absorbed_by(const materials::LayerStack& layers, const Light& met, const Light& reflected,
                           const Light& transmitted) {
   return layers.absorbs() ? met.power() - reflected.power() - transmitted.power() : 0.0;
 }
 
-/// The same of the entrance face.
+/// Returns the power that the layers on the entrance face absorb.
 inline double absorbed_at_entrance(const Optics& optics, const Light& met, const Light& reflected,
                                    const Light& transmitted) {
   return optics.entrance_absorbs() ? met.power() - reflected.power() - transmitted.power() : 0.0;
 }
 
-/// The same of a face of the back surface.
+/// Returns the power that the layers on a face of the back surface absorb.
 double absorbed_at_back(const Optics& optics, geometry::FacetRole role, const Light& met, const Light& reflected,
                         const Light& transmitted);
 
-/// The direction after refraction at a plane whose unit normal `against` faces the ray. \param ratio index before over
-/// after
+/// Returns the direction after refraction at a plane. The unit normal `against` faces the ray.
+/// \param ratio refractive index before the plane divided by that after the plane
 Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted);
 
-/// The direction after reflection at a plane.
+/// Returns the direction after reflection at a plane.
 Vec3 mirrored(const Vec3& direction, const Vec3& normal);
 
 }  // namespace retrace::raytrace

@@ -10,10 +10,11 @@ namespace {
 
 using geometry::Vec2, field_lanes::kBlock;
 
-// Steps by which cosines are compared.
+// Resolution at which direction cosines are compared.
 constexpr double kSameCosine = 1e-8;
 
-/// Corners and direction in steps, from the least corner on, as polygons may be told from any.
+/// Returns a key that is equal for polygons with equal corners and direction, except for rounding. The key begins with
+/// the lexicographically smallest corner, because polygons may start at any corner.
 std::vector<std::int64_t> wave_key(const FieldPolygon& polygon, double same_mm) {
   std::vector<std::array<std::int64_t, 2>> corners;
   for (const Vec2& p : polygon.transform.polygon())

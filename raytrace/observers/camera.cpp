@@ -27,38 +27,38 @@ namespace {
 
 using std::numbers::pi;
 
-// Philox streams: scrambles of points, random choices along a path, wavelengths and points of the pupil, random choices
-// of paths that are traced together, and points that a guide selects.
+// Philox streams of random numbers for: scrambles of the pixel's points, choices along a path, wavelengths and points
+// of the pupil, choices of paths that are traced together, and points that a PixelGuide selects.
 constexpr std::uint32_t kCameraScrambleStream = 11;
 constexpr std::uint32_t kCameraChoiceStream = 12;
 constexpr std::uint32_t kLensStream = 13;
 constexpr std::uint32_t kCameraCellStream = 14;
 constexpr std::uint32_t kGuideStream = 15;
-// Approximate number of paths of one wavelength that the cell engine traces together.
+// Approximate number of paths per wavelength that the cell engine traces together.
 constexpr std::size_t kPathsTogether = 4096;
-// Number of the pass from which a guide is made. Pictures have fewer passes.
+// Number of the training pass of a PixelGuide. The passes of a picture have smaller numbers.
 constexpr std::uint32_t kFirstPass = 0xffffffff;
-// Minimum side of a tile in pixels, and maximum number of tiles along a side of the picture. A guide has a map per
-// tile.
+// Minimum side length of a tile in pixels, and maximum number of tiles along a side of the picture. A PixelGuide has
+// one map per tile.
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMostTiles = 8;
 
-/// A path of the camera, from where it meets the part.
+/// A path of the camera, which begins where the ray meets the part.
 struct Look {
   Contact contact;
   double luminance = 0.0;                              ///< luminance along the path, cd/m^2
-  double weight = 1.0 / CameraTracer::kPointsPerPass;  ///< weight in the mean of its pixel
+  double weight = 1.0 / CameraTracer::kPointsPerPass;  ///< weight of the path in the mean of its pixel
   bool shows_part() const { return contact.what == Contact::What::face || contact.what == Contact::What::side; }
 };
 
-/// Adds up what paths see where they leave the part.
+/// Adds the luminance that paths receive where they leave the part.
 class Sight : public ExitObserver, public CellWalker::Observer {
  public:
-  /// \param film exits count as where the path began
+  /// \param film true if the part is a film; the lamp is then evaluated at the start of the path
   Sight(const Luminaire& luminaire, const Surroundings& surroundings, bool film, std::vector<Look>& looks)
       : luminaire_(luminaire), surroundings_(surroundings), film_(film), looks_(looks) {}
 
-  /// Of which path PathWalker tells from here on.
+  /// Selects the path to which the following events of PathWalker belong.
   void begin(std::size_t look) { look_ = static_cast<std::uint32_t>(look); }
   void leaves(const Departure& departure) override {
     if (departure.is_through_entrance())
@@ -164,7 +164,7 @@ struct CameraTracer::Hidden {
     if (engine == CameraEngine::fastest && has_one_back) cells = CellArray::make(p);
     double sum = 0.0;
     for (const WeighedOptics& at : light) {
-      // The direction of incidence means nothing here: paths begin on the face with one of their own.
+      // The direction of incidence has no effect, because each path starts with a direction of its own.
       setups.emplace_back(p, surface, centre_mm, at.optics, Illumination{}, std::vector<double>{90.0}, policy);
       sum += at.weight;
       cumulative.push_back(sum);
@@ -205,21 +205,21 @@ struct CameraTracer::Hidden {
   Lens lens;
   Luminaire luminaire;
   geometry::Rectangle entrance_mm;
-  std::optional<CellArray> cells;  ///< of parts whose paths are followed together
-  std::vector<PathSetup> setups;   ///< by wavelength
+  std::optional<CellArray> cells;  ///< set if paths are traced together by the cell engine
+  std::vector<PathSetup> setups;   ///< indexed by wavelength
   std::vector<double> cumulative;
-  Vec3 middle;  ///< of a sphere round the finite part
+  Vec3 middle;  ///< center of a sphere around the finite part
   double radius_mm = 0.0;
-  std::size_t tiles_along;          ///< number of guide tiles along a side of the picture
-  std::optional<PixelGuide> guide;  ///< set after a training pass, which is not part of the picture
-  bool has_learnt_all = false;      ///< true if the guide has also learnt from pass 0
-  std::vector<bool> has_guide;      ///< for each pixel
-  std::vector<float> levels;        ///< usual luminance of each pixel
+  std::size_t tiles_along;          ///< number of tiles of the guide along a side of the picture
+  std::optional<PixelGuide> guide;  ///< set after the training pass, which is not part of the picture
+  bool has_learnt_all = false;      ///< true if pass 0 has also trained the guide
+  std::vector<bool> has_guide;      ///< indexed by pixel: true if the guide selects points of this pixel
+  std::vector<float> levels;        ///< indexed by pixel: typical luminance, see level_of()
 };
 
-/// Training samples that a pass gives to a PixelGuide.
+/// Training samples for a PixelGuide, collected during one pass.
 struct CameraTracer::Hidden::Lesson {
-  /// Maximum number of paths for the maps.
+  /// Maximum number of paths that are used as samples.
   static constexpr std::size_t kMostLooks = std::size_t{1} << 22U;
 
   explicit Lesson(const Hidden& h)
@@ -232,8 +232,9 @@ struct CameraTracer::Hidden::Lesson {
     if (levels.empty()) levels.resize(pixels);
   }
 
-  /// Adds the paths of consecutive pixels to the samples.
-  /// \param pixel first of these pixels
+  /// Appends the paths of consecutive pixels to the samples.
+  /// \param looks paths, kPointsPerPass per pixel
+  /// \param pixel index of the first pixel
   void take(const std::vector<Look>& looks, std::size_t pixel, PixelGuide::Samples& into) {
     for (std::size_t k = 0; k < looks.size(); k += kPointsPerPass, ++pixel) {
       const std::span<const Look, kPointsPerPass> of(looks.data() + k, kPointsPerPass);
@@ -248,14 +249,14 @@ struct CameraTracer::Hidden::Lesson {
 
   const Hidden& hidden;
   std::size_t pixels;
-  std::size_t stride = (pixels * kPointsPerPass + kMostLooks - 1) / kMostLooks;  ///< distance between sampled pixels
+  std::size_t stride = (pixels * kPointsPerPass + kMostLooks - 1) / kMostLooks;  ///< every stride-th pixel is sampled
   PixelGuide guide;
-  std::vector<float> levels;                 ///< as Hidden::levels
-  std::vector<PixelGuide::Samples> samples;  ///< by block
+  std::vector<float> levels;                 ///< see Hidden::levels
+  std::vector<PixelGuide::Samples> samples;  ///< indexed by block
 
  private:
-  /// Returns the usual luminance of a pixel: the second smallest value, because strips of another luminance are few and
-  /// rarely dark.
+  /// Returns the typical luminance of a pixel. It is the second smallest value of its paths, because the few areas that
+  /// differ from the rest of the pixel are usually brighter.
   static float level_of(std::span<const Look, kPointsPerPass> looks) {
     std::array<double, kPointsPerPass> seen;
     std::ranges::transform(looks, seen.begin(), &Look::luminance);
@@ -264,7 +265,8 @@ struct CameraTracer::Hidden::Lesson {
   }
 };
 
-/// Entrance face and sides of the plate of a finite part: the nearest of them that faces the ray.
+/// Returns the contact with the entrance face or the sides of a finite part's plate: the nearest face that faces the
+/// ray.
 std::optional<Contact> CameraTracer::Hidden::contact_with_plate(const WorldRay& ray) const {
   const PathSetup& setup = setups.front();
   const auto is_within = [&](const Vec3& p, std::size_t except) {
@@ -297,12 +299,12 @@ Contact CameraTracer::Hidden::contact_of(const WorldRay& ray) const {
   const double nearest = (middle - ray.origin).dot(ray.direction);
   if ((ray.origin + nearest * ray.direction - middle).norm() > radius_mm) return {};
   if (const auto plate = contact_with_plate(ray)) return *plate;
-  // Single precision does not know places metres away.
+  // The start is moved close to the part, because Embree's single precision is inaccurate for points metres away.
   const Vec3 at = ray.origin + std::max(0.0, nearest - 1.01 * radius_mm) * ray.direction;
   return {Contact::What::outside, at, at, Eigen::Matrix3d::Identity(), 0};
 }
 
-/// Some rows of one pass. A thread keeps its block, for its memory.
+/// Rows of the picture that are traced together in one pass. Each thread reuses its block to reuse the memory.
 struct CameraTracer::Hidden::Block {
   explicit Block(const Hidden& h)
       : sight(h.luminaire, h.scene.surroundings, h.scene.film.has_value(), looks), starts(h.setups.size()) {
@@ -319,7 +321,7 @@ struct CameraTracer::Hidden::Block {
     tally = Tally(1);
   }
 
-  /// Follows light of a path by itself.
+  /// Traces the light of one path separately.
   void resume(const CellWalker::Start& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample, std::uint32_t& choices) {
     const auto behind = [&] { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; };
@@ -329,15 +331,15 @@ struct CameraTracer::Hidden::Block {
     sight.is_transmitted(start.owner, behind() - before);
   }
 
-  std::vector<Look> looks;  ///< by pixel, kPointsPerPass each
+  std::vector<Look> looks;  ///< kPointsPerPass per pixel
   Tally tally{1};
   Sight sight;
-  std::vector<PathWalker> walkers;  ///< by wavelength
+  std::vector<PathWalker> walkers;  ///< indexed by wavelength
   std::vector<CellWalker> cell_walkers;
-  std::vector<std::vector<CellWalker::Start>> starts;  ///< by wavelength: what is followed together
+  std::vector<std::vector<CellWalker::Start>> starts;  ///< indexed by wavelength: paths that are traced together
 };
 
-/// One more path of a block.
+/// Adds a path to a block. The path is traced immediately, or queued for the cell engine.
 void CameraTracer::Hidden::look(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
                                 Block& block) const {
   const auto number = static_cast<std::uint32_t>(block.looks.size());
@@ -376,7 +378,7 @@ void CameraTracer::Hidden::look(const WorldRay& ray, std::size_t wavelength, std
   block.resume(on, wavelength, {seed, kCameraChoiceStream}, point, pixel, choices);
 }
 
-/// Returns the position of a pixel on the entrance face if the whole pixel shows the entrance face.
+/// Returns the area of the entrance face that a pixel shows. Returns nothing if the pixel also shows other things.
 std::optional<PixelPlace> CameraTracer::Hidden::place_of(std::uint32_t pixel) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);
@@ -389,13 +391,13 @@ std::optional<PixelPlace> CameraTracer::Hidden::place_of(std::uint32_t pixel) co
   return PixelPlace{at[0], at[1] - at[0], at[2] - at[0], tile_of(pixel)};
 }
 
-/// Returns the points of a pixel in a pass.
+/// Returns the points of a pixel through which paths start in a pass.
 std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden::points_of(std::uint32_t pixel,
                                                                                             std::uint32_t pass) const {
   if (is_guided(pixel)) {
     const auto words = philox({seed, kGuideStream}, pass, pixel);
     auto points = guide->points(*place_of(pixel), {words[0], words[1], words[2], words[3]});
-    // The points that the guide selects rotate among the wavelengths from pass to pass.
+    // Points are assigned to wavelengths by their index. A random rotation gives every wavelength guided points.
     const auto turn = static_cast<std::ptrdiff_t>(philox({seed, kGuideStream}, pass, pixel, 1)[0] % kPointsPerPass);
     std::rotate(points.begin(), points.begin() + turn, points.end());
     return points;
@@ -410,7 +412,7 @@ std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden
   return points;
 }
 
-/// Starts the paths of a pixel in a pass.
+/// Starts the paths of one pixel in a pass.
 void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);
@@ -418,7 +420,7 @@ void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Bl
   for (std::uint32_t k = 0; k < kPointsPerPass; ++k) {
     const std::uint32_t point = pass * kPointsPerPass + k;
     const auto random = philox({seed, kLensStream}, point, pixel);
-    // Points of a pass take turns through the wavelengths.
+      // The points of a pass are distributed over the wavelengths by stratified sampling.
     const double chosen = (static_cast<double>(k) + unit_interval(random[0])) / kPointsPerPass;
     const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, chosen * cumulative.back());
     const auto wavelength = static_cast<std::size_t>(found - cumulative.begin());
@@ -431,7 +433,7 @@ void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Bl
   }
 }
 
-/// By the cell engine, and what that hands over.
+/// Traces the queued paths of a block with the cell engine. Paths that it cannot complete are traced separately.
 void CameraTracer::Hidden::follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block,
                                            const Cancellation* cancel) const {
   const RandomKey key{seed, kCameraCellStream};
@@ -446,8 +448,8 @@ void CameraTracer::Hidden::follow_together(std::uint32_t pass, std::uint32_t blo
   }
 }
 
-/// Traces a pass.
-/// \param lesson receives training samples unless it is null
+/// Traces one pass over the picture.
+/// \param lesson receives training samples for the guide; may be null
 std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, const Cancellation* cancel,
                                                       Lesson* lesson) const {
   const std::size_t columns = scene.view.columns;
@@ -474,8 +476,8 @@ std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, cons
     for (std::size_t k = 0; k < block.looks.size(); ++k) {
       const Look& look = block.looks[k];
       const std::size_t pixel = first + k / kPointsPerPass;
-      // The weights of a pixel's points add up to 1 only on average. The usual luminance of the pixel is therefore
-      // subtracted before weighting, so that the deviation causes no noise.
+      // The weights of a pixel's points add up to 1 only on average. The weights are therefore applied to the
+      // difference from the typical luminance of the pixel, so that their sum causes little noise.
       const double level = is_guided(pixel) ? static_cast<double>(levels[pixel]) : 0.0;
       const double luminance = level / kPointsPerPass + look.weight * (look.luminance - level);
       result[pixel] += luminance;
@@ -497,7 +499,7 @@ std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, cons
   return result;
 }
 
-/// Traces a pass from which the guide learns. If the pass is cancelled, the guide is unchanged.
+/// Traces a pass and trains the guide with it. If the pass is cancelled, the guide remains unchanged.
 std::optional<CameraPass> CameraTracer::Hidden::trace_and_learn(std::uint32_t number, const Cancellation* cancel) {
   Lesson lesson(*this);
   std::optional<CameraPass> result = trace(number, cancel, &lesson);

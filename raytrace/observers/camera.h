@@ -1,6 +1,6 @@
 #pragma once
 
-// Pictures of a lit part as an eye or a camera sees it, traced backwards from the pupil.
+// Pictures of an illuminated part as an eye or a camera sees it. Light is traced backwards from the pupil.
 
 #include <cstdint>
 #include <memory>
@@ -15,121 +15,124 @@
 
 namespace retrace::raytrace {
 
-// The frame of cameras is that of the part, with its origin over the centre of the entrance face: x to the right and y
-// up as seen from above the face, z = part.thickness_mm on it.
+// The camera frame has the axes of the part frame. Its origin in x and y is the centre of the entrance face. The
+// entrance face is the plane z = part.thickness_mm. Seen from above, x points to the right and y up.
 
 /// A perspective camera that is focused on a point.
 struct CameraView {
   geometry::Vec3 eye_mm = geometry::Vec3::UnitZ();
   geometry::Vec3 target_mm = geometry::Vec3::Zero();
-  geometry::Vec3 up = geometry::Vec3::UnitY();  ///< not along the view
-  double width_mm = 1.0;                        ///< of what it sees across the view at the target; > 0
-  std::size_t columns = 1;                      ///< of square pixels
+  geometry::Vec3 up = geometry::Vec3::UnitY();  ///< upward direction of the picture; not parallel to the viewing axis
+  double width_mm = 1.0;                        ///< width of the field of view at the target; > 0
+  std::size_t columns = 1;                      ///< number of columns of square pixels
   std::size_t rows = 1;
-  Angle pupil;  ///< diameter of its pupil as seen from the target; >= 0
+  Angle pupil;  ///< angular diameter of the pupil as seen from the target; >= 0
 };
 
-/// A disc that faces the target, of the same luminance all over.
+/// A lamp: a disc of uniform luminance that faces the target.
 struct LampDisc {
   geometry::Vec3 position_mm = geometry::Vec3::UnitZ();
-  double illuminance_lx = 0.0;  ///< across the beam, at the target; >= 0
-  Angle diameter;               ///< as seen from the target; > 0 if the pupil is a point
+  double illuminance_lx = 0.0;  ///< illuminance at the target, perpendicular to the beam; >= 0
+  Angle diameter;               ///< angular diameter as seen from the target; > 0 if the pupil is a point
 };
 
-/// Even luminances round the part, cd/m^2.
+/// Uniform luminances around the part, in cd/m^2.
 struct Surroundings {
-  double front = 0.0;   ///< seen by what leaves through the entrance face
-  double behind = 0.0;  ///< seen by what leaves elsewhere, and by what misses the part
+  double front = 0.0;   ///< luminance for paths that leave through the entrance face
+  double behind = 0.0;  ///< luminance for paths that leave through other faces or miss the part
 };
 
-/// A thin sheet of an infinite part, bent over a body. Light is followed within the plane that touches the body where
-/// it enters, which leaves out terms of the order of an element's size over the radius.
+/// A thin sheet of an infinite part, bent around a body. Light is traced in the tangential plane at the point where it
+/// enters. This approximation has a relative error of the order of the element size divided by the radius.
 struct Film {
-  double width_mm = 0.0;            ///< along its x, round the cylinder
-  double height_mm = 0.0;           ///< along its y, the cylinder's axis
-  std::optional<double> radius_mm;  ///< of the cylinder: > 0 bulges towards the light, < 0 is hollow; none: a plane
+  double width_mm = 0.0;            ///< size along x, around the cylinder
+  double height_mm = 0.0;           ///< size along y, the axis of the cylinder
+  std::optional<double> radius_mm;  ///< cylinder radius: > 0 convex towards the light, < 0 concave; none: plane
 };
 
-/// How the discs of lamp and pupil are averaged over: in closed form by ApertureKernel, or point by point.
+/// Method of averaging over the discs of lamp and pupil: analytically with ApertureKernel, or by sampling points.
 enum class DiscAverage { kernel, sampled };
 
 struct CameraScene {
   CameraView view;
   LampDisc lamp;
   Surroundings surroundings;
-  std::optional<Film> film;  ///< infinite parts
+  std::optional<Film> film;  ///< set for infinite parts
   DiscAverage discs = DiscAverage::kernel;
 };
 
 /// The optics at one of the wavelengths of the lamp.
 struct WeighedOptics {
   Optics optics;
-  double weight = 1.0;  ///< share of the flux; they add to 1
+  double weight = 1.0;  ///< fraction of the luminous flux; the weights add up to 1
 };
 
-/// One pass over a picture: luminance (cd/m^2) of the pixels, row by row from above, the share of each that shows the
-/// part, and the sum of the luminances of all that shows it.
+/// Result of one pass over a picture. It contains the luminance (cd/m^2) of the pixels, row by row from the top. The
+/// fraction of each pixel that shows the part follows. The last element is the sum of the luminances that show the
+/// part.
 using CameraPass = std::vector<double>;
 
-/// A picture that gets better pass by pass. Passes are independent of each other.
+/// A picture that becomes more accurate with each pass. The passes are independent of each other.
 struct CameraImage {
   std::size_t columns = 0;
   std::size_t rows = 0;
   std::uint32_t passes = 0;
-  std::vector<double> luminance;   ///< mean over the passes, cd/m^2, row by row from above
-  std::vector<double> squares;     ///< sum of squared deviations from it
-  std::vector<double> coverage;    ///< share of each pixel that shows the part
-  std::vector<double> part_means;  ///< of each pass: luminance over all that shows the part; empty if nothing does
+  std::vector<double> luminance;   ///< mean over the passes, cd/m^2, row by row from the top
+  std::vector<double> squares;     ///< sum of squared deviations from `luminance`
+  std::vector<double> coverage;    ///< fraction of each pixel that shows the part
+  std::vector<double> part_means;  ///< per pass: mean luminance of the part; empty if the picture does not show it
   std::uint64_t paths = 0;
 
-  /// Takes in the pass that is numbered `passes`.
+  /// Adds the pass with the number `passes`.
   void add(const CameraPass& pass);
-  /// Standard error of a pixel: what the spread of its passes says, or the mean of that over the pixels round it (two
-  /// on either side) where that is larger and the pixel shows the part. A pixel may have missed the few bright paths
-  /// that its neighbours met; its own passes then know of no error. \pre passes > 1
+  /// Returns the standard error of a pixel, estimated from the spread of its passes. If the pixel shows the part, the
+  /// mean over the 5 x 5 pixels around it is used if it is larger. A pixel without a sample of the rare bright paths
+  /// would otherwise have a standard error that is too small.
+  /// \pre passes > 1
   double std_error(std::size_t pixel) const;
-  /// Of the part as a whole, with its standard error.
+  /// Returns the mean luminance of the part; part_error() returns its standard error.
   double part_mean() const;
   double part_error() const;
-  /// Mean standard error over mean luminance, of pixels wholly of the part.
+  /// Returns the mean standard error divided by the mean luminance, over the pixels that show only the part.
   double relative_noise() const;
 
  private:
-  /// Squared, by the pixel's own passes.
+  /// Returns the squared standard error, estimated from the pixel's own passes.
   double own_variance(std::size_t pixel) const { return squares[pixel] / (passes - 1.0) / passes; }
 };
 
-/// How cameras follow paths: both branches of an interface down to far less power than where efficiencies are asked
-/// for. A lamp is some 1e5 times as bright as what else is seen, so that a branch of 1e-4 of the power still matters.
+/// Path policy of cameras. Both branches of an interface are traced down to much lower power than for efficiencies. The
+/// lamp is about 1e5 times as bright as its surroundings, so that branches with 1e-4 of the power are important.
 inline constexpr PathPolicy kCameraPolicy{.split_power = 1e-4};
 
-/// How paths are followed: many together by the cell engine where that serves (CellArray::make()), those that meet
-/// borders one by one by Embree; or all one by one.
+/// Engine that traces the paths. `fastest` uses the cell engine where possible (CellArray::make()) and Embree for paths
+/// that meet borders. `embree` traces all paths one by one.
 enum class CameraEngine { fastest, embree };
 
-/// Traces light backwards from the pupil through the part, with the same walkers as all other light: what a path would
-/// carry from the lamp to the eye it carries from the eye to the lamp (docs/theory/images.md).
+/// Traces light backwards from the pupil through the part, with the same walkers as other light. By reciprocity, a path
+/// transmits the same fraction of light in both directions (docs/theory/images.md).
 class CameraTracer {
  public:
-  /// Points of a pixel in a pass, spread evenly.
+  /// Number of points per pixel and pass. The points are evenly distributed.
   static constexpr std::uint32_t kPointsPerPass = 4;
 
-  /// \pre a film if and only if the part is infinite; light is unpolarised; `part` outlives the tracer
+  /// \pre the scene has a film if and only if the part is infinite; light is unpolarized; `part` outlives the tracer
   CameraTracer(const geometry::Part& part, const std::vector<WeighedOptics>& light, const CameraScene& scene,
                const PathPolicy& policy, std::uint32_t seed, CameraEngine engine = CameraEngine::fastest);
   ~CameraTracer();
 
-  /// Whether many paths are followed together.
+  /// Returns true if the cell engine is used, which traces many paths together.
   bool is_by_cells() const;
   CameraImage empty_image() const;
   /// Traces one pass over the picture with all available threads. Returns nothing if it was cancelled. The result
   /// depends only on the seed, the scene and the number of the pass.
-  /// In the cell engine, PixelGuide selects half of the points of a pixel where this reduces noise. It is trained with
-  /// pass 0 and with a training pass that is not part of the picture. The first call traces both. Only one call may run
-  /// at a time.
+  ///
+  /// With the cell engine, a PixelGuide selects half of the points of a pixel if this reduces the noise. The first call
+  /// trains the guide with pass 0 and with a training pass that is not part of the picture.
+  /// \pre no other call is running
   /// \throw BudgetError if power is lost
   std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;
-  /// Adds the next pass; false and nothing added if it was cancelled.
+  /// Adds the next pass. Returns false, without adding anything, if it was cancelled.
   bool add_pass(CameraImage& image, const Cancellation* cancel = nullptr) const;
 
  private:

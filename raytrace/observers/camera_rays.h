@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to CameraTracer: the lens at which rays start, the intersection of a ray with the sheet, and the lamp.
+// Internal parts of CameraTracer: the lens from which rays start, the intersection of rays with a film, and the lamp.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,13 +12,14 @@
 
 namespace retrace::raytrace {
 
-/// A ray outside the part, in the frame of the camera.
+/// A ray outside the part, in the camera frame (see camera.h).
 struct WorldRay {
   Vec3 origin;
   Vec3 direction;
 };
 
-/// Intersection of a camera ray with the sheet. The local frame is the part frame, in which light is traced.
+/// Point where a camera ray meets the part. `world` is in the camera frame. `local` is in the frame in which light is
+/// traced. For a film, this frame touches the film at the point.
 struct Contact {
   enum class What { nothing, face, side, outside, dark };
   What what = What::nothing;
@@ -28,7 +29,7 @@ struct Contact {
   std::size_t side = 0;
 };
 
-/// The camera's axes and its pixels.
+/// Axes and pixels of the camera.
 class Lens {
  public:
   explicit Lens(const CameraView& view)
@@ -44,7 +45,7 @@ class Lens {
 
   /// Returns the ray through a point of the picture.
   /// \param at position in pixels, from the upper left corner of the picture
-  /// \param pupil point of the unit disc, which is mapped to the pupil
+  /// \param pupil point of the unit disc, which is scaled to the disc of the pupil
   WorldRay ray(const Vec2& at, const Vec2& pupil) const {
     const Vec3 origin = eye_ + pupil_radius_mm_ * (pupil.x() * right_ + pupil.y() * up_);
     const Vec3 focus = target_ + pixel_mm_ * ((at.x() - half_.x()) * right_ + (half_.y() - at.y()) * up_);
@@ -61,7 +62,7 @@ class Lens {
   double pupil_radius_mm_ = 0.0;
 };
 
-/// Luminance of the lamp in the direction of a ray that leaves the part.
+/// The lamp as seen along a ray that leaves the part.
 class Luminaire {
  public:
   Luminaire(const LampDisc& lamp, const CameraView& view, DiscAverage discs)
@@ -74,7 +75,8 @@ class Luminaire {
     intensity_ = lamp.illuminance_lx * distance * distance;
   }
 
-  /// Returns the luminance of the lamp in the direction of a ray, averaged over the discs of lamp and pupil, in cd/m^2.
+  /// Returns the luminance of the lamp along a ray, in cd/m^2. It is averaged over the discs of lamp and pupil with
+  /// DiscAverage::kernel.
   double luminance(const Vec3& from, const Vec3& direction) const {
     if (!(intensity_ > 0.0)) return 0.0;
     return discs_ == DiscAverage::kernel ? averaged(from, direction) : met(from, direction);
@@ -89,8 +91,8 @@ class Luminaire {
     const double chord = (direction - way / distance).norm();
     if (chord > 1.01 * (lamp_rad + pupil_rad)) return 0.0;
     const ApertureKernel kernel({Angle::from_rad(2.0 * lamp_rad), Angle::from_rad(2.0 * pupil_rad)});
-    // Illuminance at this point, times the probability density of this direction per steradian. The density is that of
-    // rays from a random point of the lamp's disc to a random point of the pupil's disc.
+    // The result is the illuminance at this point, times the probability density of this direction per steradian. The
+    // density is that of the angle between the directions to random points of the lamp's disc and of the pupil's disc.
     return intensity_ / (distance * distance) * kernel.per_sr(2.0 * std::asin(0.5 * chord));
   }
 
@@ -108,11 +110,11 @@ class Luminaire {
   DiscAverage discs_;
   double radius_mm_ = 0.0;
   double pupil_radius_mm_ = 0.0;
-  double intensity_ = 0.0;  ///< towards the target, lx mm^2
+  double intensity_ = 0.0;  ///< towards the target, in lx mm^2
 };
 
-/// Returns the first intersection of a ray with a curved or plane sheet. The surface of the sheet touches the plane z =
-/// thickness_mm at the target point.
+/// Returns the first intersection of a ray with a curved or plane film. The film touches the plane z = thickness_mm at
+/// x = y = 0.
 inline Contact contact_with(const Film& film, double thickness_mm, const WorldRay& ray) {
   Contact contact;
   const auto is_on_it = [&](double u, double v) {
@@ -135,7 +137,7 @@ inline Contact contact_with(const Film& film, double thickness_mm, const WorldRa
     return contact;
   }
   const double radius = *film.radius_mm;
-  // The axis runs through (0, thickness - radius).
+  // The axis of the cylinder passes through the point x = 0, z = thickness_mm - radius.
   const Vec2 o(ray.origin.x(), ray.origin.z() - thickness_mm + radius);
   const Vec2 d(ray.direction.x(), ray.direction.z());
   const double a = d.squaredNorm();
