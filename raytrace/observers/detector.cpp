@@ -25,13 +25,13 @@ using geometry::Polygon;
 constexpr std::uint32_t kDetectorReplicates = 32;
 constexpr std::uint32_t kRaysPerDetectorTask = 2048;
 
-/// The entrance face, or one period of it.
+/// Returns the outline of the entrance face, or of one period if the part is infinite.
 Polygon face_of(const geometry::Part& part) {
   return part.period_mm ? geometry::to_polygon({Vec2::Zero(), *part.period_mm}) : part.outline;
 }
 
-/// Spreads the power of a beam evenly over a polygon. Of an infinite part every period sends back the same, so that
-/// what lies beyond one side of a period comes in at the other.
+/// Distributes the power of a beam uniformly over a polygon. In an infinite part, the irradiance is periodic. The part
+/// of the polygon outside of the period is therefore moved into it by whole periods.
 void spread(const geometry::Part& part, const PixelGrid& grid, const Polygon& polygon, double power,
             std::vector<double>& irradiance) {
   const double area = geometry::area(polygon);
@@ -65,7 +65,8 @@ DetectorMaps empty_maps(const DetectorSetting& setting) {
   return maps;
 }
 
-/// What one path put where: few entries, added up in the order of the paths.
+/// Power that one path adds to one pixel. There are few entries per path. They are added in the order of the paths, so
+/// that the sum does not depend on the number of threads.
 struct Deposit {
   std::uint32_t pixel = 0;
   double power = 0.0;
@@ -73,13 +74,13 @@ struct Deposit {
 struct Deposits {
   std::vector<Deposit> leaving;
   std::vector<Deposit> entering;
-  std::vector<Deposit> angles;  ///< the bin after the last is what lies outside
+  std::vector<Deposit> angles;  ///< bins of directions; the index after the last bin means outside of the grid
   double in_cone = 0.0;
   double truncated = 0.0;
   double lost = 0.0;
 };
 
-/// Books the light of one path after another.
+/// Records the light of paths, one path after another.
 class Recorder : public ExitObserver {
  public:
   Recorder(const geometry::Part& part, const Vec2& centre_mm, const LightSetup& light, const DetectorSetting& setting,
@@ -88,7 +89,7 @@ class Recorder : public ExitObserver {
 
   void enters(const Vec2& position_mm) {
     entry_ = pixel_at(position_mm);
-    if (light_.optics.entrance.scatters()) return;  // the walker tells what the face sends back
+    if (light_.optics.entrance.scatters()) return;  // in this case the walker reports the reflected light
     add(position_mm, light_.entry.front_direction, light_.entry.front.i);
   }
   void leaves(const Departure& departure) override {
@@ -124,13 +125,13 @@ class Recorder : public ExitObserver {
   std::optional<std::size_t> entry_;
 };
 
-/// Means and standard errors over replicates, one after the other (Welford 1962).
+/// Mean and standard error over replicates, updated after each replicate (Welford 1962).
 class RunningMean {
  public:
   explicit RunningMean(std::size_t size) : sum_(size, 0.0), mean_(size, 0.0), squares_(size, 0.0) {}
 
   std::vector<double>& replicate() { return sum_; }
-  /// Takes the replicate that has been filled, times `scale`.
+  /// Adds the sums of the present replicate, multiplied by `scale`, and starts the next replicate.
   void close(double scale) {
     count_ += 1.0;
     for (std::size_t k = 0; k < sum_.size(); ++k) {
@@ -141,9 +142,9 @@ class RunningMean {
       sum_[k] = 0.0;
     }
   }
-  /// Returns, for each pixel, the mean power over the replicates and the standard error of this mean.
+  /// Returns the mean over the replicates and the standard error of the mean, for each pixel.
   /// \param rays total number of rays in all replicates
-  /// \param largest maximum power that one ray can contribute to a pixel
+  /// \param largest maximum value that a single ray can add to a pixel, in units of the mean
   PixelValues values(std::uint64_t rays, double largest) const {
     PixelValues values{mean_, squares_};
     for (double& s : values.std_error)

@@ -12,23 +12,24 @@ namespace {
 using geometry::Vec2;
 using Bands = std::array<double, 3>;
 
-// Number of lattice steps per finest detail of the diffracted light, and per radius of the kernel. The diffracted light
-// is band-limited, so that two steps per detail are sufficient. The spectrum of the kernel decreases with the third
-// power of the frequency.
+// Number of lattice steps per finest detail of the diffracted light, and per radius of the averaging kernel. Two steps
+// per detail are sufficient, because the diffracted light is band-limited. The kernel needs more steps, because its
+// spectrum decreases only with the third power of the frequency.
 constexpr double kStepsToADetail = 2.0;
 constexpr double kStepsToTheReach = 12.0;
-// Maximum distance between rays that are merged, as a fraction of the kernel's reach.
+// Rays are merged if their directions are in the same cell of a grid with this step, as a fraction of the kernel's
+// radius.
 constexpr double kSpot = 1e-3;
-// Number of intervals in the table of the kernel.
+// Number of intervals in the table of the kernel as a function of the chord.
 constexpr std::size_t kKernelSteps = 4096;
 
-/// Returns the unit vector with these x and y components and positive z.
+/// Returns the unit vector with the given x and y components and a positive z component.
 /// \pre the squared norm of `cosines` is at most 1
 Vec3 upward(const Vec2& cosines) {
   return {cosines.x(), cosines.y(), std::sqrt(1.0 - cosines.squaredNorm())};
 }
 
-/// Table of an ApertureKernel as a function of the chord between two points of the unit sphere.
+/// Table of an ApertureKernel. The argument is the chord, the distance between two points of the unit sphere.
 class ChordKernel {
  public:
   explicit ChordKernel(const ApertureKernel& kernel) : most_(2.0 * std::sin(0.5 * kernel.reach_rad())) {
@@ -50,11 +51,11 @@ class ChordKernel {
   std::vector<double> values_;
 };
 
-/// Power per unit area of direction cosines at the points of a lattice, summed over fields.
+/// Lattice in the plane of direction cosines. It stores the power per unit area of this plane, summed over far fields.
 class Lattice {
  public:
-  /// Creates a lattice that covers a square and a margin around it.
-  /// \param step lattice step in both direction cosines
+  /// Creates a lattice that covers a square and a margin on all sides.
+  /// \param step distance of lattice points in both direction cosines
   Lattice(const CosineSquare& square, double margin, double step)
       : first_(square.middle - Vec2::Constant(square.half_width + margin)),
         step_(step),
@@ -88,7 +89,7 @@ class Lattice {
     }
   }
 
-  /// Returns the mean around a direction, weighted by the kernel.
+  /// Returns the mean of the stored power around a direction, weighted with the kernel.
   Bands mean(const Vec3& direction, const ChordKernel& kernel) const {
     Bands sum{};
     double weights = 0.0;
@@ -124,13 +125,13 @@ class Lattice {
   Vec2 first_;
   double step_;
   std::size_t columns_;
-  std::vector<double> heights_;  ///< z of the directions; 0 at the horizon and below
+  std::vector<double> heights_;  ///< z components of the directions; 0 for points at or below the horizon
   std::vector<Bands> sums_;
 };
 
-/// Rays of all fields with nearly equal directions, merged into one ray.
+/// A ray that replaces all rays with nearly equal directions.
 struct Spot {
-  Vec3 direction = Vec3::Zero();  ///< mean, weighted by power
+  Vec3 direction = Vec3::Zero();  ///< mean direction, weighted with the power
   double power = 0.0;
   Bands bands{};
 };
@@ -171,7 +172,8 @@ std::vector<Bands> disc_means(std::span<const BandedField> fields, const CosineS
   for (const BandedField& one : fields) detail = std::min(detail, one.field->detail_rad());
   const double step = std::min(detail / kStepsToADetail, kernel.reach_rad() / kStepsToTheReach);
   const bool is_diffracted = std::isfinite(detail);
-  // For a wide square and small discs, direct evaluation at each view needs fewer points than the lattice has.
+  // If the square is wide and the discs are small, direct evaluation at each grid point takes less time than the
+  // lattice.
   const bool is_direct = is_diffracted && Lattice::points(square, kernel.reach_rad(), step) >
                                               static_cast<double>(means.size() * kernel.nodes(detail).size());
   if (is_direct) {

@@ -9,29 +9,31 @@ namespace {
 
 using Eigen::Matrix3d, geometry::Vec2;
 
-// Maximum norm of M^T M - 1 for a path that consists only of reflections, where M is product_of_reflections(). The norm
-// exceeds 0 by rounding errors. It is larger than this limit if light is also refracted at the back surface.
+// Maximum norm of M^T M - 1 at which product_of_reflections() M is accepted as an isometry. Rounding errors are
+// smaller. The norm is larger if the path contains refractions at the back surface in addition to reflections.
 constexpr double kIsometryTolerance = 1e-7;
-// Maximum angle of the rotation from the product of reflections to the nearest involution, which is a matrix that is
-// its own inverse. Errors of angle cause smaller angles. The constant is also the minimum z component of the direction
-// in which light leaves.
+// Maximum angle between the product of reflections and the nearest involution. An involution is a matrix that is its
+// own inverse. Usual errors of angle cause much smaller angles. The same value is used as the minimum z component of
+// the direction in which light leaves.
 constexpr double kLargestError_rad = 0.1;
-// Minimum absolute determinant of the linear part of ReturnedBeam::entry_from_exit. Below this limit, light leaves
-// almost parallel to the face, and no error-free exit is computed.
+// Minimum absolute determinant of the linear part of ReturnedBeam::entry_from_exit. At smaller values, light leaves
+// almost parallel to the face, and error_free_exit() returns nothing.
 constexpr double kLeastDeterminant = 1e-6;
 
-/// Returns the unit direction that a ray has in the body after refraction at the entrance face.
-/// \param in_air x and y components of the unit direction of the ray in air
+/// Returns the unit direction of a ray in the body after refraction at the entrance face.
+/// \param in_air x and y components of the unit direction in air
+/// \param sign_of_z -1 for light that enters, 1 for light that leaves
 Vec3 inside(const Vec2& in_air, double index, double sign_of_z) {
   const Vec2 across = in_air / index;
   return {across.x(), across.y(), sign_of_z * std::sqrt(std::max(0.0, 1.0 - across.squaredNorm()))};
 }
 
-/// Returns the product M of the reflections of a path as a matrix. M maps `entering` to `leaving`. For each vector e in
-/// the entrance face, M e and `exit_from_entry` e differ only by a multiple of `leaving`.
-///
+/// Returns the product M of the reflections of a path as a 3 x 3 matrix. M maps the direction `entering` to `leaving`.
+/// M also maps a displacement e of the entry point to the displacement `exit_from_entry` e of the exit point, except
+/// for a multiple of `leaving`.
 /// \param exit_from_entry linear map from displacements of the entry point to displacements of the exit point
-/// \param entering, leaving unit directions inside the part in which light enters and leaves
+/// \param entering unit direction inside the part in which light enters
+/// \param leaving unit direction inside the part in which light leaves
 Matrix3d product_of_reflections(const Eigen::Matrix2d& exit_from_entry, const Vec3& entering, const Vec3& leaving) {
   Matrix3d m;
   for (const Eigen::Index k : {0, 1}) {
@@ -48,8 +50,8 @@ struct Involution {
   Eigen::Matrix<double, 3, Eigen::Dynamic> reversed;  ///< orthonormal eigenvectors with the eigenvalue -1
 };
 
-/// Returns the involution nearest to an orthogonal matrix. Returns nothing if the angle between the two matrices
-/// exceeds kLargestError_rad.
+/// Returns the involution that is nearest to an orthogonal matrix. Returns nothing if it differs from the matrix by a
+/// rotation of more than kLargestError_rad.
 std::optional<Involution> nearest_involution(const Matrix3d& m) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(0.5 * (m + m.transpose()));
   Involution nearest;
@@ -66,8 +68,8 @@ std::optional<Involution> nearest_involution(const Matrix3d& m) {
   return nearest;
 }
 
-/// Returns the intersection of the entrance face with the line through `point` along `direction`. In the coordinates
-/// used here, the face is the plane z = 0.
+/// Returns the intersection of the entrance face with the line through `point` in the direction `direction`. The
+/// entrance face is the plane z = 0 of the coordinates used here.
 Vec2 onto_face(const Vec3& point, const Vec3& direction) {
   return (point - point.z() / direction.z() * direction).head<2>();
 }
@@ -86,13 +88,13 @@ std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec
   const Vec3 leaving_ideal = ideal->matrix * entering;
   if (ideal->reversed.cols() == 0 || leaving_ideal.z() < kLargestError_rad) return std::nullopt;
 
-  // Without reflections, light would reach the point P at distance `length_mm` straight beyond the entry point. The
-  // isometry x -> M x + t maps P to the exit point. The exit point considered here is the origin.
+  // Let P be the point at the distance `length_mm` from the entry point along `entering`. Without reflections, the
+  // light would reach P. The isometry x -> M x + t maps P to the exit point, for which the origin is chosen here.
   const Vec2& entered = entry_from_exit.translation();
   const double length_mm = (beam.phase_mm + to_source.head<2>().dot(entered)) / beam.index;
   const Vec3 t = -length_mm * leaving - m.leftCols<2>() * entered;
-  // The apex is the fixed point of the isometry. Its coordinates along the reversed axes follow from M and t. Its other
-  // coordinates are undetermined, and the coordinates of the cell are used instead.
+  // The apex is a fixed point of the isometry. Its coordinates along the reversed axes follow from M and t. Its other
+  // coordinates are arbitrary, and those of the cell are used.
   const auto& axes = ideal->reversed;
   const Eigen::MatrixXd system = axes.transpose() * (Matrix3d::Identity() - m) * axes;
   const Vec3 reversed_part = axes * system.partialPivLu().solve(axes.transpose() * t);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Computes where a returned beam would leave the entrance face if the facets had no errors of angle.
+// Computes the point and the phase with which a returned beam would leave the part if its facets had no errors of
+// angle.
 
 #include <Eigen/Geometry>
 #include <optional>
@@ -10,27 +11,28 @@
 
 namespace retrace::raytrace {
 
-/// Position and phase with which a beam would leave the entrance face without errors of angle. These errors shift the
-/// beam sideways on its path from the cell to the face.
+/// Changes of the position and phase of a beam on the entrance face if errors of angle are removed. These errors
+/// deflect the beam, which displaces it on the path from the cell to the entrance face.
 ///
-/// The reflections of a path form an isometry. Without errors of angle, the isometry is an involution, that is, its own
-/// inverse. It is the point reflection at the apex of a cube corner or the rotation by 180 degrees about the roof edge
-/// of a prism. With errors, the nearest involution is used. All paths of a cell have the same involution. Their exit
-/// polygons therefore do not overlap, and their fields conserve power (docs/theory/photometry.md, "Diffraction").
+/// The reflections of a path form an isometry. Without errors of angle, the isometry is an involution, which means that
+/// it is its own inverse. For a cube corner, it is the point reflection at the apex. For a prism, it is the rotation by
+/// 180 degrees about the roof edge. With errors of angle, the nearest involution is used.
+/// All paths of a cell have the same involution. Their exit polygons therefore do not overlap, and the sum of their
+/// fields conserves the power (docs/theory/photometry.md, "Diffraction").
 struct ErrorFreeExit {
-  /// Maps the true exit point of light to its exit point without errors of angle. Both are points of the entrance face,
-  /// relative to the part's centre.
+  /// Maps the actual exit point of light to the exit point without errors of angle. Both points are on the entrance
+  /// face and relative to the part's centre.
   Eigen::Affine2d from_exit = Eigen::Affine2d::Identity();
-  /// Correction, in mm, that the caller adds to ReturnedBeam::phase_mm after it moves the exit point by `from_exit`.
-  /// The wave then has the same phase at the apex of the element as before the move.
+  /// Value in mm that must be added to ReturnedBeam::phase_mm when the exit point is moved by `from_exit`. The wave
+  /// then keeps its phase at the apex of the element.
   double phase_change_mm = 0.0;
 };
 
-/// Returns the exit that a beam would have without errors of angle.
+/// Computes the exit of a beam without errors of angle.
 /// \param to_source unit vector towards the source
 /// \param cell_mm position of the cell, relative to the part's centre
-/// \return the exit. None if light is refracted at the back surface, if it leaves almost parallel to the entrance face,
-///         or if no involution that reverses an axis is near the isometry of the path.
+/// \return the exit, or nothing in three cases: light is refracted at the back surface, light leaves almost parallel to
+///         the entrance face, or the isometry of the path is not close to an involution that reverses an axis
 std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec3& to_source,
                                              const geometry::Vec2& cell_mm);
 

@@ -15,20 +15,21 @@ namespace {
 
 using geometry::Vec2, std::numbers::pi;
 
-// Lattice points to the finest detail: the density is a band-limited function.
+// Number of lattice points per finest detail. It is sufficient because the density is band-limited.
 constexpr double kPointsToADetail = 1.5;
-// And to the radius of a cone, whose edge the lattice draws in steps.
+// Number of lattice points per radius of a cone. More points are needed there, because the lattice approximates the
+// edge of the cone in steps.
 constexpr double kPointsToARadius = 48.0;
-// Points by which the density outside a cone is integrated, and the key of their scramble.
+// Number of points for the integral of the density outside of a cone. kTailKey is the key of their scramble.
 constexpr std::uint32_t kTailPoints = 1U << 15;
-// How far they reach.
+// Maximum distance of these points from the axis of the cone, in the plane of direction cosines.
 constexpr double kFarthestCosine = 20.0;
-// Beyond so many of the angles by which forms turn light, what they do to edges is no more than a share of as much of
-// the little that is there.
+// Distance from the axis of the cone, in units of the largest deflection by facet forms, beyond which forms are
+// neglected. The density there is low, and forms change it only by a small fraction.
 constexpr double kFarInBends = 4.0;
 constexpr std::uint64_t kTailKey = 0x2545f4914f6cdd1dU;
 
-/// By how much cosines along x and y change with angles to the right and upwards.
+/// Returns the derivatives of the direction cosines x and y by the angles to the right and upwards.
 Eigen::Matrix2d axes_of(const ReturnFrame& frame) {
   Eigen::Matrix2d axes;
   axes << frame.right.head<2>(), frame.up.head<2>();
@@ -43,7 +44,8 @@ ReturnFrame frame_about(const Vec3& direction) {
   return frame;
 }
 
-/// \param sums of what was followed exactly, and of each replicate over their number
+/// Returns the mean and the standard error over the replicates.
+/// \param sums the sum over beams that were traced exactly, followed by each replicate divided by their number
 FarFieldIntensity mean_of_replicates(const Eigen::ArrayXd& sums) {
   const Eigen::Index count = sums.size() - 1;
   if (count == 0) return {sums[0], 0.0};
@@ -79,8 +81,8 @@ double FarField::detail_rad() const {
   return finest;
 }
 
-/// Power by the cosines of directions. Defined beyond the horizon as well, where the theory leaves a little of cells
-/// that are not much larger than the wavelength.
+/// Returns the power per unit area of direction cosines. It is also defined beyond the horizon, where the theory
+/// predicts some light for cells that are not much larger than the wavelength.
 Eigen::ArrayXXd FarField::by_replicate(const std::vector<Vec2>& cosines, const ApertureField& field) const {
   Eigen::ArrayXXd power = field.per_cosines(cosines, cancel_);
   const std::vector<double> fringes = scattered_.fringes_per_cosines(cosines, cancel_);
@@ -190,11 +192,11 @@ FarField::Split FarField::split(const ReturnFrame& frame, double half_angle_rad)
   return split;
 }
 
-/// The diffracted power outside of a cone, over the plane of cosines: even steps of the logarithm of the distance from
-/// its middle, as the density falls by powers of it.
+/// Returns the diffracted power outside of a cone, integrated over the plane of direction cosines. The points have a
+/// uniform distribution of the logarithm of the distance, because the density decreases as a power of the distance.
 double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
   const Vec2 middle = frame.to_source.head<2>();
-  // The cone's outline in the plane lies beyond this.
+  // The outline of the cone in this plane is further from the axis than `nearest`.
   const double nearest = 0.9 * frame.to_source.z() * std::sin(half_angle_rad);
   const double decades = std::log(kFarthestCosine / nearest);
   const SobolSquare square(kTailKey, ~kTailKey);

@@ -1,7 +1,7 @@
 #pragma once
 
-// The far field of returned light with Fraunhofer diffraction at the cells' apertures, from the beams of the exact
-// engine.
+// Far field of the returned light with Fraunhofer diffraction at the apertures of the cells. It is computed from the
+// beams of the exact engine.
 
 #include <cstdint>
 #include <map>
@@ -17,71 +17,75 @@
 
 namespace retrace::raytrace {
 
-/// What a far field takes account of.
+/// Parameters of a far field.
 struct FarFieldPolicy {
   bool diffraction = true;
   double wavelength_nm = 587.56;  ///< > 0
-  /// Beams within this angle of the direction back to the source are diffracted; the others stay where they go.
+  /// Beams within this angle of the direction to the source are diffracted. Other beams keep their direction.
   double window_rad = 0.035;
-  /// Light of one cell whose optical paths differ by more does not interfere: the coherence length of a lamp (a few um)
-  /// and what the errors of angle of a part make of equal paths.
+  /// Maximum difference of optical paths at which light of one cell interferes. It allows for the coherence length of a
+  /// lamp (a few um) and for the path differences that errors of angle cause.
   double coherence_length_mm = 0.02;
-  /// Maximum fraction of the power in the window that is treated without diffraction. The faintest beams are selected.
+  /// Maximum fraction of the power in the window that is not diffracted, to save time. The weakest beams are selected.
   /// If there are few polygons, all beams are diffracted.
   double undiffracted_share = 1e-4;
-  std::size_t most_polygons = 20'000;  ///< that are diffracted; the faintest beyond are not
-  /// Cells so large that their pattern is finer than this are not diffracted: the discs of source and receiver hide it.
+  std::size_t most_polygons = 20'000;  ///< maximum number of diffracted polygons; weaker ones are not diffracted
+  /// Minimum width of diffraction patterns that are computed. The patterns of larger cells are narrower. They are not
+  /// diffracted, because the averages over the discs of source and receiver hide their pattern.
   double finest_detail_rad = 0.0;
-  /// Of WeakBeams, if their beams are added: resampled light interferes with none. 0: there are none.
+  /// Number of replicates of WeakBeams, or 0 without weak beams. A resampled beam does not interfere with other beams.
   std::uint32_t replicates = 0;
-  /// Of the retro facets, as the tracer's optics have it; null: they are plane. Outlives the collector. It bends what
-  /// is diffracted, and the rays of cells that are not for their size.
+  /// Form of the retro facets as in the tracer's optics; null if they are plane. It must outlive the collector. The
+  /// form deflects diffracted light, and also the rays of cells that are too large to be diffracted.
   const surface_models::FacetForm* form = nullptr;
-  /// Asked between polygons; figures of a far field are of no use once it is set. Outlives the far field.
+  /// Checked between polygons. If it is set, all results are invalid. It must outlive the far field.
   const Cancellation* cancel = nullptr;
 };
 
-/// Light in one direction, without a shape.
+/// Undiffracted light, which has a single direction.
 struct FarFieldRay {
   Vec3 direction;
-  double power = 0.0;                           ///< of a replicate: over their number
-  std::optional<std::uint32_t> replicate = {};  ///< of resampled beams
+  double power = 0.0;                           ///< power; for a replicate divided by the number of replicates
+  std::optional<std::uint32_t> replicate = {};  ///< set for resampled beams
 };
 
-/// An intensity, and its standard error from the spread of the replicates of resampled beams: 1.96 of it hold the truth
-/// in 95 of 100 cases, but for the interference of these beams.
+/// An intensity and its standard error, which is estimated from the spread of the replicates of resampled beams. An
+/// interval of +-1.96 standard errors has a confidence of 95 %. The interference of resampled beams is not included.
 struct FarFieldIntensity {
   double per_sr = 0.0;
   double error_per_sr = 0.0;  ///< 0 without replicates
 };
 
-/// Light that leaves the entrance face for one direction of incidence and one wavelength, by direction. Powers are
-/// shares of the incident power.
+/// Angular distribution of the light that leaves the entrance face, for one direction of incidence and one wavelength.
+/// Powers are fractions of the incident power.
 ///
-/// Beams of one cell add their fields, cells add their intensities: cells of a mould differ in height by more than the
-/// light can tell, and a lamp's light is coherent over less than a cell. Fraunhofer diffraction on the entrance face:
-/// the far field of a beam is the Fourier transform of its polygon. Of beams that have met textures
-/// (ReturnedBeam::hits) what their phases leave of the mean field is diffracted so, and what they scatter is added
-/// (ScatteredField; docs/theory/photometry.md): means over all heights.
+/// The fields of beams of one cell are added. The intensities of different cells are added, because the heights of
+/// cells differ by more than the wavelength, and the light of a lamp is coherent over less than a cell. By Fraunhofer
+/// diffraction at the entrance face, the far field of a beam is the Fourier transform of its polygon.
+///
+/// For beams that have met textures (ReturnedBeam::hits), the mean field is diffracted and the scattered light is added
+/// (ScatteredField; docs/theory/photometry.md). Both are averages over all possible heights of the texture.
 class FarField {
  public:
-  /// What the receivers of `frame` see at angles (right, up), per steradian. \param kernel of source and receiver
+  /// Returns the intensity per steradian in a direction.
+  /// \param kernel averages over the discs of source and receiver
   FarFieldIntensity intensity(const Vec3& direction, const ApertureKernel& kernel) const;
-  /// The diffracted part alone, for a point as source and as receiver: the mean field, and the fringes of what
-  /// scatters.
+  /// Returns the diffracted part only, per steradian, for a point source and a point receiver. It consists of the mean
+  /// field and of the interference fringes of scattered light.
   double diffracted_per_sr(const Vec3& direction) const;
   std::vector<double> diffracted_per_sr(const std::vector<Vec3>& directions) const;
-  /// The lobes of what scatters, likewise.
+  /// Returns the lobes of scattered light only, per steradian, for a point source and a point receiver.
   double scattered_per_sr(const Vec3& direction) const;
-  /// Mean over the discs of source and receiver.
+  /// Returns the lobes of scattered light, per steradian, averaged over the discs of source and receiver.
   double scattered_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;
 
-  /// Power by the bins of a grid, and outside of it at the end. Undiffracted light goes where its direction is;
-  /// diffracted light by its density in the middle of a bin.
+  /// Returns the power in each bin of a grid; the last element is the power outside of the grid. Undiffracted light is
+  /// added to the bin of its direction. The power of diffracted light is its density at the centre of a bin times the
+  /// solid angle.
   std::vector<double> binned(const ReturnFrame& frame, const DirectionGrid& grid) const;
 
-  /// Power inside and outside of the cone about the direction back to the source, each by an integration of its own.
-  /// Outside is also what the theory leaves beyond the horizon.
+  /// Power inside and outside of the cone about the direction to the source. Both are integrated independently.
+  /// `outside` includes the power that the theory predicts beyond the horizon.
   struct Split {
     double inside = 0.0;
     double outside = 0.0;
@@ -90,15 +94,15 @@ class FarField {
 
   double total_power() const { return total_power_; }
   double diffracted_power() const;
-  /// Of all lobes.
+  /// Returns the power of all lobes of scattered light.
   double scattered_power() const { return scattered_.power(); }
-  /// Of the lobes within a cone about the direction back to the source.
+  /// Returns the power of the lobes of scattered light within a cone about the direction to the source.
   double scattered_within(const ReturnFrame& frame, double half_angle_rad) const;
-  /// Scattered by beams outside of the window and by the faintest: where it goes is not known.
+  /// Returns the power that beams outside of the window and the weakest beams scatter. Its direction is not computed.
   double unplaced_power() const { return unplaced_power_; }
-  /// What would have been diffracted, were there not more polygons than `most_polygons`.
+  /// Returns the power that is not diffracted because there are more polygons than `most_polygons`.
   double beyond_budget_power() const { return beyond_budget_power_; }
-  /// Distance of the finest details of what is diffracted; infinite if nothing is.
+  /// Returns the angular width of the finest details of the diffracted light, or infinity if nothing is diffracted.
   double detail_rad() const;
   const std::vector<CoherentGroup>& groups() const { return groups_; }
   const std::vector<FarFieldRay>& rays() const { return rays_; }
@@ -114,11 +118,11 @@ class FarField {
   double wavelength_mm_ = 0.0;
   Eigen::Matrix2cd coherency_ = 0.5 * Eigen::Matrix2cd::Identity();
   std::vector<CoherentGroup> groups_;
-  /// The same of plane facets, where these have a form that turns light by `bend_` at most: far from the light they
-  /// send out nothing else, and they have fewer polygons.
+  /// Diffracted groups for plane facets, used if facets have a form that deflects light by at most `bend_`. Far from
+  /// the axis, their field is nearly that of `groups_`, and they have fewer polygons.
   std::vector<CoherentGroup> plane_groups_;
-  ApertureField field_;        ///< of groups_
-  ApertureField plane_field_;  ///< of plane_groups_
+  ApertureField field_;        ///< field of groups_
+  ApertureField plane_field_;  ///< field of plane_groups_
   double bend_ = 0.0;
   std::vector<FarFieldRay> rays_;
   ScatteredField scattered_;
@@ -129,18 +133,20 @@ class FarField {
   const Cancellation* cancel_ = nullptr;
 };
 
-/// Makes a far field of the returned beams of one direction, which BeamPolicy::by_cell keeps apart.
+/// Computes a far field from the returned beams of one direction of incidence.
+/// \pre the beams are traced with BeamPolicy::by_cell
 class FarFieldCollector {
  public:
-  /// \param illumination whose Stokes parameters are of power 1
+  /// \param illumination its Stokes parameters must have the power 1
   FarFieldCollector(const geometry::Part& part, const Illumination& illumination, const FarFieldPolicy& policy);
 
   void add(const ReturnedBeam& beam);
-  /// \throw BudgetError if the form takes too many pieces (formed())
+  /// Returns the far field of all beams.
+  /// \throw BudgetError if the form requires too many polygons, see formed()
   FarField finish();
 
  private:
-  /// A beam in the window, moved with its cell to where the first copy of the cell stands.
+  /// A beam in the window. It is moved, together with its cell, to the position of the first copy of the cell.
   struct Piece {
     geometry::Polygon outline_mm;
     Vec3 direction;
@@ -148,13 +154,13 @@ class FarFieldCollector {
     double transmission = 0.0;
     double phase_mm = 0.0;
     double power = 0.0;
-    double copies = 1.0;  ///< in an endless part: cells of a period that send it back
+    double copies = 1.0;  ///< infinite parts: number of cells per period that return this beam
     std::vector<FieldHit> hits;
     std::optional<std::uint32_t> replicate;
   };
-  /// What tells waves apart: where they go, with which field, and where they met facets that bend or scatter them.
+  /// Key of a wave: its direction, its field, and the points where it met facets that deflect or scatter it.
   using WaveKey = std::vector<std::int64_t>;
-  /// One cell; of light that met several, that of one wave by the same cells; of a resampled beam, the beam itself.
+  /// Key of a coherent sum of fields: a cell, a wave that met several cells, or a resampled beam.
   struct Place {
     std::uint64_t cell = 0;
     std::int64_t x = 0;
@@ -170,7 +176,7 @@ class FarFieldCollector {
   void put(Piece piece, const ReturnedBeam& beam);
   WaveKey wave_of(const Piece& piece) const;
   Piece moved_home(const ReturnedBeam& beam) const;
-  /// Numbers of pieces.
+  /// Indices into pieces_.
   using PiecesOfCell = std::vector<std::uint32_t>;
   geometry::Vec2 middle_of(const PiecesOfCell& numbers) const;
   std::vector<CoherentGroup> groups_of(const PiecesOfCell& numbers, const geometry::Vec2& middle_mm) const;
@@ -178,7 +184,7 @@ class FarFieldCollector {
   void join(std::vector<Piece>& pieces) const;
   std::vector<CoherentGroup> distinct_groups() const;
   void keep_strongest(std::vector<CoherentGroup> groups);
-  /// \param has_lobes whether what it scatters is kept
+  /// \param has_lobes true if the scattered light of the group has been added to the far field
   void add_undiffracted(const CoherentGroup& group, bool has_lobes);
 
   FarFieldPolicy policy_;
@@ -187,11 +193,11 @@ class FarFieldCollector {
   double thickness_mm_ = 0.0;
   Vec3 to_source_;
   FarField field_;
-  /// In the places that they belong to; one that beams of several cells share is there once.
+  /// Beams in the window. A beam that several cells have in common is stored one time.
   std::vector<Piece> pieces_;
   std::map<Place, PiecesOfCell> cells_;
-  std::uint64_t alone_ = 0;                                           ///< waves and beams that are a place of their own
-  std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;  ///< their numbers, by CellTrail::met
+  std::uint64_t alone_ = 0;  ///< number of waves and beams with a Place of their own
+  std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;  ///< Place::beam, by CellTrail::met and wave
   PointLookup<std::size_t> directions_;                               ///< indices into the rays
 };
 

@@ -1,4 +1,5 @@
-// Which of the returned light interferes: the members of FarFieldCollector, which sorts it by cells, waves and paths.
+// Coherent grouping of the returned light: the member functions of FarFieldCollector, which sort beams by cell, wave
+// and optical path length.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,36 +21,38 @@ namespace {
 
 using geometry::Vec2, std::numbers::pi;
 
-// Directions nearer than this are one.
+// Directions that differ by less than this angle are treated as equal.
 constexpr double kOneDirection_rad = 1e-9;
-// Beams below this are not looked at one by one.
+// Beams with less power than this value are not diffracted.
 constexpr double kFaint = 1e-10;
-// Up to this number of polygons, even the faintest beams are diffracted. An undiffracted beam has all its power in one
-// direction. It would be much too bright for discs of source and receiver that are smaller than a diffracted spot.
+// Up to this number of polygons, all beams are diffracted. The full power of an undiffracted beam has a single
+// direction. If the discs of source and receiver are smaller than a diffraction spot, such a beam appears much too
+// bright.
 constexpr std::size_t kFewPolygons = 256;
-// Steps by which fields of cells are compared: of lengths in elements, of cosines, of amplitudes, of paths in mm.
+// Steps to which quantities are rounded to compare the fields of cells: lengths in element sizes, direction cosines,
+// amplitudes, and paths in mm.
 constexpr double kLengthStep = 1e-7, kCosineStep = 1e-8, kAmplitudeStep = 1e-7, kPathStep_mm = 1e-7;
-// Of places where facets were met, in elements, and of their slopes.
+// Step for the points where facets were met, in element sizes, and for their slopes.
 constexpr double kHitStep = 1e-6;
-// Polygons are joined if their union is convex but for this share of an element's area.
+// Polygons are joined if their union differs from a convex polygon by less than this fraction of size_mm^2.
 constexpr double kJoinOutlinesShare = 1e-10;
 
 std::int64_t step_of(double value, double step) {
   return std::llround(value / step);
 }
 
-/// Coherency matrix of the incident light along the axes of the source. Its second axis is p of light that comes down
-/// reversed.
+/// Returns the coherency matrix of the incident light along the axes of the source. The second axis is opposite to the
+/// p axis of the incident light.
 Eigen::Matrix2cd incident_coherency(const Stokes& s) {
   Eigen::Matrix2cd c;
   c << s.i + s.q, std::complex<double>(s.u, -s.v), std::complex<double>(s.u, s.v), s.i - s.q;
   return 0.5 * c;
 }
 
-/// What tells fields of two cells apart.
+/// Rounded data by which the fields of two cells are compared.
 using Signature = std::vector<std::int64_t>;
 
-/// Where in their frames formed facets were met.
+/// Appends the points, in the frames of the facets, where facets with a form were met.
 void add_form_keys(const std::vector<FieldHit>& hits, double size_mm, Signature& key) {
   for (const FieldHit& hit : hits) {
     if (hit.path_per_height == 0.0) continue;
@@ -59,7 +62,7 @@ void add_form_keys(const std::vector<FieldHit>& hits, double size_mm, Signature&
   }
 }
 
-/// The shape of a convex polygon.
+/// Appends the corners of a convex polygon.
 void add_corner_keys(const geometry::Polygon& polygon, double size_mm, Signature& key) {
   std::vector<std::array<std::int64_t, 2>> corners;
   for (const Vec2& p : polygon)
@@ -83,13 +86,14 @@ Signature signature_of(const CoherentGroup& group, double size_mm) {
       all.push_back(step_of(unit.imag(), 1e3 * kAmplitudeStep));
     }
     add_form_keys(p.hits, size_mm, all);
-    // Resampled light is alone in its place, whose middle says nothing.
+    // A resampled beam is compared by its polygon as well, because its centroid is the origin of its coordinates.
     if (group.replicate) add_corner_keys(p.transform.polygon(), size_mm, all);
   }
   return all;
 }
 
-/// How many of a group, whose power may be any where it is of resampled light, are in another of the same shape.
+/// Returns the number of copies of `group` that have the power of `other`, for two groups of the same shape. The powers
+/// of resampled beams are arbitrary.
 double copies_in(const CoherentGroup& group, const CoherentGroup& other) {
   return other.power() * group.copies / group.power();
 }
@@ -122,7 +126,7 @@ void FarFieldCollector::add_ray(const FarFieldRay& ray) {
   field_.rays_[index].power += ray.power;
 }
 
-/// What is specular of it.
+/// Adds the specular fraction of a ray. The scattered fraction is added to the power without a direction.
 void FarFieldCollector::add_scattering_ray(const FarFieldRay& ray, double phase_variance) {
   const double specular = std::exp(-phase_variance) * ray.power;
   field_.unplaced_power_ += ray.power - specular;
@@ -142,7 +146,7 @@ void FarFieldCollector::add(const ReturnedBeam& beam) {
   put(moved_home(beam), beam);
 }
 
-/// Into the places of the beams that it comes from.
+/// Adds a beam to all cells from which it comes.
 void FarFieldCollector::put(Piece piece, const ReturnedBeam& beam) {
   const auto number = static_cast<std::uint32_t>(pieces_.size());
   Place place = place_of(beam, piece);
@@ -160,10 +164,12 @@ void FarFieldCollector::put(Piece piece, const ReturnedBeam& beam) {
   }
 }
 
-/// Returns the key of the coherent sum to which the field of a beam is added. All beams that met only one cell have the
-/// key of this cell. Beams that met several cells have equal keys if they are fragments of one wave. The tracer creates
-/// such fragments when it subdivides the entrance face. Every resampled beam has a unique key. Every beam that met no
-/// cell, such as the reflection at the entrance face, also has a unique key.
+/// Returns the key of the coherent sum to which the field of a beam is added.
+///
+/// All beams that met only one cell have the key of this cell. Beams that met several cells have equal keys if they are
+/// fragments of one wave. The tracer creates such fragments when it divides the entrance face.
+/// A resampled beam has a unique key. A beam that met no cell, such as the reflection at the entrance face, also has a
+/// unique key.
 FarFieldCollector::Place FarFieldCollector::place_of(const ReturnedBeam& beam, const Piece& piece) {
   if (beam.replicate || !beam.trail.first) return {0, 0, 0, ++alone_};
   Place place{beam.trail.first->id, 0, 0, 0};
@@ -179,14 +185,15 @@ FarFieldCollector::Place FarFieldCollector::place_of(const ReturnedBeam& beam, c
   return place;
 }
 
-/// What a beam counts for is its power over this.
+/// Returns the number by which the power of a beam is divided to obtain a mean over the replicates.
 double FarFieldCollector::replicates_of(const ReturnedBeam& beam) const {
   return beam.replicate ? static_cast<double>(policy_.replicates) : 1.0;
 }
 
-/// Returns the beam as if it had left the reference cell, the copy of its cell at the origin. The outline of the beam
-/// is that of a part without errors of angle. All copies of a cell have the same field, apart from the phase that the
-/// incident and the returned wave gain from one copy to another. The function removes this phase.
+/// Returns a beam as if it had left the reference cell, which is the copy of its cell at the origin. The outline of the
+/// beam is that without errors of angle (ErrorFreeExit).
+/// Copies of a cell have the same field except for a phase, which is the phase of the incident and the returned wave at
+/// the position of the copy. The function removes this phase.
 FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam) const {
   const Vec2 by = beam.trail.first ? beam.trail.first->offset_mm : Vec2::Zero();
   const ErrorFreeExit exit = error_free_exit(beam, to_source_, by).value_or(ErrorFreeExit{});
@@ -230,7 +237,7 @@ Vec2 FarFieldCollector::middle_of(const PiecesOfCell& numbers) const {
   return area > 0.0 ? Vec2(middle / area) : middle;
 }
 
-/// Divides the light of a cell by the lengths of its paths.
+/// Divides the light of a cell into groups whose optical paths differ by more than the coherence length.
 std::vector<CoherentGroup> FarFieldCollector::groups_of(const PiecesOfCell& numbers, const Vec2& middle_mm) const {
   const auto path = [&](const Piece& p) { return p.phase_mm + p.direction.head<2>().dot(middle_mm); };
   std::vector<Piece> sorted;
@@ -259,7 +266,7 @@ FarFieldCollector::WaveKey FarFieldCollector::wave_of(const Piece& p) const {
     key[3 + 2 * k] = step_of(a.real(), kAmplitudeStep);
     key[4 + 2 * k] = step_of(a.imag(), kAmplitudeStep);
   }
-  // Light of one wave may have met other places of the facets, or in another order.
+  // Light of one wave may have met different points of the facets, or the facets in a different order.
   for (const FieldHit& hit : p.hits) {
     for (const double cosine : hit.normal) key.push_back(step_of(cosine, kCosineStep));
     for (const double length : hit.constant_mm) key.push_back(step_of(length, kHitStep * size_mm_));
@@ -269,7 +276,8 @@ FarFieldCollector::WaveKey FarFieldCollector::wave_of(const Piece& p) const {
   return key;
 }
 
-/// Joins what belongs to one wave again: a large entrance is traced in pieces that have nothing to do with its cells.
+/// Joins the fragments of a wave. The tracer divides a large entrance face into fragments that are independent of
+/// cells.
 void FarFieldCollector::join(std::vector<Piece>& pieces) const {
   std::stable_sort(pieces.begin(), pieces.end(),
                    [&](const Piece& a, const Piece& b) { return wave_of(a) < wave_of(b); });
@@ -336,12 +344,12 @@ CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2&
   return group;
 }
 
-/// Cells that send back the same field are one, counted.
+/// Returns the groups of all cells. Cells with the same field are combined into one group with a number of copies.
 std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
   std::vector<CoherentGroup> groups;
   std::map<Signature, std::size_t> known;
   std::map<PiecesOfCell, std::vector<std::size_t>> known_cells;
-  // Copies of a cell have the middle of the first, so that what they send out alike is alike in all of them.
+  // All copies of a cell use the centroid of the first copy as the origin, so that equal fields have equal keys.
   std::optional<std::uint64_t> cell;
   Vec2 middle = Vec2::Zero();
   for (const auto& [place, pieces] : cells_) {

@@ -3,7 +3,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/observers/field_lanes.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for every instruction set
-// After foreach_target.h.
+// Must be included after foreach_target.h.
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -14,7 +14,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 
-// Fringes are neglected where the lobe of the scattered light is lower than this, relative to its peak.
+// Fringes are neglected at directions where the lobe of scattered light is below this fraction of its maximum.
 constexpr double kLeastLobe = 1e-12;
 
 HWY_INLINE V splat(double value) {
@@ -25,7 +25,8 @@ struct Complex {
   V re, im;
 };
 
-/// Of phases below 1e9, less whole turns of 2 pi in two parts: Highway's sines end at 39,000.
+/// Returns exp(i phase) for phases below 1e9. Whole periods are subtracted first, with 2 pi as the sum of two numbers,
+/// because Highway's sine is accurate only up to 39,000.
 HWY_INLINE Complex unit(V phase) {
   const V turns = hn::Round(hn::Mul(phase, splat(0.15915494309189535)));
   const V left =
@@ -33,7 +34,7 @@ HWY_INLINE Complex unit(V phase) {
   return {hn::Cos(D(), left), hn::Sin(D(), left)};
 }
 
-/// As mean_along() of polygon_transform.cpp: the mean of exp(-i x) over phases that lie between those of two corners.
+/// Returns the mean of exp(-i x) over phases x between those of two corners, as mean_along() of polygon_transform.cpp.
 HWY_INLINE Complex mean_along(V phase_from, const Complex& from, V phase_to, const Complex& to) {
   const V step = hn::Sub(phase_to, phase_from);
   const auto is_short = hn::Le(hn::Abs(step), splat(0.05));
@@ -74,7 +75,7 @@ void transform(const Outline& outline, const Block& block_x, const Block& block_
       phase_from = phase_to;
       wave_from = wave_to;
     }
-    // Phases below 1e-5 over the polygon: its area, turned by the phase of the centroid.
+    // If the phase varies by less than 1e-5 over the polygon, the result is the area times the phase at the centroid.
     const auto is_flat = hn::Lt(hn::Mul(square, splat(outline.size_mm * outline.size_mm)), splat(1e-10));
     const V over = hn::Div(splat(1.0), hn::IfThenElse(is_flat, splat(1.0), square));
     const V re = hn::IfThenElse(is_flat, splat(outline.area_mm2), hn::Neg(hn::Mul(over, sum.im)));
@@ -116,7 +117,7 @@ void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& tr
   }
 }
 
-/// Components of a vector in the plane, for several directions.
+/// Vectors in the plane for several directions. Each SIMD lane contains one vector.
 struct Plane {
   V x, y;
 };
@@ -130,7 +131,7 @@ HWY_INLINE Plane product(const Eigen::Matrix2d& matrix, const Plane& a) {
           hn::MulAdd(splat(matrix(1, 0)), a.x, hn::Mul(splat(matrix(1, 1)), a.y))};
 }
 
-/// Returns exp(-a . moments a / 2).
+/// Returns exp(-(a . moments a) / 2).
 HWY_INLINE V gaussian(const Eigen::Matrix2d& moments, const Plane& a) {
   return hn::Exp(D(), hn::Mul(splat(-0.5), dot(a, product(moments, a))));
 }

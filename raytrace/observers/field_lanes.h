@@ -1,7 +1,7 @@
 #pragma once
 
-// Internal to the far field: Fourier transforms of polygons and power of fields, for many directions at a time with
-// SIMD.
+// Internal functions of the far field: Fourier transforms of polygons, and the power of fields. They use SIMD for many
+// directions at a time.
 
 #include <Eigen/Core>
 #include <array>
@@ -13,16 +13,16 @@
 
 namespace retrace::raytrace::field_lanes {
 
-/// Directions at a time: a whole number of lanes of any instruction set.
+/// Number of directions per block. It is a multiple of the number of lanes of any instruction set.
 inline constexpr std::size_t kBlock = 64;
 using Block = std::array<double, kBlock>;
 
-/// One number of each direction, complex.
+/// Complex values, one per direction.
 struct ComplexBlock {
   Block re, im;
 };
 
-/// Corners and size of the polygon of a PolygonTransform.
+/// Polygon of a PolygonTransform, with its centroid, area and size.
 struct Outline {
   explicit Outline(const PolygonTransform& transform);
 
@@ -32,35 +32,38 @@ struct Outline {
   double size_mm = 0.0;  ///< maximum distance of a corner from the centroid
 };
 
-/// As PolygonTransform::at(), at wave vectors (kx, ky), in radians per mm.
+/// Computes PolygonTransform::at() for the wave vectors (kx, ky), in radians per mm.
 void transform(const Outline& outline, const Block& kx, const Block& ky, ComplexBlock& result);
 
-/// A transform with the Jones matrix by which it enters a field: real and imaginary parts, row by row.
+/// Contribution of a polygon to a field: the index of its transform and a Jones matrix. The matrix is stored row by
+/// row, as real and imaginary parts.
 struct Use {
   std::size_t outline = 0;
   std::array<double, 8> amplitude{};
 };
 
-/// Adds `copies` times the power of a field. \param coherency of the light that comes in: both diagonal elements, then
-/// real and imaginary part of the upper one beside them
+/// Adds `copies` times the power of a field to `sum`.
+/// \param coherency coherency matrix of the incident light: both diagonal elements, then the real and the imaginary
+///        part of the upper off-diagonal element
 void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& transforms,
                const std::array<double, 4>& coherency, double copies, Block& sum);
 
 /// Interference fringes of scattered light. They arise if two paths, such as a path and its reverse, meet the same
-/// points of a rough facet. Light of such a point leaves the entrance face at r after one path, and at turn r + shift
-/// after the other (docs/theory/photometry.md).
+/// points of a rough facet. If light of such a point leaves the entrance face at r on the first path, it leaves at turn
+/// r + shift_mm on the second path (docs/theory/photometry.md).
 struct Fringes {
-  Outline outline;  ///< all positions r
+  Outline outline;  ///< polygon that contains all points r
   Eigen::Matrix2d turn;
   geometry::Vec2 shift_mm;
-  geometry::Vec2 cosines_here, cosines_there;  ///< direction cosines of the specular light of the two paths
-  std::array<double, 2> coefficient;           ///< real and imaginary part of the fringe amplitude
-  Eigen::Matrix2d spread_mm2;                  ///< second moments of the covariance; symmetric
-  Eigen::Matrix2d dip_mm2;   ///< second moments of the term that is subtracted where both points coincide; symmetric
-  double dip_mm2_of_places;  ///< area of the points from which that term is subtracted
+  geometry::Vec2 cosines_here, cosines_there;  ///< direction cosines of the specular light of the first and second path
+  std::array<double, 2> coefficient;           ///< real and imaginary part of the amplitude of the fringes
+  Eigen::Matrix2d spread_mm2;                  ///< second moments of the covariance; a symmetric matrix
+  /// Second moments of a term that is subtracted where r and turn r + shift_mm nearly coincide; a symmetric matrix.
+  Eigen::Matrix2d dip_mm2;
+  double dip_mm2_of_places;  ///< area of the points r from which that term is subtracted
 };
 
-/// Adds the power of the fringes per unit area of direction cosines to `sum`.
+/// Adds the power of the fringes to `sum`, per unit area of direction cosines.
 /// \param wave_number in radians per mm
 /// \param x, y direction cosines
 void add_fringes(const Fringes& fringes, double wave_number, const Block& x, const Block& y, Block& sum);

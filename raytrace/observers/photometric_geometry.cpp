@@ -11,17 +11,18 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, geometry::rotation_about, std::numbers::pi;
 
-// Sines below this are those of parallel directions.
+// Directions are treated as parallel if the sine of their angle is less than this value.
 constexpr double kParallel = 1e-14;
 
-/// Turns vectors of the part frame into the laboratory's: x the first axis, y from the source towards the observer, z
-/// to the source.
+/// Returns the rotation from the part frame to the laboratory frame. In the laboratory, x is the first axis of the
+/// goniometer, y points from the source towards the observer, and z points to the source.
 Eigen::Matrix3d lab_from_part(const PhotometricGeometry& g) {
   return rotation_about(Vec3::UnitX(), Angle::from_rad(-g.beta1.rad())) * rotation_about(Vec3::UnitY(), g.beta2) *
          rotation_about(Vec3::UnitZ(), g.epsilon);
 }
 
-/// Into (-pi, pi]; rounding does not choose between the ends.
+/// Returns the angle in the range (-pi, pi]. A value within 1e-12 of -pi becomes pi, so that rounding does not change
+/// it.
 Angle wrapped(double angle_rad) {
   double turned = std::remainder(angle_rad, 2.0 * pi);
   if (turned < 1e-12 - pi) turned += 2.0 * pi;
@@ -55,12 +56,12 @@ PhotometricGeometry geometry_of(const PhotometricDirections& directions) {
   if (up.norm() < kParallel) up = Vec3::UnitX() - s.x() * s;
   up.normalize();
   const Vec3 first = up.cross(s);
-  const Vec3 normal(first.z(), up.z(), s.z());  // the part's, in the laboratory
+  const Vec3 normal(first.z(), up.z(), s.z());  // normal of the part in the laboratory frame
   PhotometricGeometry geometry;
   geometry.alpha = Angle::from_rad(angle_between(s, directions.to_observer));
   geometry.beta2 = Angle::from_rad(std::atan2(normal.x(), std::hypot(normal.y(), normal.z())));
   geometry.beta1 = wrapped(std::atan2(normal.y(), normal.z()));
-  // The second axis lies across the normal and the first axis; the datum mark has turned away from it by epsilon.
+  // The second axis is perpendicular to the normal and the first axis. epsilon is the angle from it to the datum mark.
   const Vec3 second = Vec3::UnitZ().cross(first);
   geometry.epsilon = wrapped(std::atan2(second.x(), second.y()));
   return geometry;
