@@ -11,13 +11,14 @@ namespace {
 
 using geometry::Vec2;
 
-/// Number of paths of the whole picture per bin of a map, and maximum number of bins.
+/// Number of paths per bin of a map, for the paths of the whole picture. kMostBins is the maximum number of bins.
 constexpr std::size_t kPathsPerBin = 32;
 constexpr std::size_t kMostBins = std::size_t{1} << 16U;
-/// Weight of the expected mean of a bin, as a number of paths. Few paths of a bin are bright.
+/// Weight of the expected mean of a bin, as a number of paths. It stabilizes the map, because few paths of a bin are
+/// bright.
 constexpr double kPathsOfPrior = 32.0;
 
-// Positions within a period or a pixel are stored as 32-bit fractions. Overflow then subtracts whole periods.
+// Positions within a period or a pixel are stored as 32-bit fractions. Integer overflow then removes whole periods.
 constexpr double kWhole = 0x1p32;
 
 std::uint64_t digits(double x) {
@@ -28,7 +29,7 @@ std::uint32_t share_of(std::uint32_t within, std::uint64_t whole) {
   return static_cast<std::uint32_t>((std::uint64_t{within} * whole) >> 32U);
 }
 
-/// A map at all resolutions, from fine to coarse.
+/// A map at all resolutions, from the finest to the coarsest. Each resolution is half of the preceding one.
 using Pyramid = std::vector<PixelGuide::Bins>;
 
 Pyramid pyramid(PixelGuide::Bins finest) {
@@ -37,8 +38,9 @@ Pyramid pyramid(PixelGuide::Bins finest) {
   return levels;
 }
 
-/// Returns the means of the bins at each resolution of `found`. The expected mean of a bin is the mean of its coarser
-/// bin, scaled by the ratio of these bins in `like`. If `like` is null, it is the mean of the coarser bin.
+/// Returns the estimated means of the bins at each resolution of `found`. An estimate is a weighted mean of the samples
+/// in the bin and of an expected value. The expected value is the mean of the coarser bin that contains the bin. If
+/// `like` is not null, it is multiplied by the ratio of both bins in `like`.
 std::vector<std::vector<double>> means_of(const Pyramid& found,
                                           const std::vector<std::vector<double>>* like = nullptr) {
   std::vector<std::vector<double>> means(found.size());
@@ -87,7 +89,7 @@ PixelGuide::Sample PixelGuide::sample(const Vec2& place_mm, std::uint32_t tile, 
   const Vec2 periods = place_mm.cwiseQuotient(period_mm_);
   const std::size_t bin =
       bin_at(static_cast<std::uint32_t>(digits(periods.x())), static_cast<std::uint32_t>(digits(periods.y())));
-  // This limit keeps sums over all paths finite.
+  // The limit prevents an overflow of the sum over all paths.
   constexpr float kMostSquare = 1e30F;
   return {static_cast<std::uint32_t>(tile * columns_ * rows_ + bin), std::min(excess * excess, kMostSquare)};
 }
@@ -163,8 +165,8 @@ std::array<PixelGuide::Point, PixelGuide::kPoints> PixelGuide::points(
   const double sum = roots_at(pixel, shift, roots);
   constexpr std::size_t kByMap = kPoints / 2;
   constexpr std::size_t kEvenly = kPoints - kByMap;
-  // A candidate may be selected evenly or by the map. Its weight is the reciprocal of its expected number of
-  // selections.
+  // The same candidate may be selected by the uniform rule and by the map. The weight of a point is the reciprocal of
+  // the expected number of its selections.
   const auto point_of = [&](std::size_t k) {
     const double even = static_cast<double>(kEvenly) / kCandidates;
     const auto [x, y] = candidate(k, shift);

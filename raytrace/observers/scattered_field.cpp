@@ -14,28 +14,31 @@ namespace {
 using geometry::Vec2, std::numbers::pi;
 using Amplitude = std::complex<double>;
 
-// Distances of the grid reach this many of the longest correlation length: exp(-3.6^2) is left. On a facet distances
-// are longer than on the entrance face but for a tenth or so, where light is oblique.
+// Radius of the grid of distances, in units of the longest correlation length. At 3.6 lengths, the covariance is only
+// exp(-3.6^2). The factor 1.2 allows for oblique light, for which distances on the entrance face are up to about a
+// tenth longer than on a facet.
 constexpr double kReachInLengths = 3.6 * 1.2;
-// Phases by which the grid is made finer, from its middle to its edge. Beyond, lobes are no finer resolved.
+// Maximum phase, over the radius of the grid, for which the grid is refined. Finer details of lobes are not resolved.
 constexpr double kMostPhase = 200.0;
-// Points of a grid: along a panel and over half a turn, at least, and what a phase over them adds.
+// Numbers of grid points: minimum per interval of the radius, minimum per half circle, and increase per radian of
+// phase.
 constexpr double kLeastAlong = 8.0, kLeastRound = 24.0, kAlongPerRad = 0.5;
 constexpr std::size_t kCoarseAlong = 6, kCoarseRound = 24;
-// Maps of places to places whose images are nearer than this share of the correlation length are one.
+// Two maps between points are treated as equal if their images differ by less than this fraction of the correlation
+// length.
 constexpr double kOneMap = 0.3;
-// Planes of facets nearer than this are one: components of normals, and offsets in correlation lengths.
+// Tolerances for equal facet planes: components of the normals, and offsets as a fraction of the correlation length.
 constexpr double kOnePlane = 1e-8, kOneOffset = 1e-3;
-// A facet seen at a grazing angle has no places of its own.
+// Minimum determinant of the map from the entrance face to a facet. At smaller values, light is at grazing incidence.
 constexpr double kNoPlaces = 1e-9;
-// Corners nearer than this share of a polygon's size are one.
+// Corners are merged if their distance is less than this fraction of the polygon's size.
 constexpr double kMergedCorners = 1e-9;
-// Ratio of singular values below which a map folds the aperture along a line.
+// Ratio of singular values below which a map is treated as a reflection at a line.
 constexpr double kFolded = 0.1;
-// Width of what is taken out of fringes where partners meet, in those of the covariance: at a fold this leaves the
-// integral of the complementary error function.
+// Width of the term that is subtracted from fringes where partner points coincide, relative to the width of the
+// covariance. For a reflection at a line, the remaining integral is that of the complementary error function.
 constexpr double kDipWidth = 2.0 / pi;
-// Shares of a polygon below this are none.
+// Minimum common area as a fraction of the polygon's area. Smaller areas are neglected.
 constexpr double kLeastCommonShare = 1e-6;
 
 Amplitude phasor(double phase) {
@@ -52,10 +55,11 @@ bool contains(const FlatPolygon& polygon, const Vec2& place) {
   return true;
 }
 
-/// Two hits of one facet, of light that leaves here and of light that leaves there.
+/// Two hits of the same facet, by the light of the first path (`here`) and of the second path (`there`).
 using HitPair = std::pair<const FieldHit*, const FieldHit*>;
 
-/// Sum of the covariances of phases at places that are `distance_mm` apart on the entrance face, there.
+/// Returns the covariance of the phases, summed over the facets of `pairs`.
+/// \param distance_mm distance of the points on the entrance face, for the second path
 double covariance(const std::vector<HitPair>& pairs, const Vec2& distance_mm) {
   double sum = 0.0;
   for (const auto& [a, b] : pairs) {
@@ -71,20 +75,20 @@ double covariance(const std::vector<HitPair>& pairs, const Vec2& distance_mm) {
 
 }  // namespace
 
-/// How far the places of `here` are from their partners: matrix r - shift.
+/// Displacements between points r of `here` and their partners turn r + shift: r - (turn r + shift) = matrix r - shift.
 struct ScatteredField::Moves {
   Eigen::Matrix2d matrix;
   Vec2 shift_mm;
-  double stretch = 0.0;            ///< greatest singular value
-  bool is_folded = false;          ///< along a line whose places stay where they are
-  Vec2 from_line = Vec2::UnitX();  ///< across that line
-  Vec2 direction = Vec2::UnitX();  ///< in which places beside it move
+  double stretch = 0.0;            ///< largest singular value of `matrix`
+  bool is_folded = false;          ///< true if the map is nearly a reflection at a line
+  Vec2 from_line = Vec2::UnitX();  ///< direction perpendicular to that line
+  Vec2 direction = Vec2::UnitX();  ///< direction of the displacement of points next to that line
 
   explicit Moves(const Shared& shared);
 
   Vec2 place_that_moves_by(const Vec2& distance_mm) const { return matrix.inverse() * (distance_mm + shift_mm); }
 
-  /// Of a normal density of distances, at those by which the places of a polygon move: its integral over the polygon.
+  /// Returns the integral, over the points r of a polygon, of a normal density at the displacement of r.
   double places_at_line(const FlatPolygon& polygon, const Eigen::Matrix2d& spread_mm2) const {
     constexpr int kStrips = 16;
     constexpr double kReach = 4.0;
@@ -93,6 +97,7 @@ struct ScatteredField::Moves {
     const double at_line = -direction.dot(shift_mm);
     double sum = 0.0;
     for (int k = -kStrips; k < kStrips; ++k) {
+      // The strip contains the points whose displacement is between k and k + 1 steps.
       // Moves from k to k + 1 steps.
       FlatPolygon strip = polygon;
       const Vec2 across = stretch * from_line;
@@ -106,17 +111,17 @@ struct ScatteredField::Moves {
   }
 };
 
-/// What two polygons (or one) share: light that leaves at r of the one and at turn r + shift of the other has met the
-/// same places of the facets of `pairs`.
+/// Correlation between two polygons, which may be identical. Light that leaves at r in `here` and light that leaves at
+/// turn r + shift in `there` have met the same points of the facets of `pairs`. The two points are called partners.
 struct ScatteredField::Shared {
   const FieldPolygon* here = nullptr;
   const FieldPolygon* there = nullptr;
   Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
   Vec2 shift_mm = Vec2::Zero();
   std::vector<HitPair> pairs;
-  double log_means = 0.0;  ///< logarithm of the factors that averaging leaves of both fields
+  double log_means = 0.0;  ///< logarithm of the product of the factors exp(-variance / 2) of both mean fields
 
-  /// How far the images of the corners are apart, at most.
+  /// Returns the maximum distance between the images of a corner of `here` under this map and under another map.
   double farthest_from(const Eigen::Matrix2d& other_turn, const Vec2& other_shift_mm) const {
     double most = 0.0;
     for (const Vec2& r : here->transform.polygon())
@@ -126,11 +131,11 @@ struct ScatteredField::Shared {
   bool is_in_place(double tolerance_mm) const {
     return farthest_from(Eigen::Matrix2d::Identity(), Vec2::Zero()) < tolerance_mm;
   }
-  /// By what the fields of both go on when averaged over the heights, less the product of their means.
+  /// Returns the mean product of both phase factors over all heights, minus the product of their means.
   double correlation(const Vec2& distance_mm) const {
     return std::exp(covariance(pairs, distance_mm) + log_means) - std::exp(log_means);
   }
-  /// The places of `here` whose partners at `distance_mm` lie in `there`.
+  /// Returns the points of `here` whose partners, displaced by `distance_mm`, are in `there`.
   FlatPolygon common_places(const Vec2& distance_mm) const {
     const double merge_mm = kMergedCorners * here->transform.size_mm();
     FlatPolygon partners;
@@ -140,7 +145,7 @@ struct ScatteredField::Shared {
     return intersection(flat_outline(here->transform.polygon()), partners, merge_mm);
   }
 
-  /// All maps of places of one to places of the other by the facets that both have met.
+  /// Returns all maps between points of `here` and `there` that result from facets which both paths have met.
   static std::vector<Shared> of(const FieldPolygon& here, const FieldPolygon& there, double shortest_mm) {
     std::vector<Shared> found;
     const double log_means = -0.5 * (here.phase_variance + there.phase_variance);
@@ -197,7 +202,7 @@ ScatteredField::ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coh
   if (longest_mm_ == 0.0) return;
   const double reach_mm = std::min(kReachInLengths * longest_mm_, extent_mm);
   const double phase_per_mm = std::min(wave_number_ * reach_cosine, kMostPhase / reach_mm);
-  // The covariance of exponentials of phases is narrower than that of phases where these are large.
+  // If phases are large, the covariance of the phase factors is narrower than the covariance of the phases.
   double width_mm = 0.5 * shortest_mm_ / std::sqrt(std::max(1.0, greatest_variance));
   for (double from = 0.0; from < reach_mm;) {
     const double until = std::min(from + width_mm, reach_mm);
@@ -229,7 +234,7 @@ void ScatteredField::add(const CoherentGroup& group, bool with_fringes) {
   for (std::size_t i = 0; i < group.polygons.size(); ++i)
     for (std::size_t j = i; j < group.polygons.size(); ++j)
       for (const Shared& shared : Shared::of(group.polygons[i], group.polygons[j], shortest_mm_)) {
-        // One of a pair stands for both orders: the other adds its conjugate.
+        // Each pair of polygons represents both orders. The contributions of the two orders are complex conjugates.
         const double copies = (i == j ? 1.0 : 2.0) * group.copies;
         if (shared.is_in_place(tolerance_mm))
           add_lobe(shared, group, copies);
@@ -256,8 +261,8 @@ void ScatteredField::add_lobe(const Shared& shared, const CoherentGroup& group, 
     }
     const double step = pi / static_cast<double>(ring.angles) * ring.weight_mm * ring.radius_mm;
     for (std::size_t k = 0; k < ring.angles; ++k, ++at) {
-      // Both halves of the turn, of which one is the other's conjugate - of a pair with the orders exchanged, so that
-      // both have to be taken.
+      // Distances in the opposite direction contribute as well. For a single polygon, their contribution is the complex
+      // conjugate. For a pair, it is the conjugate of the pair with exchanged order, and both directions are computed.
       Amplitude sum = 0.0;
       for (const double sign : {1.0, -1.0}) {
         const Vec2 distance = sign * distances_[at].mm;
@@ -285,10 +290,10 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
   const FlatPolygon common = shared.common_places(Vec2::Zero());
   const double common_mm2 = common.size() < 3 ? 0.0 : area(common);
   if (!(common_mm2 > kLeastCommonShare * shared.here->transform.area_mm2())) return;
-  // How far places are from their partners.
+  // Displacements between points and their partners.
   const Moves moves(shared);
   double whole_mm2 = 0.0;
-  double strength_mm4 = 0.0;  // with what the edges of both polygons leave
+  double strength_mm4 = 0.0;  // includes the reduction of the common area at the edges of both polygons
   double still_mm2 = 0.0;
   Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
   for (const Ring& ring : coarse_rings_)
@@ -306,8 +311,8 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
     }
   if (!(strength_mm4 > 0.0)) return;
   const Eigen::Matrix2d spread_mm2 = moments / whole_mm2;
-  // Places and partners cannot be one: what the covariance finds there is taken out, as wide as it reaches, so that
-  // fringes carry no power.
+  // A point and its partner cannot coincide. A Gaussian term with the width of the covariance is therefore subtracted
+  // where they would, so that the fringes carry no power.
   const double still = moves.is_folded ? moves.places_at_line(common, spread_mm2)
                                        : still_mm2 / whole_mm2 / std::abs(moves.matrix.determinant());
   const Eigen::Matrix2d dip_mm2 = kDipWidth * kDipWidth * spread_mm2;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Light that the textures of facets scatter, diffracted together with the specular light: what heights that paths share
-// make of the far field beyond its mean.
+// Far field of the light that textures of facets scatter. It includes the interference of paths that meet the same
+// points of a texture.
 
 #include <Eigen/Core>
 #include <complex>
@@ -15,54 +15,55 @@
 
 namespace retrace::raytrace {
 
-/// The mean of |E - <E>|^2 in the far field of cells whose facets have heights of Gaussian statistics, over all such
-/// heights. Every facet is a screen of phases where light meets it; two places of the entrance face are correlated as
-/// far as their light has met the same places of facets (docs/theory/photometry.md).
+/// Mean of |E - <E>|^2 in the far field, over all textures whose heights have Gaussian statistics. A texture changes
+/// the phase of the light that meets it. The phases at two points of the entrance face are correlated if their light
+/// has met the same points of facets (docs/theory/photometry.md).
 ///
-/// What paths share at like places of the entrance face makes lobes, as wide as the wavelength over the correlation
-/// length. What they share at unlike places - a path and its reverse meet the same points - makes fringes about the
-/// direction back to the source, as wide as the wavelength over the cell.
+/// Correlations of nearby points of the entrance face cause lobes. Their angular width is the wavelength divided by the
+/// correlation length. Correlations of distant points, for example of a path and its reverse, cause interference
+/// fringes about the direction to the source. Their angular width is the wavelength divided by the cell size.
 class ScatteredField {
  public:
   ScatteredField() = default;
   /// \param coherency matrix of the incident light
-  /// \param reach_cosine distance from the specular directions, in cosines, up to which lobes are computed
+  /// \param reach_cosine maximum distance from the specular directions, in direction cosines, at which lobes are
+  ///        computed
   /// \param groups all groups that will be passed to add()
   /// \param replicates number of replicates of resampled beams; 0 if there are none
   ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coherency, double reach_cosine,
                  const std::vector<CoherentGroup>& groups, std::uint32_t replicates);
 
-  /// Adds the lobes and fringes of a group. A resampled beam interferes only with itself and has no fringes.
-  /// \param with_fringes false to omit the fringes; the fringes of wide cells are negligible because they are finer
-  ///        than the discs of source and receiver
+  /// Adds the lobes and fringes of a group. A resampled beam has no fringes, because it does not interfere with others.
+  /// \param with_fringes false omits the fringes. It is used for wide cells, whose fringes are finer than the discs of
+  ///        source and receiver.
   void add(const CoherentGroup& group, bool with_fringes);
 
   /// Returns the power of the scattering lobes per unit area of direction cosines.
   double lobes_per_cosines(const geometry::Vec2& cosines) const;
   /// Returns the power of the lobes per unit area of direction cosines, averaged with the kernel. Element 0 is the
-  /// contribution of beams without a replicate. Element 1 + k is the contribution of replicate k, divided by the number
-  /// of replicates.
-  /// \param cosines_per_rad derivatives of the direction cosines by two rotation angles of the direction
+  /// power of beams without a replicate. Element 1 + k is the power of replicate k divided by the number of replicates.
+  /// \param cosines_per_rad derivatives of the direction cosines with respect to two rotation angles of the direction
   Eigen::ArrayXd lobes_by_replicate(const geometry::Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
                                     const ApertureKernel& kernel) const;
-  /// Returns the power of the scattering lobes within an ellipse of direction cosines.
+  /// Returns the power of the lobes within an ellipse in the plane of direction cosines.
   /// \param middle centre of the ellipse
   /// \param axes matrix that maps the unit disc to the ellipse
   double lobes_within(const geometry::Vec2& middle, const Eigen::Matrix2d& axes) const;
-  /// Returns the power of the interference fringes per unit area of direction cosines. It is positive in bright fringes
-  /// and negative in dark ones; the integral over all directions is 0. If the computation was cancelled, the result
-  /// contains zeros.
+  /// Returns the power of the interference fringes per unit area of direction cosines. Bright fringes are positive and
+  /// dark fringes are negative. The integral over all directions is 0. If the computation was cancelled, the remaining
+  /// elements are 0.
   std::vector<double> fringes_per_cosines(std::span<const geometry::Vec2> cosines, const Cancellation* cancel) const;
-  /// Returns the total power of the scattering lobes over all directions.
+  /// Returns the power of the lobes, integrated over all directions.
   double power() const { return power_; }
 
  private:
-  /// A distance of two places and what all pairs of places so far apart have in common: lobes are their Fourier sum.
+  /// A distance between two points of the entrance face, and the correlation of all pairs of points at this distance.
+  /// The lobes are the Fourier sum over all distances.
   struct Distance {
     geometry::Vec2 mm;
     std::complex<double> weight;
   };
-  /// Distances along the radius of the grid, over half a turn.
+  /// Grid points at one distance, over a half circle.
   struct Ring {
     double radius_mm = 0.0;
     double weight_mm = 0.0;
@@ -76,10 +77,10 @@ class ScatteredField {
 
   double wave_number_ = 0.0;  ///< rad per mm
   Eigen::Matrix2cd coherency_ = Eigen::Matrix2cd::Zero();
-  double shortest_mm_ = 0.0, longest_mm_ = 0.0;  ///< correlation lengths; 0: nothing scatters
+  double shortest_mm_ = 0.0, longest_mm_ = 0.0;  ///< correlation lengths; 0 if there is no scattering
   std::vector<Ring> rings_, coarse_rings_;
   std::vector<Distance> distances_;
-  Eigen::ArrayXXcd replicate_weights_;  ///< weights of distances_ (rows) by replicate (columns)
+  Eigen::ArrayXXcd replicate_weights_;  ///< row k, column j: contribution of replicate j to distances_[k].weight
   std::vector<field_lanes::Fringes> fringes_;
   double power_ = 0.0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// Single light paths as polylines with the events on them, for pictures that explain a part.
+// Single light paths as polylines, with the events along the path. They are used for drawings.
 
 #include <cstddef>
 #include <functional>
@@ -16,40 +16,40 @@ namespace retrace::raytrace {
 
 /// What happens to light at an interface.
 enum class PathEvent {
-  enters,            ///< through the entrance face, from outside
+  enters,            ///< through the entrance face from outside
   total_reflection,  ///< at a facet, a wall, a side or the entrance face
-  reflection,        ///< the same, but not total: by Fresnel, a film or a mirror
-  leaves,            ///< through the entrance face: the path ends
+  reflection,        ///< at the same faces, but not total: Fresnel reflection, a film or a mirror
+  leaves,            ///< through the entrance face; the path ends
   exits,             ///< through a facet or wall into the air behind the part
-  enters_again,      ///< through a facet, from behind
-  leaves_side,       ///< through a side of the plate: the path ends
-  escapes,           ///< from behind the part: the path ends
-  ends               ///< absorbed, or followed no further
+  enters_again,      ///< through a facet from the air behind the part
+  leaves_side,       ///< through a side of the plate; the path ends
+  escapes,           ///< from the air behind the part; the path ends
+  ends               ///< absorbed or not traced further
 };
 
 struct PathStep {
   PathEvent event = PathEvent::ends;
-  geometry::FacetRole role = geometry::FacetRole::entrance;  ///< of the face
-  Vec3 at_mm = Vec3::Zero();                                 ///< part frame
-  double incidence_deg = 0.0;                                ///< on the face
-  double power = 0.0;                                        ///< that goes on, over the incident power
-  std::optional<FacetRef> facet = {};                        ///< of the back
+  geometry::FacetRole role = geometry::FacetRole::entrance;  ///< role of the face
+  Vec3 at_mm = Vec3::Zero();                                 ///< position in the part frame
+  double incidence_deg = 0.0;                                ///< angle of incidence on the face
+  double power = 0.0;                                        ///< power after the event over the incident power
+  std::optional<FacetRef> facet = {};                        ///< facet of the back surface
 };
 
-/// One way of light through a part, from before it enters to after it leaves.
+/// A path of light through a part, with a segment in air before and after it.
 struct LightPath {
-  std::vector<Vec3> points_mm;  ///< corners, with a piece of air before and behind; part frame
+  std::vector<Vec3> points_mm;  ///< corners in the part frame, including the ends of the segments in air
   std::vector<PathStep> steps;
-  double power = 0.0;          ///< that arrives at its end
-  double deviation_deg = 0.0;  ///< of where it leaves the entrance face from the way back to the source
-  bool is_returned = false;    ///< it leaves through the entrance face, within `cone_deg`
+  double power = 0.0;          ///< power at the end of the path over the incident power
+  double deviation_deg = 0.0;  ///< angle between the leaving light and the direction to the source
+  bool is_returned = false;    ///< true if it leaves through the entrance face within `cone_deg`
 };
 
-/// Function that returns the first facet that a ray meets, or nothing.
+/// Function that returns the first facet that a ray meets, or nothing if it meets none.
 using HitFinder = std::function<std::optional<SurfaceHit>(const SurfaceRay& ray)>;
 
-/// Follows the stronger branch at every interface, from a point of the entrance face. The resulting path is a drawing
-/// aid and does not give the distribution of power.
+/// Traces a single path from a point of the entrance face. At every interface, the path continues with the stronger of
+/// the reflected and the transmitted light. The path is meant for drawings and does not show how the power is split.
 /// \param first_hit finds facets of the part, in coordinates with the origin `centre_mm`
 /// \param cone_deg half angle of the acceptance cone
 /// \pre the part is finite and its facets are smooth

@@ -19,7 +19,7 @@
 namespace retrace::raytrace {
 namespace {
 
-// Philox streams: of choices on the way; replicates.cpp has that of the scrambles of the entry points.
+// Philox stream of the entry points. The streams of other random numbers are defined in replicates.h.
 constexpr std::uint32_t kEntryStream = 3;  // plain sampling
 
 std::size_t score_size(const LightSetup& setup) {
@@ -42,12 +42,12 @@ struct MonteCarlo::Scene {
 
   const geometry::Part& part;
   EntranceSampler entrance;
-  std::optional<BackSurface> surface;  ///< for Embree, and borders
+  std::optional<BackSurface> surface;  ///< for Engine::embree, and for rays near the borders of finite parts
   std::optional<CellArray> cells;
-  std::unique_ptr<const EntranceFace> entrance_face;  ///< null: the entrance face is plane
+  std::unique_ptr<const EntranceFace> entrance_face;  ///< null if the entrance face is plane
 };
 
-/// Rays first..last-1 of one replicate.
+/// Rays with the numbers first to last - 1 of one replicate.
 struct MonteCarlo::Task {
   std::uint32_t replicate = 0;
   std::uint32_t first = 0;
@@ -82,7 +82,7 @@ MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, const Sampl
 
 MonteCarlo::TraceTask MonteCarlo::by_cells(const LightSetup& setup, const PathSetup* paths, const PathPolicy& policy,
                                            std::uint32_t seed, const Cancellation* cancel) const {
-  // Every thread keeps its walker, for its memory.
+  // Each thread reuses its walker to avoid memory allocations.
   const auto walkers = std::make_shared<tbb::enumerable_thread_specific<CellWalker>>(
       [this, &setup, &policy] { return CellWalker(setup, policy, *scene_->cells, scene_->entrance.centre_mm()); });
   const geometry::Rectangle entrance = scene_->part.period_mm
@@ -113,7 +113,7 @@ bool MonteCarlo::trace_range(const TraceTask& trace_task, std::uint32_t from, st
                           });
 }
 
-/// What the rounds of a run refer to, in the order in which it is made.
+/// Objects that the rounds of a run use. A member may refer to the members before it.
 struct MonteCarlo::Run::Question {
   PathPolicy policy;
   std::optional<LightSetup> light;

@@ -1,6 +1,7 @@
 #pragma once
 
-// The Monte-Carlo engine: RRE and ledger of a part with standard errors, by Embree or, for arrays, cell by cell.
+// The Monte Carlo engine. It computes the RRE and the ledger of a part with standard errors. It traces rays with Embree
+// or, for arrays, cell by cell.
 
 #include <cstdint>
 #include <functional>
@@ -20,65 +21,67 @@ namespace retrace::raytrace {
 
 struct PathSetup;
 
-/// How long a Monte-Carlo run goes on.
+/// Random numbers of a Monte Carlo run and the criteria that end it.
 struct Sampling {
-  /// Of entry points and branches: Sobol points with splitting, or pseudo-random ones of which each takes one branch at
-  /// every interface - the slow way, to measure what the other is worth. The latter with Engine::embree only.
+  /// Method of choosing entry points and branches. `stratified` uses Sobol points and splits rays at interfaces.
+  /// `plain` uses pseudo-random points and one random branch per interface. It is slower, serves for comparisons, and
+  /// requires Engine::embree.
   enum class Kind { stratified, plain };
   Kind kind = Kind::stratified;
   std::uint32_t seed = 1;
-  std::optional<std::uint64_t> rays;  ///< traced exactly (rounded up to whole replicates); else until the target
-  double target_error = 1e-4;         ///< standard error of RRE to reach, > 0
-  std::uint64_t max_rays = 1U << 26;  ///< limit on the way there
+  std::optional<std::uint64_t> rays;  ///< number of rays, rounded up to whole replicates; none: until the target
+  double target_error = 1e-4;         ///< target standard error of the RRE, > 0
+  std::uint64_t max_rays = 1U << 26;  ///< maximum number of rays if `rays` is not set
 };
 
-/// Monte-Carlo estimates of where light goes, by Owen-scrambled Sobol points over the entrance face. The result depends
-/// on the seed and the question alone, not on the number of threads.
+/// Estimates the distribution of light with Owen-scrambled Sobol points on the entrance face. The result depends only
+/// on the seed and the parameters, and not on the number of threads.
 class MonteCarlo {
  public:
-  /// How rays find what they meet.
+  /// Method of finding the facets that rays meet.
   enum class Engine {
-    embree,  ///< one by one, in a bounding volume hierarchy: any part
-    cell     ///< all rays of like history together, column by column: where cell_serves()
+    embree,  ///< rays one by one, with a bounding volume hierarchy; for any part
+    cell     ///< many rays with equal histories together, cell by cell; requires cell_serves()
   };
-  /// Infinite parts; and finite arrays of equal elements that have an inner piece, whose borders are left to Embree.
+  /// Returns true if Engine::cell can be used: for infinite parts, and for finite arrays of identical elements with an
+  /// inner region. Rays at the borders of such arrays are traced with Embree.
   static bool cell_serves(const geometry::Part& part);
 
-  /// Independent scrambles: the estimate is their mean, its standard error comes from their spread.
+  /// Number of independent scrambles. The estimate is their mean, and its standard error is computed from their spread.
   static constexpr std::uint32_t kReplicates = 32;
 
-  /// \param part is kept by reference: it must outlive the tracer
-  /// \param entrance_face in place of the plane entrance face, above the part's back; null: that plane
-  /// \pre with an entrance surface: a finite part and Engine::embree
+  /// \param part must outlive the tracer
+  /// \param entrance_face replaces the plane entrance face of the part; null for the plane face
+  /// \pre a part with `entrance_face` is finite and uses Engine::embree
   explicit MonteCarlo(const geometry::Part& part, Engine engine = Engine::embree,
                       const geometry::Entrance* entrance_face = nullptr);
   explicit MonteCarlo(geometry::Part&& part, Engine engine = Engine::embree,
                       const geometry::Entrance* entrance_face = nullptr) = delete;
   ~MonteCarlo();
 
-  /// Traces rays in the TBB arena of the calling thread.
-  /// \param score function of the directions in which light leaves the entrance face; null: none
-  /// \param progress as in the constructor of Rounds
-  /// \pre for Engine::cell: cell_serves()
+  /// Traces rays with the TBB threads of the calling thread's arena.
+  /// \param score function of the directions in which light leaves the entrance face; null for none
+  /// \param progress receives the finished fraction of the work, as in the constructor of Rounds; null for none
+  /// \pre cell_serves() is true if Engine::cell is used
   /// \throw BudgetError if power is lost because a ray inside the part missed every face
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
                          const DirectionScore* score = nullptr, Progress* progress = nullptr) const;
 
-  /// The same round by round, to be dropped if something else is quicker.
+  /// A trace that is executed round by round. It can be abandoned if another method is faster.
   class Run {
    public:
-    /// The parameters are those of trace().
+    /// Has the same parameters as trace().
     /// \pre `tracer`, `cancel`, `score` and `progress` outlive the run
     Run(const MonteCarlo& tracer, const Optics& optics, const Illumination& illumination,
         const std::vector<double>& cones_deg, const Sampling& sampling, const PathPolicy& policy,
         const Cancellation* cancel = nullptr, const DirectionScore* score = nullptr, Progress* progress = nullptr);
     ~Run();
 
-    /// As Rounds::advance().
+    /// Traces one more round, see Rounds::advance().
     bool advance();
     const MonteCarloResult& result() const;
-    /// As Rounds::expected_segments().
+    /// Returns the estimated total work, see Rounds::expected_segments().
     double expected_segments() const;
 
    private:
@@ -92,11 +95,12 @@ class MonteCarlo {
   using TraceTask = std::function<std::optional<Tally>(const Task&)>;
 
   TraceTask one_by_one(const PathSetup& setup, const Sampling& sampling, const Cancellation* cancel) const;
-  /// \param paths of the rays that leave the inner piece of a finite part; else null
+  /// \param paths for the rays that leave the inner region of a finite part; null for an infinite part
   TraceTask by_cells(const LightSetup& setup, const PathSetup* paths, const PathPolicy& policy, std::uint32_t seed,
                      const Cancellation* cancel) const;
-  /// Adds rays from..until-1 of every replicate to its tally. False if cancelled: the tallies are then of no use.
-  /// \param trace_task what one task gives, nothing if cancelled
+  /// Adds the rays with the numbers `from` to `until` - 1 of every replicate to its tally.
+  /// \param trace_task returns the tally of one task, or nothing if cancelled
+  /// \return false if cancelled; the tallies are then invalid
   bool trace_range(const TraceTask& trace_task, std::uint32_t from, std::uint32_t until,
                    std::vector<Tally>& replicates) const;
 
