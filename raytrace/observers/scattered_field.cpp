@@ -311,8 +311,8 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
     }
   if (!(strength_mm4 > 0.0)) return;
   const Eigen::Matrix2d spread_mm2 = moments / whole_mm2;
-  // A point and its partner cannot coincide. A Gaussian term with the width of the covariance is therefore subtracted
-  // where they would, so that the fringes carry no power.
+  // At the apex and along fold lines, points coincide with their partners, and fringes would carry power there. A
+  // Gaussian term with the width of the covariance is subtracted, so that the total power of the fringes is 0.
   const double still = moves.is_folded ? moves.places_at_line(common, spread_mm2)
                                        : still_mm2 / whole_mm2 / std::abs(moves.matrix.determinant());
   const Eigen::Matrix2d dip_mm2 = kDipWidth * kDipWidth * spread_mm2;

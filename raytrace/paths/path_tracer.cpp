@@ -15,9 +15,9 @@ namespace {
 
 using geometry::FacetRole;
 
-// Pieces of an infinite surface that one straight line may cross before it counts as trapped.
+// Maximum number of tiles of an infinite surface that a straight ray may cross. After that, it counts as trapped.
 constexpr int kMaxWraps = 1000;
-// Maximum number of reflections on a predicted path to the entrance face. Prisms and cube corners need at most three.
+// Maximum number of reflections in mirrors_to_entrance(). Paths in prisms and cube corners have at most three.
 constexpr int kMostMirrors = 8;
 
 // Without a cut-off, and with every branch followed, the paths of a ray split without end.
@@ -40,7 +40,7 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
       clearance_mm(part.top_mm + std::min(0.01 * part.element_depth_mm, 0.5 * (part.thickness_mm - part.top_mm))) {
   if (part.period_mm) {
     period_mm = *part.period_mm;
-    // The cells of the outermost periods do not fill them to the edge.
+    // The tile is half a period smaller than the surface, because the outermost cells do not fill their periods.
     tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
   }
   if (how.entrance.scatters()) soiled.emplace(how);
@@ -116,7 +116,7 @@ void PathWalker::enter(const Vec2& entry_mm) {
   pending_.push_back(state);
 }
 
-/// Takes a path to the next interface and past it. False when the path has ended.
+/// Traces a path to the next interface and processes the interface. Returns false if the path has ended.
 bool PathWalker::advance(State& state) {
   const double power = state.light.power();
   if (power < setup_.policy.cutoff || state.events++ >= setup_.policy.max_events)
@@ -148,12 +148,12 @@ std::optional<SurfaceHit> PathWalker::search(const State& state, double t_max) c
   return setup_.surface.first_hit({state.position, state.direction, state.source, state.inside, t_max});
 }
 
-/// For a ray that must meet the surface: it would leave the part's bounds otherwise.
+/// Searches the surface for a ray that must meet it, because the ray would otherwise leave the bounds of the part.
 std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const {
   return setup_.surface.certain_first_hit({state.position, state.direction, state.source, state.inside, kInfinity});
 }
 
-/// Inside a finite part: the nearest of entrance, sides and back surface.
+/// Finds the next face inside a finite part: the nearest of the entrance, the sides and the back surface.
 PathWalker::Step PathWalker::step_inside(State& state) const {
   Step step;
   double limit = kInfinity;
@@ -171,7 +171,7 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
     step.side = k;
   }
   if (setup_.entrance_face != nullptr) limit = reach_entrance_face(state, limit, step);
-  // Above the clearance only falling rays can meet the back surface, and not before they are down there.
+  // Above the height `clearance_mm`, only descending rays can meet the back surface. The search starts at this height.
   double skipped = 0.0;
   if (state.position.z() > setup_.clearance_mm) {
     skipped = state.direction.z() < 0.0 ? (state.position.z() - setup_.clearance_mm) / -state.direction.z() : kInfinity;
@@ -200,7 +200,8 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
   return step;
 }
 
-/// Inside an infinite part: the surface near the central period stands for all of it.
+/// Finds the next face inside an infinite part. Positions are moved into the central period, so that only the surface
+/// near this period is needed.
 PathWalker::Step PathWalker::step_inside_periodic(State& state) const {
   Step step;
   const double dz = state.direction.z();
@@ -216,7 +217,7 @@ PathWalker::Step PathWalker::step_inside_periodic(State& state) const {
         step.end = End::entrance;
         return step;
       }
-      if (dz == 0.0) break;  // along the plate for ever
+      if (dz == 0.0) break;  // a horizontal ray never leaves the plate
       if (state.position.z() > setup_.clearance_mm) {
         move((state.position.z() - setup_.clearance_mm) / -dz);
         wrap(state);
@@ -241,13 +242,13 @@ PathWalker::Step PathWalker::step_inside_periodic(State& state) const {
   return step;
 }
 
-/// In the air below a finite part: a facet, or away.
+/// Finds the next facet in the air below a finite part. Without a facet, the ray escapes.
 PathWalker::Step PathWalker::step_outside(State& state) const {
   Step step;
   auto hit = search(state, kInfinity);
   if (!hit && state.direction.z() > 0.0 &&
       is_over_part(state.position + (setup_.top_mm - state.position.z()) / state.direction.z() * state.direction)) {
-    // It would rise through the plate: no such ray can have missed the surface.
+    // The ray would enter the plate from below. It must therefore meet the surface.
     hit = search_certainly(state);
     if (!hit) return step;
   }
@@ -280,7 +281,7 @@ PathWalker::Step PathWalker::step_outside_periodic(State& state) const {
     if (limit == up) return step;
     if (limit == down) {
       step.end = End::escape;
-      state.position = start;  // it leaves from there
+      state.position = start;  // the ray leaves from its starting point
       state.shift_mm = start_shift;
       return step;
     }
@@ -301,7 +302,8 @@ double PathWalker::distance_to_tile_border(const State& state) const {
   return std::max(least, 0.0);
 }
 
-/// Brings a position back into the central period; nothing near it is the facet it came from any more.
+/// Moves a position by whole periods into the central period. `source` is reset, because the facet that the path has
+/// left is in a different period.
 void PathWalker::wrap(State& state) const {
   for (const Eigen::Index axis : {0, 1}) {
     const double by = setup_.period_mm[axis] * std::floor(state.position[axis] / setup_.period_mm[axis] + 0.5);
@@ -343,7 +345,9 @@ bool PathWalker::meet_entrance(State& state) {
   return branch != Branch::transmitted;
 }
 
-/// Books light that leaves through the entrance face. \param state where it does \param direction in air
+/// Records light that leaves through the entrance face.
+/// \param state position of the light on the face
+/// \param direction direction of the light in air
 void PathWalker::leave(const State& state, const Light& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction, to_source_);
   returned(state)[cone] += seen_from_above(light, direction);
@@ -352,7 +356,7 @@ void PathWalker::leave(const State& state, const Light& light, const Vec3& direc
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 
-/// Books light of the state's place that the entrance face sends back at once.
+/// Records light that the entrance face reflects before it enters the part.
 void PathWalker::send_back(const State& state, const Light& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction, to_source_);
   (state.scattered ? tally_.scattered : tally_.front)[cone] += seen_from_above(light, direction);
@@ -361,12 +365,12 @@ void PathWalker::send_back(const State& state, const Light& light, const Vec3& d
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 
-/// Tells who watches of light that leaves the part where the state is.
+/// Reports light that leaves the part at the position of `state` to the observer.
 void PathWalker::tell(Account account, const State& state, const Vec3& direction, const Light& light) const {
   if (observer_ != nullptr) observer_->leaves({account, state.position, direction, light, state.shift_mm});
 }
 
-/// Behind a facet: what lies behind its element.
+/// Returns the optics of the element to which a facet belongs. They differ if the back of the element is wet.
 const Optics& PathWalker::optics_of(const FacetRef& facet) const {
   const WetBack* const wet = setup_.optics.wet.get();
   return wet != nullptr && wet->elements->has(facet.placement, facet.facet) ? wet->optics : setup_.optics;
@@ -389,7 +393,7 @@ bool PathWalker::meet_side(State& state, const Vec3& normal) {
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
-  // The part is the prism over a convex outline: what leaves through a side does not come back.
+  // The outline of the part is convex. Light that leaves through a side therefore never comes back.
   if (branch != Branch::reflected) {
     tally_.other[Account::side_exit] += transmitted.power();
     if (observer_ != nullptr)
@@ -432,7 +436,7 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   });
 }
 
-/// Of a formed facet, where a path has come to it.
+/// Returns the normal of a facet with a form at the position of a path.
 Vec3 PathWalker::normal_at(const State& state, const FacetRef& where) const {
   const ExactSurface::Facet& facet = setup_.surface.facet(where);
   const geometry::Placement& placement = setup_.surface.placement(where);
@@ -441,7 +445,9 @@ Vec3 PathWalker::normal_at(const State& state, const FacetRef& where) const {
   return formed_normal(setup_.optics, facet.normal, frame, state.position - place, state.direction, state.inside);
 }
 
-/// \param plane_normal that of a facet without its form
+/// Processes a path at a retro facet with texture.
+/// \param normal normal of the facet including its form
+/// \param plane_normal normal of the facet without its form
 bool PathWalker::meet_textured(State& state, const Vec3& normal, const Vec3& plane_normal, const Optics& optics) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
   TexturedReturn back = meet_textured_facet(optics, normal, state, setup_.policy.split_power, random);

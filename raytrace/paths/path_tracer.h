@@ -1,6 +1,7 @@
 #pragma once
 
-// Follows one light path through any part: which face comes next, refraction, reflection, branching and booking.
+// Traces a single light path through any part: finds the next face, splits the light by refraction and reflection, and
+// records where power ends.
 
 #include <cstdint>
 #include <optional>
@@ -18,72 +19,73 @@
 
 namespace retrace::raytrace {
 
-/// What every path of a run shares.
+/// Data that all paths of a run use.
 struct PathSetup : LightSetup {
   PathSetup(const geometry::Part& part, const BackSurface& surface, const Vec2& centre_mm, const Optics& optics,
             const Illumination& illumination, const std::vector<double>& cones_deg, const PathPolicy& policy,
             const EntranceFace* entrance_face = nullptr);
 
   const BackSurface& surface;
-  const EntranceFace* entrance_face = nullptr;  ///< in place of the plane z = thickness_mm; null: that plane
-  std::optional<SoiledEntrance> soiled;         ///< where the plane entrance face scatters
+  const EntranceFace* entrance_face = nullptr;  ///< curved entrance face; null for the plane z = thickness_mm
+  std::optional<SoiledEntrance> soiled;         ///< set if the plane entrance face scatters light
   PathPolicy policy;
-  Vec2 centre_mm = Vec2::Zero();     ///< where positions are told from, in the part frame
-  double clearance_mm = 0.0;         ///< height above z = 0 from which the back surface is looked for
-  Vec2 period_mm = Vec2::Zero();     ///< infinite part
-  Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the piece of surface that stands for it
+  Vec2 centre_mm = Vec2::Zero();     ///< origin of positions, in the part frame
+  double clearance_mm = 0.0;         ///< maximum z at which the back surface is searched
+  Vec2 period_mm = Vec2::Zero();     ///< period of an infinite part
+  Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the tile of the surface that is stored
 };
 
-/// Follows light through a part: refraction and reflection at every interface with polarisation, both branches where
-/// both matter, one chosen at random with the whole power where not. One walker serves one thread.
+/// Traces light through a part, with refraction and reflection at every interface including polarization. If both
+/// branches are strong, both are traced. Otherwise, one branch is chosen at random and receives the total power. One
+/// walker serves one thread.
 class PathWalker {
  public:
-  /// \param observer told of all that leaves the part; null: none
+  /// \param observer receives all light that leaves the part; null for none
   PathWalker(const PathSetup& setup, Tally& tally, ExitObserver* observer = nullptr)
       : setup_(setup), tally_(tally), observer_(observer) {}
 
-  /// Traces all light that enters at a point of the entrance face, as power 1. Random choices depend on `key`,
-  /// `replicate` and `sample` alone.
+  /// Traces the light that enters at a point of the entrance face, with power 1. Random choices depend only on `key`,
+  /// `replicate` and `sample`.
   void trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
 
-  /// Traces light that is on its way already.
-  /// \param choices made so far with these numbers; counts on
+  /// Continues the trace of light that has already entered.
+  /// \param choices number of random choices made so far with the same `key`, `replicate` and `sample`; is increased
   void resume(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample,
               std::uint32_t& choices);
 
-  /// Returns the product of the reflection matrices along the path from a point inside the part to the entrance face.
-  /// All faces are assumed to reflect. The product maps the direction at the point to the direction at the entrance
-  /// face. Returns nothing if the path has more than kMostMirrors reflections.
+  /// Predicts the path from a point inside the part to the entrance face if every face on it only reflects. Returns the
+  /// product of the reflection matrices, which maps the direction at the point to the direction at the entrance face.
+  /// Returns nothing if the path has more than kMostMirrors reflections.
   /// \pre all faces are plane
   std::optional<Eigen::Matrix3d> mirrors_to_entrance(const Vec3& position, const Vec3& direction) const;
 
-  /// Traces light of power 1 that comes from anywhere: from above, from a side, from behind, or from inside the part
-  /// where it begins there. Its own way back takes the place of that to the source. What the face that it meets first
-  /// sends back is a branch like others, and counts as `front_specular` at the entrance face, as `side_exit` at sides,
-  /// as `transmitted` behind.
-  /// \return false if it does not meet the part: it is then booked nowhere
+  /// Traces light of power 1 that comes from any direction: from above, from a side, from below, or from a point inside
+  /// the part. The acceptance cones are centred on the direction opposite to `ray`, instead of the direction to the
+  /// source. Light that the first face reflects from outside is a branch like others. It is added to `front_specular`
+  /// at the entrance face, to `side_exit` at sides, and to `transmitted` at the back.
+  /// \return false if the light does not meet the part; it is then not added to any account
   bool launch(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
 
  private:
   struct State : Ray {
     Vec3 position = Vec3::Zero();
     FacetRef source;                                                      ///< facet that the path has just left
-    FacetRef entrance_source;                                             ///< the same, of an entrance surface
-    bool above = false;                                                   ///< in the air on the entrance surface's side
-    bool entered = false;                                                 ///< it has passed an entrance surface
-    geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face it left the part through
+    FacetRef entrance_source;                                             ///< facet of a curved entrance face just left
+    bool above = false;                                                   ///< in the air above a curved entrance face
+    bool entered = false;                                                 ///< has passed a curved entrance face
+    geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which it left the part
     std::uint32_t events = 0;
-    Vec2 shift_mm = Vec2::Zero();  ///< infinite part: from `position`, in the central period, to where it really is
+    Vec2 shift_mm = Vec2::Zero();  ///< infinite part: vector from `position`, in the central period, to the true one
   };
   enum class End { facet, entrance, side, escape, miss, trapped };
   struct Step {
     End end = End::miss;
     SurfaceHit hit;
-    Vec3 entrance_normal = Vec3::UnitZ();  ///< where `hit` is on an entrance surface
+    Vec3 entrance_normal = Vec3::UnitZ();  ///< normal at `hit` if it is on a curved entrance face
     std::size_t side = 0;
     double length_mm = 0.0;
   };
-  /// Where light is that comes to the part.
+  /// Medium in which light starts.
   enum class Medium { above, body, below };
   void begin(RandomKey key, std::uint32_t replicate, std::uint32_t sample, std::uint32_t choices = 0);
   void enter(const Vec2& entry_mm);
@@ -140,15 +142,16 @@ class PathWalker {
   ExitObserver* observer_;
   std::vector<State> pending_;
   SoiledReturn from_soiled_;
-  Vec3 to_source_ = Vec3::UnitZ();  ///< of the light that is traced
-  bool splits_at_front_ = true;     ///< both branches of the first interface are followed, whatever their power
+  Vec3 to_source_ = Vec3::UnitZ();  ///< direction opposite to the light that is traced
+  bool splits_at_front_ = true;     ///< true if both branches of the first interface are traced at any power
   RandomKey key_;
   std::uint32_t replicate_ = 0;
   std::uint32_t sample_ = 0;
   std::uint32_t choices_ = 0;
 };
 
-/// Follows the branches at a face. \param pass makes of the path the one that goes through
+/// Continues a path at a face with the chosen branch or both branches.
+/// \param pass function that changes the state of the path to that of the transmitted branch
 template <class Pass>
 bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass) {
   if (branch == Branch::transmitted) {

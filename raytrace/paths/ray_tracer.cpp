@@ -17,12 +17,12 @@
 namespace retrace::raytrace {
 namespace {
 
-// Philox stream of choices on the way.
+// Philox stream of the random choices along a path.
 constexpr std::uint32_t kRayChoiceStream = 17;
-// Rays that one task traces: small enough to share out, large enough to hide the cost of a task.
+// Number of rays per task. It is small enough for load balancing and large enough to make the overhead negligible.
 constexpr std::size_t kRaysTogether = 1024;
-// Maximum standard deviation of a random number between 0 and 1. It is reached if 0 and 1 are equally probable and
-// other values do not occur.
+// Maximum standard deviation of a random number between 0 and 1. It is the standard deviation of a number that is 0 or
+// 1 with equal probability.
 constexpr double kMaxErrorOfFraction = 0.5;
 
 }  // namespace
@@ -68,13 +68,13 @@ struct RayTracer::Scene {
   double cone_deg;
   PathPolicy policy;
   std::uint32_t seed;
-  std::deque<PathSetup> setups;  ///< by wavelength
+  std::deque<PathSetup> setups;  ///< indexed by wavelength
 };
 
-/// Follows rays, one after the other, and keeps what becomes of them.
+/// Traces rays one by one and stores the rays that leave the part.
 class RayTracer::Walk : public ExitObserver {
  public:
-  /// \param memory memory of the leaving rays of all tasks
+  /// \param memory counter of the memory for the leaving rays of all tasks
   Walk(const Scene& scene, TracedRays& traced, BeamMemory& memory)
       : scene_(scene), from_centre_(scene.centre_mm.x(), scene.centre_mm.y(), 0.0), traced_(traced), memory_(memory) {}
 
@@ -110,7 +110,8 @@ class RayTracer::Walk : public ExitObserver {
   }
 
  private:
-  /// Adds the memory of the next kRaysTogether leaving rays. \throw TraceBudgetError if the budget is exceeded
+  /// Counts the memory of the next kRaysTogether leaving rays.
+  /// \throw TraceBudgetError if the memory budget is exceeded
   void add_memory() {
     memory_.add(kRaysTogether * sizeof(LeavingRay));
     if (memory_.is_exceeded())
@@ -141,7 +142,7 @@ class RayTracer::Walk : public ExitObserver {
   const Scene& scene_;
   Vec3 from_centre_;
   Tally tally_{1};
-  std::vector<std::unique_ptr<PathWalker>> walkers_;  ///< by wavelength
+  std::vector<std::unique_ptr<PathWalker>> walkers_;  ///< indexed by wavelength
   TracedRays& traced_;
   BeamMemory& memory_;
   std::uint32_t incident_ = 0;
@@ -155,7 +156,7 @@ RayTracer::~RayTracer() = default;
 
 std::uint32_t RayTracer::add(const Optics& optics) {
   Scene& s = *scene_;
-  // The direction of incidence means nothing here: rays have their own.
+  // The direction of incidence has no effect, because each ray has its own direction.
   s.setups.emplace_back(s.part, s.surface, s.centre_mm, optics, Illumination{}, std::vector<double>{s.cone_deg},
                         s.policy, s.entrance_face.get());
   return static_cast<std::uint32_t>(s.setups.size() - 1);

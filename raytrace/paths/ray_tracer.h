@@ -1,6 +1,7 @@
 #pragma once
 
-// Traces single rays that come from anywhere, such as those of a file, and gives every ray that leaves the part.
+// Traces individual rays with any position and direction, such as those of a file. Returns every ray that leaves the
+// part.
 
 #include <array>
 #include <cstdint>
@@ -21,69 +22,73 @@ namespace retrace::raytrace {
 
 struct PathSetup;
 
-/// A ray on its way, in the part frame.
+/// A ray that is traced, in the part frame.
 struct IncidentRay {
   Vec3 position_mm = Vec3::Zero();
-  Vec3 direction = -Vec3::UnitZ();  ///< unit
-  Light light;                      ///< of any power >= 0, `s_axis` across the direction
-  std::uint32_t optics = 0;         ///< at its wavelength: a number that RayTracer::add() gave
+  Vec3 direction = -Vec3::UnitZ();  ///< unit vector
+  Light light;                      ///< light of any power >= 0; `s_axis` is perpendicular to `direction`
+  std::uint32_t optics = 0;         ///< wavelength: a number that RayTracer::add() has returned
 };
 
-/// A ray that has left the part for good, or missed it.
+/// A ray that leaves the part and does not meet it again.
 struct LeavingRay {
-  std::uint32_t incident = 0;  ///< number of the incident ray
+  std::uint32_t incident = 0;  ///< index of the incident ray
   Account account = Account::retroreflected;
-  Vec3 position_mm = Vec3::Zero();  ///< on the face that it left through last
+  Vec3 position_mm = Vec3::Zero();  ///< point on the last face through which the ray left
   Vec3 direction = Vec3::UnitZ();
   Light light;
 };
 
-/// Where the power of rays has gone, in their units.
+/// Sums of the power of rays by account, in the units of the incident rays.
 struct RayLedger {
   double incident = 0.0;
-  Ledger ledger;        ///< of what met the part
-  double missed = 0.0;  ///< never met it
+  Ledger ledger;        ///< light of rays that met the part
+  double missed = 0.0;  ///< power of rays that never met the part
   std::uint64_t rays = 0;
   std::uint64_t rays_missed = 0;
-  std::array<std::uint64_t, kAccountCount> leaving = {};  ///< rays that left, by account
-  /// Sums over rays, for the error of what is retroreflected: squared powers; these times the share of each ray that
-  /// came back; times its square.
+  std::array<std::uint64_t, kAccountCount> leaving = {};  ///< number of leaving rays by account
+  /// Sums over rays for the standard error of the retroreflected fraction. With the power p of a ray and its
+  /// retroreflected fraction f, they are the sums of p^2, of p^2 f, and of p^2 f^2.
   double squares = 0.0;
   double squares_back = 0.0;
   double squares_back2 = 0.0;
 
   void add(const RayLedger& more);
-  /// Returns the standard error of the retroreflected fraction of the power. The fraction is a mean over independent
-  /// rays, weighted by power. The error includes an allowance for paths that no ray has taken, see with_unseen().
+  /// Returns the standard error of the retroreflected fraction of the power. This fraction is a mean over independent
+  /// rays, weighted with their powers. The error includes an allowance for paths that no ray has taken (with_unseen()).
   double std_error() const;
 };
 
-/// What became of some rays.
+/// Results of some rays.
 struct TracedRays {
-  std::vector<LeavingRay> leaving;    ///< in the order of the incident rays
-  std::vector<std::uint32_t> missed;  ///< numbers of the incident rays that never met the part
+  std::vector<LeavingRay> leaving;    ///< leaving rays, in the order of the incident rays
+  std::vector<std::uint32_t> missed;  ///< indices of the incident rays that never met the part
   RayLedger ledger;
 };
 
-/// One part, at as many wavelengths as are added. Results do not depend on the number of threads.
+/// Ray tracer of one part for several wavelengths. Results do not depend on the number of threads.
 class RayTracer {
  public:
-  /// \param part, entrance_face as those of MonteCarlo; they must outlive the tracer
-  /// \param cone_deg half angle round the way back of each ray within which light counts as retroreflected
+  /// \param part the part, which must outlive the tracer
+  /// \param entrance_face curved entrance face as in MonteCarlo, which must outlive the tracer; null for the plane face
+  /// \param cone_deg half angle of the acceptance cone about the direction opposite to each ray
   RayTracer(const geometry::Part& part, const geometry::Entrance* entrance_face, double cone_deg,
             const PathPolicy& policy, std::uint32_t seed);
   RayTracer(const RayTracer&) = delete;
   RayTracer& operator=(const RayTracer&) = delete;
   ~RayTracer();
 
-  /// One more wavelength. Not while trace() runs. \return its number, from 0
+  /// Adds a wavelength.
+  /// \pre trace() is not running
+  /// \return the number of the wavelength, from 0
   std::uint32_t add(const Optics& optics);
 
-  /// Traces in the calling thread's TBB arena. Random choices of a ray depend on the seed and its number alone.
+  /// Traces rays with the TBB threads of the calling thread's arena. Random choices of a ray depend only on the seed
+  /// and the number of the ray.
   /// \param first number of the first ray, counted over all calls
-  /// \throw BudgetError if power is lost: a ray missed every face from inside
-  /// or splits into too many rays
-  /// \throw TraceBudgetError if the rays that leave exceed the memory budget
+  /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a ray splits into too
+  ///        many rays
+  /// \throw TraceBudgetError if the leaving rays exceed the memory budget
   TracedRays trace(std::span<const IncidentRay> rays, std::uint64_t first, const Cancellation* cancel) const;
 
  private:

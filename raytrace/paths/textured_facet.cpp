@@ -8,26 +8,27 @@ namespace {
 
 using surface_models::Lobe;
 
-/// A ray in the frame of a facet: x along it and level, z against the light.
+/// A ray in the frame of a facet: x is horizontal in the facet plane, and z is the normal on the side of the ray.
 struct LocalEvent {
   Eigen::Matrix3d world_from_local;
   surface_models::ScatterEvent event;
   surface_models::Facet piece;
 };
 
-/// Light that meets a retro facet from inside or outside, in the facet's frame.
+/// Returns the scattering event of light that meets a retro facet from inside or outside.
+/// \param direction direction of the light in the facet's frame
 surface_models::ScatterEvent event_of(const Optics& optics, bool inside, const Vec3& direction) {
   const double from = inside ? optics.index : optics.back_index;
   const double to = inside ? optics.back_index : optics.index;
   return {direction, from, to, optics.wavelength_nm, inside};
 }
 
-/// Returns the refraction event at the mean surface of the facet.
-/// \param normal unit normal of the facet, pointing out of the part
+/// Returns the scattering event of a ray in the facet's frame, without a surface patch.
+/// \param normal unit normal of the facet, which points out of the part
 LocalEvent event_at(const Optics& optics, const Vec3& normal, const Ray& ray) {
   LocalEvent local;
   const Vec3 z = ray.inside ? Vec3(-normal) : normal;
-  // Chamfered roots are level all round: there the roof edge of a prism is the axis.
+  // Chamfered roots have a vertical normal. Their x axis is the roof edge of a prism.
   const Vec3 level = normal.cross(Vec3::UnitZ());
   const Vec3 x = level.norm() > 1e-9 ? level.normalized() : normal.cross(Vec3::UnitX()).normalized();
   local.world_from_local << x, z.cross(x), z;
@@ -39,7 +40,9 @@ Vec3 at_incidence(double cos_incidence) {
   return {std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence)), 0.0, -cos_incidence};
 }
 
-/// Adds a ray that has left the facet as from a plane one, turned as the texture scatters it.
+/// Adds a ray that leaves the facet.
+/// \param ray ray that a plane facet would return
+/// \param out direction and weight of the light that the texture scatters
 void add(Ray ray, const LocalEvent& local, const surface_models::ScatterSample& out, TexturedReturn& result) {
   ray.light.scale(out.weight);
   result.truncated -= ray.light.power();
@@ -67,7 +70,7 @@ void scatter(const Ray& ray, const Optics& optics, const LocalEvent& local, Lobe
     add(ray, local, *out, result);
 }
 
-/// Amplitudes of the light that is never diffracted.
+/// Returns the Fresnel coefficients of the light that is not diffracted.
 materials::FresnelCoefficients kept(const materials::FresnelCoefficients& f,
                                     const surface_models::DiffractionMeans& means) {
   const auto factor = [](double mean) { return std::exp(-0.5 * mean); };
@@ -79,10 +82,10 @@ materials::FresnelCoefficients kept(const materials::FresnelCoefficients& f,
   return left;
 }
 
-/// Amplitudes of the light that is diffracted at least twice.
+/// Returns the Fresnel coefficients of the light that is diffracted at least two times.
 materials::FresnelCoefficients diffracted_again(const materials::FresnelCoefficients& f,
                                                 const surface_models::DiffractionMeans& means) {
-  // 1 - exp(-x) (1 + x), by its series where that would cancel.
+  // The factor is the square root of 1 - exp(-x) (1 + x). For small x, a series avoids cancellation.
   const auto factor = [](double x) {
     return std::sqrt(x < 1e-2 ? x * x * (0.5 - x * (1.0 / 3.0 - 0.125 * x)) : -std::expm1(-x) - x * std::exp(-x));
   };
@@ -94,8 +97,10 @@ materials::FresnelCoefficients diffracted_again(const materials::FresnelCoeffici
   return left;
 }
 
-/// While one of several powers is below `least`, it and the next larger one become one of the two by chance: nothing is
-/// lost or made. Those that are left have the power to be followed, or are the only one. \return 0 for others
+/// Reduces the number of branches. While the smallest power is below `least`, the two smallest branches are merged: one
+/// of them is chosen at random in proportion to its power and receives the power of both. The total power is preserved.
+/// The remaining branches have at least the power `least`, or only one branch remains.
+/// \return the new powers; 0 for removed branches
 template <std::size_t N>
 std::array<double, N> merged(std::array<double, N> power, double least, surface_models::RandomStream& random) {
   for (;;) {
@@ -130,14 +135,16 @@ Stokes stokes_of(const surface_models::Polarisation2& coherency, double power) {
   return {power, s - p, cross.real(), cross.imag()};
 }
 
-/// Light after interaction with roughness between dielectrics. The scattered light has no direction yet.
+/// Light after it has met roughness between two dielectrics, by kind. The light diffracted one time (`once`) has no
+/// direction yet.
 struct RoughLight {
   enum Kind : std::size_t { reflected, transmitted, reflected_again, transmitted_again, once, kKinds };
   std::array<Light, kKinds> lights;
   std::array<double, kKinds> power{};
 };
 
-/// \param light light of the ray, with the s and p axes of the surface patch that the ray meets
+/// Splits the light that meets roughness between two dielectrics into kinds.
+/// \param light light of the ray, along the s and p axes of the surface patch that it meets
 RoughLight rough_light(const surface_models::HarveyShack& rough, const Light& light,
                        const materials::FresnelCoefficients& f, const LocalEvent& local) {
   const surface_models::DiffractionMeans means = surface_models::diffraction_means(rough, local.event, local.piece, f);
@@ -147,13 +154,14 @@ RoughLight rough_light(const surface_models::HarveyShack& rough, const Light& li
                  light.transmitted(again), light};
   double rest = light.power();
   for (std::size_t k = 0; k < RoughLight::once; ++k) rest -= made.power[k] = made.lights[k].power();
-  // Light that roughness does not touch leaves nothing but rounding.
+  // If the roughness has no effect, the difference is a rounding error.
   made.power[RoughLight::once] = rest > 1e-15 * light.power() ? rest : 0.0;
   return made;
 }
 
-/// Computes the light that returns from roughness between dielectrics.
-/// \param light light of the ray, with the s and p axes of the surface patch that the ray meets
+/// Returns the rays that leave roughness between two dielectrics.
+/// \param light light of the ray, along the s and p axes of the surface patch that it meets
+/// \param to_reflect, to_transmit rays that a smooth surface would return
 TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, const Light& light,
                                      const materials::FresnelCoefficients& f, const LocalEvent& local,
                                      const Ray& to_reflect, const Ray& to_transmit, double split_power,

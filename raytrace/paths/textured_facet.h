@@ -1,6 +1,7 @@
 #pragma once
 
-// Rays at rough facets: Fresnel's branches, each split into specular and scattered light.
+// Interaction of rays with rough facets. The reflected and the transmitted light are both split into specular and
+// scattered light.
 
 #include <array>
 #include <cstddef>
@@ -11,20 +12,21 @@
 
 namespace retrace::raytrace {
 
-/// Light on its way in one direction.
+/// Light that travels in one direction.
 struct Ray {
   Vec3 direction = Vec3::UnitZ();
   Light light;
-  bool inside = true;      ///< in the part's material
-  bool scattered = false;  ///< a non-specular event lies behind it
+  bool inside = true;      ///< true if it is in the material of the part
+  bool scattered = false;  ///< true if there was a non-specular event on its path
 };
 
-/// The branches that are followed.
+/// Branches of light at an interface that are traced.
 enum class Branch { reflected, transmitted, both };
 
-/// Both branches of light at an interface while each has at least `split_power`, else one by its share of the power,
-/// which it gets whole: nothing is lost or made. \param uniform gives a number in [0, 1), called if there is a
-/// choice
+/// Chooses the branches at an interface. If both branches have at least the power `split_power`, both are traced.
+/// Otherwise, one branch is chosen at random in proportion to its power and receives the power of both. The expected
+/// power of each branch is preserved.
+/// \param uniform returns a random number in [0, 1); it is called only if a random choice is needed
 template <class Uniform>
 Branch choose_branch(Light& reflected, Light& transmitted, double split_power, const Uniform& uniform) {
   const double r = reflected.power();
@@ -37,42 +39,47 @@ Branch choose_branch(Light& reflected, Light& transmitted, double split_power, c
   return take_reflected ? Branch::reflected : Branch::transmitted;
 }
 
-/// What a textured facet makes of a ray.
+/// Rays that leave a textured facet.
 struct TexturedReturn {
-  std::array<Ray, 5> rays;  ///< the first `count` of them
+  std::array<Ray, 5> rays;  ///< only the first `count` elements are valid
   std::size_t count = 0;
-  /// Index in `rays` of the light that roughness between dielectrics has diffracted exactly one time.
+  /// Index in `rays` of the light that was diffracted exactly one time by roughness between two dielectrics.
   std::optional<std::size_t> once;
-  /// Power by which the texture model falls short of the incident power; may be negative.
+  /// Incident power minus the power of `rays` and `absorbed`: the error of the texture model. May be negative.
   double truncated = 0.0;
-  double absorbed = 0.0;  ///< power absorbed in layers
+  double absorbed = 0.0;  ///< power that the layers on the facet absorb
 
-  /// Mirrors at the facet's plane the directions that its form has turned to the wrong side of it: light that grazes
-  /// the facet. \param plane_normal unit, out of the part
+  /// Reflects directions that are on the wrong side of the facet's plane. The form of a facet causes such directions
+  /// for light at grazing incidence.
+  /// \param plane_normal unit normal of the plane, which points out of the part
   void keep_sides(const Vec3& plane_normal);
 };
 
-/// Fresnel's branches at a piece of the texture, each scattered by Optics::facet_scatter. What stays specular and what
-/// does not are followed both while each has at least `split_power`, as the branches are. Roughness between dielectrics
-/// makes up to five kinds of light: specular and diffracted more than once in each branch, and diffracted once, to
-/// either side. \param normal of the facet, unit, out of the part
+/// Returns the rays that leave a random patch of the facet's texture. The reflected and the transmitted light are
+/// scattered by Optics::facet_scatter. Specular and scattered light are both traced if each has at least `split_power`.
+///
+/// Roughness between two dielectrics causes up to five kinds of light. In each branch, there is specular light and
+/// light that is diffracted more than one time. The fifth kind is light that is diffracted one time, to either side.
+/// \param normal unit normal of the facet, which points out of the part
 TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, const Ray& ray, double split_power,
                                    surface_models::RandomStream& random);
 
-/// Returns the light that the facet diffracts one time into a given direction, with its power per steradian.
+/// Returns the light that the facet diffracts one time into a direction. Its power is per steradian.
 /// \param direction unit vector
-/// \pre surface_models::first_order_model(optics.facet_scatter) without waviness, and the ray has power
+/// \pre surface_models::first_order_model(optics.facet_scatter) exists and has no waviness, and the ray has power
 Ray diffracted_once_into(const Optics& optics, const Vec3& normal, const Ray& ray, const Vec3& direction);
 
-/// Share of a lobe's power that the texture of a retro facet leaves in its mean field, where s and p keep the same; 1
-/// where mean_field() tells them apart.
+/// Returns the fraction of a lobe's power that remains in the mean field at a textured retro facet, if the fraction is
+/// the same for s and p polarization. Returns 1 if mean_field() contains the effect of the texture.
 double mean_field_share(const Optics& optics, bool inside, double cos_incidence, surface_models::Lobe lobe);
 
-/// Fresnel's amplitudes `fresnel` of a retro facet, less what roughness between dielectrics takes of each polarisation.
+/// Returns the Fresnel coefficients of a retro facet for the mean field. The coefficients `fresnel` are reduced, for
+/// each polarization, by the light that roughness between two dielectrics scatters.
 materials::FresnelCoefficients mean_field(const Optics& optics, bool inside, double cos_incidence,
                                           const materials::FresnelCoefficients& fresnel);
 
-/// What the texture of a retro facet does to the phase of a lobe's light. \pre surface_models::has_phases()
+/// Returns the statistics of the phase that the texture of a retro facet adds to the light of a lobe.
+/// \pre surface_models::has_phases()
 surface_models::PhaseTexture phase_texture(const Optics& optics, bool inside, double cos_incidence,
                                            surface_models::Lobe lobe);
 

@@ -6,8 +6,8 @@
 namespace retrace::raytrace {
 namespace {
 
-// Minimum ratio of the area of an outline to the area of its bounding box for the outline to be treated as an
-// axis-aligned rectangle.
+// An outline is treated as an axis-aligned rectangle if its area is at least this fraction of the area of its bounding
+// box.
 constexpr double kAllOfBox = 1.0 - 1e-12;
 
 }  // namespace
@@ -41,7 +41,7 @@ Vec2 EntranceSampler::operator()(const std::array<double, 2>& u) const {
   const auto k = static_cast<std::size_t>(it - cumulative_share_.begin());
   const double before = k == 0 ? 0.0 : cumulative_share_[k - 1];
   const double within = (u[0] - before) / (cumulative_share_[k] - before);
-  // The square root makes the density over the triangle even.
+  // The square root makes the distribution over the triangle uniform.
   const double away = std::sqrt(std::clamp(within, 0.0, 1.0));
   const Vec2 far_side = outline_[k + 1] + u[1] * (outline_[k + 2] - outline_[k + 1]);
   return outline_[0] + away * (far_side - outline_[0]);

@@ -6,7 +6,7 @@
 namespace retrace::raytrace {
 namespace {
 
-/// Half-width, in standard deviations, of the central 95 % interval of the normal distribution.
+/// Half-width, in standard deviations, of the interval that contains 95 % of a normal distribution.
 constexpr double kNormal95 = 1.959964;
 
 ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double half_angle_deg, std::size_t cone) {
@@ -21,17 +21,17 @@ ConeResult cone_result(const std::vector<Tally>& replicates, double rays, double
     for (std::size_t k = 0; k < kAccountCount; ++k) result.ledger.power[k] += ledger.power[k] / rays / count;
   }
   result.rre = result.ledger[Account::retroreflected];
-  result.stokes.i = result.rre;  // the same sum, rounded in the same order
+  result.stokes.i = result.rre;  // both are the same power; they may differ by rounding
   double squares = 0.0;
   for (const double r : rre) squares += (r - result.rre) * (r - result.rre);
   result.spread = std::sqrt(squares / (count - 1.0) / count);
-  // Spreads below this limit are rounding errors.
+  // Values below this limit are caused by rounding.
   if (result.spread < 1e-15) result.spread = 0.0;
   result.std_error = result.spread;
   return result;
 }
 
-/// Means and standard errors of what was scored.
+/// Computes the means and standard errors of the scores.
 void add_score(const std::vector<Tally>& replicates, double rays, MonteCarloResult& result) {
   const auto count = static_cast<double>(replicates.size());
   const std::size_t size = replicates.front().score.size();
@@ -70,7 +70,7 @@ double with_unseen(double spread, double rays, double largest) {
 }
 
 double student_factor(std::size_t replicates) {
-  // Abramowitz and Stegun, 26.7.5; over z.
+  // Abramowitz and Stegun, 26.7.5, divided by z.
   constexpr double z2 = kNormal95 * kNormal95;
   const double nu = static_cast<double>(replicates - 1);
   const double first = (z2 + 1.0) / 4.0;

@@ -15,15 +15,19 @@ namespace retrace::raytrace {
 namespace {
 
 constexpr std::uint32_t kReplicates = MonteCarlo::kReplicates;
-// Rays of a replicate that one task traces: small enough to share out, large enough to hide the cost of a task.
+// Number of rays of a replicate per task. It is small enough for load balancing and large enough to make the overhead
+// negligible.
 constexpr std::uint32_t kRaysPerTask = 2048;
-// Rays of a replicate that are traced before the tallies of the tasks are added up: bounds the memory of the tallies.
+// Number of rays of a replicate that are traced before the tallies of the tasks are added. It limits the memory of the
+// tallies.
 constexpr std::uint32_t kRaysPerSlice = 64 * kRaysPerTask;
-// The Sobol sequence has 2^32 points; one is kept back so that counters do not wrap.
+// Maximum number of rays per replicate. It is less than 2^32, the length of the Sobol sequence, so that counters do not
+// overflow.
 constexpr std::uint32_t kMostRaysPerReplicate = UINT32_MAX - kRaysPerSlice;
-// Rays of a replicate before its error is looked at for the first time.
+// Number of rays of a replicate in the first round, after which the standard error is first estimated.
 constexpr std::uint32_t kFirstRound = 256;
-// The error falls about as rays to this power: 0.5 by chance, 1 where all is smooth.
+// Assumed exponent: the error is proportional to rays^-kConvergence. The exponent is 0.5 for random points, and 1 for
+// Sobol points and smooth functions.
 constexpr double kConvergence = 0.75;
 
 void check_lost(const MonteCarloResult& result) {
@@ -35,8 +39,8 @@ void check_lost(const MonteCarloResult& result) {
                       result.misses, result.rays, cone.ledger[Account::lost]));
 }
 
-/// Returns the standard error of the RRE of one cone. The error combines the spread of the replicates with an allowance
-/// for paths that no ray has taken, see with_unseen().
+/// Returns the standard error of the RRE of one cone. It combines the spread of the replicates with an allowance for
+/// paths that no ray has taken, see with_unseen().
 /// \param spread standard deviation of the mean over replicates, see ConeResult::spread
 /// \param rays total number of rays in all replicates
 double std_error_of(double spread, double rays) {
@@ -45,7 +49,7 @@ double std_error_of(double spread, double rays) {
 
 }  // namespace
 
-/// Of the scrambles of a replicate's entry points.
+/// Returns the keys that scramble both coordinates of a replicate's entry points.
 std::array<std::uint64_t, 2> scramble_keys(std::uint32_t seed, std::uint32_t replicate) {
   const auto words = philox({seed, kScrambleStream}, replicate, 0);
   return {(std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]};
@@ -64,7 +68,7 @@ bool trace_replicates(std::uint32_t from, std::uint32_t until, std::vector<Tally
   for_each_in_parallel(tasks.size(),
                        [&](std::size_t k) { tallies[k] = trace(tasks[k].replicate, tasks[k].first, tasks[k].last); });
   if (std::any_of(tallies.begin(), tallies.end(), [](const auto& t) { return !t.has_value(); })) return false;
-  // Added up in the order of the tasks, whichever thread did them.
+  // The tallies are added in the order of the tasks, so that the sums do not depend on the threads.
   for (std::size_t k = 0; k < tasks.size(); ++k) replicates[tasks[k].replicate].add(*tallies[k]);
   return true;
 }
@@ -79,7 +83,8 @@ Rounds::Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::siz
           (sampling.rays.value_or(sampling.max_rays) + kReplicates - 1) / kReplicates, kMostRaysPerReplicate))),
       replicates_(kReplicates, Tally(cones_deg_.size(), score_size)) {}
 
-/// Doubling keeps every round's points the first 2^k of their sequence, where they are best stratified.
+/// Returns the number of rays per replicate after the next round. It is doubled each time, because the first 2^k points
+/// of a Sobol sequence are best distributed.
 std::uint32_t Rounds::next_end() const {
   if (done_ == 0) return std::min(goal_, kFirstRound);
   return done_ > goal_ / 2 ? goal_ : 2 * done_;
@@ -90,7 +95,7 @@ bool Rounds::advance() {
   for (std::uint32_t first = done_; first < end;) {
     const std::uint32_t last = end - first > kRaysPerSlice ? first + kRaysPerSlice : end;
     if (!trace_range_(first, last, replicates_)) {
-      result_.complete = false;  // with what the rounds before gave
+      result_.complete = false;  // the results of the preceding rounds are kept
       return true;
     }
     first = last;
