@@ -1,5 +1,5 @@
-// Interaction of beams with faces: the member functions of BeamWalk that split beams at an interface, add their power
-// to the ledger and queue the new beams.
+// Interaction of beams with faces. These member functions of BeamWalk split beams at interfaces, add power to the
+// ledger and queue the new beams.
 #include <fmt/format.h>
 
 #include "raytrace/exact/beam_walk.h"

@@ -1,5 +1,5 @@
-// Beams that represent copies at identical elements: the member functions of BeamWalk that start one beam for several
-// positions of an array, and that split the positions where their beams meet different facets near a border.
+// Beams that represent copies at identical elements. These member functions of BeamWalk start one beam for several
+// positions of an array. Near a border, where the copies meet different facets, they split the list of positions.
 #include <algorithm>
 
 #include "core/infinity.h"
@@ -156,9 +156,9 @@ PlanBox BeamWalk::sweep_of(const Beam& beam) const {
   return box;
 }
 
-/// Keeps those copies of a beam that meet the same facets in the next step as the beam itself, and queues the others as
-/// beams of their own. All groups of copies have the same horizon. Along an axis on which they differ, the horizon
-/// contains no border. Along the other axis, they are at the same distance from the borders.
+/// Splits the copies of a beam into groups that meet the same facets in the next step. The beam keeps its own group,
+/// and the other groups are queued as new beams. All groups may use the same horizon. No border is within the horizon
+/// along an axis on which the groups differ, and along the other axis the borders are equal.
 void BeamWalk::keep_equal_places(Beam& beam) {
   if (setup_.infinite()) return;
   work_ += beam.places->size() / kPlacesPerWork;

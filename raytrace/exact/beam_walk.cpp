@@ -25,8 +25,9 @@ constexpr double kReachInElements = 4.0;
 // Maximum step length of a beam that represents several positions. It is shorter, because fewer positions then reach a
 // border within the step.
 constexpr double kReachOfShared = 2.0;
-// A slowly descending beam is traced in such steps as well if its far side enters the layer of elements more than this
-// many element sizes behind its near side. A horizontal beam above the layer meets no facet.
+// The same step length is used for slowly descending beams. The limit is the distance, in element sizes, between the
+// points where the near and the far side of the beam enter the layer of elements. A horizontal beam above the layer
+// meets no facet.
 constexpr double kFarInElements = 64.0;
 constexpr std::uint32_t kMaxLevelSteps = 1000;
 constexpr double kLastCutoff = 1e-25;

@@ -209,8 +209,8 @@ void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uin
   tally_.add(apart_);
 }
 
-/// Traces a ray that represents all light of this site that is diffracted one time towards the widest cone.
-/// follow_scored() adds the same light to the light outside of the cones. The power of this ray that reaches a cone is
+/// Traces a ray that represents all light of this site that is diffracted one time towards the widest cone. The same
+/// light is added to the light outside of the cones by follow_scored(). The power of this ray that reaches a cone is
 /// therefore subtracted there.
 void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met,
                           double power, std::uint32_t number, std::uint32_t& choices) {

@@ -16,8 +16,8 @@ namespace {
 using geometry::Part, geometry::PatchCell, geometry::PatchFacet, geometry::Placement, geometry::SurfacePatch;
 using geometry::Vec2, geometry::Vec3;
 
-// Tolerances: positions are equal if their distance is less than this fraction of the element size, and normals are
-// equal if they differ by less than kSameNormal.
+// Tolerances. Two positions are equal if their distance is less than kSamePlace times the element size. Two normals are
+// equal if the norm of their difference is at most kSameNormal.
 constexpr double kSamePlace = 1e-8;
 constexpr double kSameNormal = 1e-9;
 // Memory in bytes per facet of FacetsByPlace.
@@ -113,8 +113,8 @@ bool holds(const FacetsByPlace& part, const std::vector<StandingFacet>& facets, 
                      [&](const StandingFacet& f) { return part.has(mirror_image(f, axis, about_mm)); });
 }
 
-/// Returns true if an infinite part is symmetric about a plane normal to `axis`. The mirror plane is searched among the
-/// planes that map the first facet of the central period to a facet of this period or its neighbours.
+/// Returns true if an infinite part is symmetric about a plane normal to `axis`. Candidate planes map the first facet
+/// of the central period to another facet that is at most one period away.
 bool endless_is_mirrored(const Part& part, Eigen::Index axis) {
   const FacetsByPlace all(part);
   const std::vector<StandingFacet> central = central_facets(part);

@@ -27,8 +27,9 @@ namespace {
 
 using std::numbers::pi;
 
-// Philox streams of random numbers for: scrambles of the pixel's points, choices along a path, wavelengths and points
-// of the pupil, choices of paths that are traced together, and points that a PixelGuide selects.
+// Philox streams of random numbers, in this order: scrambles of the points of a pixel, choices along a path, and
+// wavelengths with points of the pupil. The last two are choices of paths that are traced together, and points that a
+// PixelGuide selects.
 constexpr std::uint32_t kCameraScrambleStream = 11;
 constexpr std::uint32_t kCameraChoiceStream = 12;
 constexpr std::uint32_t kLensStream = 13;

@@ -31,8 +31,9 @@ struct ErrorFreeExit {
 /// Computes the exit of a beam without errors of angle.
 /// \param to_source unit vector towards the source
 /// \param cell_mm position of the cell, relative to the part's centre
-/// \return the exit, or nothing in three cases: light is refracted at the back surface, light leaves almost parallel to
-///         the entrance face, or the isometry of the path is not close to an involution that reverses an axis
+/// \return the exit, or nothing if it cannot be computed. This happens if light is refracted at the back surface or
+///         leaves almost parallel to the entrance face. It also happens if no involution is close to the isometry of
+///         the path, or if the nearest one reverses no axis.
 std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec3& to_source,
                                              const geometry::Vec2& cell_mm);
 

@@ -59,9 +59,9 @@ struct FarFieldIntensity {
 /// Angular distribution of the light that leaves the entrance face, for one direction of incidence and one wavelength.
 /// Powers are fractions of the incident power.
 ///
-/// The fields of beams of one cell are added. The intensities of different cells are added, because the heights of
-/// cells differ by more than the wavelength, and the light of a lamp is coherent over less than a cell. By Fraunhofer
-/// diffraction at the entrance face, the far field of a beam is the Fourier transform of its polygon.
+/// The fields of beams of one cell are added. The intensities of different cells are added. The reason is that their
+/// heights differ by more than the wavelength, and that the light of a lamp is coherent over less than a cell. By
+/// Fraunhofer diffraction at the entrance face, the far field of a beam is the Fourier transform of its polygon.
 ///
 /// For beams that have met textures (ReturnedBeam::hits), the mean field is diffracted and the scattered light is added
 /// (ScatteredField; docs/theory/photometry.md). Both are averages over all possible heights of the texture.

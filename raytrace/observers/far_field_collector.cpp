@@ -191,9 +191,9 @@ double FarFieldCollector::replicates_of(const ReturnedBeam& beam) const {
 }
 
 /// Returns a beam as if it had left the reference cell, which is the copy of its cell at the origin. The outline of the
-/// beam is that without errors of angle (ErrorFreeExit).
-/// Copies of a cell have the same field except for a phase, which is the phase of the incident and the returned wave at
-/// the position of the copy. The function removes this phase.
+/// beam is that of a part without errors of angle (ErrorFreeExit).
+/// Copies of a cell have the same field except for a phase. The incident and the returned wave cause this phase,
+/// because the copies are at different positions. The function removes it.
 FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam) const {
   const Vec2 by = beam.trail.first ? beam.trail.first->offset_mm : Vec2::Zero();
   const ErrorFreeExit exit = error_free_exit(beam, to_source_, by).value_or(ErrorFreeExit{});

@@ -49,8 +49,8 @@ void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& tr
                const std::array<double, 4>& coherency, double copies, Block& sum);
 
 /// Interference fringes of scattered light. They arise if two paths, such as a path and its reverse, meet the same
-/// points of a rough facet. If light of such a point leaves the entrance face at r on the first path, it leaves at turn
-/// r + shift_mm on the second path (docs/theory/photometry.md).
+/// points of a rough facet. Light of such a point leaves the entrance face at r on the first path. On the second path,
+/// it leaves at turn r + shift_mm (docs/theory/photometry.md).
 struct Fringes {
   Outline outline;  ///< polygon that contains all points r
   Eigen::Matrix2d turn;

@@ -111,8 +111,9 @@ struct ScatteredField::Moves {
   }
 };
 
-/// Correlation between two polygons, which may be identical. Light that leaves at r in `here` and light that leaves at
-/// turn r + shift in `there` have met the same points of the facets of `pairs`. The two points are called partners.
+/// Correlation between two polygons, which may be identical. Light at a point r of `here` and light at the point
+/// turn r + shift of `there` have met the same points of facets. These facets are listed in `pairs`. The two points are
+/// called partners.
 struct ScatteredField::Shared {
   const FieldPolygon* here = nullptr;
   const FieldPolygon* there = nullptr;

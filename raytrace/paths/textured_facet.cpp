@@ -97,9 +97,9 @@ materials::FresnelCoefficients diffracted_again(const materials::FresnelCoeffici
   return left;
 }
 
-/// Reduces the number of branches. While the smallest power is below `least`, the two smallest branches are merged: one
-/// of them is chosen at random in proportion to its power and receives the power of both. The total power is preserved.
-/// The remaining branches have at least the power `least`, or only one branch remains.
+/// Reduces the number of branches. As long as the smallest power is below `least`, the two smallest branches are
+/// merged. One of them is chosen at random in proportion to its power and receives the power of both. The total power
+/// is preserved. The remaining branches have at least the power `least`, or only one branch remains.
 /// \return the new powers; 0 for removed branches
 template <std::size_t N>
 std::array<double, N> merged(std::array<double, N> power, double least, surface_models::RandomStream& random) {

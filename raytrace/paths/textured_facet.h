@@ -69,8 +69,8 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
 /// \pre surface_models::first_order_model(optics.facet_scatter) exists and has no waviness, and the ray has power
 Ray diffracted_once_into(const Optics& optics, const Vec3& normal, const Ray& ray, const Vec3& direction);
 
-/// Returns the fraction of a lobe's power that remains in the mean field at a textured retro facet, if the fraction is
-/// the same for s and p polarization. Returns 1 if mean_field() contains the effect of the texture.
+/// Returns the fraction of a lobe's power that remains in the mean field at a textured retro facet. It returns 1 if s
+/// and p polarization have different fractions, because mean_field() then contains the effect of the texture.
 double mean_field_share(const Optics& optics, bool inside, double cos_incidence, surface_models::Lobe lobe);
 
 /// Returns the Fresnel coefficients of a retro facet for the mean field. The coefficients `fresnel` are reduced, for
