@@ -1,6 +1,6 @@
 #pragma once
 
-// A grid over the cells of the back surface, by which the exact engine finds those under a beam.
+// A grid over the cells of the back surface, with which the exact engine finds the cells under a beam.
 
 #include <cmath>
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace retrace::raytrace {
 
-/// Finds the cells of the back surface near a place. An infinite part is its central period, repeated without end.
+/// Finds the cells of the back surface near a position. For an infinite part, it stores the central period.
 class CellIndex {
  public:
-  /// \param centre_mm point of the plane that becomes the origin
+  /// \param centre_mm point of the plane z = 0 that becomes the origin
   CellIndex(const geometry::Part& part, const geometry::Vec2& centre_mm);
 
-  /// Calls visit(patch, cell, offset, height_mm) for every cell whose box meets the rectangle, each once; these move
-  /// the patch's coordinates to where the cell stands.
+  /// Calls visit(patch, cell, offset, height_mm) one time for every cell whose box overlaps the rectangle. `offset` and
+  /// `height_mm` displace the patch's coordinates to the position of the cell.
   template <class Visit>
   void visit(const geometry::Vec2& lower, const geometry::Vec2& upper, const Visit& visit) const {
     if (infinite_)
@@ -74,7 +74,8 @@ class CellIndex {
           const geometry::Vec2 low = cell.lower.head<2>() + offset;
           const geometry::Vec2 high = cell.upper.head<2>() + offset;
           if ((low.array() > upper.array()).any() || (high.array() < lower.array()).any()) continue;
-          // A cell stands in every bucket it meets; it is visited in the first of them that the query meets.
+          // A cell is listed in every bucket that it overlaps. It is visited in the first of these buckets in the
+          // query.
           if (std::max(bucket(low.x(), 0), i0) != i || std::max(bucket(low.y(), 1), j0) != j) continue;
           visit(part_.patches[part_.placements[e.placement].patch], cell, offset,
                 part_.placements[e.placement].height_mm);
@@ -85,11 +86,11 @@ class CellIndex {
   const geometry::Part& part_;
   geometry::Vec2 centre_mm_;
   bool infinite_ = false;
-  std::vector<Entry> central_;  ///< infinite
+  std::vector<Entry> central_;  ///< infinite parts: cells of the central period
   geometry::Vec2 origin_ = geometry::Vec2::Zero();
   double bucket_mm_ = 1.0;
   std::int64_t count_[2] = {1, 1};
-  std::vector<std::uint32_t> first_;  ///< by bucket, and one more
+  std::vector<std::uint32_t> first_;  ///< index of the first entry of each bucket, and the number of entries
   std::vector<Entry> entries_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Curved entrance faces as rays meet them: the interface that height fields (height_field.h) and meshes
-// (mesh_entrance.h) fulfil.
+// Interface for the intersection of rays with curved entrance faces. It is implemented by height fields
+// (height_field.h) and meshes (mesh_entrance.h).
 
 #include <memory>
 #include <optional>
@@ -12,25 +12,25 @@
 
 namespace retrace::raytrace {
 
-/// Where a ray meets the entrance surface.
+/// Intersection of a ray with the entrance surface.
 struct EntranceHit {
   SurfaceHit hit;
-  Vec3 normal = Vec3::UnitZ();  ///< unit, out of the part
+  Vec3 normal = Vec3::UnitZ();  ///< unit normal that points out of the part
 };
 
-/// The curved front of a part, ready for rays: positions are relative to the centre of the part's outline in x and y.
-/// Safe to use from many threads.
+/// The curved entrance face of a part, prepared for ray tracing. Positions are relative to the centre of the part's
+/// outline in x and y. All member functions are thread-safe.
 class EntranceFace {
  public:
   EntranceFace(const EntranceFace&) = delete;
   EntranceFace& operator=(const EntranceFace&) = delete;
   virtual ~EntranceFace() = default;
 
-  /// The first place where the ray meets the entrance surface from its own side, up to `t_max`. \pre it does so over
-  /// the outline
+  /// Returns the first intersection with the entrance surface on the side from which the ray comes, up to `t_max`.
+  /// \pre the intersection is within the outline of the part
   virtual std::optional<EntranceHit> first_hit(const SurfaceRay& ray) const = 0;
 
-  /// Over the outline.
+  /// Returns the minimum height over the outline; highest_mm() returns the maximum height.
   double lowest_mm() const { return range_.lowest_mm; }
   double highest_mm() const { return range_.highest_mm; }
 
@@ -41,7 +41,8 @@ class EntranceFace {
   geometry::EntranceRange range_;
 };
 
-/// \param centre_mm point of the plane that becomes the origin of rays
+/// Returns the entrance face for ray tracing.
+/// \param centre_mm point of the plane z = 0 that becomes the origin of rays
 /// \throw InputError for a surface that has no finite height somewhere over the part's outline
 std::unique_ptr<const EntranceFace> make_entrance_face(const geometry::Entrance& entrance_face,
                                                        const geometry::Part& part, const Vec2& centre_mm);

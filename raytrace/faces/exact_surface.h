@@ -10,8 +10,8 @@
 
 namespace retrace::raytrace {
 
-/// The back surface in double precision: its planes and outlines. Finds hits by itself in time linear in the cells near
-/// the ray; BackSurface knows which cells those are.
+/// The planes and outlines of the back surface in double precision. Its own search takes time proportional to the
+/// number of cells near the ray. BackSurface finds these cells faster.
 class ExactSurface {
  public:
   using Facet = geometry::PatchFacet;
@@ -22,30 +22,31 @@ class ExactSurface {
     std::uint32_t count = 0;
   };
 
-  /// \param part must outlive this
-  /// \param centre_mm point of the plane that becomes the origin of rays
+  /// \param part must outlive this object
+  /// \param centre_mm point of the plane z = 0 that becomes the origin of rays
   ExactSurface(const geometry::Part& part, const Vec2& centre_mm);
   ExactSurface(geometry::Part&&, const Vec2&) = delete;
 
   const Facet& facet(FacetRef ref) const { return part_->patches[placements_[ref.placement].patch].facets[ref.facet]; }
 
-  /// The first facet that the ray meets from its own side: one that it leaves the part through if inside, enters
-  /// through if outside. Nothing beyond `t_max`.
+  /// Returns the first facet that the ray meets on its side, up to `t_max`. Rays inside the part meet facets through
+  /// which they leave. Rays outside meet facets through which they enter.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
-  /// Takes into `best` what the ray meets of some facets of a placement before that, whatever the order of searches; a
-  /// t just below 0 is kept as it is. \param tolerance_mm how much larger facets are taken than they are
+  /// Replaces `best` if the ray meets one of some facets of a placement nearer than `best`. The result does not depend
+  /// on the order of searches. Values of t slightly below 0 are preserved.
+  /// \param tolerance_mm distance by which facets are enlarged
   void search(const SurfaceRay& ray, std::uint32_t placement, const FacetRange& range, double tolerance_mm,
               SurfaceHit& best) const;
 
-  /// What searches have found, if anything.
+  /// Returns the hit found by searches, or nothing if they have found none.
   static std::optional<SurfaceHit> settled(SurfaceHit best);
 
-  /// Moved to their places as rays see them.
+  /// Returns the placements of the patches, relative to the origin of rays.
   const std::vector<geometry::Placement>& placements() const { return placements_; }
 
-  /// Rounding of doubles at large coordinates stays below the first; what it may leave open where pieces of the surface
-  /// meet stays below the second.
+  /// Returns an upper bound of the rounding errors of coordinates. wide_tolerance_mm() returns an upper bound of the
+  /// gaps that rounding may cause between adjacent facets.
   double tolerance_mm() const;
   double wide_tolerance_mm() const;
 
@@ -56,7 +57,7 @@ class ExactSurface {
   };
 
   const geometry::Part* part_;
-  std::vector<Box> boxes_;  ///< by patch
+  std::vector<Box> boxes_;  ///< indexed by patch
   std::vector<geometry::Placement> placements_;
 };
 

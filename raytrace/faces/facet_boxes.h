@@ -1,6 +1,6 @@
 #pragma once
 
-// The boxes round cells and facets that Embree searches.
+// Bounding boxes of cells and facets for Embree.
 
 #include <cstdint>
 #include <vector>
@@ -10,11 +10,11 @@
 
 namespace retrace::raytrace {
 
-/// What a box of the search is put round: facets of a cell, or one of so many pieces of equal length of a single facet.
+/// Content of a bounding box: consecutive facets of a cell, or one of several parts of equal length of a single facet.
 struct BoxContent {
   ExactSurface::FacetRange range;
-  std::uint16_t piece = 0;
-  std::uint16_t pieces = 1;
+  std::uint16_t piece = 0;   ///< index of the part of the facet
+  std::uint16_t pieces = 1;  ///< number of parts of the facet
 };
 
 struct FacetBox {
@@ -22,10 +22,11 @@ struct FacetBox {
   Vec3 upper;
 };
 
-/// A box for every cell of few facets; boxes for every facet of others, more than one if it is long and runs aslant.
+/// Returns the contents of all boxes of a patch. A cell with few facets has one box. In other cells, each facet has a
+/// box, and long oblique facets have several.
 std::vector<BoxContent> box_contents(const geometry::SurfacePatch& patch);
 
-/// In the patch's coordinates.
+/// Returns the bounding box of a content, in the patch's coordinates.
 FacetBox box_round(const geometry::SurfacePatch& patch, const BoxContent& content);
 
 }  // namespace retrace::raytrace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Facets with a form: where light meets them in their own frame, and how the surface is turned there.
+// Facets with a form: the frame of a facet, and the normal of its surface.
 
 #include "raytrace/light/optics.h"
 
@@ -8,24 +8,27 @@ namespace retrace::raytrace {
 
 using geometry::Vec2, geometry::Vec3;
 
-/// The frame of a facet: its origin over the facet's middle; x level, y down the facet, both in its plane, so that x, y
-/// and the normal out of the part are right-handed.
+/// Frame of a facet. The origin is over the facet's centroid. x is horizontal and y points down the facet, both in its
+/// plane. x, y and the normal out of the part are right-handed.
 struct FacetFrame {
   Vec3 origin_mm = Vec3::Zero();
   Vec3 level = Vec3::UnitX();
   Vec3 down = Vec3::UnitY();
 
   FacetFrame() = default;
-  /// \param normal of the plane normal . p = offset_mm, unit, out of the part \param middle_mm PatchFacet::middle_mm
+  /// \param normal unit normal of the plane normal . p = offset_mm, which points out of the part
+  /// \param middle_mm see PatchFacet::middle_mm
   FacetFrame(const Vec3& normal, double offset_mm, const Vec2& middle_mm);
 
   Vec2 local(const Vec3& p) const { return {level.dot(p - origin_mm), down.dot(p - origin_mm)}; }
 };
 
-/// The normal of the formed surface, out of the part, at the place of its plane where light meets it. That the surface
-/// lies beside the plane there, by less than some um, moves no ray. Where light grazes the facet, so that a ray from
-/// there would lie on the wrong side of the plane, it is the plane's normal: the ledger knows planes.
-/// \param normal of the plane \param direction of the light before it, unit \param inside it comes from the body
+/// Returns the normal of the surface with its form, out of the part. It is evaluated at the point where light meets the
+/// plane of the facet. The distance between the surface and the plane, less than some um, is neglected. At grazing
+/// incidence, a ray could leave on the wrong side of the plane. In this case, the normal of the plane is returned.
+/// \param normal normal of the plane
+/// \param direction unit direction of the light before it meets the facet
+/// \param inside true if the light comes from the body
 Vec3 formed_normal(const Optics& optics, const Vec3& normal, const FacetFrame& frame, const Vec3& point,
                    const Vec3& direction, bool inside);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Rays against a smooth entrance surface z(x, y): a grid of cells with bounds on height and curvature, and within a
-// cell steps that cannot miss the surface.
+// Intersection of rays with a smooth entrance surface z(x, y). It uses a grid of cells with bounds on height and
+// curvature. Within a cell, the steps along the ray cannot miss the surface.
 
 #include <array>
 #include <memory>
@@ -12,9 +12,9 @@
 
 namespace retrace::raytrace {
 
-/// An entrance surface that is an exact surface, in double precision: a grid of cells says between which heights it
-/// lies and how tightly it bends there; within a cell a ray is followed by steps that the bend cannot carry across the
-/// surface, which close in on it as Newton's do (docs/theory/fronts.md).
+/// An entrance surface z(x, y) in double precision. A grid stores bounds of height and curvature for each cell. Within
+/// a cell, each step along a ray is so short that the curvature cannot bring the ray across the surface. The steps
+/// converge to the intersection like Newton's method (docs/theory/fronts.md).
 class HeightField : public EntranceFace {
  public:
   HeightField(std::shared_ptr<const geometry::EntranceSurface> surface, const geometry::Polygon& outline,
@@ -26,14 +26,14 @@ class HeightField : public EntranceFace {
   struct Cell {
     double low_mm = 0.0;
     double high_mm = 0.0;
-    double bend_per_mm = 0.0;  ///< bound of the second derivatives
+    double bend_per_mm = 0.0;  ///< upper bound of the second derivatives
   };
   struct Search;
   struct Walk;
 
   geometry::EntranceSurface::Place at(double x_mm, double y_mm) const { return surface_->at({x_mm + x0_, y_mm + y0_}); }
   void make_cells(const geometry::Polygon& outline, int cells);
-  /// \param places at the corners of a cell, along x, then along y, and one within
+  /// \param places points at the four corners of a cell, first along x and then along y, and one point inside
   Cell cell_between(const std::array<const geometry::EntranceSurface::Place*, 5>& places) const;
   void widen_bends();
   std::optional<std::array<double, 2>> span_of(const SurfaceRay& ray, double room_mm) const;
@@ -42,9 +42,9 @@ class HeightField : public EntranceFace {
   }
 
   std::shared_ptr<const geometry::EntranceSurface> surface_;
-  double x0_ = 0.0;  ///< the centre, in the part's frame
+  double x0_ = 0.0;  ///< position of the centre in the part's frame
   double y0_ = 0.0;
-  Vec2 lower_ = Vec2::Zero();  ///< of the grid, from the centre
+  Vec2 lower_ = Vec2::Zero();  ///< lower corner of the grid, relative to the centre
   Vec2 cell_mm_ = Vec2::Ones();
   int columns_ = 0;
   int rows_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rays against an entrance surface given as triangles, by the same search as that of the back of a part.
+// Intersection of rays with an entrance surface given as triangles, with the same search as for the back of a part.
 
 #include "geometry/entrance/entrance_mesh.h"
 #include "raytrace/faces/back_surface.h"
@@ -8,7 +8,7 @@
 
 namespace retrace::raytrace {
 
-/// An entrance surface of plane triangles, searched as the back of a part is.
+/// An entrance surface of plane triangles. The search for the first triangle is that of BackSurface.
 class MeshEntrance : public EntranceFace {
  public:
   MeshEntrance(const geometry::SurfacePatch& patch, const geometry::Polygon& outline, const Vec2& centre_mm);
@@ -16,11 +16,11 @@ class MeshEntrance : public EntranceFace {
   std::optional<EntranceHit> first_hit(const SurfaceRay& ray) const override;
 
  private:
-  /// Whether the ray comes to the heights of the entrance surface from the side that it is on, and has time to cross
-  /// them.
+  /// Returns true if the ray passes through the whole range of heights of the surface, from its side, before `t_max`. It
+  /// then meets the surface, except for gaps between triangles by rounding.
   bool crosses(const SurfaceRay& ray) const;
 
-  geometry::Part part_;  ///< in heights above the lowest place
+  geometry::Part part_;  ///< heights are relative to the lowest point of the surface
   BackSurface surface_;
 };
 

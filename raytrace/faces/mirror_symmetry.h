@@ -1,13 +1,13 @@
 #pragma once
 
-// Whether a part is its own mirror image: light of mirrored directions is mirrored then, too.
+// Test for mirror symmetry of a part. If a part is symmetric, mirrored directions of incidence give mirrored results.
 
 #include "geometry/part/part.h"
 
 namespace retrace::raytrace {
 
-/// Whether the part is the same mirrored along an axis (0: x, 1: y), in the middle of a finite part, anywhere of one
-/// that repeats without end.
+/// Returns true if a part is symmetric about a plane normal to an axis (0: x, 1: y). For a finite part, the plane
+/// passes through its centre. For an infinite part, it may have any position.
 bool is_its_own_mirror_image(const geometry::Part& part, Eigen::Index axis);
 
 }  // namespace retrace::raytrace

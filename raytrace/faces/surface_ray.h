@@ -1,6 +1,6 @@
 #pragma once
 
-// Rays that look for a surface, and the facets that they start from and hit.
+// Rays for the search of a surface, and references to the facets where they start and end.
 
 #include <cstdint>
 #include <limits>
@@ -11,7 +11,8 @@ namespace retrace::raytrace {
 
 using geometry::Vec2, geometry::Vec3;
 
-/// A facet of the back surface: which placement of which patch, and which facet of that.
+/// Reference to a facet of the back surface: the index of a placement of a patch, and the index of the facet in the
+/// patch.
 struct FacetRef {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t placement = kNone;
@@ -20,13 +21,13 @@ struct FacetRef {
   friend bool operator==(const FacetRef&, const FacetRef&) = default;
 };
 
-/// A ray towards the back surface. It never hits the facet it starts from: that one is excluded by name, not by
-/// distance.
+/// A ray towards the back surface. It never hits the facet from which it starts. This facet is excluded by its index
+/// and not by distance.
 struct SurfaceRay {
   Vec3 origin = Vec3::Zero();
   Vec3 direction = Vec3::UnitZ();
   FacetRef source;
-  bool inside = true;  ///< in the part's material
+  bool inside = true;  ///< true if the ray is in the material of the part
   double t_max = std::numeric_limits<double>::infinity();
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Light with its complex field (Jones matrix) beside its Stokes parameters, for diffraction and interference in the far
-// field.
+// Light with its complex field (Jones matrix) in addition to its Stokes parameters. The field is needed for diffraction
+// and interference in the far field.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -11,12 +11,13 @@
 
 namespace retrace::raytrace {
 
-/// Amplitudes that leave for unit amplitudes that come in: rows along the axes of what leaves, columns along those of
-/// what came in. Time dependence exp(-i w t), as materials::FresnelCoefficients.
+/// Jones matrix: amplitudes of the outgoing light for unit amplitudes of the incident light. Rows refer to the axes of
+/// the outgoing light, columns to the axes of the incident light. The time dependence is exp(-i w t), as in
+/// materials::FresnelCoefficients.
 using JonesMatrix = Eigen::Matrix2cd;
 
-/// Light that remembers its field as well: what interfaces do to the Stokes parameters they do to the amplitudes. The
-/// rows of the matrix belong to s and p, the columns to the two axes of the source.
+/// Light with its field. Interfaces change the amplitudes in the same way as the Stokes parameters. The rows of the
+/// matrix refer to s and p, the columns to the two axes of the source.
 struct CoherentLight : Light {
   JonesMatrix jones = JonesMatrix::Identity();
 
@@ -36,7 +37,8 @@ struct CoherentLight : Light {
     turn_to_axis(direction, across / std::sqrt(norm2));
   }
 
-  /// \param share of the power that is left
+  /// Reduces the power of the light.
+  /// \param share fraction of the power that remains
   void scale(double share) {
     Light::scale(share);
     jones *= std::sqrt(share);

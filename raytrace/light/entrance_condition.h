@@ -1,6 +1,6 @@
 #pragma once
 
-// What lies on an entrance face that is not clean, and what its own surface is like (docs/theory/entrance.md).
+// Contamination and surface condition of an entrance face (docs/theory/entrance.md).
 
 #include <optional>
 #include <span>
@@ -11,52 +11,53 @@
 
 namespace retrace::raytrace {
 
-/// Water as caps of spheres. Light that meets one is followed through it.
+/// Water drops in the shape of spherical caps. Light that meets a drop is traced through it.
 struct Drops {
-  double coverage = 0.0;           ///< share of the face under them, 0..1
-  double contact_angle_rad = 1.0;  ///< between their surface and the face, at their rim; above 0, at most pi / 2
+  double coverage = 0.0;           ///< fraction of the face under drops, 0 to 1
+  double contact_angle_rad = 1.0;  ///< angle between drop and face at the rim; above 0, at most pi / 2
 };
 
-/// Spots that absorb a part of what falls on them and scatter the rest by Lambert's law.
+/// Dust particles. They absorb a part of the incident light and scatter the rest according to Lambert's law.
 struct Dust {
-  double coverage = 0.0;       ///< share of the face under it, 0..1
-  double albedo = 0.0;         ///< share of the light on it that it scatters
-  double forward_share = 0.0;  ///< of that: what goes on to its other side
+  double coverage = 0.0;       ///< fraction of the face under dust, 0 to 1
+  double albedo = 0.0;         ///< fraction of the incident light that is scattered
+  double forward_share = 0.0;  ///< fraction of the scattered light that continues to the other side of the dust
 };
 
-/// Light on its way through the air at a face that is thrown off: direction cosines along the face get a Gaussian shift
-/// exp(-shift^2 / spread^2); one that would leave the air's unit disc is not made.
+/// Haze: a fraction of the light in the air at the face is scattered. Its direction cosines along the face are shifted
+/// by a random vector with the density exp(-shift^2 / spread^2). Shifts to directions outside of the unit disc are
+/// omitted.
 struct Haze {
-  double share = 0.0;   ///< of the light of each passage that gets a shift, 0..1
-  double spread = 0.0;  ///< > 0 where there is a share
+  double share = 0.0;   ///< fraction of the light that is shifted at each passage, 0 to 1
+  double spread = 0.0;  ///< > 0 if `share` is > 0
 };
 
-/// The same across lines.
+/// Fine scratches. Light that meets a scratch is shifted as by Haze, but only perpendicular to the scratch.
 struct FineScratches {
-  double coverage = 0.0;                   ///< share of the face that they take, 0..1
-  double spread = 0.0;                     ///< > 0 where there are any
-  std::optional<double> azimuth_rad = {};  ///< of the lines, from +x; none: all directions alike
+  double coverage = 0.0;                   ///< fraction of the face under scratches, 0 to 1
+  double spread = 0.0;                     ///< > 0 if `coverage` is > 0
+  std::optional<double> azimuth_rad = {};  ///< direction of the scratches, from +x; none: random directions
 };
 
-/// The state of a flat entrance face. All shares at 0 and no layers: clean.
+/// Condition of a plane entrance face. The face is clean if all fractions are 0 and there are no layers.
 struct EntranceCondition {
-  /// Thick against the coherence of light, on the thin layers of the face, from the body outwards; water last, where
-  /// film_coverage says that there is some.
+  /// Layers that are thick compared with the coherence length of the light, from the body outwards. They are on top of
+  /// the thin layers of the face. If film_coverage is above 0, the last layer is water.
   std::vector<materials::ThickLayer> layers;
-  double film_coverage = 0.0;  ///< share of the face on which the last of `layers` lies
-  double water_index = 1.333;  ///< of drops
+  double film_coverage = 0.0;  ///< fraction of the face on which the last of `layers` is present
+  double water_index = 1.333;  ///< refractive index of the drops
   Drops drops;
   Dust dust;
   FineScratches scratches;
   Haze haze;
-  surface_models::ScatterModel roughness;  ///< of the bare face or of its thin layers
+  surface_models::ScatterModel roughness;  ///< roughness of the bare face or of its thin layers
 
   std::span<const materials::ThickLayer> layers_under_film() const {
     return std::span(layers).first(layers.size() - (film_coverage > 0.0 ? 1 : 0));
   }
   double spots() const { return drops.coverage + dust.coverage + scratches.coverage; }
   bool is_rough() const { return !std::holds_alternative<surface_models::Smooth>(roughness); }
-  /// Whether light leaves the face in more directions than a plane sends it to.
+  /// Returns true if the face sends light into other directions than a smooth plane does.
   bool scatters() const { return spots() > 0.0 || haze.share > 0.0 || is_rough(); }
   bool absorbs() const {
     for (const materials::ThickLayer& layer : layers)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Interface for what records the light that leaves a part, such as detectors and files of rays.
+// Interface of objects that record the light that leaves a part, such as detectors and files of rays.
 
 #include "raytrace/faces/surface_ray.h"
 #include "raytrace/light/ledger.h"
@@ -8,19 +8,21 @@
 
 namespace retrace::raytrace {
 
-/// Light that leaves the part for good.
+/// Light that leaves the part and does not meet it again.
 struct Departure {
-  Account account = Account::returned_elsewhere;  ///< retroreflected: inside the widest cone
-  const Vec3& position;   ///< on the face, relative to its centre in x and y; of an infinite part in some period of it
-  const Vec3& direction;  ///< in air, a unit vector
-  const Light& light;     ///< in units of that of the path when it began
-  Vec2 shift_mm = Vec2::Zero();  ///< of an infinite part: from `position` to where the path really is
+  Account account = Account::returned_elsewhere;  ///< `retroreflected` means inside the widest cone
+  /// Point on the face, relative to its centre in x and y. In an infinite part, it may be in any period.
+  const Vec3& position;
+  const Vec3& direction;         ///< unit vector in air
+  const Light& light;            ///< in units of the light at the start of the path
+  Vec2 shift_mm = Vec2::Zero();  ///< infinite parts: vector from `position` to the true position of the path
 
   bool is_through_entrance() const { return account != Account::side_exit && account != Account::transmitted; }
 };
 
-/// Told of light that leaves the part, path by path. Of what the entrance face sends back at once it is told where that
-/// face is curved or scatters, or where light comes from elsewhere than the beam; else that is the same for all paths.
+/// Receives the light that leaves the part, path by path. Light that the entrance face reflects from outside is
+/// normally the same for all paths and is not reported. It is reported if the face is curved or scatters, and for rays
+/// with directions of their own.
 class ExitObserver {
  public:
   virtual ~ExitObserver() = default;

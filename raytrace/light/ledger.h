@@ -1,6 +1,6 @@
 #pragma once
 
-// The ledger: the accounts in which all incident power ends, with their names in files.
+// The ledger: the accounts for all incident power, with their names in files.
 
 #include <array>
 #include <cstddef>
@@ -8,30 +8,30 @@
 
 namespace retrace::raytrace {
 
-/// Where incident power ends. Every bit of it is in exactly one account, and they add to 1.
+/// Accounts for incident power. All power ends in exactly one account, and the accounts add up to 1.
 enum class Account : std::size_t {
   retroreflected,      ///< left through the entrance face inside the acceptance cone
   front_specular,      ///< reflected by the entrance face from outside, outside the cone
   scattered_out,       ///< left through the entrance face outside the cone after a non-specular event
-  returned_elsewhere,  ///< the rest that left through the entrance face
+  returned_elsewhere,  ///< other light that left through the entrance face
   side_exit,           ///< left through sides and border walls
-  transmitted,         ///< left through facets, inner walls and flat backs
+  transmitted,         ///< left through facets, inner walls and flat parts of the back
   absorbed,
-  truncated,  ///< below the weight cut-off or past the bounce cap
-  lost        ///< missed every face from inside: 0 in a sound run
+  truncated,  ///< not traced further: power below the cut-off, or too many interfaces
+  lost        ///< missed every face from inside the part; 0 unless there is a defect
 };
 
 inline constexpr std::size_t kAccountCount = 9;
 
-/// `lost` above which a run counts as unsound.
+/// Maximum `lost` power of a valid run.
 inline constexpr double kLostLimit = 1e-9;
 
-/// The accounts' names in files, in the order of the enumeration.
+/// Names of the accounts in files, in the order of the enumeration.
 inline constexpr std::array<std::string_view, kAccountCount> kAccountNames = {
     "retroreflected", "front_specular", "scattered_out", "returned_elsewhere", "side_exit", "transmitted",
     "absorbed",       "truncated",      "lost"};
 
-/// Power by account, as a share of the incident power.
+/// Power by account, as a fraction of the incident power.
 struct Ledger {
   std::array<double, kAccountCount> power{};
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Polarised light at interfaces: Stokes parameters in the plane of incidence, reflected and transmitted by Fresnel's
-// formulas.
+// Polarized light at interfaces: Stokes parameters along the axes of the plane of incidence, with reflection and
+// transmission by Fresnel's formulas.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -15,12 +15,12 @@ namespace retrace::raytrace {
 
 using geometry::Vec2, geometry::Vec3;
 
-/// Power and polarisation of light of one direction: Stokes parameters along s and p = direction x s.
+/// Power and polarization of light with one direction: Stokes parameters along the axes s and p = direction x s.
 ///
-/// Averaging reflectances of s and p at every interface would be wrong after the second one: the first interface
-/// polarises, and the next has another plane of incidence.
+/// The polarization is stored because each interface polarizes the light, and the next interface has a different plane
+/// of incidence. Mean reflectances of s and p would therefore be wrong after the first interface.
 struct Light {
-  /// Squared sine of the incidence below which s and p are alike and any axis serves.
+  /// Squared sine of the angle of incidence below which s and p have equal coefficients, and the axes are not changed.
   static constexpr double kNormalIncidence = 1e-16;
 
   Stokes stokes = kUnpolarised;
@@ -29,7 +29,7 @@ struct Light {
   double power() const { return stokes.i; }
   void scale(double factor) { stokes = factor * stokes; }
 
-  /// Describes the same light with its s axis along `axis`, a unit vector across `direction`.
+  /// Expresses the same light with the s axis along `axis`, a unit vector perpendicular to `direction`.
   void turn_to_axis(const Vec3& direction, const Vec3& axis) {
     const double c = axis.dot(s_axis);
     const double s = axis.dot(direction.cross(s_axis));
@@ -41,7 +41,7 @@ struct Light {
     s_axis = axis;
   }
 
-  /// The same with the s axis normal to the plane of incidence at an interface.
+  /// Expresses the same light with the s axis perpendicular to the plane of incidence at an interface.
   void turn_to(const Vec3& direction, const Vec3& normal) {
     const Vec3 across = direction.cross(normal);
     const double norm2 = across.squaredNorm();
@@ -57,7 +57,7 @@ struct Light {
   }
 
  private:
-  /// \param cross product of the amplitude factor of s with the conjugate one of p
+  /// \param cross amplitude coefficient of s times the conjugate amplitude coefficient of p
   Light passed(double power_s, double power_p, std::complex<double> cross) const {
     const double s = 0.5 * (stokes.i + stokes.q) * power_s;
     const double p = 0.5 * (stokes.i - stokes.q) * power_p;

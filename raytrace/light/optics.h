@@ -1,6 +1,6 @@
 #pragma once
 
-// The optical properties of a part at one wavelength, and the direction and polarisation of the incident beam.
+// The optical properties of a part at one wavelength, and the direction and polarization of the incident beam.
 
 #include <memory>
 
@@ -19,52 +19,52 @@ namespace retrace::raytrace {
 
 struct WetBack;
 
-/// What the part is made of and how its faces treat light, at one wavelength.
+/// Optical properties of the body and the faces of a part, at one wavelength.
 struct Optics {
-  double index = 1.0;              ///< of the body, relative to the air around it; >= 1
-  double back_index = 1.0;         ///< of what lies behind the back surface, likewise; air is in front and at the sides
+  double index = 1.0;              ///< refractive index of the body, relative to the air around it; >= 1
+  double back_index = 1.0;         ///< refractive index of the medium behind the back, relative to the air
   double absorption_per_mm = 0.0;  ///< Napierian, for power
-  bool mirror_facets = false;      ///< retro facets reflect everything
-  materials::LayerStack facet_layers;     ///< on the retro facets, one of which may be opaque
-  materials::LayerStack entrance_layers;  ///< on the entrance face, all of which let light through
-  EntranceCondition entrance;             ///< what else the entrance face is like
+  bool mirror_facets = false;      ///< retro facets reflect all light
+  materials::LayerStack facet_layers;     ///< layers on the retro facets; one of them may be opaque
+  materials::LayerStack entrance_layers;  ///< layers on the entrance face; all of them transmit light
+  EntranceCondition entrance;             ///< further properties of the entrance face
   bool lossless_entrance = false;         ///< entrance refracts with T = 1; light beyond the critical angle ends there
-  bool absorbing_walls = false;           ///< walls of elements and of the border let no light go on
-  surface_models::ScatterModel facet_scatter;  ///< what the texture of retro facets does
-  surface_models::FacetForm facet_form;        ///< by which retro facets of elements depart from their planes
-  double wavelength_nm = 587.56;               ///< in vacuum; matters to scatter alone
-  std::shared_ptr<const WetBack> wet;          ///< behind some elements; null: all backs are alike
+  bool absorbing_walls = false;           ///< walls of elements and of the border absorb all light
+  surface_models::ScatterModel facet_scatter;  ///< scattering by the texture of retro facets
+  surface_models::FacetForm facet_form;        ///< deviation of retro facets from their planes
+  double wavelength_nm = 587.56;               ///< in vacuum; used only for scattering
+  std::shared_ptr<const WetBack> wet;          ///< elements with a different medium behind them; null if there are none
 
-  /// Index before over index after, at a face of the back surface.
+  /// Returns the index before divided by the index after a face of the back surface.
   double ratio_at_back(bool inside) const { return inside ? index / back_index : back_index / index; }
-  /// Whether border walls, below z = 0, treat light otherwise than the plate's sides above them.
+  /// Returns true if border walls, below z = 0, have other optical properties than the sides of the plate above them.
   bool border_walls_differ() const { return absorbing_walls || back_index != 1.0; }
-  /// Whether every beam stays a beam at the facets ...
+  /// Returns true if facets do not scatter, so that a beam remains a beam at each facet.
   bool is_smooth() const { return std::holds_alternative<surface_models::Smooth>(facet_scatter); }
-  /// ... where retro facets do to light what planes do ...
+  /// Returns true if retro facets act as smooth planes.
   bool has_plane_facets() const { return is_smooth() && facet_form.is_plane(); }
-  /// ... where all backs are alike, as beams and cells know them ...
+  /// Returns true if the medium behind all elements is the same.
   bool has_one_back() const { return wet == nullptr; }
-  /// ... and at every face of the part.
+  /// Returns true if no face of the part scatters, and retro facets are plane with the same medium behind them.
   bool keeps_beams() const { return has_plane_facets() && has_one_back() && !entrance.scatters(); }
-  /// Whether nothing lies on the entrance face.
+  /// Returns true if there are no layers on the entrance face.
   bool has_bare_entrance() const { return entrance_layers.empty() && entrance.layers.empty(); }
   bool entrance_absorbs() const { return entrance_layers.absorbs() || entrance.absorbs(); }
 };
 
-/// Elements with another medium behind them. What ends the one medium and begins the other is not modelled: light on
-/// its way from behind an element to another meets each facet from what lies behind that facet.
+/// Elements with a different medium behind them. The boundary between the media is not modelled. Light that travels
+/// behind the part from one element to another meets each facet in the medium of that facet.
 struct WetBack {
-  Optics optics;  ///< of these elements: as those of the others but for the back's index and what follows from it
+  Optics optics;  ///< optics of these elements; they differ only by the index behind the back and its consequences
   std::shared_ptr<const geometry::ChosenElements> elements;
 };
 
-/// Where the light comes from: the source lies in direction (sin t cos p, sin t sin p, cos t) of the part frame, with
-/// t the incidence angle (negative: the other side) and p the azimuth.
+/// Direction and polarization of the incident light. The source is in the direction (sin t cos p, sin t sin p, cos t)
+/// of the part frame. t is the incidence angle, which may be negative, and p is the azimuth.
 struct Illumination {
   Angle incidence;
   Angle azimuth;
-  Stokes stokes = kUnpolarised;  ///< of power 1, along source_axis()
+  Stokes stokes = kUnpolarised;  ///< Stokes parameters of power 1, with source_axis() as first axis
 };
 
 }  // namespace retrace::raytrace

@@ -1,12 +1,12 @@
 #pragma once
 
-// When Monte-Carlo paths split in two and when they end.
+// Criteria by which Monte Carlo paths split and end.
 
 #include <cstdint>
 
 namespace retrace::raytrace {
 
-/// How paths are followed.
+/// Parameters for the tracing of paths.
 struct PathPolicy {
   double cutoff = 1e-10;      ///< power below which a path ends in `truncated`
   double split_power = 1e-2;  ///< both branches of an interface are followed while each carries at least this
