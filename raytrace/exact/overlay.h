@@ -1,6 +1,7 @@
 #pragma once
 
-// Lays convex polygons with values over each other into disjoint pieces with summed values, as the footprint needs it.
+// Overlay of convex polygons with values. The result is a set of disjoint polygons with summed values, which is used
+// for footprints.
 
 #include <memory>
 #include <vector>
@@ -9,25 +10,25 @@
 
 namespace retrace::raytrace {
 
-/// A convex polygon, counter-clockwise, and what holds all over it.
+/// A convex, counter-clockwise polygon and a value that is constant over it.
 struct ValuedPolygon {
   FlatPolygon polygon;
   double value = 0.0;
 };
 
-/// Lays convex polygons over each other: keeps disjoint ones whose values add where the given ones overlap. The sum of
-/// area times value is kept to rounding.
+/// Overlay of convex polygons. It stores disjoint polygons. Where inserted polygons overlap, their values are added.
+/// The sum of area times value is preserved except for rounding.
 class Overlay {
  public:
-  /// \param size_mm the scale for tolerances: corners within 1e-11 of it are one, pieces below 1e-13 of its square are
-  ///        rounding and left out
+  /// \param size_mm length scale of tolerances: corners closer than 1e-11 size_mm are merged, and polygons with an area
+  ///        below 1e-13 size_mm^2 are omitted as rounding errors
   explicit Overlay(double size_mm);
   ~Overlay();
 
   /// \pre `polygon` is convex and counter-clockwise
   void insert(const FlatPolygon& polygon, double value);
 
-  /// The disjoint polygons. Which they are depends on the order of insertion, not on anything else.
+  /// Returns the disjoint polygons. The subdivision depends on the order of insertion.
   std::vector<ValuedPolygon> pieces() const;
 
  private:
@@ -35,8 +36,9 @@ class Overlay {
   std::unique_ptr<Hidden> hidden_;
 };
 
-/// Joins disjoint convex polygons across whole common edges where the values agree within `value_tolerance` and the
-/// union is convex. \param size_mm as for Overlay
+/// Joins disjoint convex polygons that have a whole edge in common. Their values must agree within `value_tolerance`,
+/// and their union must be convex.
+/// \param size_mm as for Overlay
 std::vector<ValuedPolygon> fused(const std::vector<ValuedPolygon>& pieces, double size_mm, double value_tolerance);
 
 }  // namespace retrace::raytrace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Finds values at points again within a tolerance, such as beams of the same direction.
+// Search of values by points within a tolerance, for example of beams with the same direction.
 
 #include <array>
 #include <cmath>
@@ -11,16 +11,16 @@
 
 namespace retrace::raytrace {
 
-/// Values at points, found again within a tolerance in each coordinate.
+/// Values at points. A search finds all points within a tolerance in each coordinate.
 template <class Value>
 class PointLookup {
  public:
-  /// \param tolerance > 0, and far above the rounding of the coordinates
+  /// \param tolerance > 0, and much larger than the rounding errors of the coordinates
   explicit PointLookup(double tolerance) : tolerance_(tolerance), cell_(8.0 * tolerance) {}
 
   void insert(const geometry::Vec3& p, Value value) { entries_.emplace(key_of(p), Entry{p, std::move(value)}); }
 
-  /// Calls visit(value) for every value whose point lies within the tolerance of `p`, in no given order.
+  /// Calls visit(value) for every value whose point is within the tolerance of `p`, in arbitrary order.
   template <class Visit>
   void visit(const geometry::Vec3& p, const Visit& visit) const {
     const geometry::Vec3 reach = geometry::Vec3::Constant(tolerance_);

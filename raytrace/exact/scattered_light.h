@@ -1,6 +1,7 @@
 #pragma once
 
-// What rough facets scatter out of beams, for who follows beams and not what becomes of that light.
+// Interface for tracing the light that rough facets scatter out of beams. The beam tracer depends only on this
+// interface.
 
 #include <cstdint>
 #include <memory>
@@ -13,23 +14,23 @@
 
 namespace retrace::raytrace {
 
-/// Follows the scattered light of one replicate. For one thread.
+/// Traces the scattered light of one replicate. Not thread-safe.
 class ScatteredReplicate {
  public:
   virtual ~ScatteredReplicate() = default;
 
-  /// All that these sites scatter, in pieces of at most `most_power`. Stops half way if it was cancelled.
+  /// Traces all light that the sites scatter, in rays with at most the power `most_power`. Stops early if cancelled.
   virtual void launch(const std::vector<ScatterSite>& sites, double most_power) = 0;
-  /// Of all that was launched.
+  /// Returns the sums over all light traced so far.
   virtual const Tally& tally() const = 0;
 };
 
-/// Follows the scattered light of one direction of incidence. A value shared by all threads.
+/// Traces the scattered light of one direction of incidence. All threads may share one object.
 class ScatteredLight {
  public:
   virtual ~ScatteredLight() = default;
 
-  /// \param key of the random numbers of this replicate and round
+  /// \param key key of the random numbers of this replicate and round
   virtual std::unique_ptr<ScatteredReplicate> replicate(RandomKey key, std::uint32_t number, std::uint32_t round,
                                                         const Cancellation* cancel) const = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// The fields of cells at many directions at once.
+// Far fields of cells, computed for many directions at a time.
 
 #include <Eigen/Core>
 #include <span>
@@ -12,20 +12,23 @@
 
 namespace retrace::raytrace {
 
-/// What groups send into directions, each group's polygons by their fields and the groups by their powers. Cells
-/// differ by weak light from their neighbours while their strong light is the same: of polygons that several cells
-/// send out the same way the transform is worked out once. Groups of resampled beams are kept apart by replicate.
+/// Power that groups of polygons send into directions. The fields of the polygons of a group are added, and the powers
+/// of the groups are added. Different cells often have the same strong polygons and differ only in weak ones. The
+/// transform of a polygon is therefore computed one time for all cells that have it. Groups of resampled beams are
+/// separated by replicate.
 class ApertureField {
  public:
   ApertureField() = default;
-  /// \param coherency of the incident light along the axes of the source
-  /// \param same_mm polygons whose corners differ by less are one \param replicates of resampled beams
+  /// \param coherency coherency matrix of the incident light along the axes of the source
+  /// \param same_mm polygons are treated as equal if their corners differ by less than about this distance
+  /// \param replicates number of replicates of resampled beams
   ApertureField(const std::vector<CoherentGroup>& groups, double wavelength_mm, const Eigen::Matrix2cd& coherency,
                 double same_mm, std::size_t replicates = 0);
 
   bool empty() const { return fields_.empty(); }
-  /// Power by the cosines of directions, of the mean field: a row each. The first column is what was followed exactly,
-  /// the others are replicates over their number, so that all columns add up to the mean. Zeros if it was cancelled.
+  /// Returns the power of the mean field per unit area of direction cosines. Each row belongs to a direction. The first
+  /// column is the power of beams that were traced exactly. The other columns are the replicates divided by their
+  /// number, so that the sum of a row is the mean. Rows are 0 if the computation was cancelled.
   Eigen::ArrayXXd per_cosines(std::span<const geometry::Vec2> cosines, const Cancellation* cancel) const;
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 
-// The finite discs of source and receiver in photometry, as a weight over the angle between two directions.
+// Effect of the finite discs of source and receiver in photometry, as a weight function of the angle between
+// directions.
 
 #include <vector>
 
@@ -9,41 +10,43 @@
 
 namespace retrace::raytrace {
 
-/// Angular diameters of source and receiver, as discs, seen from the part.
+/// Angular diameters of the discs of source and receiver, as seen from the part.
 struct PhotometricApertures {
   Angle source;
   Angle receiver;
 };
 
-/// 2 J1(x) / x: the Fourier transform of the unit disc over its area.
+/// Returns 2 J1(x) / x, the Fourier transform of the unit disc divided by its area.
 double disc_transform(double x);
 
-/// What a source and a receiver of finite size make of a direction: the mean over both discs. A pattern moves with its
-/// source, so that the mean is a convolution with the density of the difference of two points, one in each disc - the
-/// area that the discs share when moved apart, over the product of their areas.
+/// Weight function for averages over the discs of source and receiver. If the source moves, the pattern of the returned
+/// light moves with it. The average is therefore a convolution with the density of the difference between two random
+/// points, one in each disc. This density is the area of the overlap of the displaced discs divided by the product of
+/// their areas.
 class ApertureKernel {
  public:
   /// \pre both diameters >= 0, one of them > 0, both small angles
   explicit ApertureKernel(const PhotometricApertures& apertures);
 
-  /// Density per steradian at an angular separation. Its integral is 1.
+  /// Returns the density per steradian at an angular separation. Its integral is 1.
   double per_sr(double separation_rad) const;
-  /// Its Fourier transform: what it leaves of a wave over the plane of angles, 1 at 0.
+  /// Returns the Fourier transform of the density in the plane of angles. It is 1 at 0.
   double transform(double rad_per_rad) const;
-  /// Half angle beyond which it is 0.
+  /// Returns the angular separation above which the density is 0.
   double reach_rad() const { return larger_rad_ + smaller_rad_; }
 
   struct Node {
     geometry::Vec2 offset_rad = geometry::Vec2::Zero();
     double weight = 0.0;
   };
-  /// Points for means over the kernel, with weights that add to 1: Gauss-Legendre rules along the radius on either side
-  /// of the kink, even steps round. \param detail_rad how far apart the finest details of what is averaged lie, > 0
+  /// Returns points for averages over the kernel, with weights that add up to 1. They are Gauss-Legendre points along
+  /// the radius, on both sides of the kink of the density, and uniform steps in azimuth.
+  /// \param detail_rad width of the finest details of the averaged function, > 0
   std::vector<Node> nodes(double detail_rad) const;
 
  private:
-  double larger_rad_ = 0.0;   ///< radius
-  double smaller_rad_ = 0.0;  ///< likewise
+  double larger_rad_ = 0.0;   ///< radius of the larger disc
+  double smaller_rad_ = 0.0;  ///< radius of the smaller disc
 };
 
 /// Nodes and weights of the Gauss-Legendre rule on [0, 1]. \pre count > 0

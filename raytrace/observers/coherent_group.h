@@ -1,6 +1,6 @@
 #pragma once
 
-// What of the returned light interferes: the plane waves through polygons that one cell sends back.
+// Coherent parts of the returned light: plane waves through polygons that one cell returns.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,41 +13,42 @@
 
 namespace retrace::raytrace {
 
-/// A facet with a texture or a form on the way of light that leaves the entrance face at a place r: where it was met,
-/// constant_mm + slope r, and what the heights there did to its phase.
+/// A facet with a texture or a form that light has met before it leaves the entrance face at a point r. The light met
+/// the facet at constant_mm + slope r. The other data describe the phase shift by the heights of the facet.
 struct FieldHit {
-  Vec3 normal = Vec3::UnitZ();  ///< of the facet's plane normal . p = offset_mm
+  Vec3 normal = Vec3::UnitZ();  ///< normal of the facet's plane normal . p = offset_mm
   double offset_mm = 0.0;
   Vec3 constant_mm = Vec3::Zero();
   Eigen::Matrix<double, 3, 2> slope = Eigen::Matrix<double, 3, 2>::Zero();
   surface_models::PhaseTexture phase;
-  /// The same place in the frame of the facet's form, and by how much a height there lengthens the way; 0: no form.
+  /// The same point in the frame of the facet's form is form_constant_mm + form_slope r. `path_per_height` is the
+  /// change of the optical path per height of the form; it is 0 for facets without a form.
   Vec2 form_constant_mm = Vec2::Zero();
   Eigen::Matrix2d form_slope = Eigen::Matrix2d::Zero();
   double path_per_height = 0.0;
 };
 
-/// A plane wave through a convex polygon of the entrance face: part of the field that a cell sends back.
+/// A plane wave through a convex polygon of the entrance face. It is a part of the field that a cell returns.
 struct FieldPolygon {
   PolygonTransform transform;
-  geometry::Vec2 cosines;  ///< of its direction along x and y
-  JonesMatrix amplitude;   ///< times the square root of the density of power, with the phase at the origin
-  double power = 0.0;      ///< for the polarisation of the incident light
-  /// Textured and formed facets on its way. Amplitude and power are those before their phases.
+  geometry::Vec2 cosines;  ///< x and y components of its unit direction
+  JonesMatrix amplitude;   ///< Jones matrix times the square root of the power density, with the phase at the origin
+  double power = 0.0;      ///< power for the polarization of the incident light
+  /// Facets with texture or form on the path. `amplitude` and `power` do not include the phase shifts of these facets.
   std::vector<FieldHit> hits;
-  double phase_variance = 0.0;  ///< that they make
-  double mean_factor = 1.0;     ///< on the amplitude, by averaging over their phases
+  double phase_variance = 0.0;  ///< variance of the phase by all textures of `hits`
+  double mean_factor = 1.0;     ///< factor of the mean amplitude, exp(-phase_variance / 2)
 };
 
-/// All that interferes: the light of one cell by paths of about the same length.
+/// Light that interferes: the light of one cell on paths of nearly equal optical length.
 struct CoherentGroup {
   std::vector<FieldPolygon> polygons;
-  double copies = 1.0;     ///< cells that send back the same, or of resampled light what comes back by the same way
-  double extent_mm = 0.0;  ///< diameter of the circle round all polygons, about their common middle
-  std::optional<std::uint32_t> replicate = {};  ///< of a resampled beam; its power is then over their number
+  double copies = 1.0;     ///< number of cells with this field; for resampled light, number of equal beams
+  double extent_mm = 0.0;  ///< diameter of a circle about the common centroid that contains all polygons
+  std::optional<std::uint32_t> replicate = {};  ///< set for a resampled beam; powers are divided by their number
 
-  double power() const;           ///< of all copies
-  double specular_power() const;  ///< of it what the mean field carries
+  double power() const;           ///< returns the power of all copies
+  double specular_power() const;  ///< returns the power of the mean field of all copies
 };
 
 }  // namespace retrace::raytrace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Detector maps: where on the entrance face light leaves and entered, and in which directions it comes back.
+// Detector maps: where the returned light leaves and entered the entrance face, and its directions.
 
 #include <cstdint>
 #include <vector>
@@ -15,40 +15,41 @@
 
 namespace retrace::raytrace {
 
-/// What a detector over the entrance face records of the light that comes back, for one direction of incidence.
+/// Settings of a detector that records the returned light for one direction of incidence.
 struct DetectorSetting {
-  PixelGrid face;         ///< over the entrance face, or over one period of it
-  DirectionGrid angles;   ///< around the direction back to the source
-  ReturnFrame frame;      ///< of that direction
-  double acceptance_deg;  ///< half angle of the cone that the two maps of the face count, as RRE does
+  PixelGrid face;         ///< pixels on the entrance face, or on one period of it
+  DirectionGrid angles;   ///< bins of directions around the direction to the source
+  ReturnFrame frame;      ///< axes around the direction to the source
+  double acceptance_deg;  ///< half angle of the acceptance cone; the maps of the face contain only light in this cone
 };
 
-/// Pixel values and the standard error of each; that is empty where nothing was sampled.
+/// Pixel values and their standard errors. `std_error` is empty if the values are not sampled.
 struct PixelValues {
   std::vector<double> value;
   std::vector<double> std_error;
 };
 
-/// Maps of what comes back. Irradiances are relative to that of the beam on the entrance face.
+/// Maps of the returned light. Irradiances are relative to the irradiance of the incident beam on the entrance face.
 struct DetectorMaps {
-  PixelValues leaving;   ///< irradiance by where light leaves; its mean over the face is RRE
-  PixelValues entering;  ///< the same light by where it entered: the footprint, dead spots dark
-  PixelValues per_sr;    ///< share of the incident power per steradian, of all directions; by the bins of `angles`
-  double outside = 0.0;  ///< share of the incident power that leaves beyond `angles`
+  PixelValues leaving;   ///< irradiance at the points where light leaves; its mean over the face is the RRE
+  PixelValues entering;  ///< irradiance of the same light at the points where it entered: the footprint
+  PixelValues per_sr;    ///< fraction of the incident power per steradian, in the bins of `angles`; for all directions
+  double outside = 0.0;  ///< fraction of the incident power that leaves in directions outside of `angles`
   double rre = 0.0;
-  double std_error = 0.0;  ///< of it
+  double std_error = 0.0;  ///< standard error of `rre`
   double truncated = 0.0;
-  std::uint64_t rays = 0;  ///< or beams
+  std::uint64_t rays = 0;  ///< number of rays or beams
   bool complete = true;
 };
 
-/// By beams of polygonal cross-section: every pixel holds the exact share of the polygons that cover it.
+/// Computes the maps from beams of polygonal cross-section. Pixels contain the exact area that polygons cover.
 /// \throw BudgetError as BeamTracer::trace()
 DetectorMaps exact_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
                                  const DetectorSetting& setting, const BeamPolicy& policy,
                                  const Cancellation* cancel = nullptr);
 
-/// By paths, 32 independent replicates of an equal number of them. \throw BudgetError if power is lost
+/// Computes the maps from rays, in 32 independent replicates with equal numbers of rays.
+/// \throw BudgetError if power is lost
 DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
                                    const DetectorSetting& setting, std::uint64_t rays, std::uint32_t seed,
                                    const PathPolicy& policy, Progress* progress = nullptr,

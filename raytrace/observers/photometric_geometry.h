@@ -8,12 +8,13 @@
 
 namespace retrace::raytrace {
 
-/// The goniometer system of CIE 54.2 and ASTM E808: the source stands still, the observer lies `alpha` above it; the
-/// part turns by `beta1` about the horizontal first axis, then by `beta2` about the second axis, which moves with it,
-/// then by `epsilon` about its own normal.
+/// The goniometer system of CIE 54.2 and ASTM E808. The source is fixed, and the observer is located `alpha` above it.
+/// The part is rotated by `beta1` about the horizontal first axis, then by `beta2` about the second axis, which moves
+/// with the part, and then by `epsilon` about its normal.
 ///
-/// The part's datum mark is its +y axis, which points upwards at epsilon = 0; beta1 > 0 tilts the normal towards the
-/// observer, beta2 > 0 towards +x; epsilon > 0 turns the part counter-clockwise as seen from the source.
+/// The part's datum mark is its +y axis, which points upwards at epsilon = 0. A positive beta1 tilts the normal towards
+/// the observer, and a positive beta2 tilts it towards +x. A positive epsilon rotates the part counter-clockwise as
+/// seen from the source.
 struct PhotometricGeometry {
   Angle alpha;    ///< observation angle, 0 to 180 degrees
   Angle beta1;    ///< -180 to 180 degrees
@@ -21,20 +22,20 @@ struct PhotometricGeometry {
   Angle epsilon;  ///< -180 to 180 degrees
 };
 
-/// Directions from the part to source and observer, in the part frame; unit vectors.
+/// Unit vectors from the part to source and observer, in the part frame.
 struct PhotometricDirections {
   geometry::Vec3 to_source = geometry::Vec3::UnitZ();
   geometry::Vec3 to_observer = geometry::Vec3::UnitZ();
 };
 
-/// How UN regulations and SAE standards give the entrance angle: V > 0 is light from above, H > 0 light from +x, the
-/// right as seen from the light. beta1 = -V, beta2 = -H.
+/// Entrance angles of UN regulations and SAE standards. V > 0 means light from above. H > 0 means light from +x, which
+/// is to the right as seen from the light. beta1 = -V, beta2 = -H.
 struct EntranceAngles {
   Angle v;
   Angle h;
 };
 
-/// How this project gives the direction to the source.
+/// Direction to the source as in design files.
 struct SourceAngles {
   Angle incidence;  ///< 0 to 180 degrees
   Angle azimuth;    ///< -180 to 180 degrees; 0 at normal incidence
@@ -44,16 +45,16 @@ PhotometricGeometry geometry_from(const EntranceAngles& entrance, Angle alpha, A
 EntranceAngles entrance_angles(const PhotometricGeometry& geometry);
 
 PhotometricDirections directions_of(const PhotometricGeometry& geometry);
-/// The inverse. Where it is not unique: at alpha = 0 the observation half plane is taken through the datum mark, so
-/// that epsilon is 0 where the normal allows.
+/// Returns the inverse of directions_of(). At alpha = 0, the observation half-plane is not unique. It is then chosen to
+/// contain the datum mark, so that epsilon is 0 if possible.
 PhotometricGeometry geometry_of(const PhotometricDirections& directions);
 
 SourceAngles source_angles(const geometry::Vec3& to_source);
 
-/// Directions around the return as the observer's half plane orders them: `up` is where the observer lies.
+/// Returns the axes around the direction to the source for this observer: `up` points towards the observer.
 ReturnFrame return_frame(const PhotometricGeometry& geometry);
 
-/// Viewing angle nu, between the normal and the observation axis.
+/// Returns the viewing angle nu between the normal and the observation axis.
 Angle viewing_angle(const PhotometricGeometry& geometry);
 
 }  // namespace retrace::raytrace

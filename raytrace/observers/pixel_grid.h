@@ -1,6 +1,6 @@
 #pragma once
 
-// Pixels over the plane of the part, and the exact area that a polygon covers of each.
+// Pixels in the plane of the part, and the exact area of each pixel that a polygon covers.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace retrace::raytrace {
 
-/// Equal pixels over a rectangle of the part's plane: row 0 at the largest y, column 0 at the smallest x, as
-/// they look from above the entrance face with +x to the right.
+/// Equal pixels of a rectangle in the plane of the part. Row 0 has the largest y, and column 0 the smallest x. This is
+/// the view from above the entrance face with +x to the right.
 class PixelGrid {
  public:
-  /// \pre bounds not empty, columns and rows > 0
+  /// \pre the bounds are not empty, columns and rows are > 0
   PixelGrid(const geometry::Rectangle& bounds_mm, std::size_t columns, std::size_t rows);
 
   std::size_t columns() const { return columns_; }
@@ -25,11 +25,11 @@ class PixelGrid {
   double pixel_area_mm2() const { return pixel_mm_.prod(); }
   geometry::Rectangle pixel_mm(std::size_t column, std::size_t row) const;
 
-  /// The pixel that holds a point; nothing outside. The grid's right and lower borders belong to it.
+  /// Returns the pixel that contains a point, or nothing outside. The right and lower borders belong to the grid.
   std::optional<std::size_t> pixel_at(const geometry::Vec2& point_mm) const;
 
-  /// Calls `add(pixel, area_mm2)` for every pixel that a convex polygon covers, with the area of it that lies there:
-  /// exact but for rounding, so that the areas add up to that of the polygon within the grid.
+  /// Calls `add(pixel, area_mm2)` for every pixel that a convex polygon covers, with the covered area. The areas are
+  /// exact except for rounding. They add up to the area of the polygon inside the grid.
   void cover(const geometry::Polygon& polygon_mm, const std::function<void(std::size_t, double)>& add) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// Fourier transform of a polygonal aperture in closed form: its diffraction pattern.
+// Fourier transform of a polygonal aperture in closed form, which is its diffraction pattern.
 
 #include <complex>
 #include <vector>
@@ -9,14 +9,15 @@
 
 namespace retrace::raytrace {
 
-/// The Fourier transform of a polygon, integral of exp(-i kappa . r) over its area, in closed form: the divergence
-/// theorem makes it a sum over the edges (Lee and Mittra, IEEE Trans. Antennas Propag. 31, 99 (1983)).
+/// Fourier transform of a polygon: the integral of exp(-i kappa . r) over its area. The divergence theorem converts it
+/// into a sum over the edges (Lee and Mittra, IEEE Trans. Antennas Propag. 31, 99 (1983)).
 class PolygonTransform {
  public:
-  /// \param polygon counter-clockwise, any number of corners from 3 on
+  /// \param polygon counter-clockwise, with at least three corners
   explicit PolygonTransform(const geometry::Polygon& polygon);
 
-  /// \param kappa in radians per mm \return in mm^2
+  /// Returns the transform in mm^2.
+  /// \param kappa in radians per mm
   std::complex<double> at(const geometry::Vec2& kappa) const;
 
   double area_mm2() const { return area_mm2_; }
@@ -28,7 +29,7 @@ class PolygonTransform {
   geometry::Polygon corners_;
   geometry::Vec2 centroid_mm_;
   double area_mm2_ = 0.0;
-  double size_mm_ = 0.0;  ///< greatest distance of a corner from the centroid
+  double size_mm_ = 0.0;  ///< maximum distance of a corner from the centroid
 };
 
 }  // namespace retrace::raytrace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Angles to the right and upwards around the direction back to the source: the axes of far fields and angular maps.
+// Angles to the right and upwards around the direction to the source. They are the axes of far fields and angular maps.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -9,8 +9,9 @@
 
 namespace retrace::raytrace {
 
-/// Directions around the one back to the source, as angles to the right and upwards: the polar angles of the deviation
-/// drawn as a plane radius (azimuthal equidistant), which keeps observation angles.
+/// Axes for directions around the direction to the source. A direction is described by two angles, to the right and
+/// upwards. Their norm is the angle from the direction to the source, the observation angle (azimuthal equidistant
+/// projection).
 struct ReturnFrame {
   geometry::Vec3 to_source = geometry::Vec3::UnitZ();
   geometry::Vec3 right = geometry::Vec3::UnitX();

@@ -1,6 +1,6 @@
 #pragma once
 
-// The angle between directions, to all digits where it is small.
+// Angle between two directions, accurate for small angles.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,8 @@
 
 namespace retrace::raytrace {
 
-/// \pre unit vectors
+/// Returns the angle between two directions, accurate for small angles.
+/// \pre both are unit vectors
 inline double small_angle_between(const geometry::Vec3& a, const geometry::Vec3& b) {
   return 2.0 * std::asin(std::min(1.0, 0.5 * (a - b).norm()));
 }
