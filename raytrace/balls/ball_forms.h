@@ -1,6 +1,6 @@
 #pragma once
 
-// Closed forms for retroreflecting balls: return error, paraxial focus, share of the aperture that comes back, packing.
+// Formulas for retroreflecting balls: return error, paraxial focus, retroreflecting fraction of the aperture, packing.
 
 #include <optional>
 
@@ -8,29 +8,31 @@
 
 namespace retrace::raytrace {
 
-/// Closed forms of a ball with a concentric mirror, for light in the plane through its centre that goes in, meets the
-/// mirror once and leaves (docs/theory/beads.md). Heights are distances of the incident ray from the centre over the
-/// ball's radius, 0 to 1; indices are relative to air.
+/// The formulas hold for a ball with a concentric mirror. The light travels in a plane through the centre of the ball,
+/// enters, meets the mirror one time and leaves (docs/theory/beads.md). A height is the distance of the incident ray
+/// from the centre divided by the radius, 0 to 1. Indices are relative to air.
 
-/// By how much the light that leaves is turned away from the one back to the source: positive where it crosses the axis
-/// on its way to the source, as behind balls that focus beyond their mirror. rad
+/// Returns the angle in rad between the leaving light and the direction to the source. It is positive if the leaving
+/// light crosses the axis on its way to the source. This is the case for balls whose focus is beyond their mirror.
 double return_error_rad(double height, double index, double spacer_index, double mirror_radius_over_radius);
 
-/// Its slope at height 0: the paraxial power 2 (1 - 2 / n + (1 - R / rho) / m). 0: light near the axis comes back
-/// parallel.
+/// Returns the derivative of the return error at height 0. This is the paraxial power 2 (1 - 2 / n + (1 - R / rho) /
+/// m). If it is 0, light near the axis leaves parallel to the axis.
 double paraxial_error(double index, double spacer_index, double mirror_radius_over_radius);
 
-/// The offset over the ball's radius at which the mirror lies in the paraxial focus. None for n >= 2, which focuses on
-/// or inside its own back, and where the spacer's index is so high that no finite bowl does.
+/// Returns the distance of the mirror from the ball, divided by the radius, at which the mirror is in the paraxial
+/// focus. Returns nothing for n >= 2, because the focus is then not behind the ball. Also returns nothing if the index
+/// of the spacer is too high for a finite distance.
 std::optional<double> focal_offset_over_radius(double index, double spacer_index);
 
-/// Share of the aperture whose light comes back within `half_angle_rad`: measure of the heights, by area.
+/// Returns the fraction of the aperture, by area, whose light returns within `half_angle_rad`.
 double share_within(double half_angle_rad, double index, double spacer_index, double mirror_radius_over_radius);
 
-/// Largest |return error| over all heights. rad
+/// Returns the maximum absolute return error over all heights, in rad.
 double largest_return_error_rad(double index, double spacer_index, double mirror_radius_over_radius);
 
-/// Share of the plan that balls of a layer cover: pi / (2 sqrt 3) (diameter / pitch)^2; 1 for a single ball.
+/// Returns the fraction of the area in projection along z that balls cover: pi / (2 sqrt 3) (diameter / pitch)^2, or 1
+/// for a single ball.
 double packing_share(const BallLayer& layer);
 
 }  // namespace retrace::raytrace

@@ -8,9 +8,9 @@ namespace retrace::raytrace {
 namespace {
 
 constexpr double kRowOverPitch = 0.5 * std::numbers::sqrt3;
-// Steps of half a pitch after which a level ray between the balls is given up.
+// Maximum number of steps of half a pitch of a nearly horizontal ray between the balls. After that, it is not traced.
 constexpr int kMostCells = 4096;
-/// A ball and its neighbours.
+/// Index offsets of a ball and its six neighbours.
 constexpr std::array<BallIndex, 7> kAround = {{{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}}};
 
 }  // namespace
@@ -33,7 +33,7 @@ BallIndex BallLattice::nearest(const Vec2& place_mm) const {
   double r_along = std::round(along);
   double r_row = std::round(row);
   const double r_third = std::round(third);
-  // The three add to zero; the one that rounding moved most gives way.
+  // The three values must add up to 0. The one with the largest rounding error is computed from the other two.
   const double off_along = std::abs(r_along - along);
   const double off_row = std::abs(r_row - row);
   const double off_third = std::abs(r_third - third);
@@ -75,7 +75,7 @@ BallLattice::Way BallLattice::follow(const Vec3& origin_mm, const Vec3& directio
   double begin = 0.0;
   for (int k = 0; k < kMostCells; ++k, begin += step) {
     const double end = std::min(begin + step, to_end);
-    // Balls that reach the piece have their centres within a radius and a quarter of the pitch of its middle.
+    // The balls that the segment may meet are the ball nearest to its midpoint and the neighbours of this ball.
     const BallIndex middle = nearest((origin_mm + 0.5 * (begin + end) * direction).head<2>());
     std::optional<double> first;
     for (const BallIndex& around : kAround) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Places of the balls in a layer, and the search for the ball that a ray in the air above them meets.
+// Positions of the balls in a layer, and the search for the ball that a ray in the air above them meets.
 
 #include <cstdint>
 #include <optional>
@@ -12,33 +12,35 @@ namespace retrace::raytrace {
 
 using geometry::Vec2, geometry::Vec3;
 
-/// A ball of a layer, by its place in the lattice: rows along x, every next one shifted by half a pitch.
+/// Index of a ball in the lattice of a layer. Rows are parallel to x, and each row is shifted by half a pitch.
 struct BallIndex {
   std::int64_t along = 0;
   std::int64_t row = 0;
   bool operator==(const BallIndex&) const = default;
 };
 
-/// Where the balls of a layer lie, and which of them light in the air above z = 0 meets.
+/// Lattice of the balls of a layer, with the search for the ball that light in the air above z = 0 meets.
 class BallLattice {
  public:
   explicit BallLattice(const BallLayer& layer) : radius_mm_(layer.radius_mm()), pitch_mm_(layer.pitch_mm) {}
 
   Vec3 centre_mm(const BallIndex& ball) const;
-  /// Rectangle that repeats, of two balls. \pre a layer
+  /// Returns the size of the rectangular period, which contains two balls.
+  /// \pre the layer has a pitch
   Vec2 period_mm() const;
 
   struct Hit {
     BallIndex ball;
     Vec3 from_centre_mm = Vec3::Zero();
   };
-  /// What a ray in the air comes to: a ball above z = 0, or nothing that is above it.
+  /// Result of the search along a ray in the air. If the ray meets no ball above z = 0 and does not leave, it reaches
+  /// the plane z = 0 between the balls.
   struct Way {
     std::optional<Hit> hit;
-    bool leaves = false;       ///< upwards, for good
-    bool goes_astray = false;  ///< so level that it would pass too many balls
+    bool leaves = false;       ///< true if the ray rises; without a hit, it leaves for good
+    bool goes_astray = false;  ///< true if the ray is so close to horizontal that it would pass too many balls
   };
-  /// \param leaving the ball that the ray starts from, if it does; a ball is never met from its own surface
+  /// \param leaving ball from whose surface the ray starts, which is excluded from the search; null for none
   Way follow(const Vec3& origin_mm, const Vec3& direction, const BallIndex* leaving) const;
 
  private:

@@ -8,7 +8,7 @@
 namespace retrace::raytrace {
 namespace {
 
-/// Of the unit vector that faces the ray.
+/// Returns the unit normal that faces the ray.
 Vec3 against(const Vec3& direction, const Vec3& normal) {
   return normal.dot(direction) > 0.0 ? Vec3(-normal) : normal;
 }
@@ -79,7 +79,7 @@ void BallWalker::follow_in_air(const Ray& ray) {
   } else if (way.leaves) {
     leave(ray);
   } else {
-    tally_.other[Account::transmitted] += ray.light.power();  // onto the black between the balls
+    tally_.other[Account::transmitted] += ray.light.power();  // the light meets the black area between the balls
   }
 }
 
@@ -108,7 +108,7 @@ void BallWalker::meet_back(const Ray& ray, const Vec3& position_mm, const Vec3& 
   if (layer_.mirror_offset_mm > 0.0)
     return meet(ray, position_mm, normal, {Medium::ball, Medium::spacer, setup_.optics.ratio_at_back(true)});
   if (is_mirrored(normal)) return meet_mirror(ray, position_mm, normal, true);
-  // Bare glass in what lies behind: what it lets out is gone.
+  // The back of the ball is uncoated here. Light that leaves through it does not return.
   Ray at = ray;
   at.light.turn_to(ray.direction, normal);
   const double cosine = std::abs(normal.dot(ray.direction));
@@ -144,8 +144,8 @@ void BallWalker::follow_in_spacer(const Ray& ray) {
   const double reach2 = towards * towards - ray.position_mm.squaredNorm();
   const double radius = layer_.radius_mm();
   const bool inwards = towards > 0.0;
-  // From the ball's surface out to the bowl, or from the bowl in to the ball, which a ray that came from it meets
-  // again.
+  // The ray travels either from the ball outward to the bowl, or from the bowl inward to the ball. A ray that came from
+  // the ball meets the ball again.
   const double length = inwards ? towards - std::sqrt(std::max(0.0, reach2 + radius * radius))
                                 : towards + std::sqrt(std::max(0.0, reach2 + rho * rho));
   Vec3 position = ray.position_mm + length * ray.direction;
@@ -154,7 +154,8 @@ void BallWalker::follow_in_spacer(const Ray& ray) {
   if (inwards && normal.z() < 0.0)
     return meet(ray, position, normal, {Medium::spacer, Medium::ball, setup_.optics.ratio_at_back(false)});
   if (!inwards && is_mirrored(normal)) return meet_mirror(ray, position, normal, false);
-  tally_.other[Account::transmitted] += ray.light.power();  // past the bowl, or out onto the black between the balls
+  // The light passes the edge of the bowl, or meets the black area between the balls.
+  tally_.other[Account::transmitted] += ray.light.power();
 }
 
 void BallWalker::meet(const Ray& ray, const Vec3& position_mm, const Vec3& normal, const Interface& between) {

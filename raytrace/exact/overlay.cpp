@@ -24,7 +24,7 @@ using Tree = bg::index::rtree<Entry, bg::index::quadratic<16>>;
 
 constexpr double kPieceMergeShare = 1e-11;
 constexpr double kLeastPieceShare = 1e-13;
-// Corners of neighbours count as one, and edges as straight, within this share of the size.
+// Tolerance for equal corners and straight edges when polygons are joined, as a fraction of the size.
 constexpr double kFuseShare = 1e-10;
 
 TreeBox box_of(const FlatPolygon& polygon) {
@@ -45,7 +45,7 @@ struct Overlay::Hidden {
 
   double merge_mm;
   double least_area;
-  std::vector<ValuedPolygon> pieces;  ///< an empty polygon: was divided
+  std::vector<ValuedPolygon> pieces;  ///< an empty polygon is one that was divided
   Tree tree;
 
   void add(FlatPolygon polygon, double value) {
@@ -53,7 +53,7 @@ struct Overlay::Hidden {
     pieces.push_back({std::move(polygon), value});
   }
 
-  /// The pieces that may overlap a polygon, in order of insertion.
+  /// Returns the polygons that may overlap a polygon, in order of insertion.
   std::vector<Entry> near(const FlatPolygon& polygon) const {
     std::vector<Entry> found;
     tree.query(bg::index::intersects(box_of(polygon)), std::back_inserter(found));
@@ -67,7 +67,7 @@ struct Overlay::Hidden {
     from = std::move(left);
   }
 
-  /// Divides a piece into what `polygon` covers of it and the rest. False if they have nothing in common.
+  /// Divides a stored polygon into the part that `polygon` covers and the rest. Returns false if they do not overlap.
   bool divide(const Entry& entry, const FlatPolygon& polygon, double value) {
     const ValuedPolygon before = pieces[entry.second];
     FlatPolygon common = intersection(before.polygon, polygon, merge_mm);
@@ -105,7 +105,7 @@ std::vector<ValuedPolygon> Overlay::pieces() const {
 
 namespace {
 
-/// Polygons that grow together.
+/// Joins polygons until no two of them can be joined.
 class Fusion {
  public:
   Fusion(double size_mm, double value_tolerance)
@@ -148,7 +148,7 @@ class Fusion {
 
   enum class Turn { convex, straight, other };
 
-  /// How a way a, b, c turns at b.
+  /// Classifies the angle at b of the path a, b, c.
   Turn turn(const Vec2& a, const Vec2& b, const Vec2& c) const {
     const Vec2 along = (c - a).normalized();
     const double bulge = along.y() * (b - a).x() - along.x() * (b - a).y();
@@ -180,13 +180,14 @@ class Fusion {
     return best;
   }
 
-  /// Corners first .. last of one polygon are start .. end of another, backwards.
+  /// Common edges of two polygons: the corners `first` to `last` of one polygon are the corners `start` to `end` of the
+  /// other polygon in reverse order.
   struct CommonEdges {
     std::size_t first, last, start, end;
   };
 
-  /// All edges that two polygons have in common, from the one between corners `ka` and `kb` on. Indices are those of
-  /// corner(), raised by the number of corners where they would become negative.
+  /// Returns all consecutive common edges of two polygons that include the edge at the corners `ka` and `kb`. Indices
+  /// are arguments of corner(). The number of corners is added to them, so that they are never negative.
   CommonEdges common_edges(const FlatPolygon& a, std::size_t ka, const FlatPolygon& b, std::size_t kb) const {
     CommonEdges c{ka + a.size(), ka + a.size() + 1, kb + b.size() + 1, kb + b.size()};
     const auto meet = [&](std::size_t on_a, std::size_t on_b) {
@@ -203,7 +204,7 @@ class Fusion {
     return c;
   }
 
-  /// The union of two polygons with a common edge; nothing if it is not convex.
+  /// Returns the union of two polygons with a common edge, or nothing if it is not convex.
   std::optional<FlatPolygon> joined(const FlatPolygon& a, std::size_t ka, const FlatPolygon& b, std::size_t kb) const {
     const CommonEdges c = common_edges(a, ka, b, kb);
     const Turn at_first = turn(corner(a, c.first - 1), corner(a, c.first), corner(b, c.start + 1));
@@ -234,7 +235,7 @@ class Fusion {
 
   double near_mm_;
   double value_tolerance_;
-  std::vector<ValuedPolygon> pieces_;  ///< an empty polygon: was joined
+  std::vector<ValuedPolygon> pieces_;  ///< an empty polygon is one that was joined to another
   PointLookup<Edge> edges_;
   std::deque<std::size_t> open_;
 };

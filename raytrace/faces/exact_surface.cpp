@@ -10,19 +10,20 @@ namespace {
 
 using geometry::PatchFacet, geometry::SurfacePatch;
 
-// Relative to the element's size.
+// Tolerances of the searches, as fractions of the element size.
 constexpr double kTolerance = 1e-10, kWideTolerance = 1e-6;
 
 Vec3 place_of(const geometry::Placement& placement) {
   return {placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm};
 }
 
-/// Of two facets that are met at once, so that the order in which they are searched does not tell.
+/// Returns true if facet `a` is selected instead of `b` when a ray meets both at the same distance. The result of a
+/// search then does not depend on its order.
 bool precedes(const FacetRef& a, const FacetRef& b) {
   return b.placement != FacetRef::kNone && std::pair(a.placement, a.facet) < std::pair(b.placement, b.facet);
 }
 
-/// True if a point of the facet's plane lies in its outline, or outside by no more than the tolerance.
+/// Returns true if a point of the facet's plane is in the facet's outline, or outside by at most the tolerance.
 bool is_within(const SurfacePatch& patch, const PatchFacet& facet, const Vec3& point, double tolerance_mm) {
   const std::uint32_t* corners = patch.corners.data() + facet.first_corner;
   const Vec3* from = &patch.vertices[corners[facet.corner_count - 1]];
@@ -36,7 +37,7 @@ bool is_within(const SurfacePatch& patch, const PatchFacet& facet, const Vec3& p
   return true;
 }
 
-/// True if the ray passes the box, widened by `pad_mm`, somewhere in -pad..t_max.
+/// Returns true if the ray passes through the box, enlarged by `pad_mm`, at some t from -pad_mm to t_max.
 bool meets_box(const Vec3& origin, const Vec3& direction, const Vec3& lower, const Vec3& upper, double pad_mm,
                double t_max) {
   double enter = -pad_mm;

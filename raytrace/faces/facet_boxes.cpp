@@ -6,11 +6,11 @@
 namespace retrace::raytrace {
 namespace {
 
-// Facets of a cell that are met one after another; cells of more have boxes for each.
+// Maximum number of facets of a cell that has one box for all facets. In larger cells, each facet has a box.
 constexpr std::uint32_t kFewFacets = 16;
-// Boxes of a facet.
+// Maximum number of boxes per facet.
 constexpr double kMostPieces = 8.0;
-// Greatest component of directions whose boxes are tight as they are.
+// Minimum largest component of a unit vector for a facet along it to have a single box. Such a box is nearly full.
 constexpr double kAlongAnAxis = 0.98;
 
 std::vector<Vec3> corners_of(const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet) {
@@ -21,14 +21,15 @@ std::vector<Vec3> corners_of(const geometry::SurfacePatch& patch, const geometry
   return corners;
 }
 
-/// From the first corner to the farthest.
+/// Returns the vector from the first corner to the most distant corner.
 Vec3 length_of(const std::vector<Vec3>& corners) {
   return *std::max_element(corners.begin(), corners.end(), [&](const Vec3& a, const Vec3& b) {
     return (a - corners.front()).squaredNorm() < (b - corners.front()).squaredNorm();
   }) - corners.front();
 }
 
-/// A box round a long strip that runs aslant is mostly empty: as many as make its pieces about as long as wide.
+/// Returns the number of boxes of a facet. A single box of a long oblique facet would be mostly empty. The facet is
+/// therefore divided into parts that are about as long as wide.
 std::uint16_t pieces_of(const std::vector<Vec3>& corners) {
   const Vec3 along = length_of(corners).normalized();
   if (along.cwiseAbs().maxCoeff() > kAlongAnAxis) return 1;
@@ -43,7 +44,7 @@ std::uint16_t pieces_of(const std::vector<Vec3>& corners) {
   return static_cast<std::uint16_t>(std::clamp(length / std::max(width, length / kMostPieces), 1.0, kMostPieces));
 }
 
-/// What a polygon has beyond a level of a height that rises along it.
+/// Returns the part of a polygon where along . p >= level.
 std::vector<Vec3> beyond(const std::vector<Vec3>& polygon, const Vec3& along, double level) {
   std::vector<Vec3> left;
   for (std::size_t k = 0; k < polygon.size(); ++k) {

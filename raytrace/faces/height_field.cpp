@@ -14,17 +14,17 @@ using geometry::EntranceSurface;
 constexpr double kWithinX = geometry::kWithinEntranceCell[0];
 constexpr double kWithinY = geometry::kWithinEntranceCell[1];
 
-// Of what differences of slopes between the corners of a cell say: what they may have missed.
+// Safety factor for curvatures that are estimated from the slopes at the corners of a cell.
 constexpr double kBendMargin = 2.0;
-// Heights that differ by less, relative to the part, are the same: rounding of doubles.
+// Relative difference of heights, as a fraction of the part's size, that is caused by rounding.
 constexpr double kSameHeight = 4e-16;
-// Beyond the lowest and highest place, relative to the part.
+// Margin above the highest and below the lowest point, as a fraction of the part's size.
 constexpr double kRoom = 1e-12;
 constexpr int kMostIterations = 200;
-// Roundings within which a ray that goes away from the surface has only just left it.
+// Maximum distance from the surface, in units of rounding errors, of a ray that starts on the surface.
 constexpr double kStillOn = 8.0;
 
-/// What two corners of a cell say of the bend between them.
+/// Returns the curvature between two points, estimated from the difference of their slopes.
 double bend_between(const EntranceSurface::Place& a, const EntranceSurface::Place& b, double distance_mm) {
   const double bend = (a.slope - b.slope).norm() / distance_mm;
   return std::isfinite(bend) ? bend : 0.0;
@@ -72,7 +72,7 @@ void HeightField::make_cells(const geometry::Polygon& outline, int cells) {
 HeightField::Cell HeightField::cell_between(const std::array<const EntranceSurface::Place*, 5>& places) const {
   Cell cell{kInfinity, -kInfinity, 0.0};
   for (const EntranceSurface::Place* place : places) {
-    // Outside of the outline there may be no surface, so that nothing is known of a cell on its border.
+    // The surface may be undefined outside of the outline. A cell with such a corner has unlimited bounds.
     const bool known = std::isfinite(place->height_mm);
     cell.low_mm = std::min(cell.low_mm, known ? place->height_mm : -kInfinity);
     cell.high_mm = std::max(cell.high_mm, known ? place->height_mm : kInfinity);
@@ -87,8 +87,9 @@ HeightField::Cell HeightField::cell_between(const std::array<const EntranceSurfa
   return cell;
 }
 
-/// A bend may lie just beyond the corners that saw it: cells get the most of their neighbours', and heights the room
-/// that it asks for beyond those of the corners.
+/// Enlarges the bounds of the cells. The largest curvature may be just outside of the cell in which it was estimated.
+/// Each cell therefore receives the maximum of its neighbours. The range of heights is enlarged by the error of
+/// bilinear interpolation at this curvature.
 void HeightField::widen_bends() {
   std::vector<Cell> wide = cells_;
   const double square = cell_mm_.squaredNorm();
@@ -98,7 +99,8 @@ void HeightField::widen_bends() {
       for (int v = std::max(0, j - 1); v <= std::min(rows_ - 1, j + 1); ++v)
         for (int u = std::max(0, i - 1); u <= std::min(columns_ - 1, i + 1); ++u)
           c.bend_per_mm = std::max(c.bend_per_mm, cell(u, v).bend_per_mm);
-      // Bilinear interpolation errs by at most this (W. Gautschi, Numerical Analysis, section 2.2, in two dimensions).
+      // Upper bound of the error of bilinear interpolation (W. Gautschi, Numerical Analysis, section 2.2, generalized
+      // to two dimensions).
       const double room_mm = 0.25 * c.bend_per_mm * square;
       c.low_mm -= room_mm;
       c.high_mm += room_mm;
@@ -106,14 +108,14 @@ void HeightField::widen_bends() {
   cells_ = std::move(wide);
 }
 
-/// One ray on its way: g(t) is its distance from the surface along z, positive on its own side.
+/// Search along one ray. g(t) is the distance from the surface along z, positive on the side of the ray.
 struct HeightField::Search {
   const HeightField& field;
   const SurfaceRay& ray;
-  double sign = 1.0;         ///< -1 inside: the ray is below
-  double across2 = 0.0;      ///< squared length of the direction in plan
-  double same_mm = 0.0;      ///< heights that are the same
-  double last_clear = -1.0;  ///< largest t known to be on its own side; negative: none
+  double sign = 1.0;         ///< -1 for a ray inside the part, which is below the surface
+  double across2 = 0.0;      ///< squared length of the direction in projection along z
+  double same_mm = 0.0;      ///< heights that differ by less are treated as equal
+  double last_clear = -1.0;  ///< largest t at which the ray is known to be on its side; negative if there is none
 
   struct Gap {
     double value = 0.0;
@@ -133,7 +135,7 @@ struct HeightField::Search {
     return {{{0, 0}, t}, normal};
   }
 
-  /// Where a step went across the surface: between a place on this side and one on the other.
+  /// Returns the intersection between a point on the side of the ray and a point beyond the surface, by bisection.
   EntranceHit between(double clear, double beyond) const {
     for (int k = 0; k < kMostIterations; ++k) {
       const double middle = 0.5 * (clear + beyond);
@@ -143,17 +145,18 @@ struct HeightField::Search {
     return hit_at(beyond, gap(beyond));
   }
 
-  /// From the start on the surface, away from it: the distance within which the bend cannot bring the ray back.
+  /// Returns a distance within which the curvature cannot bring back a ray that starts on the surface and leaves it.
   static double free_way(double slope, double bend) { return bend > 0.0 ? 2.0 * slope / bend : kInfinity; }
 
-  /// How far a ray with that gap can go before the bend may close it.
+  /// Returns a distance that a ray with this gap can travel without crossing the surface.
   static double safe_step(const Gap& g, double bend) {
     const double root = std::sqrt(g.slope * g.slope + 2.0 * bend * g.value);
     if (g.slope < 0.0) return 2.0 * g.value / (root - g.slope);
     return bend > 0.0 ? (g.slope + root) / bend : kInfinity;
   }
 
-  /// The first hit between two places in a cell. \param on_surface the ray starts on the surface, at `from`
+  /// Returns the first intersection between two points of a ray within a cell.
+  /// \param on_surface true if the ray starts on the surface, at `from`
   std::optional<EntranceHit> within(const Cell& cell, double from, double to, bool on_surface);
 };
 
@@ -161,13 +164,14 @@ std::optional<EntranceHit> HeightField::Search::within(const Cell& cell, double 
   const double bend = cell.bend_per_mm * across2;
   double t = from;
   Gap g = gap(t);
-  // A start on a border of cells leaves the first of them at once: the next one sees the ray as near as rounding.
+  // A ray that starts on the border of two cells may leave the first cell immediately. In the next cell, its distance
+  // from the surface is then a rounding error.
   if (g.slope > 0.0 && (on_surface || std::abs(g.value) <= kStillOn * same_mm)) {
     const double step = free_way(g.slope, bend);
     if (!(t + step < to)) return std::nullopt;
     t += step;
     g = gap(t);
-    // A bend that the cell knows nothing of: halve the way until it is clear.
+    // The curvature may exceed the bound of the cell. The step is then halved until the ray is on its side.
     double clear = t;
     for (int k = 0; g.value <= 0.0 && k < kMostIterations; ++k) {
       clear = 0.5 * (from + clear);
@@ -175,10 +179,10 @@ std::optional<EntranceHit> HeightField::Search::within(const Cell& cell, double 
     }
   }
   for (int k = 0; k < kMostIterations; ++k) {
-    if (!std::isfinite(g.value)) return std::nullopt;  // beyond the outline by rounding
+    if (!std::isfinite(g.value)) return std::nullopt;  // outside of the outline by rounding
     if (g.value <= same_mm) {
       if (g.value < -same_mm && last_clear >= 0.0) return between(last_clear, t);
-      // One step of Newton's on the spot: what is left is below rounding.
+      // After one more Newton step, the error is below rounding.
       const double rest = g.slope < 0.0 ? -g.value / g.slope : 0.0;
       return hit_at(std::max(t + rest, 0.0), g);
     }
@@ -189,15 +193,15 @@ std::optional<EntranceHit> HeightField::Search::within(const Cell& cell, double 
     t += step;
     g = gap(t);
   }
-  return hit_at(t, g);  // along the surface: as near as steps get
+  return hit_at(t, g);  // the ray is nearly parallel to the surface; this is the closest approximation
 }
 
-/// Column by column and row by row along a ray.
+/// Sequence of grid cells along a ray.
 struct HeightField::Walk {
   std::array<int, 2> index{};
   std::array<int, 2> step{};
-  std::array<double, 2> next{};  ///< where the ray leaves the column and the row
-  std::array<double, 2> pace{};  ///< from one border to the next
+  std::array<double, 2> next{};  ///< t at which the ray leaves the present column and row
+  std::array<double, 2> pace{};  ///< increase of t from one border to the next
 
   Walk(const HeightField& field, const SurfaceRay& ray, double from) {
     const std::array<int, 2> count = {field.columns_, field.rows_};
@@ -219,19 +223,19 @@ struct HeightField::Walk {
   }
 };
 
-/// Where the ray is between the entrance surface's lowest and highest place: nowhere else is there anything to meet.
+/// Returns the range of t in which the ray is between the minimum and maximum height of the surface.
 std::optional<std::array<double, 2>> HeightField::span_of(const SurfaceRay& ray, double room_mm) const {
   const double dz = ray.direction.z();
   const double z = ray.origin.z();
   const double near_mm = ray.inside ? lowest_mm() - room_mm : highest_mm() + room_mm;
   const double far_mm = ray.inside ? highest_mm() + room_mm : lowest_mm() - room_mm;
-  const double way = ray.inside ? 1.0 : -1.0;  // towards the entrance surface, along z
+  const double way = ray.inside ? 1.0 : -1.0;  // sign of z towards the entrance surface
   if (way * dz > 0.0) {
     const bool starts_on = ray.source.placement != FacetRef::kNone;
     const double from = starts_on ? 0.0 : std::max(0.0, (near_mm - z) / dz);
     return std::array{from, std::min(ray.t_max, (far_mm - z) / dz)};
   }
-  if (way * (near_mm - z) > 0.0) return std::nullopt;  // short of it, and going away
+  if (way * (near_mm - z) > 0.0) return std::nullopt;  // the ray has not reached the surface and moves away from it
   return std::array{0.0, dz != 0.0 ? std::min(ray.t_max, (near_mm - z) / dz) : ray.t_max};
 }
 

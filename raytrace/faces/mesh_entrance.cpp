@@ -5,7 +5,7 @@
 namespace retrace::raytrace {
 namespace {
 
-/// The triangles as the back of a part, which is what rays are searched in.
+/// Returns a part whose back consists of the triangles, because BackSurface searches the back of a part.
 geometry::Part part_of(const geometry::SurfacePatch& patch, const geometry::EntranceRange& range,
                        const geometry::Polygon& outline) {
   geometry::Part part;
@@ -35,7 +35,7 @@ bool MeshEntrance::crosses(const SurfaceRay& ray) const {
 std::optional<EntranceHit> MeshEntrance::first_hit(const SurfaceRay& ray) const {
   SurfaceRay local = ray;
   local.origin.z() -= lowest_mm();
-  // Rounding may let a ray slip between two triangles.
+  // Due to rounding, a ray may pass between two triangles.
   const std::optional<SurfaceHit> hit = crosses(ray) ? surface_.certain_first_hit(local) : surface_.first_hit(local);
   if (!hit || hit->t > ray.t_max) return std::nullopt;
   return EntranceHit{*hit, surface_.facet(hit->facet).normal};

@@ -9,9 +9,9 @@ namespace {
 
 using std::numbers::pi;
 
-// Below this ratio of radii the smaller disc is a point.
+// Ratio of radii below which the smaller disc is treated as a point.
 constexpr double kPoint = 1e-9;
-// Points of the rule along a radius to one detail, at least and at most.
+// Number of points along a radius per detail. kFewest and kMost are the minimum and the maximum number of points.
 constexpr double kPointsAlongADetail = 2.0;
 constexpr double kFewest = 6.0;
 constexpr double kMost = 96.0;
@@ -24,8 +24,9 @@ std::size_t points_along(double length_rad, double detail_rad) {
   return static_cast<std::size_t>(std::clamp(kPointsAlongADetail * length_rad / detail_rad, kFewest, kMost));
 }
 
-/// Even steps round a ring whose mean of a wave of that detail, a Bessel function of order 0, is right but for Bessel
-/// functions of the order of their number, which fall steeply once that is beyond their argument x by some x^(1/3).
+/// Returns the number of uniform steps on a ring. The mean of a wave over the ring is a Bessel function of order 0. The
+/// error of the uniform steps is a Bessel function whose order is the number of steps. It decreases rapidly if this
+/// number exceeds the argument x by some x^(1/3).
 std::size_t points_round(double radius_rad, double detail_rad) {
   const double x = 2.0 * pi * radius_rad / detail_rad;
   return static_cast<std::size_t>(std::clamp(std::ceil(x + 4.0 * std::cbrt(x)), kFewest, 4.0 * kMost));
@@ -42,7 +43,7 @@ GaussRule gauss_legendre(std::size_t count) {
   GaussRule rule{std::vector<double>(count), std::vector<double>(count)};
   const double n = static_cast<double>(count);
   for (std::size_t k = 0; k < count; ++k) {
-    // Newton's method from Tricomi's estimate of the root; Press et al., Numerical Recipes, 4.6.
+    // Newton's method with Tricomi's approximation of the root as start; Press et al., Numerical Recipes, 4.6.
     double x = std::cos(pi * (static_cast<double>(k) + 0.75) / (n + 0.5));
     double slope = 1.0;
     for (int iteration = 0; iteration < 20; ++iteration) {
@@ -79,13 +80,13 @@ double ApertureKernel::per_sr(double separation_rad) const {
   if (d <= a - b) return 1.0 / (pi * a * a);
   const double at_a = half_chord_angle((d * d + a * a - b * b) / (2.0 * d * a));
   const double at_b = half_chord_angle((d * d + b * b - a * a) / (2.0 * d * b));
-  // Two circular segments.
+  // The overlap of two discs consists of two circular segments.
   const double common = a * a * (at_a - 0.5 * std::sin(2.0 * at_a)) + b * b * (at_b - 0.5 * std::sin(2.0 * at_b));
   return common / (pi * a * a * pi * b * b);
 }
 
 double ApertureKernel::transform(double rad_per_rad) const {
-  // A convolution of two discs.
+  // The kernel is the convolution of two discs, and its transform is therefore a product.
   return disc_transform(larger_rad_ * rad_per_rad) * disc_transform(smaller_rad_ * rad_per_rad);
 }
 
@@ -101,7 +102,7 @@ std::vector<ApertureKernel::Node> ApertureKernel::nodes(double detail_rad) const
       const std::size_t round = points_round(r, detail_rad);
       const double weight = radial.weights[k] * (to - from) * r * per_sr(r) * 2.0 * pi / static_cast<double>(round);
       for (std::size_t j = 0; j < round; ++j) {
-        // Every ring is turned against the one before, so that no direction is preferred.
+        // Each ring is rotated relative to the preceding one, so that no direction is preferred.
         const double turn = 2.0 * pi * (static_cast<double>(j) + std::numbers::phi * static_cast<double>(k)) /
                             static_cast<double>(round);
         nodes.push_back({{r * std::cos(turn), r * std::sin(turn)}, weight});

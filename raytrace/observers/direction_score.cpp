@@ -9,7 +9,8 @@ namespace {
 
 using geometry::Vec2, std::numbers::pi;
 
-/// Solid angle of the rectangle of equidistant angles: its area shrunk by sin(r) / r, by a rule of 3 x 3.
+/// Returns the solid angle of a rectangle of equidistant angles: the integral of sin(r) / r over its area, by a Gauss
+/// rule with 3 x 3 points.
 double square_solid_angle(const Vec2& middle_rad, double width_rad, double height_rad) {
   const GaussRule rule = gauss_legendre(3);
   double sum = 0.0;
@@ -55,7 +56,7 @@ double DirectionGrid::solid_angle_sr(std::size_t bin) const {
                               2.0 * half_width_rad_ / static_cast<double>(rows_));
   const double step = half_width_rad_ / static_cast<double>(rows_);
   const double inner = static_cast<double>(bin / columns_) * step;
-  // cos(inner) - cos(inner + step), without the cancellation.
+  // This is cos(inner) - cos(inner + step), in a form without cancellation.
   return 4.0 * pi / static_cast<double>(columns_) * std::sin(inner + 0.5 * step) * std::sin(0.5 * step);
 }
 

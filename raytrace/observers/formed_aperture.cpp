@@ -20,14 +20,14 @@ namespace {
 
 using geometry::Vec2, surface_models::FacetForm;
 
-// Points along an edge of the triangles over which phases are averaged: exact for their second order.
+// Number of points along an edge of the triangles over which phases are averaged. It is exact for quadratic phases.
 constexpr std::size_t kPoints = 3;
-// Corners nearer than this share of a polygon's size are one.
+// Corners are merged if their distance is less than this fraction of the polygon's size.
 constexpr double kOneCorner = 1e-12;
-// Polygons fainter than this share of the strongest are cut as if they were not.
+// Minimum relative power in the formula for the subdivision. Weaker polygons are subdivided as if they had this power.
 constexpr double kLeastShare = 1e-4;
 
-/// The phase that forms put on the light of a polygon, by where it leaves the entrance face.
+/// Phase that forms add to the light of a polygon, as a function of the point where it leaves the entrance face.
 struct FormPhase {
   const std::vector<FieldHit>& hits;
   const FacetForm& form;
@@ -47,16 +47,16 @@ struct FormPhase {
   }
 };
 
-/// The linear phase that is nearest to that of a polygon, and how it is missed along the polygon's two axes.
+/// Linear function that is the best approximation of the phase over a polygon, and the error along two axes.
 struct LinearPhase {
   struct Axis {
     Vec2 direction = Vec2::UnitX();
-    double bend = 0.0;  ///< square of what the phase bends along it, but for a factor
+    double bend = 0.0;  ///< square of the curvature of the phase along this axis, except for a factor
   };
 
   double at_origin_rad = 0.0;
   Vec2 rad_per_mm = Vec2::Zero();
-  double left_rad = 0.0;  ///< root mean square of what it leaves
+  double left_rad = 0.0;  ///< root mean square of the difference between the phase and the linear function
   Vec2 middle = Vec2::Zero();
   std::array<Axis, 2> across;
 
@@ -82,9 +82,9 @@ struct LinearPhase {
     };
     for (std::size_t k = 2; k < polygon.size(); ++k) add(polygon[0], polygon[k - 1], polygon[k]);
     middle /= sum;
-    // About the middle, where the constant is the mean.
+    // Coordinates are relative to `middle`, where the constant of the linear function is the mean phase.
     Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-    Eigen::Matrix2d turned = Eigen::Matrix2d::Zero();  // of the gradient
+    Eigen::Matrix2d turned = Eigen::Matrix2d::Zero();  // second moments of the gradient
     Vec2 mean_gradient = Vec2::Zero();
     Vec2 moment = Vec2::Zero();
     double mean = 0.0;
@@ -116,8 +116,8 @@ struct LinearPhase {
     }
   }
 
-  /// By how many equal strips across an axis what is left of the bend along it falls to `left`: it goes with the square
-  /// of their width.
+  /// Returns the number of equal strips, perpendicular to an axis, for which the error by the curvature along this axis
+  /// decreases to `left`. The error is proportional to the square of the width of a strip.
   std::size_t strips(std::size_t axis, double left) const {
     const double all = across[0].bend + across[1].bend;
     const double share = all > 0.0 ? across[axis].bend / all : 0.5;
@@ -126,7 +126,7 @@ struct LinearPhase {
   }
 };
 
-/// Strips of equal width across a direction.
+/// Divides a polygon into strips of equal width along a direction.
 FlatPolygons cut_across(const FlatPolygon& polygon, const Vec2& direction, std::size_t count, double merge_mm) {
   double from = std::numeric_limits<double>::infinity(), to = -from;
   for (const Vec2& p : polygon) {

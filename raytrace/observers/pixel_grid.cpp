@@ -8,7 +8,7 @@ namespace {
 
 using geometry::Polygon, geometry::Rectangle, geometry::Vec2;
 
-/// First and last of `count` steps from `from` on that an interval touches.
+/// Returns the indices of the first and the last of `count` steps, starting at `from`, that an interval overlaps.
 std::pair<std::size_t, std::size_t> steps_over(double low, double high, double from, double step, std::size_t count) {
   const double last = static_cast<double>(count - 1);
   const double first_step = std::clamp(std::floor((low - from) / step), 0.0, last);
@@ -25,7 +25,7 @@ PixelGrid::PixelGrid(const Rectangle& bounds_mm, std::size_t columns, std::size_
       pixel_mm_(bounds_mm.size().cwiseQuotient(Vec2(static_cast<double>(columns), static_cast<double>(rows)))) {}
 
 Rectangle PixelGrid::pixel_mm(std::size_t column, std::size_t row) const {
-  // Neighbours compute their common border alike.
+  // Adjacent pixels compute their common border with the same expression, so that the values are identical.
   const auto x = [&](std::size_t k) { return bounds_mm_.lower.x() + pixel_mm_.x() * static_cast<double>(k); };
   const auto y = [&](std::size_t k) { return bounds_mm_.lower.y() + pixel_mm_.y() * static_cast<double>(rows_ - k); };
   return {{x(column), y(row + 1)}, {x(column + 1), y(row)}};

@@ -9,16 +9,17 @@ namespace {
 using geometry::Vec2;
 using Complex = std::complex<double>;
 
-// Phases over a polygon below this: its area times the phase of its centroid is right to the square of it.
+// If the phase varies by less than this value over a polygon, its transform is the area times the phase at the
+// centroid. The relative error is the square of this value.
 constexpr double kFlat = 1e-5;
-// Phases along an edge below this: a series, where the difference of two phases would cancel.
+// If the phase varies by less than this value along an edge, a series is used, because differences would cancel.
 constexpr double kShort = 0.05;
 
 Complex unit(double phase) {
   return {std::cos(phase), std::sin(phase)};
 }
 
-/// Mean of exp(-i x) from the phase of one end of an edge to that of the other.
+/// Returns the mean of exp(-i x) over an edge, from the phase at one end to the phase at the other end.
 Complex mean_along(double phase_from, const Complex& from, double phase_to, const Complex& to) {
   const double step = phase_to - phase_from;
   if (std::abs(step) > kShort) return (to - from) / Complex(0.0, -step);
@@ -38,7 +39,7 @@ Complex PolygonTransform::at(const Vec2& kappa) const {
   const double middle = kappa.dot(centroid_mm_);
   if (std::sqrt(square) * size_mm_ < kFlat) return area_mm2_ * unit(-middle);
   Complex sum = 0.0;
-  // Phases relative to the centroid keep their digits wherever the polygon lies.
+  // Phases are relative to the centroid, so that they are accurate at any position of the polygon.
   Vec2 from = corners_.back() - centroid_mm_;
   double phase_from = kappa.dot(from);
   Complex wave_from = unit(-phase_from);
