@@ -11,7 +11,7 @@ using geometry::Vec2, geometry::Vec3;
 
 namespace {
 
-// Periods in which the neighbours of a cell are looked for: a cell reaches less than one beyond its own.
+// Number of periods in which the neighbours of a cell are searched. A cell extends less than one period beyond its own.
 constexpr int kReach = 2;
 
 CellArray::Facet facet_of(const geometry::CellFacet& facet, geometry::FacetRole role) {
@@ -24,7 +24,7 @@ CellArray::Facet facet_of(const geometry::CellFacet& facet, geometry::FacetRole 
 CellArray::Column column_of(const geometry::Cell& cell) {
   CellArray::Column column;
   for (const geometry::CellFacet& facet : cell.facets) {
-    const bool is_retro = cell.is_element || facet.is_edge;  // rims reach over the land beside them
+    const bool is_retro = cell.is_element || facet.is_edge;  // rounded rims extend over the adjacent flat land
     column.facets.push_back(
         facet_of(facet, is_retro ? geometry::FacetRole::retro_facet : geometry::FacetRole::flat_back));
   }
@@ -37,7 +37,7 @@ CellArray::Column column_of(const geometry::Cell& cell) {
   return column;
 }
 
-/// Whether the surface is the highest plane over every facet's outline.
+/// Returns true if the highest of all planes is the surface over every facet's outline.
 bool is_upper_envelope(const geometry::Cell& cell, const CellArray::Column& column, double tolerance_mm) {
   for (const geometry::CellFacet& facet : cell.facets)
     for (const Vec2& corner : facet.outline)
@@ -45,7 +45,8 @@ bool is_upper_envelope(const geometry::Cell& cell, const CellArray::Column& colu
   return true;
 }
 
-/// Cells over which the surface is the highest of its facets' planes: those with rounded rims are taken facet by facet.
+/// Returns cells over which the surface is the highest of the facets' planes. Cells with rounded rims do not have this
+/// property and are divided into their facets.
 std::vector<geometry::Cell> convex_cells(const std::vector<geometry::Cell>& cells, double tolerance_mm) {
   std::vector<geometry::Cell> convex;
   for (const geometry::Cell& cell : cells) {
@@ -69,8 +70,8 @@ void for_each_shift(const Vec2& period_mm, const Visit& visit) {
     for (int i = -kReach; i <= kReach; ++i) visit(Vec2(i * period_mm.x(), j * period_mm.y()));
 }
 
-/// Whether two surfaces have the same height between two points: where their facets change along the line, both are
-/// convex, so that corners of either tell.
+/// Returns true if two surfaces have the same height between two points. Both surfaces are convex, so that it is
+/// sufficient to compare them where the facets of either surface change along the line.
 bool is_level(const geometry::Cell& cell, const CellArray::Column& here, const CellArray::Column& there,
               const geometry::Cell& other, const Vec2& shift, const Vec2& a, const Vec2& b, double tolerance_mm) {
   const Vec2 along = (b - a).normalized();
@@ -103,7 +104,7 @@ std::optional<CellArray> CellArray::make(const geometry::Part& part) {
   const double tolerance_mm = 1e-9 * lattice.period_mm.maxCoeff();
   const std::size_t cells = lattice.cells.size();
   lattice.cells = convex_cells(lattice.cells, tolerance_mm);
-  // Rounded rims of cube corners make many small columns, which no ray crosses quickly.
+  // Rounded rims of cube corners cause many small columns, and rays would cross them slowly.
   if (lattice.cells.size() > cells && !std::holds_alternative<geometry::RtpElement>(part.spec.element))
     return std::nullopt;
   CellArray array;
@@ -111,7 +112,7 @@ std::optional<CellArray> CellArray::make(const geometry::Part& part) {
   if (!part.period_mm) {
     array.inner_ = Inner{*part.lattice_region_mm, part.lattice_anchor_mm};
     for (const geometry::Cell& cell : lattice.cells) {
-      // As far as the columns behind the borders of one that is hardly reached.
+      // The margin contains the columns of the border and the columns next to them.
       const Vec2 margin = 2.0 * geometry::bounding_box(cell.outline).size();
       array.inner_->where_mm.lower =
           array.inner_->where_mm.lower.cwiseMax(Vec2(part.lattice_region_mm->lower + margin));

@@ -1,6 +1,6 @@
 #pragma once
 
-// An endless array as columns over convex cells, in which a ray finds its next facet or neighbour without a search
+// Infinite arrays as columns over convex cells. In a column, a ray finds the next facet or neighbour without a search
 // tree.
 
 #include <optional>
@@ -13,58 +13,59 @@
 
 namespace retrace::raytrace {
 
-/// An endless array as columns: each stands over one cell of the period, from the surface up. Over a cell the part is
-/// the space above all planes of its facets, so that a straight line meets it as it meets any convex body and needs no
-/// search. Coordinates are those of the lattice; where columns of different height meet stands a vertical wall.
+/// An infinite array as columns. Each column is the space above one cell of the period. Over a cell, the part is the
+/// space above all planes of its facets. It is therefore convex, and a ray finds its next facet without a search tree.
+/// Coordinates are those of the lattice. Columns of different height are separated by vertical walls.
 class CellArray {
  public:
   struct Facet {
-    geometry::Vec3 normal = geometry::Vec3::Zero();  ///< unit, out of the part
-    double offset_mm = 0.0;                          ///< normal . p on the plane
-    geometry::HeightPlane height;                    ///< the same plane
+    geometry::Vec3 normal = geometry::Vec3::Zero();  ///< unit normal that points out of the part
+    double offset_mm = 0.0;                          ///< normal . p for points p of the plane
+    geometry::HeightPlane height;                    ///< the same plane as a function z(x, y)
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
-    std::optional<geometry::Vec2> middle_mm = {};  ///< of CellFacet
+    std::optional<geometry::Vec2> middle_mm = {};  ///< CellFacet::middle_mm
   };
-  /// What lies behind a stretch of an edge.
+  /// The column behind an interval of an edge.
   struct Neighbour {
     std::uint32_t column = 0;
-    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< from this column's coordinates to the neighbour's
-    double until_mm = 0.0;                             ///< end of the stretch along the edge
-    bool is_level = true;                              ///< both surfaces have the same height all along it
+    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< added to this column's coordinates to get the neighbour's
+    double until_mm = 0.0;                             ///< end of the interval along the edge
+    bool is_level = true;                              ///< true if both surfaces have the same height along it
   };
   struct Edge {
-    geometry::Vec2 normal = geometry::Vec2::Zero();  ///< unit, out of the cell
+    geometry::Vec2 normal = geometry::Vec2::Zero();  ///< unit normal that points out of the cell
     double offset_mm = 0.0;
     geometry::Vec2 along = geometry::Vec2::Zero();
-    std::vector<Neighbour> neighbours;  ///< in the order along the edge, never empty
+    std::vector<Neighbour> neighbours;  ///< in order along the edge; never empty
   };
   struct Column {
     std::vector<Facet> facets;
     std::vector<Edge> edges;
 
-    /// Height of the surface. \param p a point of the cell
+    /// Returns the height of the surface.
+    /// \param p a point of the cell
     double height(const geometry::Vec2& p) const;
   };
-  /// A column where it reaches into the period that starts at the origin.
+  /// Part of a column within the period that starts at the origin.
   struct Piece {
     std::uint32_t column = 0;
-    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< from the period's coordinates to the column's
+    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< added to the period's coordinates to get the column's
   };
 
-  /// The piece of a finite part that its borders do not matter to.
+  /// Inner region of a finite part, in which the borders of the part have no effect.
   struct Inner {
-    geometry::Rectangle where_mm;  ///< a column that reaches in, and all those beside it, are whole
-    geometry::Vec2 anchor_mm = geometry::Vec2::Zero();  ///< where on the part the lattice starts
+    geometry::Rectangle where_mm;  ///< all columns that overlap it, and their neighbours, are complete
+    geometry::Vec2 anchor_mm = geometry::Vec2::Zero();  ///< origin of the lattice on the part
   };
 
-  /// Nothing for a single element, an array whose elements differ, one too small to have an inner piece, and cube
-  /// corners with rounded rims.
+  /// Returns the array, or nothing if it cannot be used. This is the case for a single element, elements that differ,
+  /// arrays without an inner region, and cube corners with rounded rims.
   static std::optional<CellArray> make(const geometry::Part& part);
 
   const std::vector<Column>& columns() const { return columns_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
   const geometry::Vec2& period_mm() const { return period_mm_; }
-  /// Nothing if the part is infinite.
+  /// Returns the inner region of a finite part, or nothing for an infinite part.
   const std::optional<Inner>& inner() const { return inner_; }
 
  private:

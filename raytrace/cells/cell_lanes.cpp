@@ -3,13 +3,13 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/cells/cell_lanes.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for every instruction set
-// After foreach_target.h.
+// Must be included after foreach_target.h.
 #include "raytrace/cells/ray_lanes_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace retrace::raytrace::lanes::HWY_NAMESPACE {
 
-/// Takes what the way of a ray costs from its light; returns the power.
+/// Reduces the light of rays by the absorption on a path and returns the absorbed power.
 HWY_INLINE V absorbed(const Rays& rays, std::size_t k, std::size_t count, V way, double absorption_per_mm) {
   const S before = load_light(rays, k);
   const S after = scaled(before, hn::Exp(D(), hn::Mul(way, splat(-absorption_per_mm))));
@@ -17,10 +17,11 @@ HWY_INLINE V absorbed(const Rays& rays, std::size_t k, std::size_t count, V way,
   return hn::IfThenElseZero(present(k, count), hn::Sub(before.i, after.i));
 }
 
-/// A way along a ray as a fraction, so that many are compared with one division at the end.
+/// Length of a path along a ray, as a fraction. Fractions are compared without division, and only the result is
+/// divided.
 struct Way {
-  V over;   ///< not negative
-  V under;  ///< not negative; 0 for what is never met
+  V over;   ///< numerator, not negative
+  V under;  ///< denominator, not negative; 0 for faces that are never met
 
   HWY_INLINE V length() const { return hn::Div(over, under); }
 };
@@ -31,7 +32,7 @@ HWY_INLINE Way chosen(M mask, const Way& yes, const Way& no) {
   return {hn::IfThenElse(mask, yes.over, no.over), hn::IfThenElse(mask, yes.under, no.under)};
 }
 
-/// The nearest so far of what rays may meet.
+/// The nearest of the faces that have been tested.
 struct Nearest {
   Way way;
   V which;
@@ -45,12 +46,12 @@ struct Nearest {
   }
 };
 
-/// What is numbered 1, infinitely far.
+/// Returns an infinitely distant face with the number 1.
 HWY_INLINE Nearest nothing() {
   return {{splat(1.0), hn::Zero(D())}, splat(1.0), splat(geometry::Vec3(0.0, 0.0, 1.0))};
 }
 
-/// Along rays to a plane that they approach from its inner side, never less than 0.
+/// Returns the path along rays to a plane that they approach from its inner side. Its length is never negative.
 HWY_INLINE Way way_to(const Plane& plane, const V3& p, const V3& d) {
   const V3 n = splat(plane.normal);
   const V zero = hn::Zero(D());
@@ -104,7 +105,7 @@ void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane>
     nearest.consider(way_to({-geometry::Vec3::UnitZ(), depth_mm}, p, d), splat(1.0));
     find_border(borders, p, d, nearest);
     V way = nearest.way.length();
-    // Into the convex body after the last plane that is entered, before the first that is left.
+    // A ray enters the convex body at the last plane that it enters, and leaves it at the first plane that it leaves.
     V in = hn::Neg(infinite);
     V out = infinite;
     for (const Plane& facet : facets) {
@@ -235,7 +236,8 @@ std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach,
   return found;
 }
 
-/// Into the period that starts at 0. \param stands_at where it stands, if that is kept
+/// Wraps the coordinate into [0, period).
+/// \param stands_at the removed periods are added to this array unless it is null
 HWY_INLINE void store_folded(V at, double period, double* to, double* stands_at, std::size_t k) {
   const V periods = hn::Floor(hn::Mul(at, splat(1.0 / period)));
   store(hn::NegMulAdd(periods, splat(period), at), to, k);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The cell engine: moves streams of rays from column to column of an endless array and books where their power ends.
+// The cell engine. It moves groups of rays from column to column of an infinite array and records where power ends.
 
 #include <array>
 #include <cstdint>
@@ -18,12 +18,14 @@
 
 namespace retrace::raytrace {
 
-/// A vector of a ray. \param first of its three numbers
+/// Returns a vector of a ray.
+/// \param first array of the first of its three components
 inline Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k) {
   return {rays[first][k], rays[first + 1][k], rays[first + 2][k]};
 }
 
-/// Where on the part a ray is. \pre rays.have_periods()
+/// Returns the position of a ray on the part.
+/// \pre rays.have_periods()
 inline Vec3 place_of(const lanes::Rays& rays, std::size_t k) {
   return vector_of(rays, lanes::kX, k) + Vec3(rays[lanes::kOx][k], rays[lanes::kOy][k], 0.0);
 }
@@ -32,70 +34,71 @@ inline std::uint32_t owner_of(const lanes::Rays& rays, std::size_t k) {
   return rays.numbers == lanes::kRayNumbers ? static_cast<std::uint32_t>(rays[lanes::kOwner][k]) : 0;
 }
 
-/// Follows light through an endless array, column by column, many rays at once: all that are over one column, or under
-/// its surface, wait in one stream and are moved in SIMD lanes, the fullest stream first. Rays that leave the inner
-/// piece of a finite part are handed over to PathWalker, which traces its borders. One walker serves one thread.
+/// Traces light through an infinite array, column by column, with many rays at a time. All rays above or below the
+/// surface of a column are queued in one stream. The stream with the most rays is processed first, with SIMD. Rays that
+/// leave the inner region of a finite part are handed over to PathWalker. One walker serves one thread.
 class CellWalker {
  public:
-  /// A ray that the walker does not follow any more.
+  /// A ray that the walker does not trace further.
   struct HandedOver {
     Vec3 position = Vec3::Zero();  ///< relative to the centre of the entrance face
     Ray ray;
     std::uint32_t owner = 0;
   };
-  /// A ray that starts just below the entrance face: one that is handed over the other way. Owners are numbers by
-  /// which rays are told apart.
+  /// A ray that starts just below the entrance face. The number of its owner identifies the path to which it belongs.
   using Start = HandedOver;
-  /// Told what becomes of rays by their owners.
+  /// Receives the light that leaves, with the owner of each ray.
   class Observer {
    public:
     virtual ~Observer() = default;
-    /// As ExitObserver::leaves().
+    /// Light leaves through the entrance face, see ExitObserver::leaves().
     virtual void leaves(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) = 0;
-    /// Light that leaves through the back.
+    /// Light leaves through the back.
     virtual void is_transmitted(std::uint32_t owner, double power) = 0;
   };
 
-  /// \param centre_mm of the entrance face; finite parts \param has_owners for follow(), in place of trace()
+  /// \param centre_mm centre of the entrance face; used for finite parts
+  /// \param has_owners true if follow() will be used, false if trace() will be used
   CellWalker(const LightSetup& setup, const PathPolicy& policy, const CellArray& array, const Vec2& centre_mm,
              bool has_owners = false);
   CellWalker(const CellWalker&) = delete;
   CellWalker(CellWalker&&) = default;
 
-  /// Traces light that enters at points `first`..`first + count - 1` of SobolSquare(key_x, key_y), spread over the
-  /// rectangle `entrance_mm` (relative to the centre; infinite parts: one period), each as power 1. Random choices
-  /// depend on `key`, `replicate` and `first` alone.
+  /// Traces light that enters at the points `first` to `first + count - 1` of SobolSquare(key_x, key_y), each with
+  /// power 1. The points are mapped to the rectangle `entrance_mm`, which is relative to the centre, or one period of
+  /// an infinite part. Random choices depend only on `key`, `replicate` and `first`.
   void trace(const geometry::Rectangle& entrance_mm, std::uint64_t key_x, std::uint64_t key_y, std::uint32_t first,
              std::size_t count, RandomKey key, std::uint32_t replicate, Tally& tally);
 
-  /// Follows rays that are in the part. \param entrance_mm of the whole part, as in trace() \pre a plane entrance face
-  /// that does not scatter; the walker has owners
+  /// Traces rays that start in the part.
+  /// \param entrance_mm entrance face of the whole part, as in trace()
+  /// \pre the entrance face is plane and does not scatter; the walker has owners
   void follow(const std::vector<Start>& starts, const geometry::Rectangle& entrance_mm, RandomKey key,
               std::uint32_t replicate, std::uint32_t first, Tally& tally, Observer& observer);
 
-  /// What the last trace() or follow() has not followed to its end; none in infinite parts.
+  /// Returns the rays that the last trace() or follow() has not traced to their end. There are none in infinite parts.
   const std::vector<HandedOver>& handed_over() const { return handed_over_; }
-  /// Random choices made so far under the first point's number.
+  /// Returns the number of random choices made so far with the number of the first point.
   std::uint32_t choices() const { return choices_; }
 
  private:
-  /// Numbers of what lanes::advance_inside() and lanes::advance_outside() find.
+  /// Values of `which` that lanes::advance_inside() and lanes::advance_outside() return.
   static constexpr double kFacet = 0.0;
   static constexpr double kTopOrNothing = 1.0;
 
-  /// Where rays are. Over its own column a surface is convex: light that leaves it there does not come back before
-  /// another column.
+  /// Location of rays relative to the surface of a column. The surface is convex. Light that leaves it can therefore
+  /// meet only the surfaces of other columns.
   enum class Place : std::uint8_t { inside, below, below_after_leaving };
   static constexpr std::size_t kPlaces = 3;
-  static constexpr std::size_t kStreamsOfColumn = 2 * kPlaces;  ///< of light that has been scattered, and that has not
+  static constexpr std::size_t kStreamsOfColumn = 2 * kPlaces;  ///< separate streams for scattered light
 
-  /// One way on across a border.
+  /// A neighbouring column behind a border.
   struct Crossing {
     std::uint32_t column = 0;
     Vec2 shift_mm = Vec2::Zero();
-    Vec3 wall_normal = Vec3::Zero();  ///< out of the part
+    Vec3 wall_normal = Vec3::Zero();  ///< normal of the wall, which points out of the part
   };
-  /// A border that needs a closer look: its stretches are numbered from `to` on.
+  /// A border with several neighbours or a wall. The results of lanes::refine() are numbered from `to` on.
   struct Refinement {
     double number = 0.0;
     double to = 0.0;
@@ -107,15 +110,15 @@ class CellWalker {
     Place place = Place::inside;
     bool scattered = false;
     RayStore rays;
-    std::vector<std::optional<Crossing>> borders;  ///< those with one level neighbour
+    std::vector<std::optional<Crossing>> borders;  ///< set for borders with a single neighbour of the same height
     std::vector<Refinement> refinements;
-    std::vector<Crossing> crossings;  ///< of the refinements
+    std::vector<Crossing> crossings;  ///< neighbours of the refinements
   };
   struct Shape {
     std::vector<lanes::Plane> facets;
     std::vector<lanes::Plane> borders;
     std::vector<lanes::LinearForm> heights;
-    std::vector<std::optional<FacetFrame>> frames;  ///< of facets that have a form
+    std::vector<std::optional<FacetFrame>> frames;  ///< set for facets with a form
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
   };
 
@@ -156,7 +159,7 @@ class CellWalker {
   void come_in(std::uint32_t stream, std::size_t more, const Vec2& shift);
   void hand_over(const lanes::Rays& rays, std::size_t count, const std::vector<double>& which, double number,
                  bool inside, bool scattered);
-  /// Direction and light of the ray k.
+  /// Sets the direction and the light of ray k.
   static void set(const lanes::Rays& rays, std::size_t k, const Ray& ray);
   Ray ray_of(const lanes::Rays& rays, std::size_t k, bool inside, bool scattered) const;
   void waits(std::uint32_t stream);
@@ -170,24 +173,24 @@ class CellWalker {
   const CellArray& array_;
   Tally* tally_ = nullptr;
   Observer* observer_ = nullptr;
-  geometry::Rectangle inner_;      ///< finite parts: where rays are followed, relative to the centre
-  geometry::Rectangle outline_;    ///< finite parts: of the entrance face
-  Vec2 anchor_mm_ = Vec2::Zero();  ///< where the array starts, relative to the centre
+  geometry::Rectangle inner_;      ///< finite parts: region in which rays are traced, relative to the centre
+  geometry::Rectangle outline_;    ///< finite parts: outline of the entrance face
+  Vec2 anchor_mm_ = Vec2::Zero();  ///< origin of the array, relative to the centre
   std::vector<HandedOver> handed_over_;
-  std::vector<Shape> shapes_;  ///< of the columns
+  std::vector<Shape> shapes_;  ///< indexed by column
   std::vector<Stream> streams_;
-  std::vector<std::vector<std::uint32_t>> waiting_;  ///< streams by the binary logarithm of their rays
+  std::vector<std::vector<std::uint32_t>> waiting_;  ///< streams, indexed by the bit width of their number of rays
   std::vector<lanes::LinearForm> pieces_;            ///< edges of the array's pieces
   std::vector<std::uint32_t> piece_starts_;
-  RayStore moved_;                    ///< of the stream at hand
-  RayStore chosen_;                   ///< those of them that meet the same
-  std::array<RayStore, 2> entering_;  ///< below a soiled entrance: not scattered, and scattered
-  RayStore left_;                     ///< what leaves through the entrance, if it is scored or told of
-  std::vector<double> met_;           ///< by `moved_`: number, normal
-  std::vector<double> branches_;      ///< marks of `chosen_`, or of weak rays
+  RayStore moved_;                    ///< rays of the current stream
+  RayStore chosen_;                   ///< rays of `moved_` that have met the same kind of face
+  std::array<RayStore, 2> entering_;  ///< rays below a contaminated entrance: not scattered, and scattered
+  RayStore left_;                     ///< rays that leave through the entrance, if they are scored or observed
+  std::vector<double> met_;           ///< number and normal of the face that each ray of `moved_` has met
+  std::vector<double> branches_;      ///< marks of the rays of `chosen_`, or of weak rays
   std::size_t capacity_ = 0;
   std::uint64_t batches_ = 0;
-  std::optional<SoiledEntrance> soiled_;  ///< where the entrance face scatters
+  std::optional<SoiledEntrance> soiled_;  ///< set if the entrance face scatters
   SoiledReturn from_soiled_;
   RandomKey key_;
   std::uint32_t replicate_ = 0;

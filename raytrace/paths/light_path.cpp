@@ -111,6 +111,7 @@ class Follower {
                  ratio);
   }
 
+  /// Splits the light at a face and continues with the stronger branch.
   /// \param out normal of the face on the far side
   bool split(const Vec3& out, geometry::FacetRole role, const materials::FresnelCoefficients& f, double ratio) {
     const double cosine = out.dot(direction_);

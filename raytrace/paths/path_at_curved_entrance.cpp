@@ -1,4 +1,4 @@
-// Paths at a curved entrance surface: what a plane entrance face never calls of PathWalker.
+// Paths at a curved entrance face. These member functions of PathWalker are not used for plane entrance faces.
 #include <algorithm>
 #include <limits>
 
@@ -6,7 +6,7 @@
 
 namespace retrace::raytrace {
 
-/// The beam crosses the plane that touches the entrance surface from above, over the part's outline.
+/// Starts a path. The beam crosses the plane that touches the curved face from above, inside the part's outline.
 void PathWalker::enter_entrance_face(const Vec2& entry_mm) {
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.entrance_face->highest_mm()};
@@ -17,7 +17,7 @@ void PathWalker::enter_entrance_face(const Vec2& entry_mm) {
   pending_.push_back(state);
 }
 
-/// From inside: how far the path goes if it meets the entrance surface within `limit`, else `limit`.
+/// Returns the distance to the curved entrance face from inside, or `limit` if the path does not meet it before.
 double PathWalker::reach_entrance_face(const State& state, double limit, Step& step) const {
   const auto met =
       setup_.entrance_face->first_hit({state.position, state.direction, state.entrance_source, true, limit});
@@ -28,8 +28,8 @@ double PathWalker::reach_entrance_face(const State& state, double limit, Step& s
   return met->hit.t;
 }
 
-/// In the air above the entrance surface: back into it, or away. The part is the prism over a convex outline, so that
-/// what leaves that prism meets nothing any more.
+/// Traces a path in the air above the curved entrance face. It enters the part again or leaves. The outline of the part
+/// is convex, so that light that leaves the space above it does not come back.
 bool PathWalker::advance_above(State& state) {
   double limit = std::numeric_limits<double>::infinity();
   for (const PathSetup::Side& side : setup_.sides) {
@@ -63,7 +63,7 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
   Light transmitted = is_lossless ? state.light : state.light.transmitted(f);
   if (!is_lossless)
     tally_.other[Account::absorbed] += absorbed_at_entrance(setup_.optics, state.light, reflected, transmitted);
-  // What the first surface makes of the beam is followed both ways, as at a plane entrance face.
+  // Both branches of the first surface are traced, as at a plane entrance face.
   const Branch branch = is_first && splits_at_front_ && !is_lossless ? Branch::both : choose(reflected, transmitted);
   return go_on(state, branch, reflected, against, [&](State& through) {
     through.light = transmitted;
@@ -76,7 +76,7 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
 
 bool PathWalker::leave_entrance_face(const State& state) {
   if (state.entrance_source == FacetRef{})
-    return finish(state, Account::transmitted);  // the beam passes beside the part
+    return finish(state, Account::transmitted);  // the light has never met the part
   if (state.entered) {
     leave(state, state.light, state.direction);
     return false;

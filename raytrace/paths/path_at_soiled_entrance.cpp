@@ -1,9 +1,9 @@
-// Paths at an entrance face that scatters: what a clean one never calls of PathWalker.
+// Paths at an entrance face that scatters. These member functions of PathWalker are not used for clean faces.
 #include "raytrace/paths/path_tracer.h"
 
 namespace retrace::raytrace {
 
-/// What a scattering entrance face makes of a ray.
+/// Returns the rays that leave a scattering entrance face.
 const SoiledReturn& PathWalker::soiled(const Ray& ray) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
   from_soiled_.clear();
@@ -13,7 +13,7 @@ const SoiledReturn& PathWalker::soiled(const Ray& ray) {
   return from_soiled_;
 }
 
-/// Light in the air that has come to the face.
+/// Processes light in the air that meets the face.
 void PathWalker::enter_soiled(const State& state) {
   for (const Ray& ray : soiled(state).rays) {
     State next = state;

@@ -1,4 +1,5 @@
-// Paths of light that comes from anywhere: how it comes to the part. What light of the beam never calls of PathWalker.
+// Start of paths with any position and direction. These member functions of PathWalker are not used for the light of
+// the incident beam.
 #include <algorithm>
 #include <cmath>
 
@@ -8,14 +9,14 @@
 namespace retrace::raytrace {
 namespace {
 
-// Where light begins is known to a few roundings of single precision, in which files of rays hold it.
+// Relative tolerance of starting positions: a few rounding errors of single precision, which files of rays contain.
 constexpr double kStartTolerance = 0x1p-21;
 
-/// The piece of a line that lies over the part's outline, which is convex; `enter` > `leave` if there is none.
+/// Interval of a line inside the part's convex outline. It is empty if `enter` > `leave`.
 struct Span {
   double enter = -kInfinity;
   double leave = kInfinity;
-  std::size_t side = 0;  ///< through which it comes in
+  std::size_t side = 0;  ///< side of the outline at `enter`
 };
 
 Span span_over_outline(const LightSetup& setup, const Vec3& position, const Vec3& direction) {
@@ -53,7 +54,8 @@ double PathWalker::start_tolerance(const Vec3& position) const {
                             setup_.thickness_mm + setup_.depth_mm);
 }
 
-/// \pre over the outline
+/// Returns the medium at a position.
+/// \pre the position is inside the outline in projection along z
 PathWalker::Medium PathWalker::medium_at(Vec3 position, double tolerance_mm) const {
   if (setup_.entrance_face == nullptr) {
     if (position.z() >= setup_.thickness_mm - tolerance_mm) return Medium::above;
@@ -65,7 +67,8 @@ PathWalker::Medium PathWalker::medium_at(Vec3 position, double tolerance_mm) con
   }
   if (position.z() > setup_.top_mm) return Medium::body;
   if (position.z() < -setup_.depth_mm) return Medium::below;
-  // Which face lies above says on which side of it this is; rounding must not put the place beside the surface.
+  // The nearest face above the position determines the medium. The position is moved slightly inward, so that rounding
+  // does not move it outside of the surface.
   if (!setup_.infinite()) position.head<2>() *= 1.0 - 1e-9;
   const auto into_body = setup_.surface.first_hit({position, Vec3::UnitZ(), {}, false, kInfinity});
   if (!into_body) return Medium::body;
@@ -73,7 +76,7 @@ PathWalker::Medium PathWalker::medium_at(Vec3 position, double tolerance_mm) con
   return out_of_body ? Medium::body : Medium::below;
 }
 
-/// A finite part. False if the light passes it; else what is to be followed is pending.
+/// Starts a path at a finite part. Returns false if the light passes the part; otherwise, its branches are queued.
 bool PathWalker::arrive_at_body(State& state) {
   const double tolerance = start_tolerance(state.position);
   const Span span = span_over_outline(setup_, state.position, state.direction);
@@ -89,7 +92,7 @@ bool PathWalker::arrive_at_body(State& state) {
                                   : begin_inside(state, tolerance);
 }
 
-/// An infinite one.
+/// Starts a path at an infinite part. Returns false if the light does not meet the part.
 bool PathWalker::arrive_at_sheet(State& state) {
   const double tolerance = start_tolerance(state.position);
   if (state.position.z() >= setup_.thickness_mm - tolerance) return arrive_from_above(state, kInfinity, tolerance);
@@ -98,7 +101,8 @@ bool PathWalker::arrive_at_sheet(State& state) {
                                                                : begin_inside(state, tolerance);
 }
 
-/// \param reach_mm how far the outline goes
+/// Starts a path in the air above the part.
+/// \param reach_mm distance along the path to the outline of the part
 bool PathWalker::arrive_from_above(State& state, double reach_mm, double tolerance_mm) {
   if (setup_.entrance_face != nullptr) {
     state.above = true;
@@ -117,7 +121,7 @@ bool PathWalker::arrive_from_above(State& state, double reach_mm, double toleran
   return arrive_at_entrance(state);
 }
 
-/// At the plane entrance face, from the air.
+/// Processes light that meets the plane entrance face from the air.
 bool PathWalker::arrive_at_entrance(State& state) {
   ++tally_.segments;
   if (setup_.soiled) {
@@ -145,7 +149,7 @@ bool PathWalker::arrive_at_entrance(State& state) {
   return true;
 }
 
-/// At a side of the plate, or below z = 0 at the border wall, from outside.
+/// Processes light that meets a side of the plate from outside, or the border wall below z = 0.
 bool PathWalker::arrive_at_side(State& state, const Vec3& normal) {
   ++tally_.segments;
   const bool is_border_wall = state.position.z() < 0.0;
@@ -173,7 +177,7 @@ bool PathWalker::arrive_at_side(State& state, const Vec3& normal) {
   return true;
 }
 
-/// In the air below the back surface.
+/// Starts a path in the air below the back surface.
 bool PathWalker::arrive_from_below(State& state) {
   const double lowest = -setup_.depth_mm - setup_.clearance_mm;
   if (state.position.z() < lowest) {
@@ -185,7 +189,7 @@ bool PathWalker::arrive_from_below(State& state) {
   if (step.end == End::escape) return false;
   ++tally_.segments;
   if (step.end == End::facet) {
-    state.left_through = setup_.surface.facet(step.hit.facet).role;  // of what it sends back
+    state.left_through = setup_.surface.facet(step.hit.facet).role;  // role of the face that reflects the light
     if (meet_facet(state, step.hit)) pending_.push_back(state);
     return true;
   }
@@ -194,7 +198,8 @@ bool PathWalker::arrive_from_below(State& state) {
   return true;
 }
 
-/// In the body; but what begins on a facet of the back, up to rounding, has come through it or is about to enter.
+/// Starts a path in the body. Light that starts on a facet of the back, up to rounding, is treated as light in the air
+/// that meets this facet.
 bool PathWalker::begin_inside(State& state, double tolerance_mm) {
   if (const auto left = setup_.surface.first_hit({state.position, state.direction, {}, true, tolerance_mm})) {
     state.position += left->t * state.direction;

@@ -12,19 +12,19 @@ namespace {
 using std::numbers::pi;
 using surface_models::RandomStream;
 
-// Reflections within a drop, or between dust and face, after which light is followed no further.
+// Maximum number of reflections within a drop, or between dust and face, that are traced.
 constexpr int kMostReflections = 256;
 constexpr double kNeverBoth = std::numeric_limits<double>::infinity();
 
-/// Turns a ray into another direction, its polarisation with it.
+/// Changes the direction of a ray and rotates its polarization with it.
 void turn(Ray& ray, const Vec3& direction) {
   ray.light.s_axis = Eigen::Quaterniond::FromTwoVectors(ray.direction, direction) * ray.light.s_axis;
   ray.direction = direction;
   ray.scattered = true;
 }
 
-/// Shifts a ray's direction cosines along the face. What would leave the unit disc stays as it is, so that as much
-/// light goes from one direction to the other as back.
+/// Shifts the direction cosines of a ray along the face. A shift to a point outside of the unit disc is omitted.
+/// Scattering is then reciprocal: the density from one direction to another is the same in reverse.
 void shift(Ray& ray, const Vec2& by) {
   const Vec2 along = ray.direction.head<2>() + by;
   const double left = 1.0 - along.squaredNorm();
@@ -38,7 +38,8 @@ Vec2 uniform_in_disc(RandomStream& random) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Light of no polarisation by Lambert's law: even over the disc of direction cosines.
+/// Scatters a ray without polarization according to Lambert's law. The direction cosines are uniform over the unit
+/// disc.
 void scatter_evenly(Ray& ray, bool up, RandomStream& random) {
   const Vec2 along = uniform_in_disc(random);
   const double z = std::sqrt(std::max(1e-300, 1.0 - along.squaredNorm()));
@@ -47,16 +48,16 @@ void scatter_evenly(Ray& ray, bool up, RandomStream& random) {
   ray.scattered = true;
 }
 
-/// A cap of a sphere on the unit disc.
+/// A spherical cap over the unit disc.
 struct Cap {
-  double radius = 1.0;    ///< of the sphere
+  double radius = 1.0;    ///< radius of the sphere
   double centre_z = 0.0;  ///< <= 0
 
   explicit Cap(double contact_angle_rad)
       : radius(1.0 / std::sin(contact_angle_rad)), centre_z(-radius * std::cos(contact_angle_rad)) {}
 
   Vec3 normal_at(const Vec3& p) const { return Vec3(p.x(), p.y(), p.z() - centre_z).normalized(); }
-  /// How far a line from inside the sphere goes until it leaves it.
+  /// Returns the distance along a line from inside the sphere to the sphere.
   double way_out(const Vec3& from, const Vec3& direction) const {
     const Vec3 at(from.x(), from.y(), from.z() - centre_z);
     const double b = at.dot(direction);
@@ -111,7 +112,7 @@ void SoiledEntrance::meet_clean(const Ray& ray, Event& event) const {
   pass_haze(ray, event, [&](const Ray& passed) { meet_face(passed, event); });
 }
 
-/// Between the haze and the body: both branches, as at a facet.
+/// Processes a ray between the haze and the body. Both branches are traced, as at a facet.
 void SoiledEntrance::meet_face(const Ray& ray, Event& event) const {
   if (optics_.entrance.is_rough()) {
     const TexturedReturn back = meet_textured_facet(as_facet_, Vec3::UnitZ(), ray, event.split_power, event.random);
@@ -132,7 +133,8 @@ void SoiledEntrance::send(const Ray& ray, Event& event) const {
   pass_haze(ray, event, [&](const Ray& passed) { event.result.rays.push_back(passed); });
 }
 
-/// Through the haze in front of the face, on the way in or out. \param on is called for what goes on
+/// Traces a ray through the haze in front of the face, in either direction.
+/// \param on is called for each ray after the haze
 template <class On>
 void SoiledEntrance::pass_haze(const Ray& ray, Event& event, const On& on) const {
   const Haze& haze = optics_.entrance.haze;
@@ -148,7 +150,8 @@ void SoiledEntrance::pass_haze(const Ray& ray, Event& event, const On& on) const
   on(thrown);
 }
 
-/// Fresnel's branches of the clean face. \param ray inside and upwards, or outside and downwards
+/// Returns the branches of the clean face by Fresnel's formulas.
+/// \param ray travels upwards inside the part, or downwards outside
 SoiledEntrance::Branches SoiledEntrance::at_face(const Ray& ray, Event& event) const {
   const Vec3 against = ray.inside ? Vec3(-Vec3::UnitZ()) : Vec3(Vec3::UnitZ());
   const double cos_incidence = -against.dot(ray.direction);
@@ -173,7 +176,8 @@ Ray SoiledEntrance::one_of(Branches branches, Event& event) const {
   return branch == Branch::reflected ? branches.reflected : branches.transmitted;
 }
 
-/// All on its way to the air passes the dust, again and again where the face sends it back.
+/// Processes a ray at a position under dust. All light that leaves the face passes the dust. Light that the dust sends
+/// back meets the face again.
 void SoiledEntrance::meet_dust(Ray ray, Event& event) const {
   const Dust& dust = optics_.entrance.dust;
   if (ray.inside) ray = one_of(at_face(ray, event), event);
@@ -191,7 +195,7 @@ void SoiledEntrance::meet_dust(Ray ray, Event& event) const {
   event.result.truncated += ray.light.power();
 }
 
-/// One scratch, on the way in and on the way out.
+/// Processes a ray at a position under a scratch. The scratch shifts the ray on both sides of the face.
 void SoiledEntrance::meet_scratch(Ray ray, Event& event) const {
   const FineScratches& scratches = optics_.entrance.scratches;
   const double along = scratches.azimuth_rad ? *scratches.azimuth_rad : pi * event.random.next();
@@ -205,7 +209,7 @@ void SoiledEntrance::meet_scratch(Ray ray, Event& event) const {
   event.result.rays.push_back(ray);
 }
 
-/// Light that a drop has sent into the air: away, or down to the face beside it.
+/// Processes light that leaves a drop into the air. It leaves the part, or meets the face next to the drop.
 void SoiledEntrance::leave_drop(Ray ray, Event& event) const {
   ray.inside = false;
   ray.scattered = true;
@@ -213,14 +217,14 @@ void SoiledEntrance::leave_drop(Ray ray, Event& event) const {
   meet_clean(ray, event);
 }
 
-/// At a random place of a drop's base, whose radius is 1.
+/// Processes a ray at a random point of the base of a drop, whose radius is 1.
 void SoiledEntrance::meet_drop(Ray ray, Event& event) const {
   const Drops& drops = optics_.entrance.drops;
   const double water = optics_.entrance.water_index;
   const Cap cap(drops.contact_angle_rad);
   const Vec2 base = uniform_in_disc(event.random);
   Vec3 at(base.x(), base.y(), 0.0);
-  // One branch at a plane of these coefficients; true if it is the one that passes.
+  // Chooses a branch at a plane with these coefficients. Returns true for the transmitted branch.
   const auto passes = [&](const materials::FresnelCoefficients& f, const Vec3& against, double ratio) {
     const double cos_incidence = -against.dot(ray.direction);
     ray.light.turn_to(ray.direction, against);

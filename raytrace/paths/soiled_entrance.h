@@ -1,7 +1,6 @@
 #pragma once
 
-// Rays at an entrance face that scatters: its roughness and haze, and the spots on it - dust, scratches, drops of
-// water.
+// Rays at an entrance face that scatters because of roughness, haze, dust, scratches or water drops.
 
 #include <vector>
 
@@ -9,25 +8,26 @@
 
 namespace retrace::raytrace {
 
-/// What becomes of a ray that has met such a face.
+/// Rays and power after a ray has met a scattering entrance face.
 struct SoiledReturn {
-  std::vector<Ray> rays;   ///< in the body, or in the air and on their way from the face
-  double absorbed = 0.0;   ///< power that layers and dust take
-  double truncated = 0.0;  ///< power that was followed no further, or that roughness keeps, or gives (negative)
+  std::vector<Ray> rays;   ///< rays in the body, or rays in the air that travel away from the face
+  double absorbed = 0.0;   ///< power that layers and dust absorb
+  double truncated = 0.0;  ///< power that is not traced, or error of the roughness model, which may be negative
 
   void clear() { *this = {std::move(rays), 0.0, 0.0}, rays.clear(); }
 };
 
-/// A plane entrance face with the normal +z in a condition that scatters. Light meets one place of it, which is clean
-/// or under one kind of spot by its share of the area, from either side and on its way back as well. Theory:
-/// docs/theory/entrance.md.
+/// A plane entrance face with the normal +z that scatters. A ray meets a single position of the face. This position is
+/// clean or under one kind of contamination, with probabilities equal to the area fractions. Light that is reflected
+/// back to the face meets the same position. Theory: docs/theory/entrance.md.
 class SoiledEntrance {
  public:
   /// \pre optics.entrance.scatters()
   explicit SoiledEntrance(const Optics& optics);
 
-  /// Power is kept: that of the rays, what is absorbed and what is truncated add to the ray's. Adds to `result`.
-  /// \param split_power least power of a branch for both to be followed where the face is clean, as PathPolicy has it
+  /// Appends the rays after a ray has met the face to `result`. The power is preserved: the power of the rays, the
+  /// absorbed and the truncated power add up to the power of the ray.
+  /// \param split_power minimum power of the branches of a clean face at which both are traced, see PathPolicy
   void meet(const Ray& ray, double split_power, surface_models::RandomStream& random, SoiledReturn& result) const;
 
  private:
@@ -47,13 +47,15 @@ class SoiledEntrance {
   Ray one_of(Branches branches, Event& event) const;
 
   Optics optics_;
-  Optics as_facet_;  ///< the rough face as a facet: what lies behind it is air
+  Optics as_facet_;  ///< the rough face as a facet with air behind it
 };
 
-/// The rough entrance face as a facet with air behind it, for the functions of textured_facet.h.
+/// Returns the optics of a part whose facets are the rough entrance face, with air behind them. The functions of
+/// textured_facet.h require facets.
 Optics entrance_as_facet(const Optics& optics);
 
-/// Books light that a scattering face sends back at once. \param ray in the air
+/// Records light that a scattering face reflects from outside.
+/// \param ray ray in the air
 void book_front(const LightSetup& setup, const Ray& ray, Tally& tally);
 
 }  // namespace retrace::raytrace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Maps points of the unit square to entry points spread evenly over the entrance face.
+// Maps points of the unit square to entry points that are uniformly distributed over the entrance face.
 
 #include <array>
 #include <vector>
@@ -10,19 +10,19 @@
 
 namespace retrace::raytrace {
 
-/// Spreads points of the unit square evenly over the entrance face (over one period of an infinite part), relative to
-/// the face's centre.
+/// Distributes points of the unit square uniformly over the entrance face, or over one period of an infinite part. The
+/// results are relative to the centre of the face.
 class EntranceSampler {
  public:
   explicit EntranceSampler(const geometry::Part& part);
 
-  /// The point of the part's plane that is the origin of the samples.
+  /// Returns the centre of the face, which is the origin of the results, in the part frame.
   const Vec2& centre_mm() const { return centre_mm_; }
 
-  /// Round the face, relative to its centre; of arrays it is the face.
+  /// Returns the bounding box of the face, relative to its centre. For arrays, it is the face itself.
   geometry::Rectangle bounding_box() const { return {lower_, lower_ + size_}; }
 
-  /// Maps the unit square onto the face, preserving area ratios.
+  /// Maps the unit square onto the face and preserves ratios of areas.
   Vec2 operator()(const std::array<double, 2>& u) const;
 
  private:
@@ -30,8 +30,8 @@ class EntranceSampler {
   bool is_rectangle_ = false;
   Vec2 lower_ = Vec2::Zero();
   Vec2 size_ = Vec2::Zero();
-  geometry::Polygon outline_;             ///< fan of triangles from the first corner
-  std::vector<double> cumulative_share_;  ///< of each triangle of the fan
+  geometry::Polygon outline_;             ///< divided into a fan of triangles from the first corner
+  std::vector<double> cumulative_share_;  ///< cumulative fraction of the area of the triangles
 };
 
 }  // namespace retrace::raytrace

@@ -1,13 +1,14 @@
 #pragma once
 
-// Sets the processor to flush denormal numbers within a task, as Embree asks for.
+// Makes the processor flush denormal numbers during a task, as Embree recommends.
 
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
 namespace retrace::raytrace {
 
-/// Embree wants denormals flushed; done here for a whole task so that every task computes alike.
+/// Flushes denormal numbers to 0 during its lifetime, as Embree recommends. A whole task is covered, so that all tasks
+/// compute with the same rounding.
 class FlushDenormals {
  public:
   FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); }

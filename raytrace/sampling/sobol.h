@@ -1,19 +1,20 @@
 #pragma once
 
-// Owen-scrambled Sobol points in the unit square: the low-discrepancy sample of entry points.
+// Owen-scrambled Sobol points in the unit square, which are low-discrepancy entry points.
 
 #include <array>
 #include <cstdint>
 
 namespace retrace::raytrace {
 
-/// Digits of a nested scramble: in kScrambleBlocks blocks of kScrambleLevels each, whose flips are the bits of one
-/// hash; no two of 2^25 aligned points share all of these digits, so one hash serves all the digits below.
+/// Digits of a nested scramble. The upper digits form kScrambleBlocks blocks of kScrambleLevels digits, and one hash
+/// gives the random bits of a block. No two of 2^25 aligned points have all of these digits in common, so that one hash
+/// is sufficient for the remaining digits.
 inline constexpr int kScrambleLevels = 5;
 inline constexpr int kScrambleBlocks = 5;
 inline constexpr int kScrambleRest = 32 - kScrambleLevels * kScrambleBlocks;
 
-/// Random bits of (key, node): a mixer of 32 bits with three multiplications (C. Wellons, "triple32").
+/// Returns random bits for (key, node), with a 32-bit mixer of three multiplications (C. Wellons, "triple32").
 constexpr std::uint32_t scramble_hash(std::uint64_t key, std::uint32_t node) {
   std::uint32_t x = node * 0x9e3779b9U + static_cast<std::uint32_t>(key);
   x = (x ^ (x >> 17)) * 0xed5ad4bbU + static_cast<std::uint32_t>(key >> 32);
@@ -22,13 +23,13 @@ constexpr std::uint32_t scramble_hash(std::uint64_t key, std::uint32_t node) {
   return x ^ (x >> 14);
 }
 
-/// What a nested scramble flips of a number's 32 digits.
+/// Returns the bits that a nested scramble flips in a number of 32 digits.
 constexpr std::uint32_t nested_flips(std::uint32_t digits, std::uint64_t key) {
   std::uint32_t flips = 0;
-  std::uint32_t node = 1;  // the digits above, after a leading 1
+  std::uint32_t node = 1;  // a leading 1, followed by the digits above this block
   for (int block = 0; block < kScrambleBlocks; ++block) {
     const std::uint32_t hash = scramble_hash(key, node);
-    std::uint32_t below = 1;  // the digits of this block, after a leading 1
+    std::uint32_t below = 1;  // a leading 1, followed by the digits of this block
     for (int level = 0; level < kScrambleLevels; ++level) {
       flips = (flips << 1) | ((hash >> below) & 1U);
       below = (below << 1) | (digits >> 31);
@@ -39,21 +40,24 @@ constexpr std::uint32_t nested_flips(std::uint32_t digits, std::uint64_t key) {
   return (flips << kScrambleRest) | (scramble_hash(key, node) >> (32 - kScrambleRest));
 }
 
-/// Owen-scrambled Sobol points in the unit square: any 2^k consecutive aligned points are stratified, and each scramble
-/// (each pair of keys) is an independent unbiased estimator whose errors are nearly normal (Sobol 1967; Owen 1995; Loh
-/// 2003). The scramble is the nested one: every digit is flipped by a random bit of the digits above it. Cheaper affine
-/// or few-bit scrambles have heavy tails, and 32 replicates then claim errors that are too small.
+/// Owen-scrambled Sobol points in the unit square. Any 2^k consecutive aligned points are stratified. Each scramble,
+/// given by a pair of keys, is an independent unbiased estimator with nearly normal errors (Sobol 1967; Owen 1995; Loh
+/// 2003).
+///
+/// The scramble is nested: every digit is flipped by a random bit that depends on the digits above it. Affine scrambles
+/// and scrambles of few bits take less time. Their errors have heavy tails, so that standard errors from 32 replicates
+/// would be too small.
 class SobolSquare {
  public:
   SobolSquare(std::uint64_t key_x, std::uint64_t key_y) : key_x_(key_x), key_y_(key_y) {}
 
-  /// Point `index` of the sequence, each coordinate in [0, 1).
+  /// Returns the point with the number `index`, with coordinates in [0, 1).
   std::array<double, 2> operator()(std::uint32_t index) const {
     const auto [x, y] = digits(index);
     return {scrambled(x, key_x_), scrambled(y, key_y_)};
   }
 
-  /// The two coordinates before the scramble, as binary digits.
+  /// Returns the coordinates before the scramble, as binary digits.
   static constexpr std::array<std::uint32_t, 2> digits(std::uint32_t index) {
     return {reversed(index), second_dimension(index)};
   }
