@@ -8,10 +8,10 @@ namespace {
 
 using geometry::FacetRole;
 
-// Numbers of what lanes::advance_inside() and lanes::advance_outside() find, beside those of the class.
+// More values of `which` that lanes::advance_inside() and lanes::advance_outside() return.
 constexpr std::size_t kFirstBorder = 2;
 constexpr double kHandedOver = -1.0;
-// By how much places may miss their column by rounding, relative to the period.
+// Maximum distance of a position from its column that is caused by rounding, relative to the period.
 constexpr double kSlack = 1e-12;
 
 Vec3 lifted(const Vec2& normal) {
@@ -58,7 +58,8 @@ CellWalker::CellWalker(const LightSetup& setup, const PathPolicy& policy, const 
         Stream& stream = streams_.emplace_back(Stream{column, place, scattered, RayStore(moved_), {}, {}, {}});
         prepare(stream);
       }
-  // Rounding must not leave a gap between two pieces; a ray a little outside its column crosses into the next at once.
+  // The pieces are enlarged slightly, so that rounding leaves no gap between them. A ray just outside of its column
+  // crosses into the next column in its next step.
   const double slack_mm = kSlack * array.period_mm().maxCoeff();
   for (const CellArray::Piece& piece : array.pieces()) {
     piece_starts_.push_back(static_cast<std::uint32_t>(pieces_.size()));
@@ -69,7 +70,7 @@ CellWalker::CellWalker(const LightSetup& setup, const PathPolicy& policy, const 
   piece_starts_.push_back(static_cast<std::uint32_t>(pieces_.size()));
 }
 
-/// What lies behind the borders of a stream.
+/// Determines the neighbours behind the borders of a stream's column.
 void CellWalker::prepare(Stream& stream) const {
   const std::vector<CellArray::Edge>& edges = array_.columns()[stream.column].edges;
   const bool inside = stream.place == Place::inside;
@@ -161,7 +162,7 @@ void CellWalker::follow(const std::vector<Start>& starts, const geometry::Rectan
   observer_ = nullptr;
 }
 
-/// The rays of `chosen_` at their places on the entrance face.
+/// Starts the rays of `chosen_` at their positions on the entrance face.
 void CellWalker::enter(std::size_t count) {
   const LightSetup::Entry& entry = setup_.entry;
   tally_->front[entry.front_cone] += static_cast<double>(count) * entry.front;
@@ -182,13 +183,13 @@ std::optional<std::uint32_t> CellWalker::fullest() {
     while (!waiting_[bits].empty()) {
       const std::uint32_t stream = waiting_[bits].back();
       waiting_[bits].pop_back();
-      // Streams are entered again when they grow, and stay in their old lists.
+      // Streams are listed again when they grow, and their old entries remain. Old entries are ignored.
       if (static_cast<std::size_t>(std::bit_width(streams_[stream].rays.size())) == bits) return stream;
     }
   return std::nullopt;
 }
 
-/// Takes in rays that have been put behind those of a stream.
+/// Adds rays to a stream that have been written behind its last ray.
 void CellWalker::grow(std::uint32_t number, std::size_t more) {
   if (more == 0) return;
   RayStore& rays = streams_[number].rays;
@@ -197,7 +198,7 @@ void CellWalker::grow(std::uint32_t number, std::size_t more) {
   if (std::bit_width(before) != std::bit_width(before + more)) waits(number);
 }
 
-/// The same for rays that come from another column: those that leave the inner piece of the part are handed over.
+/// Adds rays to a stream that come from another column. Rays that leave the inner region of the part are handed over.
 void CellWalker::come_in(std::uint32_t number, std::size_t more, const Vec2& shift) {
   if (more == 0) return;
   const Stream& stream = streams_[number];
@@ -238,7 +239,7 @@ void CellWalker::hand_over(const lanes::Rays& rays, std::size_t count, const std
       handed_over_.push_back({place_of(rays, k), ray_of(rays, k, inside, scattered), owner_of(rays, k)});
 }
 
-/// Where the next rays of a stream go, with room for `most`.
+/// Returns the arrays behind the last ray of a stream, with memory for `most` rays.
 lanes::Rays CellWalker::end_of(std::uint32_t stream, std::size_t most) {
   RayStore& rays = streams_[stream].rays;
   rays.reserve(rays.size() + most);
@@ -253,7 +254,7 @@ lanes::Meeting CellWalker::meeting(double number, bool inside) {
   return {met(), number, inside ? -1.0 : 1.0, policy_.split_power, random()};
 }
 
-/// Ends those rays of `moved_` that have met what is numbered so.
+/// Ends the rays of `moved_` that have met a face with this number, and adds their power to an account.
 void CellWalker::book(double number, Account account) {
   const lanes::Share share = lanes::sum_of(met_.data(), number, moved_.rays(), moved_.size());
   tally_->other[account] += share.power;
@@ -270,7 +271,7 @@ void CellWalker::tell_of_leaving(const lanes::Rays& left, std::size_t k) {
   observer_->leaves(owner_of(left, k), place_of(left, k), vector_of(left, lanes::kDx, k), left[lanes::kI][k]);
 }
 
-/// From the entrance down to the top of the surface: the rays of `chosen_`.
+/// Moves the rays of `chosen_` from the entrance face down to the top of the surface.
 void CellWalker::fall(bool scattered) {
   const std::vector<CellArray::Piece>& pieces = array_.pieces();
   const double height_mm = setup_.thickness_mm - setup_.top_mm;
@@ -298,12 +299,12 @@ void CellWalker::fall(bool scattered) {
     grow(stream, more);
     left -= more;
   }
-  // None can be left: the pieces fill the period.
+  // All rays should be in a piece, because the pieces fill the period.
   tally_->misses += left;
   tally_->other[Account::lost] += static_cast<double>(left);
 }
 
-/// Books rays of `moved_` below the cut-off and takes them away.
+/// Ends the rays of `moved_` with less power than the cut-off.
 void CellWalker::truncate_weak() {
   if (lanes::mark_weak(moved_.rays(), policy_.cutoff, moved_.size(), branches_.data()) == 0) return;
   const double before = lanes::sum(moved_.rays(), moved_.size());
@@ -317,7 +318,7 @@ void CellWalker::advance(std::uint32_t number) {
   moved_.swap(stream.rays);
   reserve(moved_.size());
   truncate_weak();
-  // A ray is moved at most once in every batch.
+  // A batch moves each ray at most one time.
   if (++batches_ > policy_.max_events) {
     tally_->other[Account::truncated] += lanes::sum(moved_.rays(), moved_.size());
     return;
@@ -341,7 +342,7 @@ void CellWalker::advance(std::uint32_t number) {
     }
 }
 
-/// The rays of `moved_` to what they meet next.
+/// Moves the rays of `moved_` to the next face.
 void CellWalker::move(const Stream& stream) {
   const Shape& shape = shapes_[stream.column];
   const lanes::Rays rays = moved_.rays();
@@ -377,7 +378,7 @@ void CellWalker::meet_surface(const Stream& stream) {
   meet_faces(kFacet, inside, reflected_to, transmitted_to, nullptr);
 }
 
-/// Rays on into the next column.
+/// Moves rays into the next column.
 void CellWalker::cross(const Stream& stream, const Crossing& crossing, double number) {
   const std::uint32_t to =
       stream_of(crossing.column, stream.place == Place::inside ? Place::inside : Place::below, stream.scattered);
@@ -385,7 +386,7 @@ void CellWalker::cross(const Stream& stream, const Crossing& crossing, double nu
   come_in(to, more, crossing.shift_mm);
 }
 
-/// Against the wall that stands where one surface is lower than the other.
+/// Processes rays at the wall between two surfaces of different height.
 void CellWalker::meet_wall(const Stream& stream, const Crossing& crossing, double number) {
   if (setup_.optics.absorbing_walls) {
     book(number, Account::absorbed);
@@ -395,7 +396,7 @@ void CellWalker::meet_wall(const Stream& stream, const Crossing& crossing, doubl
       met_.begin() + static_cast<std::ptrdiff_t>(moved_.size()))
     return;
   const bool inside = stream.place == Place::inside;
-  for (std::size_t k = 0; k < 3; ++k)  // the facets' normals have done their duty
+  for (std::size_t k = 0; k < 3; ++k)  // the normals of facets are no longer needed and are replaced
     std::fill_n(&met_[(k + 1) * capacity_], moved_.size(), crossing.wall_normal[static_cast<Eigen::Index>(k)]);
   const Place here = inside ? Place::inside : Place::below;
   const Place there = inside ? Place::below : Place::inside;
@@ -403,8 +404,8 @@ void CellWalker::meet_wall(const Stream& stream, const Crossing& crossing, doubl
              stream_of(crossing.column, there, stream.scattered), &crossing);
 }
 
-/// Both branches of those rays of `moved_` that have met the faces numbered so.
-/// \param crossing of what goes through, if that leaves the column
+/// Traces both branches of the rays of `moved_` that have met faces with this number.
+/// \param crossing next column for the transmitted rays; null if they stay in the column
 void CellWalker::meet_faces(double number, bool inside, std::uint32_t reflected_to, std::uint32_t transmitted_to,
                             const Crossing* crossing) {
   const lanes::Rays reflected = end_of(reflected_to, moved_.size());
@@ -419,12 +420,12 @@ void CellWalker::meet_faces(double number, bool inside, std::uint32_t reflected_
     grow(transmitted_to, more.transmitted);
 }
 
-/// From the top of the surface up to the entrance, out, and back down.
+/// Moves rays from the top of the surface up to the entrance face. Reflected rays are moved back down.
 void CellWalker::meet_entrance(bool scattered) {
   const Optics& optics = setup_.optics;
   const double height_mm = setup_.thickness_mm - setup_.top_mm;
   const lanes::Rays rays = moved_.rays();
-  // What reaches a side first.
+  // Rays that reach a side before the entrance face are handed over.
   if (array_.inner() && lanes::mark_beyond(rays, moved_.size(), {height_mm, outline_.lower, outline_.upper},
                                            kTopOrNothing, kHandedOver, met_.data()) > 0)
     hand_over(rays, moved_.size(), met_, kHandedOver, true, scattered);

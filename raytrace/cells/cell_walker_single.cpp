@@ -1,5 +1,5 @@
-// What rays of a cell meet one by one, as it takes longer than lanes could save: the members of CellWalker for forms,
-// textures and layers, and for entrance faces that scatter.
+// Member functions of CellWalker that process rays one by one: for forms, textures and layers, and for entrance faces
+// that scatter. These computations take so long that SIMD would save little time.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,14 +11,14 @@ namespace retrace::raytrace {
 
 using geometry::FacetRole;
 
-/// The facet of a column whose normal is that one, or nearly.
+/// Returns the facet of a column whose normal is nearest to a normal.
 std::size_t CellWalker::facet_of(const Stream& stream, const Vec3& normal) const {
   const std::vector<lanes::Plane>& facets = shapes_[stream.column].facets;
   const auto turned = [&](const lanes::Plane& facet) { return (facet.normal - normal).squaredNorm(); };
   return static_cast<std::size_t>(std::ranges::min_element(facets, {}, turned) - facets.begin());
 }
 
-/// Gives rays that have met formed facets the normals of those there.
+/// Replaces the normals of rays that have met facets with a form by the normals at their positions.
 void CellWalker::turn_normals(const Stream& stream) {
   const bool inside = stream.place == Place::inside;
   const Shape& shape = shapes_[stream.column];
@@ -34,7 +34,7 @@ void CellWalker::turn_normals(const Stream& stream) {
   }
 }
 
-/// One by one: what a texture does takes longer than all else.
+/// Processes rays at textured facets one by one.
 void CellWalker::meet_texture(const Stream& stream) {
   const bool was_inside = stream.place == Place::inside;
   const lanes::Rays rays = moved_.rays();
@@ -61,7 +61,7 @@ void CellWalker::meet_texture(const Stream& stream) {
   }
 }
 
-/// One by one: layers are rare, and their amplitudes complex.
+/// Processes rays at facets with layers one by one, because the amplitudes of layers are complex numbers.
 void CellWalker::meet_layers(const Stream& stream, std::uint32_t reflected_to, std::uint32_t transmitted_to) {
   const Optics& optics = setup_.optics;
   const bool inside = stream.place == Place::inside;
@@ -99,7 +99,7 @@ void CellWalker::meet_layers(const Stream& stream, std::uint32_t reflected_to, s
   grow(transmitted_to, more.transmitted);
 }
 
-/// The same one by one, of an entrance with layers.
+/// Processes rays at an entrance face with layers one by one.
 void CellWalker::meet_layers_of_entrance(bool scattered) {
   const Optics& optics = setup_.optics;
   const double height_mm = setup_.thickness_mm - setup_.top_mm;
@@ -141,7 +141,7 @@ void CellWalker::meet_layers_of_entrance(bool scattered) {
   if (!chosen_.empty()) fall(scattered);
 }
 
-/// What a scattering entrance face makes of a ray.
+/// Returns the rays that leave a scattering entrance face.
 const SoiledReturn& CellWalker::soiled(const Ray& ray) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
   from_soiled_.clear();
@@ -151,7 +151,7 @@ const SoiledReturn& CellWalker::soiled(const Ray& ray) {
   return from_soiled_;
 }
 
-/// Puts a ray below the entrance face, with what else the ray `k` of `from` has.
+/// Adds a ray below the entrance face. The remaining values, such as the owner, are copied from ray `k` of `from`.
 void CellWalker::put_in(const lanes::Rays& from, std::size_t k, const Vec3& place, const Ray& ray) {
   RayStore& to = entering_[ray.scattered ? 1 : 0];
   to.reserve(to.size() + 1);
@@ -162,7 +162,7 @@ void CellWalker::put_in(const lanes::Rays& from, std::size_t k, const Vec3& plac
   to.resize(to.size() + 1);
 }
 
-/// Lets what waits below the entrance fall, as many rays at once as there is room for.
+/// Moves the rays that wait below the entrance face down to the surface, as many at a time as the memory allows.
 void CellWalker::fall_in() {
   const std::size_t most = capacity_ - lanes::kPadding;
   chosen_.reserve(most);
@@ -180,7 +180,7 @@ void CellWalker::fall_in() {
   }
 }
 
-/// One by one, as each light takes its own way: the rays of `chosen_` at their places on the entrance face.
+/// Starts the rays of `chosen_` at a scattering entrance face, one by one.
 void CellWalker::enter_soiled(std::size_t count) {
   const lanes::Rays rays = chosen_.rays();
   for (std::size_t k = 0; k < count; ++k) {
@@ -195,7 +195,7 @@ void CellWalker::enter_soiled(std::size_t count) {
   fall_in();
 }
 
-/// The same from inside.
+/// Processes rays at a scattering entrance face from inside.
 void CellWalker::meet_soiled_entrance(bool scattered) {
   const double height_mm = setup_.thickness_mm - setup_.top_mm;
   const lanes::Rays rays = moved_.rays();

@@ -3,13 +3,14 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/cells/face_lanes.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for every instruction set
-// After foreach_target.h.
+// Must be included after foreach_target.h.
 #include "raytrace/cells/ray_lanes_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace retrace::raytrace::lanes::HWY_NAMESPACE {
 
-/// As Light::turn_to_axis(), with axes of any length. \param over 1 / (|axis|^2 |to|^2)
+/// Rotates the axis of Stokes parameters as Light::turn_to_axis(), for axes of any length.
+/// \param over 1 / (|axis|^2 |to|^2)
 HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V3& to, V over) {
   const V c = dot(to, axis);
   const V s = dot(to, cross(direction, axis));
@@ -23,28 +24,33 @@ HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V
 struct Interface {
   S reflected, transmitted;
   V3 mirrored, refracted;
-  V3 axis;  ///< of both
+  V3 axis;  ///< first axis of both
 };
 
-/// An axis across the plane of incidence. At normal incidence s and p are alike, any axis serves.
+/// Returns an axis perpendicular to the plane of incidence. At normal incidence, the present axis is returned, because
+/// s and p have equal coefficients.
 HWY_INLINE V3 axis_at(const V3& d, const V3& axis, const V3& against) {
   const V3 across = cross(d, against);
   return chosen(hn::Lt(dot(across, across), splat(1e-16)), axis, across);
 }
 
-/// What a face makes of light: shares of power that it reflects, r_s conj(r_p) and t_s t_p.
+/// Coefficients of a face: the reflected fractions of power of s and p, r_s conj(r_p), and t_s t_p.
 struct Shares {
   V power_s, power_p;
   V re, im;
   V passed;
 };
 
-/// \param ci cosine of incidence \param root that of refraction, or of what is total its imaginary part
-/// \param a_s, b_p index ratio times `ci` and times `root` \param over 1 / ((a_s + root) (ci + b_p)), or of what is
-/// total 1 / |(a_s + i root) (ci + i b_p)|^2
+/// Computes the coefficients of a face.
+/// \param ci cosine of incidence
+/// \param root cosine of refraction, or its imaginary part for total reflection
+/// \param a_s index ratio times `ci`
+/// \param b_p index ratio times `root`
+/// \param over 1 / ((a_s + root) (ci + b_p)), or 1 / |(a_s + i root) (ci + i b_p)|^2 for total reflection
 HWY_INLINE Shares shares(double index_ratio, V ci, V root, V a_s, V b_p, V over, M total, M grazes) {
   const V one = splat(1.0);
-  // Partial reflection: real amplitudes. Total: (a - i b) / (a + i b), so that r_s conj(r_p) is a phase.
+  // Partial reflection has real amplitudes. For total reflection, r_s = (a - i b) / (a + i b), and r_s conj(r_p) is a
+  // phase.
   const V r_s = hn::Mul(over, hn::Mul(hn::Sub(a_s, root), hn::Add(ci, b_p)));
   const V r_p = hn::Mul(over, hn::Mul(hn::Sub(ci, b_p), hn::Add(a_s, root)));
   // (a_s - i root)^2 (ci + i b_p)^2 / norm
@@ -56,11 +62,12 @@ HWY_INLINE Shares shares(double index_ratio, V ci, V root, V a_s, V b_p, V over,
   const V total_im = hn::IfThenElseZero(hn::Not(grazes), hn::Mul(over, hn::MulAdd(re_s, im_p, hn::Mul(im_s, re_p))));
   return {hn::IfThenElse(total, one, hn::Mul(r_s, r_s)), hn::IfThenElse(total, one, hn::Mul(r_p, r_p)),
           hn::IfThenElse(total, total_re, hn::Mul(r_s, r_p)), hn::IfThenElseZero(total, total_im),
-          // 4 ratio ci root / ((a_s + root) (ci + b_p)), of amplitudes whose squares are shares of power
+          // 4 ratio ci root / ((a_s + root) (ci + b_p)); squares of the amplitudes are fractions of the power
           hn::IfThenElseZero(hn::Not(total), hn::Mul(over, hn::Mul(splat(4.0 * index_ratio), hn::Mul(ci, root))))};
 }
 
-/// \param against the normal against the light
+/// Returns the reflected and the transmitted light at an interface.
+/// \param against normal that faces the light
 HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& against, double index_ratio) {
   const D tag;
   const V zero = hn::Zero(tag);
@@ -68,7 +75,7 @@ HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& 
   const V ratio = splat(index_ratio);
   const V ci = hn::Min(one, hn::Max(zero, hn::Neg(dot(against, d))));
   const V sin2 = hn::Mul(hn::Mul(ratio, ratio), hn::NegMulAdd(ci, ci, one));
-  // At grazing incidence everything is reflected, whatever the ratio.
+  // At grazing incidence, all light is reflected for any index ratio.
   const M grazes = hn::Le(ci, zero);
   const M total = hn::Or(hn::Ge(sin2, one), grazes);
   const V root = hn::Sqrt(hn::Abs(hn::Sub(one, sin2)));
@@ -77,7 +84,7 @@ HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& 
 
   Interface face;
   face.axis = axis_at(d, axis, against);
-  // Both fractions of what follows from one division: it takes longer than everything else.
+  // A single division is used for the factors of both cases, because divisions take most of the time.
   const V axes2 = hn::Mul(dot(axis, axis), dot(face.axis, face.axis));
   const V sum_s = hn::Add(a_s, root);
   const V sum_p = hn::Add(ci, b_p);
@@ -104,14 +111,14 @@ HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& 
   return face;
 }
 
-/// Of the rays that meet a face, those that take each branch.
+/// Rays that continue in each branch, for rays that meet a face.
 struct Chosen {
   M reflected, transmitted;
 };
 
-/// Scales what goes on.
+/// Chooses the branches and scales their light.
 HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& reflected, S& transmitted) {
-  constexpr double kGolden = 0.6180339887498949;  // its multiples fill the circle most evenly
+  constexpr double kGolden = 0.6180339887498949;  // its multiples modulo 1 are evenly distributed
   const V r = reflected.i;
   const V t = transmitted.i;
   const V power = hn::Add(r, t);
@@ -120,10 +127,10 @@ HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& refle
   const V at = hn::MulAdd(number, splat(kGolden), splat(meeting.start));
   const V u = hn::Sub(at, hn::Floor(at));
   const M takes_reflected = hn::Lt(hn::Mul(u, power), r);
-  // All light reflected, or none of it to be chosen from.
+    // In this case, no random choice is needed.
   if (hn::AllTrue(D(), hn::Or(hn::Or(both, hn::Not(here)), hn::Le(t, hn::Zero(D())))))
     return {here, hn::And(here, both)};
-  // The whole power to the branch that is taken.
+  // The chosen branch receives the power of both.
   const V factor = hn::IfThenElse(both, splat(1.0), hn::Div(power, hn::IfThenElse(takes_reflected, r, t)));
   reflected = scaled(reflected, factor);
   transmitted = scaled(transmitted, factor);
@@ -205,7 +212,7 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     const M is_total = hn::Le(face.transmitted.i, zero);
     Chosen take{here, here};
     if (entrance.is_lossless) {
-      // Beyond the critical angle light ends here.
+      // Beyond the critical angle, the light ends here.
       const V axes2 = hn::Mul(dot(axis, axis), dot(face.axis, face.axis));
       face.transmitted = turned(light, d, axis, face.axis, hn::Div(splat(1.0), axes2));
       returned.back().i += total(hn::IfThenElseZero(hn::And(here, is_total), light.i));
@@ -213,7 +220,7 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     } else {
       take = choose(meeting, k, here, face.reflected, face.transmitted);
     }
-    // source_axis(): +x, less what lies along the direction.
+    // This is source_axis(): the component of +x perpendicular to the direction.
     const V3 out = face.refracted;
     const V3 x{hn::NegMulAdd(out.x, out.x, splat(1.0)), hn::Neg(hn::Mul(out.x, out.y)), hn::Neg(hn::Mul(out.x, out.z))};
     const V axes2 = hn::Mul(dot(face.axis, face.axis), dot(x, x));

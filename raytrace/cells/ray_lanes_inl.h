@@ -1,5 +1,5 @@
-// Vectors, Stokes parameters and rays in lanes. No ordinary guard: foreach_target.h has it compiled once for every
-// instruction set.
+// SIMD types for vectors, Stokes parameters and rays. It has a special include guard, because foreach_target.h compiles
+// it once for every instruction set.
 #if defined(RETRACE_RAY_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RETRACE_RAY_LANES_INL_H
 #undef RETRACE_RAY_LANES_INL_H
@@ -47,14 +47,14 @@ HWY_INLINE V3 cross(const V3& a, const V3& b) {
   return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
           hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
 }
-/// a + t b
+/// Returns a + t b.
 HWY_INLINE V3 along(const V3& a, V t, const V3& b) {
   return {hn::MulAdd(t, b.x, a.x), hn::MulAdd(t, b.y, a.y), hn::MulAdd(t, b.z, a.z)};
 }
 HWY_INLINE V3 times(V t, const V3& a) {
   return {hn::Mul(t, a.x), hn::Mul(t, a.y), hn::Mul(t, a.z)};
 }
-/// Of vectors that have unit length but for rounding: one step of Newton's towards 1 / |a|.
+/// Normalizes vectors whose length differs from 1 only by rounding, with one Newton step for 1 / |a|.
 HWY_INLINE V3 renormalised(const V3& a) {
   return times(hn::NegMulAdd(splat(0.5), dot(a, a), splat(1.5)), a);
 }
@@ -98,7 +98,7 @@ HWY_INLINE Stokes total(const S& s) {
   return {total(s.i), total(s.q), total(s.u), total(s.v)};
 }
 
-/// Appends the chosen lanes. By hand: Highway's Compress copies its tables to the stack under GCC 12.
+/// Appends the selected lanes. Highway's Compress is not used, because it copies its tables to the stack with GCC 12.
 HWY_INLINE void append(V values, M mask, double* to) {
 #if HWY_TARGET <= HWY_AVX3
   hn::StoreU(V{_mm512_maskz_compress_pd(mask.raw, values.raw)}, D(), to);
@@ -117,8 +117,9 @@ HWY_INLINE void append3(const V3& v, M mask, const Rays& to, std::size_t first, 
   append(v.z, mask, to[first + 2] + found);
 }
 
-/// \param from where the ray's other numbers are, at k
-/// \param to by value: stores must not make the compiler read the pointers again
+/// Appends the selected rays.
+/// \param from arrays with the remaining values of the rays, at index k
+/// \param to passed by value, so that the compiler need not reload the pointers after each store
 HWY_INLINE void append_ray(const V3& place, const V3& direction, const S& light, const V3& axis, M mask,
                            const Rays& from, std::size_t k, const Rays to, std::size_t found) {
   append3(place, mask, to, kX, found);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Memory for many rays as one array per number, padded for SIMD lanes.
+// Memory for many rays with one array per value, padded for SIMD.
 
 #include <algorithm>
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace retrace::raytrace {
 
-/// Rays, one array for each of their numbers.
+/// Rays, stored with one array per value.
 class RayStore {
  public:
-  /// \param numbers of each ray, as lanes::Rays has them
+  /// \param numbers number of values per ray, see lanes::Rays
   explicit RayStore(std::size_t numbers) : numbers_(numbers) {}
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   void clear() { size_ = 0; }
 
-  /// Room for `size` rays and the padding of the lanes; what is stored stays.
+  /// Reserves memory for `size` rays and the SIMD padding. The stored rays are kept.
   void reserve(std::size_t size) {
     if (size + lanes::kPadding <= capacity_) return;
     const std::size_t capacity = std::max(size + lanes::kPadding, 2 * capacity_);
@@ -33,10 +33,10 @@ class RayStore {
     values_.swap(values);
     capacity_ = capacity;
   }
-  /// \pre there is room
+  /// \pre the memory is reserved
   void resize(std::size_t size) { size_ = size; }
 
-  /// Arrays from ray `first` on.
+  /// Returns the arrays, beginning at ray `first`.
   lanes::Rays rays(std::size_t first = 0) {
     lanes::Rays all;
     all.numbers = numbers_;
@@ -44,7 +44,7 @@ class RayStore {
     return all;
   }
 
-  /// \pre as many numbers in both
+  /// \pre both have the same number of values per ray
   void swap(RayStore& other) noexcept {
     values_.swap(other.values_);
     std::swap(capacity_, other.capacity_);

@@ -7,7 +7,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/cells/sobol_lanes.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for every instruction set
-// After foreach_target.h.
+// Must be included after foreach_target.h.
 #include "raytrace/cells/ray_lanes_inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,7 +26,7 @@ HWY_INLINE VU mixed(VU node, std::uint64_t key) {
   return hn::Xor(x, hn::ShiftRight<14>(x));
 }
 
-/// As nested_flips(), of the digits themselves.
+/// Returns digits with the flips of nested_flips().
 HWY_INLINE VU scrambled(VU digits, std::uint64_t key) {
   const U u;
   const VU one = hn::Set(u, 1);
@@ -47,7 +47,7 @@ HWY_INLINE VU scrambled(VU digits, std::uint64_t key) {
   return hn::Xor(digits, hn::Or(hn::ShiftLeft<kScrambleRest>(flips), rest));
 }
 
-/// Digits as fractions times `size`.
+/// Stores the digits as fractions in [0, 1), multiplied by `size`.
 HWY_INLINE void store_fractions(VU digits, double size, double* to) {
   const hn::RebindToUnsigned<D> wide;
   std::array<std::uint32_t, kPadding> buffer;
@@ -61,7 +61,7 @@ HWY_INLINE void store_fractions(VU digits, double size, double* to) {
 void sobol(std::uint64_t key_x, std::uint64_t key_y, std::uint32_t first, std::size_t count, const geometry::Vec2& size,
            double* x, double* y) {
   const U u;
-  // From one point to the next changes the digits by those of the trailing ones.
+  // The digits of consecutive points differ by a mask that depends only on the number of trailing ones of the index.
   std::array<std::array<std::uint32_t, 2>, 33> steps{};
   for (std::size_t ones = 0; ones < 32; ++ones) steps[ones] = SobolSquare::digits((2U << ones) - 1U);
   steps[32] = steps[31];
