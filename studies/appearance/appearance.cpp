@@ -33,27 +33,29 @@ using View = raytrace::PhotometricDirections;
 // Spans of each colour matching function, of two wavelengths each; of the eye, to judge the table by.
 constexpr std::size_t kParts = 2;
 constexpr std::size_t kPartsOfProbes = 4;
-// Initial number of grid steps from the centre of the discs' kernel to its edge, along the plane of incidence at the
+// Initial resolution of a grid of view directions: number of grid steps across the radius of the aperture kernel. The
+// kernel averages over the discs of source and receiver. Its radius is taken along the plane of incidence at the
 // maximum entrance angle, where the kernel is narrowest. The error of cubic interpolation grows with the fourth power
 // of the step (docs/theory/appearance.md).
 constexpr double kStepsPerReach = 4.0;
+// Maximum initial number of grid points along a side.
 constexpr std::size_t kMostColumns = 161;
-// Maximum error of a grid, as a fraction of the requested error.
+// Maximum interpolation error of a grid of view directions, as a fraction of the requested error.
 constexpr double kShareOfGrid = 0.5;
-// Factor by which the number of grid points along each side grows if the error is too large, and maximum number of
-// points along a side.
+// Factor by which the number of grid points along each side grows if the interpolation error is too large.
 constexpr double kFinerGrid = 1.5;
+// Maximum number of grid points along a side to which refinement may lead.
 constexpr std::size_t kMostColumnsForError = 121;
-// Azimuth of the light with which prisms are distinguished from cube corners. At this azimuth, the possible directions
-// of returned light differ clearly.
+// Azimuth of the test light by which back_of() distinguishes prisms from cube corners. At this azimuth, prisms and cube
+// corners return light into clearly different directions.
 constexpr double kAsideDeg = 30.0;
 // Extents of the first cells, at most.
 constexpr double kFirstEntranceDeg = 20.0;
 constexpr double kFirstAzimuthDeg = 30.0;
 // Halvings of a first cell, at most: 3 steps of a cell times this are a lattice on which directions are known again.
 constexpr int kMostHalvings = 8;
-// Minimum ratio of the third differences along one side of a cell to those along the other side for the cell to be
-// halved along the first side.
+// Minimum third difference of the values along one side of a cell, relative to that along the other side. If the third
+// difference is smaller, the cell is not halved along the first side.
 constexpr double kLeastBend = 0.3;
 // Directions of light that are computed at once, and views of each by which a cell is judged.
 constexpr std::size_t kBatch = 16;
@@ -102,7 +104,7 @@ Eigen::Matrix3d rgb_from_xyz(const materials::Tristimulus& white) {
   return (primaries * brightness.asDiagonal()).inverse();
 }
 
-/// Returns the directions of a view, or nothing if the observer is below the horizon.
+/// Returns the directions to source and observer, or nothing if the observer is below the horizon.
 /// \param across x and y components of the unit vector to the observer
 std::optional<View> view_of(const Vec3& to_source, const Vec2& across) {
   if (across.squaredNorm() >= 1.0) return std::nullopt;
@@ -114,9 +116,10 @@ using LatticePlace = std::pair<int, int>;  ///< in entrance angle and azimuth
 
 /// A cell of the table to be.
 struct PlannedCell {
-  std::array<int, 2> corner{};  ///< lattice position, in entrance angle and azimuth, of the lower corner
-  std::array<int, 2> size{};    ///< lattice steps along its sides: multiples of 3
-  double error = 0.0;           ///< error of interpolation between its directions
+  /// Position of the lower corner on the lattice of light directions: entrance angle, azimuth.
+  std::array<int, 2> corner{};
+  std::array<int, 2> size{};  ///< lattice steps along its sides: multiples of 3
+  double error = 0.0;         ///< relative error of values that are interpolated inside the cell
 
   bool is_least() const { return size[0] <= 3 && size[1] <= 3; }
 };
@@ -142,9 +145,10 @@ void check_engine(const Design& design, PhotometryRequest request) {
 
 constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
 
-/// Returns ReflectionTable::back: 1 for each axis whose direction component light reverses, and -1 for each axis whose
-/// component it keeps. Cube corners reverse both components, prisms one of them. Of these three cases, the one with
-/// most of the light is returned. Returns nothing if the computation was cancelled.
+/// Returns the value of ReflectionTable::back: for each axis, 1 if light reverses its direction component along the
+/// axis, and -1 if light keeps this component. Cube corners reverse both components, prisms only one. The case that
+/// applies to more than half of the returned light is chosen. If there is no such case, both components count as
+/// reversed. Returns nothing if the computation was cancelled.
 std::optional<Vec2> back_of(const Design& design, const AppearanceRequest& request, const Cancellation* cancel) {
   const Vec3 to_source = geometry::direction_at(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
   const Photometer eye = photometer_of(design, photometry_of(request, -Vec2::Ones()), kEye, kParts);
@@ -170,8 +174,8 @@ std::optional<Vec2> back_of(const Design& design, const AppearanceRequest& reque
   return has_most_light ? ways[static_cast<std::size_t>(most - powers.begin())] : ways[0];
 }
 
-/// Returns the error relative to the true value. Values below a fraction of the maximum `most` are compared with this
-/// fraction instead.
+/// Returns the relative error of the value `told`. If the true value is below the fraction AppearanceError::kFloor of
+/// the maximum `most`, the error is relative to this fraction of `most`.
 double error_of(double told, double truth, double most) {
   return std::abs(told - truth) / std::max({truth, AppearanceError::kFloor * most, 1e-300});
 }
@@ -185,7 +189,7 @@ double share_within(const std::vector<double>& errors) {
   return quantile(errors, kJudgedShare);
 }
 
-/// A photometer and its beam tracer.
+/// Photometer for one of the responses x, y and z, and its beam tracer.
 struct Instrument {
   explicit Instrument(Photometer of_response) : photometer(std::move(of_response)), tracer(photometer.make_tracer()) {}
 
@@ -195,7 +199,7 @@ struct Instrument {
 
 class TableMaker {
  public:
-  /// \param back as ReflectionTable has it
+  /// \param back value of ReflectionTable::back
   TableMaker(const Design& design, const AppearanceRequest& request, const Vec2& back)
       : design_(design), request_(request), photometry_(photometry_of(request, back)) {
     for (std::size_t response = 0; response < instruments_.size(); ++response)
@@ -268,7 +272,8 @@ class TableMaker {
   ReflectionTable take() { return std::move(table_); }
 
  private:
-  /// Returns the priority of halving a cell: its error times its fraction of all light. 0 if the error is small enough.
+  /// Returns the priority with which a cell is halved: its error times its projected solid angle of light directions,
+  /// up to a constant factor. Returns 0 if the error is small enough.
   double urgency(const PlannedCell& cell) const {
     if (cell.error <= request_.error || cell.is_least()) return 0.0;
     const double from = std::sin(entrance_at(cell.corner[0]).rad());
@@ -303,7 +308,8 @@ class TableMaker {
     return cells;
   }
 
-  /// Returns the parts of a cell after halving. A side is halved if the third differences of values along it are large.
+  /// Returns the smaller cells into which a cell is divided. The cell is halved along each side along which the third
+  /// differences of the values are large.
   std::vector<PlannedCell> halves_of(const PlannedCell& cell) const {
     const std::array<double, 2> bends = bends_of(cell);
     const double most = std::max(bends[0], bends[1]);
@@ -398,12 +404,12 @@ class TableMaker {
     return true;
   }
 
-  /// Far fields of the three responses, and their weights in red, green and blue.
+  /// Far fields for the responses x, y and z, and the weights with which they contribute to red, green and blue.
   struct Fields {
     std::array<std::vector<Photometer::WeighedField>, 3> of_response;
     std::vector<raytrace::BandedField> weighed;
   };
-  /// Returns the far fields for one direction of light, or nothing if the computation was cancelled.
+  /// Computes the far fields for one direction of light. Returns nothing if the computation was cancelled.
   std::optional<Fields> fields_of(const Vec3& to_source, const Cancellation* cancel) const {
     Fields fields;
     const Angle entrance = Angle::from_rad(std::acos(to_source.z()));
@@ -427,8 +433,9 @@ class TableMaker {
                                 eye().kernel(), cancel);
   }
 
-  /// Refines the grid until interpolation between its points is accurate, for a direction in the middle of the range of
-  /// directions of light. Returns false if the computation was cancelled.
+  /// Increases the number of grid points until interpolation between view directions is accurate. The test uses one
+  /// direction of light, in the middle of the range of entrance angles and azimuths. Returns false if the computation
+  /// was cancelled.
   bool refine_grid(const Cancellation* cancel) {
     const std::array<Angle, 2> range = table_.azimuths();
     const Vec3 to_source = geometry::direction_at(Angle::from_rad(0.5 * table_.most_entrance.rad()),
@@ -525,7 +532,7 @@ class TableMaker {
   const Design& design_;
   const AppearanceRequest& request_;
   PhotometryRequest photometry_;
-  std::array<std::unique_ptr<Instrument>, 3> instruments_;  ///< by response
+  std::array<std::unique_ptr<Instrument>, 3> instruments_;  ///< one for each of the responses x, y and z
   Eigen::Matrix3d rgb_of_shares_;
   ReflectionTable table_;
   std::vector<PlannedCell> cells_;

@@ -17,7 +17,8 @@ namespace retrace::studies {
 struct AppearanceRequest {
   /// Of the source and the receiver that values are means over.
   raytrace::PhotometricApertures apertures{Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)};
-  /// Half-width, at normal incidence, of the square range of view directions around the central direction; 0.1 to 5.
+  /// Half-width, in degrees, of the square range of view directions around the central direction, for light at normal
+  /// incidence. Allowed: 0.1 to 5.
   double window_deg = 1.0;
   double entrance_deg = 20.0;          ///< maximum entrance angle of the table; 1 to 40
   double error = 0.02;                 ///< maximum relative error of interpolated values; 0.001 to 0.5
@@ -57,10 +58,11 @@ struct AppearanceResult {
 /// \param r_a of each probe \pre as many as probes, > 0
 AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, const std::vector<double>& r_a);
 
-/// Computes the table with the exact engine and diffraction, for CIE D65 and the CIE 1931 observer.
-/// First, the grid of view directions is refined until interpolation between its points is accurate. Then cells of
-/// light directions are halved if interpolation within them has an error above `error`, beginning with the cells that
-/// return most light. Refinement ends when all cells are accurate, or after `most_directions` directions of light.
+/// Computes the reflection table with the exact engine (beam tracing) and diffraction, for CIE D65 and the CIE 1931
+/// observer. First, the grid of view directions is refined until interpolation between its points is accurate. Then the
+/// cells of light directions are halved where interpolation within a cell has an error above `error`. The cell with the
+/// largest product of error and projected solid angle comes first. Refinement ends when all cells are accurate, or when
+/// the table has `most_directions` directions of light.
 /// \throw InputError for numbers out of range, and for designs that the exact engine does not support
 AppearanceResult compute_appearance(const Design& design, const AppearanceRequest& request,
                                     Progress* progress = nullptr, const Cancellation* cancel = nullptr);

@@ -23,8 +23,9 @@ double luminous(const Rgb& rgb);
 /// Values that a cubic is laid through, and directions along each side of a cell.
 inline constexpr std::size_t kPerSide = 4;
 
-/// Table of R_A, in cd/(lx m^2), for views close to a central direction. The central direction is the direction to the
-/// source or, for prisms, the direction into which they reflect the light.
+/// Table of the coefficient of retroreflection R_A, in cd/(lx m^2), for views close to a central direction. For cube
+/// corners, the central direction is the direction to the source. For prisms, it is the direction into which they
+/// reflect the light.
 /// Let s and o be the x and y components of the unit vectors to source and observer, in the part frame. For each
 /// direction of light, the table has a square grid of R_A over the deviation o - back s. Refraction at the entrance
 /// face scales all these components by one factor. In these coordinates, R_A therefore varies slowly with the direction
@@ -49,19 +50,19 @@ struct ReflectionTable {
   double half_width = 0.0;  ///< of the square of deviations: a share of a unit vector
   std::size_t columns = 0;  ///< and rows; >= 4
   Angle most_entrance;
-  /// 1 for an axis along which the part reverses the direction of light, otherwise -1.
+  /// Signs for x and y: 1 if the part reverses the component of the direction of light along this axis, otherwise -1.
   geometry::Vec2 back = geometry::Vec2::Ones();
-  /// For x and y: true if the part is symmetric under reflection of that axis.
+  /// Flags for x and y: true if the part is mirror-symmetric along this axis.
   std::array<bool, 2> mirrors{};
   std::vector<Direction> directions;
   std::vector<Cell> cells;
 
   double step() const { return 2.0 * half_width / static_cast<double>(columns - 1); }
   geometry::Vec2 deviation(std::size_t index) const;
-  /// Returns the x and y components of the central direction of view: the direction to the source, or its mirror
-  /// image along x or y.
+  /// Returns the x and y components of the central direction of view. This is the direction to the source, or for
+  /// prisms its mirror image along x or y.
   geometry::Vec2 middle(const geometry::Vec3& to_source) const { return back.cwiseProduct(to_source.head<2>()); }
-  /// Returns the interpolated value of a grid at a deviation within the grid.
+  /// Returns the interpolated value of a grid at a deviation. The deviation must be within the grid.
   Rgb between(const std::vector<Rgb>& grid, const geometry::Vec2& deviation) const;
   /// The range of azimuths that the cells cover: what mirrors do not tell.
   std::array<Angle, 2> azimuths() const;

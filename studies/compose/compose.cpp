@@ -101,8 +101,8 @@ class Composer {
     if (request_.errors) composition.errors = effects_of_errors(study_, request_, composition, observer_, cancel_);
   }
 
-  /// Every cell of the family that this run has evaluated. Other cells of the store are excluded. Otherwise the result
-  /// would depend on earlier runs.
+  /// Fills the catalogue with the cells that this run has evaluated. Cells that only earlier runs have evaluated are
+  /// left out, so that the result does not depend on the contents of the store.
   void read_catalogue(Composition& composition) const {
     composition.catalogue.clear();
     composition.failed = 0;
@@ -318,7 +318,7 @@ class Composer {
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
   OptimiseRequest single_;
-  Evaluator family_;  ///< has seen every cell of this run
+  Evaluator family_;  ///< evaluates cells, and keeps every cell that this run has evaluated
   CellReader reader_;
 };
 

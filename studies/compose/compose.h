@@ -20,7 +20,8 @@ struct ErrorSpread {
   double cell_sigma_arcmin = 0.0;  ///< from cell to cell, which averages out over a zone
   double zone_sigma_arcmin = 0.0;  ///< from zone to zone, the same in all cells of one, which does not
   std::size_t parts = 1024;        ///< that are drawn
-  /// Fraction of the random parts that counts as the worst; if given, a part is optimized for it.
+  /// Fraction of the random parts that counts as the worst. If it is given, a further part is optimized for these
+  /// parts.
   std::optional<double> worst_share;
 };
 
@@ -75,8 +76,8 @@ struct PartYield {
   std::optional<double> mean_of_worst;  ///< of the share of the worst that is asked for
 };
 
-/// The composition with the best mean over the worst of the random parts. Its cells are chosen from the best
-/// compositions of all numbers of zones.
+/// Composition that is optimized for the worst random parts: the mean of the minimum goal over these parts is maximal.
+/// Its cells are chosen from the best compositions of all numbers of zones.
 struct PartForWorst {
   std::vector<Zone> zones;  ///< the largest first
   PartYield yield;
@@ -99,7 +100,7 @@ enum class Proof {
 };
 
 struct Composition {
-  std::vector<FamilyCell> catalogue;  ///< all cells that are allowed, in the order in which they were looked at
+  std::vector<FamilyCell> catalogue;  ///< all cells that satisfy the constraints, in the order of their evaluation
   std::optional<PartOfZones> best;    ///< none if no mixture holds the bounds
   std::string none_because;           ///< then, which bounds exclude all
   std::optional<FamilyCell> single;   ///< the best part of one kind of cell, as `optimise` finds it
@@ -115,7 +116,8 @@ struct Composition {
   bool complete = true;
 };
 
-/// Returns the zones of PartForWorst, or an empty list if there is no such part.
+/// Returns the zones of the composition that is optimized for the worst random parts. Returns an empty list if there is
+/// none.
 std::vector<Zone> zones_for_worst(const Composition& composition);
 
 StoreLayout compose_layout(const Study& study);
@@ -124,9 +126,10 @@ StoreLayout compose_layout(const Study& study);
 /// \throw InputError for too many combinations of discrete values
 Sweep compose_scan(const Study& study, const ComposeRequest& request);
 
-/// Searches for the mixture of cells that makes the best part. First, the family of cells is scanned and `optimise`
-/// improves the best of them. Then cells are added that gain at the dual prices of the best mixture so far (column
-/// generation), until no cell gains. Cells that are in the store are not computed again, and the result is the same.
+/// Searches for the mixture of cells that makes the best part. First, the family of cells is scanned, and `optimise`
+/// improves the best cells of the scan. Then cells are added that improve the mixture according to the dual prices of
+/// its linear programme (column generation). The search ends when no further cell improves the mixture. Cells that are
+/// already in the store are not computed again, and the result is the same.
 /// \throw OutputError as ResultStore::record()
 Composition compose(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
                     const Cancellation* cancel);

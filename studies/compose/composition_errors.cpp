@@ -19,7 +19,8 @@ const double kStepOfSpread = std::sqrt(3.0);
 constexpr double kLeastStep = 0.1;
 /// Sets of errors, of each zone, at which the polynomials are held against goals that are computed.
 constexpr std::size_t kChecked = 2;
-/// Maximum number of cells from which the part for the worst parts is composed. All sets of these cells are tried.
+/// Maximum number of cells that are candidates for the composition optimized for the worst random parts. The number is
+/// small because all sets of candidates are tried.
 constexpr std::size_t kMostCells = 8;
 
 /// The largest error that is looked at.
@@ -63,8 +64,8 @@ CheckedResponse response_of(const Study& study, const ComposeRequest& request, c
   return made;
 }
 
-/// Returns candidate cells for the part that is optimal for the worst parts: first the cells of the best part, then
-/// those of the best parts with more and with fewer zones.
+/// Returns the candidate cells for the composition that is optimized for the worst random parts. The cells of the best
+/// part come first. The cells of the best parts with other numbers of zones follow.
 std::vector<FamilyCell> cells_for_worst(const Composition& composition) {
   std::vector<FamilyCell> cells;
   const auto take = [&](const PartOfZones& part) {

@@ -1,13 +1,13 @@
 #pragma once
 
 // Effects of errors of the angles between facets on a composed part: the yield, the sensitivity to each angle, and the
-// composition that is optimal for the worst of the random parts.
+// composition that is optimized for the worst random parts.
 
 #include "studies/compose/compose.h"
 
 namespace retrace::studies {
 
-/// Computes the effects on the best part of a composition.
+/// Computes the effects of errors of angle on the best part of a composition.
 /// \pre request.errors is set, and the cells of all zones have angles between facets
 /// \throw Interrupted if the computation is cancelled
 /// \throw InputError if cells with errors of angle cannot be computed

@@ -38,13 +38,14 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
 /// Cells and their shares, the largest first.
 using CellShares = std::vector<std::pair<std::size_t, double>>;
 
-/// Finds the set of at most `most_zones` cells, and the fractions of area, with the best result of best_shares().
-/// \param parts random parts with one zone for each cell. All sets of cells are tried, so that there must be few cells
+/// Searches for the set of at most `most_zones` cells, and their fractions of the area, for which best_shares() has the
+/// best result. All sets of cells are tried, so that there must be few cells.
+/// \param parts random parts with one zone for each cell
 /// \return nothing if the computation was cancelled or no set is allowed
 std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,
                                    const Bounds& bounds, const Cancellation* cancel);
 
-/// Returns the random parts with only the given zones, in the given order.
+/// Returns a copy of the random parts that has only the given zones, in the given order.
 DrawnParts parts_of(const DrawnParts& parts, const std::vector<std::size_t>& zones);
 
 }  // namespace retrace::studies

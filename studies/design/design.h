@@ -304,7 +304,7 @@ struct Design {
 
   /// Every file that a key names, from the working directory: what is read beside the source.
   std::vector<std::filesystem::path> files() const;
-  /// Returns one warning for each key of the file that another key makes ineffective.
+  /// Returns a warning for each key of the design file that has no effect because of another key.
   std::vector<std::string> warnings() const;
   /// Where a key was given, or would be missed.
   InputLocation where(std::string_view key) const;
@@ -346,8 +346,8 @@ struct Design {
 struct Takes {
   std::string_view what;  ///< asks, such as "retrace job"
   bool balls = false;
-  bool solids = false;  ///< meshes and plates
-  bool zones = false;   ///< parts of zones; also where solids are taken
+  bool solids = false;  ///< meshes and plates are supported
+  bool zones = false;   ///< parts of zones are supported; set also if solids are supported
   bool substrates = true;
   bool entrances = false;
   bool wet_backs = false;

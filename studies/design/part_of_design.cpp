@@ -49,8 +49,8 @@ geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh,
   return std::move(mended.mesh);
 }
 
-/// Returns the union of the bodies of a mesh. The bodies may cross or contain each other.
-/// \param report result of check_boundary() for the mesh
+/// Returns the union of all bodies of a mesh. The bodies may intersect or contain each other.
+/// \param report result of check_boundary() for this mesh
 /// \pre the mesh is closed and manifold
 geometry::TriangleMesh united(const Design& design, const geometry::TriangleMesh& mesh,
                               const geometry::BoundaryReport& report, std::vector<std::string>* warnings) {
@@ -86,14 +86,14 @@ geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh
   return mesh;
 }
 
-/// Returns a number with three significant digits.
+/// Formats a number with three significant digits.
 std::string rounded_text(double value) {
   return shortest(std::stod(fmt::format("{:.2e}", value)));
 }
 
-/// Warns about a mesh whose size suggests that its unit is not mm. STL files do not contain their unit.
+/// Adds a warning if the size of a mesh suggests that its unit is not mm. STL files do not state their unit.
 void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, std::vector<std::string>* warnings) {
-  // The unit is probably the metre for a part below kSmallestMm, and the micrometre for a part above kLargestMm.
+  // Parts smaller than kSmallestMm are probably given in metres, and parts larger than kLargestMm in micrometres.
   constexpr double kSmallestMm = 0.1;
   constexpr double kLargestMm = 1000.0;
   geometry::Vec3 lower = mesh.vertices.front();

@@ -1,6 +1,6 @@
 #pragma once
 
-// Limits of request values that several studies use. The command line, the library and the Python module share them.
+// Limits of request values, used by several studies. The command line, the library and the Python module share them.
 
 #include <fmt/format.h>
 
@@ -21,7 +21,8 @@ inline void check_rays(std::uint64_t rays) {
     throw InputError({"", 0, "--samples"}, fmt::format("must be 1 to {}, got {}", kMaxRaysOfPoint, rays));
 }
 
-/// Checks the azimuth of the light. Larger angles have too few digits after the decimal point.
+/// Checks the azimuth of the light. Larger angles are refused because they leave too few digits after the decimal
+/// point.
 /// \throw InputError at --azimuth
 inline void check_azimuth(double azimuth_deg) {
   if (!(std::abs(azimuth_deg) <= 360.0))

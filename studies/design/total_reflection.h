@@ -27,12 +27,13 @@ std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, 
 std::vector<double> total_reflection_edges_deg(const geometry::PartSpec& part, double index, double back_index,
                                                Angle azimuth);
 
-/// Returns a margin for each facet of the elements and each order in which light can meet the facets. The margin is
-/// cos(i) - cos(c), where i is the angle of incidence on the facet and c the critical angle. Light is totally reflected
-/// if the margin is below 0. The reflectance has a knee at 0: just above, it falls like the square root of the margin.
+/// Returns the margin of total reflection for each facet and each order in which light can hit the facets of an
+/// element. The margin is cos(i) - cos(c), where i is the angle of incidence on the facet and c the critical angle.
+/// Light is totally reflected if the margin is below 0. Just above 0, the reflectance falls like the square root of the
+/// margin.
 /// \param to_source unit vector towards the source, outside the part
 /// \param index refractive index of the part
-/// \param back_index refractive index behind the facets
+/// \param back_index refractive index of the medium behind the facets
 /// \pre both indices are >= 1
 std::vector<double> total_reflection_margins(const geometry::PartSpec& part, const geometry::Vec3& to_source,
                                              double index, double back_index);

@@ -124,7 +124,8 @@ void check_zones(const ZonedPart& part, const std::function<InputLocation(const 
   if (fault->what != Of::elements)
     throw InputError(where(fault->what == Of::rotation ? zone + ".rotation_deg" : zone), fault->text);
   if (!part.changes[fault->zone].empty()) throw InputError(where(zone + ".set"), fault->text);
-  // This zone has the elements of the design, so the elements of zone 1 are the changed ones.
+  // The faulty zone uses the elements of the design unchanged. Zone 1 is therefore the zone with changed elements, and
+  // the message names the `set` key of zone 1.
   throw InputError(where(schema::path_of_entry("zone", 0) + ".set"),
                    fmt::format("must keep the outlines and positions of the elements of zone {}", fault->zone + 1));
 }

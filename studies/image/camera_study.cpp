@@ -42,7 +42,7 @@ void check_picture(const CameraRequest& r) {
     require(*r.passes >= 2 && *r.passes <= CameraStudy::kMostPasses, "--passes", "be 2 to 65536", *r.passes);
 }
 
-/// Checks the position of the eye or the lamp.
+/// Checks that all coordinates of the eye or the lamp are within the allowed range.
 void check_coordinates(const std::optional<std::array<double, 3>>& position_mm, std::string_view option) {
   if (!position_mm) return;
   for (const double coordinate : *position_mm)
@@ -189,8 +189,8 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
 
 namespace {
 
-/// Returns the number of passes for the requested noise. The noise is inversely proportional to the root of this
-/// number.
+/// Returns the number of passes that reaches the requested noise. The noise is inversely proportional to the square
+/// root of the number of passes.
 double passes_needed(const raytrace::CameraImage& image, const CameraRequest& request) {
   return image.passes * std::pow(image.relative_noise() / request.noise, 2.0);
 }

@@ -18,7 +18,7 @@
 
 namespace retrace::studies {
 
-/// Default width and height of the sheet that an infinite part is seen as.
+/// Default width and height, in mm, of the sheet that the picture shows for an infinite part.
 inline constexpr std::array<double, 2> kUsualFilmMm = {100.0, 100.0};
 
 /// What is asked of a camera: a picture of the part in the light of a lamp. Positions are those of CameraScene.
@@ -40,7 +40,8 @@ struct CameraRequest {
   std::size_t columns = 400;
   std::size_t rows = 300;
   std::optional<double> field_mm;  ///< what the picture's width shows at the part; none: the part and some margin
-  /// Width and height of the sheet that an infinite part is seen as; none: kUsualFilmMm. Finite parts take none.
+  /// Width and height, in mm, of the sheet that the picture shows for an infinite part. Default: kUsualFilmMm. Not
+  /// allowed for finite parts.
   std::optional<std::array<double, 2>> film_mm;
   std::optional<double> cylinder_mm;    ///< radius of the cylinder that the sheet is bent over; < 0: its hollow side
   double noise = 0.02;                  ///< relative, of a pixel, to reach

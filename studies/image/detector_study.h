@@ -14,7 +14,7 @@
 
 namespace retrace::studies {
 
-/// Default number of rays of a detector.
+/// Default number of rays for a detector.
 inline constexpr std::uint64_t kUsualDetectorRays = std::uint64_t{1} << 22;
 
 /// What is asked of a detector: maps of the light that comes back, for one direction of incidence.

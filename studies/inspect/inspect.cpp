@@ -241,7 +241,8 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
     return result;
   }
   if (!design.elements()) {
-    // make_model() has added a warning for each repair of the mesh.
+    // The mesh was repaired if the model has more warnings than the design: make_model() adds a warning for each
+    // repair.
     const bool is_mended = result.warnings.size() > design.warnings().size();
     result.boundary = is_mended ? "see warnings" : "closed, free of self-intersections";
     return result;

@@ -19,7 +19,7 @@ std::string text_of(const std::variant<double, std::string>& value) {
   return number != nullptr ? shortest(*number) : std::get<std::string>(value);
 }
 
-/// Reports the progress of a group of designs to an observer, which may be null.
+/// Reports the progress of a group of designs to an observer. The observer may be null.
 class GroupProgress : public Progress {
  public:
   GroupProgress(OptimiseObserver* observer, std::size_t designs) : observer_(observer), designs_(designs) {}
@@ -51,8 +51,8 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, ResultS
   }
 }
 
-/// Returns the lowest number that no stored point has. A search evaluates its designs in a fixed order. After a resumed
-/// run, each point therefore has the same number as in an uninterrupted run.
+/// Returns the lowest point number that no stored point has. A search evaluates its designs in a fixed order.
+/// Therefore, each point of a resumed run has the same number as in an uninterrupted run.
 std::uint64_t Evaluator::free_number() {
   while (taken_.contains(next_)) ++next_;
   return next_++;
@@ -79,7 +79,8 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
   group.at(0.0);
   TaskProgress all(&group, std::max<std::size_t>(1, unknown));
   std::vector<std::optional<StoredPoint>> points(open.size());
-  std::vector<char> ran_out(open.size());  // not bool, as threads write next to each other
+  // `char` instead of bool: threads write to neighbouring elements at the same time, which vector<bool> does not allow.
+  std::vector<char> ran_out(open.size());
   for_each_in_parallel(open.size(), [&](std::size_t k) {
     const auto found = stored_.find(keys[k]);
     if (found != stored_.end()) {

@@ -23,15 +23,15 @@ class Evaluator {
   /// The designs, in the order given; several are computed at a time. \throw Interrupted, OutputError
   std::vector<Variant> look_at(const std::vector<PointValues>& designs);
   Variant look_at(const PointValues& design) { return look_at(std::vector<PointValues>{design}).front(); }
-  /// Adds designs that another search of this study has already evaluated.
+  /// Adds designs that another search of this study has evaluated. They are not evaluated again.
   void take_in(const std::vector<Variant>& seen);
 
   /// Everything looked at so far, in the order of its first look.
   const std::vector<Variant>& seen() const { return seen_; }
-  /// Returns the number of designs that failed because the budget of memory or beams was exhausted. They are not
-  /// stored. A resumed search with a larger budget evaluates them again.
+  /// Returns the number of designs that failed because the budget of memory or beams was exhausted. Such designs are
+  /// not stored, so that a resumed search with a larger budget evaluates them again.
   std::size_t ran_out() const { return ran_out_; }
-  /// Returns the error message of the first of these designs; empty if there is none.
+  /// Returns the error message of the first design that exhausted the budget. Empty if there is none.
   const std::string& ran_out_because() const { return ran_out_because_; }
   /// What a quantity came to; nothing if it has no value.
   std::optional<double> value(const Variant& variant, const std::string& quantity) const;
@@ -58,8 +58,8 @@ class Evaluator {
   std::uint64_t next_ = 0;
 };
 
-/// Runs the search of optimise() with an evaluator of the same study and request. Afterwards, the evaluator contains
-/// all designs of the search.
+/// Runs the search of optimise() with an existing evaluator of the study and the request. Afterwards, `evaluator`
+/// contains all designs that the search has evaluated.
 Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Cancellation* cancel);
 
 }  // namespace retrace::studies

@@ -76,7 +76,7 @@ struct Optimum {
   std::string method;  ///< of the refinement: "exact slopes" or "no slopes"
   std::size_t evaluations = 0;
   std::size_t ran_out = 0;      ///< number of designs that failed because the budget of memory or beams was exhausted
-  std::string ran_out_because;  ///< error message of the first of these designs
+  std::string ran_out_because;  ///< error message of the first of the designs that `ran_out` counts
   bool complete = true;
 };
 
@@ -85,7 +85,7 @@ class OptimiseObserver {
  public:
   virtual ~OptimiseObserver() = default;
   virtual void at(std::size_t evaluated) = 0;
-  /// Reports the progress of a group of designs that are computed together.
+  /// Reports the progress of a group of designs that are evaluated together.
   /// \param share finished fraction of the group; 0 when the group begins
   /// \param designs number of designs in the group
   virtual void at_group(double share, std::size_t designs) {
@@ -100,9 +100,11 @@ StoreLayout optimise_layout(const Study& study);
 /// there. \throw InputError for too many combinations of discrete values
 Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 
-/// Looks for the best design: every combination of discrete values over a scan of the continuous ones, the edges of
-/// what is feasible, a refinement within bounds and constraints, and rounder numbers where they are as good. What the
-/// store has is not computed again; the result is the same as without it. \throw OutputError as ResultStore::record()
+/// Searches for the best design. The search scans every combination of discrete values and a grid of continuous values.
+/// It then follows the edges of the feasible region and refines the best designs within bounds and constraints.
+/// Finally, values are rounded if this does not make the design worse. Designs that are already in the store are not
+/// computed again, and the result is the same.
+/// \throw OutputError as ResultStore::record()
 Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
                  const Cancellation* cancel);
 

@@ -23,7 +23,7 @@ constexpr int kBisections = 4;
 // Of a value over its limit: what the few wavelengths of the search may be wrong by is added.
 constexpr double kEnough = 1.01;
 constexpr double kMostErrorArcmin = 300.0;
-constexpr double kNothingMade = -1.0;  // used instead of a ratio if the part cannot be made
+constexpr double kNothingMade = -1.0;  // result of ratio_at() if the part cannot be made
 constexpr double kWholeTable = -std::numeric_limits<double>::infinity();
 
 /// A parameter of the design and how it is changed.
@@ -58,9 +58,10 @@ class Search {
   Search(const Knob& knob, const TestProgramme& programme, const TableOfDesign& table)
       : knob_(knob), programme_(programme), table_(table) {}
 
-  /// Searches for the smallest change that makes the design pass, or otherwise for the best change.
-  /// \param than minimum ratio of interest; smaller ratios are ignored
-  /// \return minimum ratio of the change that was found, or `than` if none exceeds it
+  /// Searches for the smallest change that makes the design pass. If no change does, keeps the change with the best
+  /// ratio. A ratio is the minimum, over all readings, of a reading divided by its limit.
+  /// \param than changes whose ratio is not above this value are ignored
+  /// \return best ratio of the tried changes, or `than` if no ratio is above it
   double run(double than) {
     double best_ratio = than;
     for (const double value : knob_.tries) {
@@ -77,8 +78,8 @@ class Search {
     return best_ratio;
   }
 
-  /// Returns the change that run() found, rounded to three digits, with readings at all wavelengths. Returns nothing if
-  /// the computation was cancelled.
+  /// Returns the change that run() has found, with its value rounded to three digits and its readings at all
+  /// wavelengths. Returns nothing if the computation was cancelled.
   std::optional<PhotometricChange> told() const {
     const double change = best_ - knob_.from;
     const double scale = std::pow(10.0, 2.0 - std::floor(std::log10(std::abs(change))));
@@ -96,8 +97,9 @@ class Search {
   bool is_cancelled() const { return is_cancelled_; }
 
  private:
-  /// Returns the minimum ratio of a reading to its limit. If this minimum is below `enough`, any value below `enough`
-  /// may be returned. Returns kNothingMade if the part cannot be made or the search was cancelled.
+  /// Returns the minimum, over all readings, of a reading divided by its limit. If this minimum is below `enough`, the
+  /// result may be any value below `enough`. Returns kNothingMade if the part cannot be made or the search was
+  /// cancelled.
   double ratio_at(double value, double enough) {
     if (is_cancelled_) return kNothingMade;
     try {

@@ -19,10 +19,10 @@ using TableOfDesign =
 /// The least of value over limit, where an undetermined point is no more than 1; infinite if there are none.
 double least_ratio(const std::vector<PhotometricPoint>& points);
 
-/// Searches for a change of one parameter with which a failing design passes. The first parameter is the error of the
-/// angles between facets, the second is the size of the elements. Returns the smallest passing change of the first
-/// parameter that has one. Otherwise, returns the best change that was tried. The search uses few wavelengths; the
-/// returned readings use all wavelengths. Returns nothing if no changed part can be made, or if the search was
+/// Searches for a change of one parameter with which a failing design passes. The first parameter tried is the error of
+/// the angles between facets, the second is the size of the elements. Returns the smallest passing change of the first
+/// parameter that has one. If there is none, returns the best change that was tried. The search uses few wavelengths,
+/// but the returned readings use all wavelengths. Returns nothing if no changed part can be made, or if the search was
 /// cancelled.
 std::optional<PhotometricChange> change_that_passes(const Design& design, const TestProgramme& programme,
                                                     const TableOfDesign& table);

@@ -254,7 +254,7 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
     double per_sr = 0.0;
     double squares = 0.0;
-    double missing = 0.0;  // sum over all wavelengths, because their missing light is similar
+    double missing = 0.0;  // sum and not root of squares, because the missing light of all wavelengths is similar
     for (std::size_t w = 0; w < pieces.size(); ++w) {
       per_sr += weights_[w] * pieces[w].per_sr[k];
       if (!pieces[w].missing_per_sr.empty()) missing += weights_[w] * pieces[w].missing_per_sr[k];

@@ -57,19 +57,20 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
                                                         Progress* progress, const Cancellation* cancel) const;
 
-  /// Far field at one wavelength, and the weight of this wavelength in the response.
+  /// Far field at one wavelength, and the weight of this wavelength in the response of the receiver.
   struct WeighedField {
     raytrace::FarField field;
     double weight = 0.0;
   };
-  /// Computes the far fields at all wavelengths, for light from one direction. Readings are computed from such fields.
-  /// Returns nothing if the computation was cancelled.
-  /// \param tracer tracer from make_tracer()
+  /// Computes the far fields at all wavelengths for light from one direction. Returns nothing if the computation was
+  /// cancelled.
+  /// \param tracer result of make_tracer()
   /// \pre is_exact()
   std::optional<std::vector<WeighedField>> far_fields(const geometry::Vec3& to_source,
                                                       const raytrace::BeamTracer& tracer,
                                                       const Cancellation* cancel) const;
-  /// Returns a beam tracer that several threads may use. This photometer must outlive it.
+  /// Returns a beam tracer that several threads may use at the same time. The tracer refers to this photometer, which
+  /// must exist as long as the tracer.
   raytrace::BeamTracer make_tracer() const;
   const raytrace::ApertureKernel& kernel() const { return kernel_; }
 
@@ -81,8 +82,8 @@ class Photometer {
   const std::vector<std::string>& warnings() const { return model_.warnings; }
   std::vector<double> wavelengths_nm() const;
   std::string engine_name() const;
-  /// Returns the power below which beams are no longer followed exactly, as a fraction of the power that falls on an
-  /// element.
+  /// Returns the cut-off power, as a fraction of the power that falls on one element. Weaker beams are resampled or
+  /// truncated.
   double cutoff_of_element() const;
   /// What makes standard errors smaller.
   std::string remedy_for_noise() const { return is_exact_ ? "give a lower --cutoff" : "give more samples"; }
@@ -98,36 +99,36 @@ class Photometer {
   /// From now on by Monte Carlo.
   void leave_exact() { is_exact_ = false; }
   bool is_exact() const { return is_exact_; }
-  /// Makes later measurements faster and less accurate: fewer survivors represent the weak beams. Such values may guide
-  /// a search, but must not be shown to the user.
+  /// Makes later measurements faster and less accurate, because fewer resampled beams represent the weak beams. Such
+  /// values may guide a search, but must not be shown to the user.
   void only_guide() { is_guide_ = true; }
-  /// Makes later measurements faster than only_guide() does, for preliminary values that are shown with their errors.
-  /// The cut-off of beams is higher. The search structures of the part may use at most half of their memory budget,
-  /// because another photometer measures the same part at the same time.
+  /// Makes later measurements even faster than only_guide(), for preliminary values that are shown with their errors.
+  /// The cut-off power of beams is higher. The search structures of the part may use at most half of their memory
+  /// budget, because another photometer measures the part at the same time.
   void only_first_answer() { is_guide_ = is_first_answer_ = true; }
   /// From now on without the mirror image of the light: what the entrance face reflects, from outside and, between
   /// elements that send it back, from inside. \pre is_exact()
   void leave_out_mirror_image() { has_mirror_image_ = false; }
 
  private:
-  /// A lamp and the other data from which the traced wavelengths are chosen.
+  /// Lamp of the measurement, with all data that determine the traced wavelengths.
   struct Lamp {
     materials::SpectralCurve power;
-    materials::SpectralCurve response;           ///< response of the receiver
+    materials::SpectralCurve response;           ///< spectral response of the receiver
     materials::SpectralCurve absorption_per_mm;  ///< absorption coefficient of the body
     double path_length_mm = 0.0;                 ///< path length of returned light inside the part
     std::size_t parts = 1;                       ///< number of spans of the spectrum, each with two wavelengths
 
-    /// Returns the wavelengths to trace and their weights. The weights exclude the absorption in the body.
-    /// \param knees_nm knees, in ascending order: wavelengths at which total reflection begins or ends at a facet
+    /// Returns the traced wavelengths and their weights. The weights exclude the absorption in the body.
+    /// \param knees_nm wavelengths at which total reflection begins or ends at a facet, in ascending order
     materials::Spectrum light(const std::vector<double>& knees_nm) const;
   };
   /// What one wavelength adds.
   struct Piece {
     std::vector<double> per_sr;
     std::vector<double> error_per_sr;
-    /// Estimate of the intensity that is missing in `per_sr`, for each observation angle. Missing light is light in
-    /// truncated beams and scattered light of unknown direction. If the vector is empty, no light is missing.
+    /// Estimate of the intensity that is missing in `per_sr`, for each observation angle. Light is missing if its beam
+    /// was truncated, or if it was scattered into unknown directions. An empty vector means that no light is missing.
     std::vector<double> missing_per_sr;
     std::vector<double> map_per_sr;
     double rre = 0.0;
@@ -142,51 +143,53 @@ class Photometer {
   static constexpr double kWidthsWithoutDiffraction = 64.0;
 
   raytrace::FarFieldPolicy far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const;
-  /// \param coarseness factor of the cut-off
+  /// Returns the settings of the beam tracer for one wavelength.
+  /// \param coarseness factor by which the cut-off power is multiplied
   raytrace::BeamPolicy beam_policy(std::size_t wavelength, double coarseness) const;
-  /// Traced light of one wavelength.
+  /// Result of tracing the light of one wavelength.
   struct Traced {
     raytrace::BeamResult beams;
     raytrace::FarField field;
-    double scattered_from_cone = 0.0;  ///< power that textures scatter out of the detector's widest cone
+    double scattered_from_cone = 0.0;  ///< power that rough facets scatter out of the detector's widest acceptance cone
   };
-  /// Traces the light of one wavelength. Returns nothing if the trace was cancelled.
-  /// \param coarseness factor of the cut-off
+  /// Traces the light of one wavelength. Returns nothing if the computation was cancelled.
+  /// \param coarseness factor by which the cut-off power is multiplied
   std::optional<Traced> traced(const geometry::Vec3& to_source, std::size_t wavelength,
                                const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                                double coarseness = 1.0) const;
-  /// Measures settings that share one traced far field. Returns one piece per setting, in the order of the settings.
+  /// Measures all settings whose light comes from one direction, from a single traced far field. Returns one piece for
+  /// each element of `alike`, in this order.
   std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
                                      std::size_t wavelength, const raytrace::BeamTracer& tracer,
                                      const Cancellation* cancel) const;
-  /// Returns true if all light is traced, including light scattered by rough facets. Otherwise only the mean field is
-  /// traced, and readings are lower bounds.
+  /// Returns true if all light is traced, including the light that rough facets scatter. Otherwise only the mean field,
+  /// which rough facets do not scatter, is traced. Readings are then lower bounds.
   bool traces_all_light() const { return model_.optics.is_smooth() || keeps_phases_; }
   void estimate_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike, std::size_t wavelength,
                         const Traced& traced, const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                         std::vector<Piece>& pieces) const;
   void look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
             std::size_t wavelength, Piece& piece) const;
-  /// \param tracer null for balls, which have their own tracer
+  /// \param tracer ray tracer of the part; null for balls, which have their own tracer
   Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
                         Progress& progress, const Cancellation* cancel) const;
   /// All of them. \param pieces by setting and wavelength; filled. False if it was cancelled
   bool measure_by_rays(const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel,
                        std::vector<std::vector<Piece>>& pieces) const;
-  /// Returns the indices of the settings, grouped by knees. The knees of a setting are the wavelengths at which total
-  /// reflection begins or ends at a facet for light from its source.
+  /// Groups the settings by their knees and returns the indices of the settings in each group. Knees are the
+  /// wavelengths at which total reflection begins or ends at a facet for light from the source of the setting.
   std::map<std::vector<double>, std::vector<std::size_t>> settings_by_knees(
       const std::vector<PhotometerSetting>& settings) const;
-  /// Returns a copy of this photometer that chooses wavelengths by Lamp::light() for the given knees.
+  /// Returns a copy of this photometer that traces the wavelengths of Lamp::light() for the given knees.
   Photometer with_knees(const std::vector<double>& knees_nm) const;
-  /// Measures all settings at the wavelengths of `model_`, whatever the knees of the settings are.
+  /// Measures all settings at the wavelengths of `model_`. The knees of the settings are ignored.
   std::optional<std::vector<PhotometerReading>> measure_in_one_light(const std::vector<PhotometerSetting>& settings,
                                                                      Progress* progress,
                                                                      const Cancellation* cancel) const;
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
   std::size_t middle_wavelength() const;
   std::uint32_t seed_of(std::size_t wavelength) const;
-  bool resamples_weak() const;   ///< true: beams below the cut-off are resampled; false: truncated
+  bool resamples_weak() const;   ///< true: beams below the cut-off power are resampled; false: they are truncated
   double element_count() const;  ///< number of elements that share the light, >= 1
   double cutoff() const;
   std::uint32_t replicates() const;
@@ -194,7 +197,7 @@ class Photometer {
   Design design_;
   PhotometryRequest request_;
   OpticalModel model_;
-  std::optional<Lamp> lamp_;     ///< empty if the light of the design is used
+  std::optional<Lamp> lamp_;     ///< empty if the spectrum of the design is used
   std::vector<double> weights_;  ///< of the wavelengths: of flux without the dye, which the tracer applies
   raytrace::ApertureKernel kernel_;
   bool is_exact_ = true;

@@ -1,5 +1,5 @@
-// Members of Photometer that choose the wavelengths to trace for each direction of light. At some wavelengths, total
-// reflection begins or ends at a facet. These wavelengths are called knees here, and the choice depends on them.
+// Members of Photometer that choose the traced wavelengths for each direction of light. The choice depends on the
+// knees: the wavelengths at which total reflection begins or ends at a facet.
 #include <algorithm>
 #include <cmath>
 
@@ -13,17 +13,18 @@
 namespace retrace::studies {
 namespace {
 
-/// Minimum number of spans of the spectrum for which knees are searched. Pictures, searches and estimates use fewer
-/// spans and ignore knees.
+/// Minimum number of spans of the spectrum for which knees are computed. Pictures, searches and preliminary values use
+/// fewer spans and ignore knees.
 constexpr std::size_t kLeastPartsOfValues = 4;
-/// Maximum wavelength step of the table of refractive indices. The error of linear interpolation is then at most 5e-6.
+/// Maximum wavelength step of the table of refractive indices. With this step, the error of linear interpolation is at
+/// most 5e-6.
 constexpr double kIndexStepNm = 10.0;
-/// Knees are ignored in both ends of the spectrum. Each end has this fraction of the flux.
+/// Fraction of the flux at each end of the spectrum in which knees are ignored.
 constexpr double kLeastShare = 2e-3;
-/// Minimum distance between knees. Knees that are closer are merged.
+/// Minimum distance between two knees. Knees that are closer are merged into one.
 constexpr double kLeastDistanceNm = 4.0;
 constexpr std::size_t kMostKnees = 4;
-/// Knees are rounded to multiples of this step, so that settings with almost equal knees are traced together.
+/// Step to whose multiples knees are rounded, so that settings with almost equal knees are traced together.
 constexpr double kRoundingNm = 0.01;
 
 struct IndexAt {
@@ -32,9 +33,9 @@ struct IndexAt {
   double back_index = 1.0;
 };
 
-/// Returns the refractive indices at wavelengths in steps of at most kIndexStepNm. The ends of the spectrum, defined by
-/// kLeastShare, are left out. Wavelengths for which the material has no data are omitted.
-///
+/// Returns a table of refractive indices at wavelengths in steps of at most kIndexStepNm. The table excludes both ends
+/// of the spectrum, which have the fraction kLeastShare of the flux each. Wavelengths for which the material has no
+/// data are omitted.
 /// \param flux spectrum whose weights add up to 1
 std::vector<IndexAt> index_table(const Design& design, const materials::Spectrum& flux) {
   double low_nm = flux.wavelengths_nm.front(), high_nm = flux.wavelengths_nm.back();
@@ -46,7 +47,7 @@ std::vector<IndexAt> index_table(const Design& design, const materials::Spectrum
   }
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   std::vector<std::string> told_before;
-  // Roughness does not change indices, and its scatter model takes most of the time.
+  // The model of a rough surface is slow to build and does not change the refractive indices.
   Design smooth = design;
   smooth.surface.texture = SmoothTexture{};
   const OpticsOfDesign optics(smooth, library, told_before);
@@ -62,8 +63,8 @@ std::vector<IndexAt> index_table(const Design& design, const materials::Spectrum
   return table;
 }
 
-/// Merges knees that are closer than kLeastDistanceNm into one at their mean. If more than kMostKnees remain, the
-/// distance is doubled until at most kMostKnees remain.
+/// Merges knees that are closer than kLeastDistanceNm into one at their mean wavelength. The distance is doubled until
+/// at most kMostKnees remain.
 std::vector<double> joined(std::vector<double> knees_nm) {
   std::sort(knees_nm.begin(), knees_nm.end());
   for (double distance_nm = kLeastDistanceNm;; distance_nm *= 2.0) {
@@ -79,7 +80,8 @@ std::vector<double> joined(std::vector<double> knees_nm) {
   }
 }
 
-/// Returns the knees of a part for light from one direction, in ascending order.
+/// Returns the knees of a part for light from one direction, in ascending order. A knee is a wavelength at which total
+/// reflection begins or ends at a facet.
 std::vector<double> knees_of(const geometry::PartSpec& part, const geometry::Vec3& to_source,
                              const std::vector<IndexAt>& table) {
   std::vector<double> knees_nm;
@@ -97,8 +99,8 @@ std::vector<double> knees_of(const geometry::PartSpec& part, const geometry::Vec
 
 }  // namespace
 
-/// Chooses wavelengths by the flux that remains after absorption in the body. A dyed body may absorb most of the light
-/// of the lamp. The weights exclude this absorption because the tracer applies it.
+/// Chooses the wavelengths by the flux that remains after absorption in the body, because a dyed body may absorb most
+/// of the lamp's light. The weights exclude this absorption because the tracer applies it.
 materials::Spectrum Photometer::Lamp::light(const std::vector<double>& knees_nm) const {
   const auto transmittance = [&](double w) {
     return absorption_per_mm.values.empty() ? 1.0 : std::exp(-absorption_per_mm.at(w) * path_length_mm);
@@ -150,7 +152,7 @@ Photometer Photometer::with_knees(const std::vector<double>& knees_nm) const try
         {light.wavelengths_nm[k], light.weights[k], optics.at(light.wavelengths_nm[k], model_.wet_elements)});
   return changed;
 } catch (const InputError&) {
-  return *this;  // the material has no data at one of the new wavelengths
+  return *this;  // keeps the old wavelengths: the material has no data at one of the new ones
 }
 
 std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vector<PhotometerSetting>& settings,

@@ -24,29 +24,31 @@ constexpr double kCutoff = 1e-5;
 constexpr double kCutoffOfFinite = 5e-5;
 constexpr double kCutoffOfAll = 5e-7;
 constexpr std::uint32_t kReplicates = 16;
-// For a photometer that only guides a search: number of replicates, and ratio of its cut-off to the usual one. Errors
-// are about 1e-3 unless almost no light returns, and the time is a third less.
+// Number of replicates for a photometer that only guides a search. Such readings have errors of about 1e-3 unless
+// almost no light returns, and take two thirds of the usual time.
 constexpr std::uint32_t kReplicatesOfGuide = 4;
+// Ratio of the cut-off power of a photometer that only guides a search to the usual one.
 constexpr double kCutoffOfGuide = 3.0;
-// Ratio of the cut-off for preliminary values to the usual one.
+// Ratio of the cut-off power for preliminary values to the usual one.
 constexpr double kCutoffOfFirstAnswer = 10.0;
-// Maximum number of beams per direction and wavelength; with more beams, `auto` uses Monte Carlo.
+// Maximum number of beams per direction and wavelength. If more beams are needed, the engine `auto` uses Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
-// Minimum trace of the linear part of ReturnedBeam::entry_from_exit for beams of the mirror image of the light. The
-// trace is 2 for a plane mirror and at most 0 for retroreflection.
+// Minimum trace of the linear map from exit to entry position by which a beam counts as mirror image of the light. The
+// map is ReturnedBeam::entry_from_exit. Its trace is 2 for a plane mirror and at most 0 for retroreflection.
 constexpr double kLeastMirrorTrace = 1.0;
 // Lattice points of the window, beyond which its power is not integrated.
 constexpr double kMostLatticePoints = 300'000.0;
 
-// If the truncated power is at most this fraction of the incident power, it is neglected. Otherwise,
+// Maximum truncated power, as a fraction of the incident power, that is neglected. If more power is truncated,
 // Piece::missing_per_sr is computed.
 constexpr double kLeastTruncated = 1e-9;
-// Ratio of the cut-off of the coarse trace in estimate_missing() to the cut-off of the trace itself.
+// Factor of the cut-off power for the coarse trace in estimate_missing().
 constexpr double kCoarseness = 20.0;
-// Memory in bytes that FarFieldCollector needs per cell of a finite part, and per returned beam of a cell.
+// Memory, in bytes, that FarFieldCollector needs for each cell of a finite part.
 constexpr double kBytesPerCell = 200.0;
+// Memory, in bytes, that FarFieldCollector needs for each returned beam of each cell.
 constexpr double kBytesPerBeamOfCell = 8.0;
-// Minimum number of returned beams per cell, for the memory estimate before tracing.
+// Minimum number of returned beams per cell, from which the memory is estimated before tracing.
 constexpr double kLeastBeamsOfCell = 10.0;
 
 [[noreturn]] void fail_on_memory() {
@@ -55,7 +57,8 @@ constexpr double kLeastBeamsOfCell = 10.0;
       memory_budget_text()));
 }
 
-/// Memory of a far field while its beams are collected. Beams of equal elements count for each element.
+/// Memory that a far field needs while its beams are collected. A beam that stands for several equal elements is
+/// counted once for each element.
 class FarFieldMemory {
  public:
   /// Adds the memory of a returned beam.
@@ -75,8 +78,8 @@ class FarFieldMemory {
   double cells_ = 0.0;
 };
 
-/// Returns the frame of a setting in the coordinates of the traced light. Settings whose directions are mirror images
-/// of each other use the same traced light. The frame is therefore mirrored for some of them.
+/// Returns the frame of a setting in the coordinates of the traced light. Settings with mirror-symmetric directions
+/// share the traced light. For some of them, the frame is therefore mirrored.
 ReturnFrame shared_frame(const PhotometerSetting& setting, const SharedDirection& shared) {
   ReturnFrame frame = frame_of(setting);
   for (geometry::Vec3* axis : {&frame.to_source, &frame.right, &frame.up}) *axis = shared.mirrored(*axis);
@@ -96,8 +99,8 @@ double scattered_power(const raytrace::ReturnedBeam& beam) {
 
 }  // namespace
 
-/// Returns true if the engine is chosen automatically, all facets are plane and all light is traced. If only the mean
-/// field of rough facets is traced, readings are lower bounds, and weak beams may be dropped.
+/// Returns true if beams below the cut-off power are resampled instead of truncated. This requires the engine `auto`,
+/// plane facets, and that all light is traced.
 bool Photometer::resamples_weak() const {
   return is_exact_ && request_.engine == Engine::automatic && traces_all_light() && !has_form_;
 }
@@ -206,7 +209,8 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
   common.std_error = traced->beams.std_error.back();
   common.truncated = traced->beams.ledgers.back()[raytrace::Account::truncated];
   if (keeps_phases_) {
-    // Power that textures scatter out of the beams of the cone, and scattered power that falls into the cone.
+    // Adds the scattered power that falls into the acceptance cone, and subtracts the power that rough facets scatter
+    // out of the beams in the cone.
     const Angle widest = Angle::from_deg(design_.detector.acceptance_half_angle_deg.back());
     common.rre += field.scattered_within(frame, widest.rad()) - traced->scattered_from_cone;
     common.truncated += field.unplaced_power();
@@ -214,18 +218,19 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
   std::vector<Piece> pieces(alike.size(), common);
   for (std::size_t k = 0; k < alike.size() && !is_cancelled(cancel); ++k)
     look(settings[alike[k].index], alike[k], field, wavelength, pieces[k]);
-  // The pieces that were not looked at have no intensities.
+  // After a cancellation, some pieces have no intensities. Empty pieces are therefore returned.
   if (is_cancelled(cancel)) return std::vector<Piece>(alike.size());
   if (traces_all_light()) estimate_missing(settings, alike, wavelength, *traced, tracer, cancel, pieces);
   for (Piece& piece : pieces) piece.complete = !is_cancelled(cancel);
   return pieces;
 }
 
-/// Sets Piece::missing_per_sr. It is the sum of three estimates. First, truncated light is assumed to return with the
-/// angular distribution of the other returned light. Second, the intensity that truncated beams would add is
-/// extrapolated from a coarse trace with a greater cut-off. This estimate is made at the middle wavelength for all
-/// wavelengths, and not if weak beams are resampled, because hardly any light is then truncated. Third, scattered light
-/// of unknown direction is assumed to have the angular distribution of the other scattered light.
+/// Sets Piece::missing_per_sr to the sum of three estimates:
+/// (1) Truncated light is assumed to return with the angular distribution of the other returned light.
+/// (2) The intensity that truncated beams would add is extrapolated from a coarse trace with a higher cut-off power.
+/// The middle wavelength stands for all wavelengths. This estimate is omitted if weak beams are resampled, because
+/// hardly any light is then truncated.
+/// (3) Scattered light of unknown direction is assumed to have the angular distribution of the other scattered light.
 void Photometer::estimate_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
                                   std::size_t wavelength, const Traced& traced, const raytrace::BeamTracer& tracer,
                                   const Cancellation* cancel, std::vector<Piece>& pieces) const {

@@ -25,15 +25,16 @@ constexpr double kLeastWindowDeg = 0.05;
 constexpr double kMostWindowDeg = 10.0;
 constexpr double kMostAreaCm2 = 1e6;
 constexpr double kMostApertureArcmin = 300.0;
-/// Minimum diameter of the source or of the receiver, whichever is larger. If both were points, intensities would be
-/// infinite or 0.
+/// Minimum diameter of the larger of the two apertures, source and receiver. If both were points, computed intensities
+/// would be infinite or 0.
 constexpr double kLeastApertureArcmin = 0.006;
 // A value nearer to its limit than this many standard errors says nothing.
 constexpr double kErrorsOfAMargin = 2.0;
 // Wavelengths for figures, and for pictures.
 constexpr std::size_t kPictureParts = 1;
-// Preliminary readings: number of spans of the spectrum with two wavelengths each, and minimum number of rays.
+// Number of spans of the spectrum for preliminary readings. Each span has two wavelengths.
 constexpr std::size_t kFirstAnswerParts = 1;
+// Minimum number of rays for preliminary readings.
 constexpr double kMinRaysOfFirstAnswer = 4096.0;
 constexpr std::size_t kMapColumns = 97;
 constexpr std::size_t kMostMaps = 6;

@@ -30,7 +30,7 @@ std::string_view light_name(PhotometricLight light);
 /// \throw InputError for a name that is none of them
 PhotometricLight light_from_name(std::string_view name);
 
-/// Default number of rays per direction.
+/// Default number of rays per direction of incidence.
 inline constexpr std::uint64_t kUsualRaysOfDirection = std::uint64_t{1} << 20;
 
 /// What is asked: the coefficients of retroreflection of a part at the test points of a standard.
@@ -55,7 +55,7 @@ struct PhotometryRequest {
   bool colour = false;        ///< the chromaticity of the returned light; none of the design's own light
 };
 
-/// Returns a diameter in arcminutes. The rounding errors of the conversion to radians and back are removed.
+/// Returns a diameter in minutes of arc, rounded so that the errors of the conversion from radians disappear.
 double arcmin_of(Angle diameter);
 
 /// From best to worst: the worst of several decides.
@@ -166,7 +166,7 @@ struct PhotometryResult {
   std::string reason;                       ///< why points are undetermined; empty if none is
   std::optional<PhotometricColour> colour;  ///< has a verdict of its own
   std::optional<PhotometricChange>
-      change;  ///< for a failing design: a change that makes it pass, or the best change that was tried
+      change;  ///< for a failing design: a change with which it passes, or else the best change tried
   std::vector<FarFieldMap> maps;
   std::vector<ObservationCurve> curves;
   double elapsed_s = 0.0;
@@ -178,13 +178,13 @@ struct PhotometryResult {
 };
 
 /// Approximate systematic error of preliminary readings, as a fraction of the value. The standard error does not
-/// include it. It has two sources: few wavelengths (unless the design's own light is used), and weak beams, whose
-/// interference is ignored.
+/// include it. It results from the small number of wavelengths and from weak beams, whose interference is ignored. If
+/// the light of the design is used, the number of wavelengths is not reduced.
 inline constexpr double kSystematicErrorOfFirstAnswer = 0.02;
 
-/// Preliminary readings at the test points, from a much faster computation.
+/// Preliminary readings at the test points, from a much faster and less accurate computation.
 struct PhotometricFirstAnswer {
-  std::vector<PhotometricPoint> points;  ///< one for each test point; the verdicts are not valid
+  std::vector<PhotometricPoint> points;  ///< one for each test point; their verdicts must not be used
   std::vector<double> wavelengths_nm;
   bool lacks_diffraction = false;  ///< true if diffraction is omitted although the request includes it
 };
@@ -204,19 +204,20 @@ class PhotometryStudy {
   PhotometryStudy(Design design, PhotometryRequest request);
   ~PhotometryStudy();
 
-  /// Returns true if the light is traced as beams and false if it is traced as rays. Beam tracing may later be replaced
-  /// by rays if it needs too many beams.
+  /// Returns true if light is traced as beams, and false if it is traced as rays. If beam tracing needs too many beams,
+  /// it may later be replaced by ray tracing.
   bool follows_beams() const;
-  /// Returns the cut-off of beams, given or default, as a fraction of the power that falls on an element.
+  /// Returns the cut-off power of beams, as a fraction of the power that falls on one element. It is that of the
+  /// request or the default.
   double cutoff() const;
 
   /// \throw BudgetError if power was lost
   PhotometryResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
-  /// Computes preliminary readings with fewer wavelengths, fewer rays or a higher cut-off of beams. It may run in
-  /// parallel with run() and does not change the result of run(). Returns nothing if it was cancelled.
-  /// \param ray_share number of rays divided by that of run(), > 0 and at most 1
-  /// \throw BudgetError if the memory does not suffice for both computations
+  /// Computes preliminary readings with fewer wavelengths and either fewer rays or a higher cut-off power of beams. The
+  /// call may run in parallel with run() and does not change the result of run(). Returns nothing if it was cancelled.
+  /// \param ray_share number of rays divided by the number of rays of run(); > 0 and at most 1
+  /// \throw BudgetError if the memory is not enough for both computations
   std::optional<PhotometricFirstAnswer> first_answer(double ray_share, const Cancellation* cancel = nullptr) const;
 
  private:

@@ -39,10 +39,10 @@ class Candidate {
   const Design& design() const { return design_; }
   const AnalysisSettings& analysis() const { return analysis_; }
   const MachiningProcess& machining() const { return machining_; }
-  /// Sets the receiver of progress reports of long computations.
-  /// \param progress null: nothing is reported
+  /// Sets the object to which long computations report their progress.
+  /// \param progress null if no reports are needed
   void report_to(Progress* progress) { progress_ = progress; }
-  /// Returns the receiver of progress reports for the quantity that is being measured; may be null.
+  /// Returns the object to which the quantity being measured reports its progress. May be null.
   Progress* progress() const { return progress_; }
   /// Built when it is first requested. \throw InputError as part_of_design()
   const geometry::Part& part() const {

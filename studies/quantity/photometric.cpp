@@ -70,7 +70,8 @@ class PhotometricQuantity final : public Quantity {
     PhotometryRequest request = table_->request;
     const AnalysisSettings& analysis = candidate.analysis();
     request.engine = analysis.engine;
-    // Rays of photometry have no cut-off. The study reader refuses one that no other quantity uses.
+    // Rays of photometry have no cut-off, so that the cut-off is passed on only to engines that trace beams. The study
+    // reader refuses a cut-off that no quantity uses.
     if (is_one_of(request.engine, kExactEngines)) request.cutoff = analysis.cutoff;
     request.rays = analysis.rays;
     request.seed = analysis.seed;

@@ -30,10 +30,10 @@ struct PhotometricTable {
 /// Which of the values of a table is meant.
 struct PhotometricChoice {
   std::optional<std::size_t> point;  ///< of the standard's programme, from 0; none: the least over all
-  /// One of the readings of a point. If this is not set, the minimum of all readings is used. `beside` is the index of
-  /// the angle V, because V = 0 is replaced by several angles away from the mirror image of the lamp. For a part
-  /// without a mirror image, all these angles are equal to V of the point. `turn` is the index of the rotation of the
-  /// part.
+  /// One reading of a test point. If it is not set, the minimum of all readings of the point is used.
+  /// `beside` is the index of the angle V. There are several such angles for V = 0, because readings are taken beside
+  /// the mirror image of the lamp. For a part without a mirror image, all these angles are equal to V of the point.
+  /// `turn` is the index of the rotation of the part.
   struct Reading {
     std::size_t beside = 0;
     std::size_t turn = 0;

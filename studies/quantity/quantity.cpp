@@ -100,7 +100,7 @@ class ShareQuantity final : public Quantity {
     if (request.engine != Engine::automatic && request.engine != Engine::exact) return std::nullopt;
     request.engine = Engine::exact;
     request.derivatives = true;
-    // Settings of the engine `auto` that the exact engine does not use.
+    // Removes settings of the engine `auto` that the engine `exact` does not accept.
     request.rays.reset();
     if (request.cutoff) request.target_error.reset();
     const RreResult result = RreStudy({design_of(candidate)}, request).run(nullptr, cancel);

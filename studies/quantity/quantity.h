@@ -38,8 +38,9 @@ class Quantity {
   const std::string& name() const { return name_; }
   /// Nothing if it was cancelled. \throw Error if it cannot be computed for this candidate
   virtual std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const = 0;
-  /// Returns an identifier of the ray or beam tracing that yields the value. Quantities with equal identifiers share
-  /// one tracing. Empty if nothing is traced and the computation takes negligible time.
+  /// Returns an identifier of the ray or beam tracing from which the value is computed. Quantities with equal
+  /// identifiers share one tracing. The identifier is empty if nothing is traced and the computation takes negligible
+  /// time.
   virtual std::string tracing() const { return {}; }
   /// What it is of, for people: "20' V 5 H -20".
   virtual std::string label() const { return name_; }

@@ -75,7 +75,7 @@ bool EmitterSource::read(std::size_t most, std::vector<SetRay>& rays) {
   return count > 0;
 }
 
-/// Returns the point at which a ray starts, in the frame of the source.
+/// Returns a random starting point of a ray, in the frame of the source.
 /// \param u, v independent random numbers, uniform in [0, 1)
 Vec3 EmitterSource::place(double u, double v) const {
   if (emitter_.period_mm) return (u - 0.5) * (*emitter_.period_mm)[0] + (v - 0.5) * (*emitter_.period_mm)[1];

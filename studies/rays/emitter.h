@@ -23,9 +23,9 @@ inline constexpr std::array<std::string_view, 3> kEmitterNames = {"lambertian", 
 /// A disc round the origin that faces +z.
 struct Emitter {
   EmitterKind kind = EmitterKind::lambertian;
-  double disc_mm = 0.0;  ///< diameter of the disc; 0 for a point source
-  /// The two sides, in the frame of the source, of a parallelogram centred at the origin. If the sides are given, the
-  /// parallelogram emits evenly in place of the disc.
+  double disc_mm = 0.0;  ///< diameter of the emitting disc; 0 for a point source
+  /// Two sides of an emitting parallelogram that is centred at the origin, in the frame of the source. If they are
+  /// given, the parallelogram replaces the disc and emits uniformly.
   std::optional<std::array<Vec3, 2>> period_mm = {};
   double half_angle_deg = 90.0;  ///< 0 to 90
   std::uint64_t rays = 1'000'000;
@@ -43,8 +43,8 @@ inline constexpr std::uint64_t kMaxEmitterRays = std::uint64_t{1} << 40;
 /// What is asked of one.
 struct EmitterRequest {
   EmitterKind kind = EmitterKind::lambertian;
-  /// Diameter of the disc. By default, a collimated emitter covers the entrance face, or one period of an infinite
-  /// part. Other emitters are points by default.
+  /// Diameter of the emitting disc. By default, a collimated emitter covers the entrance face, or one period of an
+  /// infinite part. Other emitters are points by default.
   std::optional<double> disc_mm;
   std::optional<double> half_angle_deg;  ///< none: 90, but of other light than lambertian 0
   std::uint64_t rays = 1'000'000;

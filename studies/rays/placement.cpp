@@ -47,7 +47,7 @@ Vec3 middle_of_face(const geometry::Part& part) {
 RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Part& part) {
   RayPlacement placement;
   std::optional<Vec3> aim;
-  std::optional<Vec3> way;  ///< vector from the source to the aim point
+  std::optional<Vec3> way;  ///< vector from the source to the point at which it is aimed
   if (request.is_by_angles()) {
     require(!request.at_mm, "--at-mm", "not together with --incidence, --azimuth and --distance-mm");
     const double incidence = request.incidence_deg.value_or(0.0);

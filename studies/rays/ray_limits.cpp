@@ -15,8 +15,8 @@ constexpr double kRounding = 1e-5;
 // Of the sine between axis and direction.
 constexpr double kLeastAcross = 1e-3;
 
-/// Returns a finite vector times the power of two that brings its largest coordinate to 1 to 2. The factor changes no
-/// digit of the coordinates.
+/// Multiplies a finite vector by a power of two so that its largest coordinate is between 1 and 2. A power of two
+/// causes no rounding error.
 Vec3 moderate(const Vec3& v) {
   const double largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0.0) || !v.allFinite()) return v;

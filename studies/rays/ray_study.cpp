@@ -59,7 +59,7 @@ void settle_polarisation(const raytrace::Light& light, AccountedRay& ray) {
   ray.axis = (std::cos(turn) * light.s_axis + std::sin(turn) * ray.direction.cross(light.s_axis)).normalized();
 }
 
-/// Returns the radius of the smallest circle about the centre of the entrance face that contains the face.
+/// Returns the distance from the centre of the entrance face to its farthest corner.
 /// \pre the part is finite
 double radius_of_face(const geometry::Part& part) {
   const geometry::Vec2 middle = middle_of_face(part).head<2>();
@@ -68,8 +68,9 @@ double radius_of_face(const geometry::Part& part) {
   return std::sqrt(reach2);
 }
 
-/// Sets the size of the emitter to that of the entrance face. For an infinite part, the emitter is a copy of one
-/// period, parallel to the face. Parallel rays of any direction then cover one period of the face evenly.
+/// Sets the size of the emitter to that of the entrance face. For an infinite part, the emitter is a parallelogram that
+/// is congruent to one period and parallel to the face. Parallel rays from it cover one period evenly, whatever their
+/// direction.
 void cover_face(const geometry::Part& part, const RayPlacement& placement, Emitter& emitter) {
   if (!part.period_mm) {
     emitter.disc_mm = 2.0 * radius_of_face(part);
@@ -213,7 +214,8 @@ class RayStudy::Run {
 
   double power_of(const SetRay& ray) const { return is_luminous_ ? ray.luminous_lm : ray.radiant_w; }
 
-  /// \return number of rays that leave
+  /// Traces all rays that have been read.
+  /// \return number of rays that leave the part
   std::size_t trace(const Cancellation* cancel) {
     incident_.clear();
     for (std::size_t k = 0; k < rays_.size(); ++k) {
@@ -229,8 +231,9 @@ class RayStudy::Run {
     return leaving;
   }
 
-  /// Traces some of the rays. If those that leave exceed the memory budget, traces both halves one after the other.
-  /// \return number of rays that leave
+  /// Traces the rays from `begin` to `end`. If the leaving rays exceed the memory budget, traces both halves of the
+  /// range one after the other.
+  /// \return number of rays that leave the part
   std::size_t trace(std::size_t begin, std::size_t end, const Cancellation* cancel) {
     std::optional<raytrace::TracedRays> traced;
     try {
@@ -250,7 +253,8 @@ class RayStudy::Run {
     return traced->leaving.size();
   }
 
-  /// Writes rays in the order of the rays of the source. \param begin number of the first traced ray in `rays_`
+  /// Writes the traced rays in the order of the rays of the source.
+  /// \param begin number of the first traced ray in `rays_`
   void write(const raytrace::TracedRays& traced, std::size_t begin) {
     out_.clear();
     auto missed = hidden_.request.keep_missed ? traced.missed.begin() : traced.missed.end();

@@ -194,7 +194,7 @@ RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* canc
   RoughnessResult result;
   result.design = p.design;
   result.request = p.request;
-  // Every point counts alike, the smooth one included.
+  // All points, including the smooth one, are assumed to take equal time.
   const double smooth_share = 1.0 / static_cast<double>(1 + p.rough.size());
   PartOfProgress smooth_part(progress, 0.0, smooth_share), rough_part(progress, smooth_share, 1.0);
   const RreResult smooth = p.smooth_study->run(&smooth_part, cancel);

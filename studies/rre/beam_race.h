@@ -16,8 +16,8 @@ namespace retrace::studies {
 /// Of a part's cells, in the mean.
 double facets_of_cell(const geometry::Part& part);
 
-/// Returns the expected time, in ns, of constructing the BeamTracer of a part. It is infinite if the search structures
-/// exceed the memory budget.
+/// Returns the expected time, in ns, for constructing the BeamTracer of a part. The time is infinite if the search
+/// structures of the tracer exceed the memory budget.
 double beam_tracer_ns(const geometry::Part& part);
 
 /// One direction at one wavelength, traced until the exact engine's goal or the stochastic one's target error is
@@ -40,9 +40,10 @@ class BeamRace {
 
   /// What the quicker way is expected to take in all; infinite if neither may do.
   double expected_ns() const;
-  /// Returns the finished fraction of the expected work of the faster method; 0 before the work begins.
+  /// Returns the finished fraction of the work that the faster method is expected to need. 0 before the work begins.
   double share_done() const;
-  /// Runs one step of the method with the smaller expected remaining time. A method that exceeds a budget is abandoned.
+  /// Runs one step of the method with the smaller expected remaining time: exact or stochastic beam tracing. A method
+  /// that exceeds a budget is abandoned.
   /// \return true if the method has reached its goal
   /// \throw BudgetError if both methods are abandoned
   bool advance();

@@ -33,21 +33,22 @@ Engine engine_from_name(std::string_view name);
 raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
-/// Engines of RRE that trace rays and for which a request may therefore give a number of rays.
+/// Engines of RRE (retroreflective efficiency) that trace rays. A request may give a number of rays only with them.
 inline constexpr Engine kRayEngines[] = {Engine::automatic, Engine::montecarlo, Engine::cell, Engine::embree};
 /// Engines of photometry and pictures that trace rays.
 inline constexpr Engine kRayEnginesOfParts[] = {Engine::automatic, Engine::montecarlo, Engine::embree};
 /// Engines that may trace all light as beams.
 inline constexpr Engine kExactEngines[] = {Engine::exact, Engine::automatic};
-/// Engines of RRE that truncate light below a cut-off power.
+/// Engines of RRE that stop following light below a cut-off power.
 inline constexpr Engine kCutoffEngines[] = {Engine::automatic, Engine::exact, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
-/// Engines of RRE that use a target error. They use it also if the request gives a cut-off.
+/// Engines of RRE that use a target error, even if the request also gives a cut-off power.
 inline constexpr Engine kTargetEngines[] = {Engine::automatic, Engine::stochastic, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
 /// Returns true if `engine` is one of `engines`.
 bool is_one_of(Engine engine, std::span<const Engine> engines);
-/// Refuses an option that has no effect with the requested engine.
+/// Refuses an option that is given although it has no effect with the requested engine.
+/// \param engines engines with which the option has an effect
 /// \throw InputError at `option`
 void check_has_effect(const char* option, bool is_given, Engine engine, std::span<const Engine> engines);
 

@@ -31,7 +31,7 @@ constexpr SegmentCost kEmbree{350.0, 25.0};
 /// Straight pieces of a first round of Monte Carlo, before there was one.
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
 /// Maximum time for constructing the beam tracer, as a fraction of the expected remaining time of ray tracing. With
-/// this limit, an unsuccessful attempt with beams takes at most half of the time of ray tracing.
+/// this limit, an unsuccessful attempt at beam tracing takes at most half of the time of ray tracing.
 constexpr double kMaxTracerShare = 0.3;
 /// What beams may take below the error that was requested: some 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
@@ -106,13 +106,14 @@ class DesignTracing {
   /// Whether directions are shared out among the threads; else each takes all of them.
   bool takes_several() const { return follows_beams_; }
 
-  /// Sets the number of directions times wavelengths. The time for making the beam tracer is divided by this number.
+  /// Sets the number of combinations of a direction and a wavelength. The construction time of the beam tracer is
+  /// divided evenly among them.
   void expect(std::size_t units) {
     if (follows_beams_ && !tracer_ns_) tracer_ns_ = beam_tracer_ns(model_.part) / static_cast<double>(units);
   }
 
   /// False if it was cancelled: an unfinished point is no point.
-  /// \pre expect()
+  /// \pre expect() was called
   bool trace(Direction& direction, std::size_t wavelength, Progress& progress) {
     if (!follows_beams_) return trace_rays(direction, wavelength, progress);
     if (must_be_exact(request_)) return trace_beams(direction, wavelength, progress);
@@ -147,7 +148,7 @@ class DesignTracing {
     return *beam_tracer_;
   }
 
-  /// Returns the ray tracer, which is made when a thread first needs it.
+  /// Returns the ray tracer, which is constructed at the first call.
   const raytrace::MonteCarlo& ray_tracer() {
     std::call_once(ray_tracer_is_made_, [this] {
       ray_tracer_.emplace(model_.part, ray_engine(), model_.entrance ? &*model_.entrance : nullptr);
@@ -226,7 +227,7 @@ class DesignTracing {
     return keep(direction, wavelength, beams);
   }
 
-  /// The race between the two beam methods for one direction, and the light that rough facets scatter.
+  /// Exact and stochastic beam tracing for one direction (see BeamRace), and the light that rough facets scatter.
   struct Beams {
     std::unique_ptr<raytrace::ScatteredLight> scattered;
     std::optional<BeamRace> race;
@@ -240,7 +241,8 @@ class DesignTracing {
                        BeamRace::Options{.may_resample = !request_.cutoff}, cancel_);
   }
 
-  /// Traces beams for one step. Beams that exceed a budget are abandoned, because rays can always continue.
+  /// Traces beams for one step. Beams that exceed a budget are abandoned, because ray tracing is always possible
+  /// instead.
   /// \return true if the beams have reached their goal
   static bool advance(Beams& beams) {
     try {
@@ -284,8 +286,9 @@ class DesignTracing {
   const Cancellation* cancel_;
   raytrace::BeamPolicy beams_;
   raytrace::PathPolicy paths_;
-  bool follows_beams_ = false;       ///< otherwise rays only
-  std::optional<double> tracer_ns_;  ///< expected time of making `beam_tracer_`, for each direction and wavelength
+  bool follows_beams_ = false;  ///< true: light may be traced as beams or rays; false: only as rays
+  /// Expected time, in ns, for constructing `beam_tracer_`, per direction and wavelength.
+  std::optional<double> tracer_ns_;
   std::once_flag beam_tracer_is_made_;
   std::optional<raytrace::BeamTracer> beam_tracer_;
   std::optional<raytrace::BackSurface> scattering_;  ///< for what rough facets take from beams

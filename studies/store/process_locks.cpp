@@ -47,7 +47,7 @@ ProcessLocks::~ProcessLocks() {
 
 bool ProcessLocks::is_alive(std::int64_t owner) const {
   if (owner == own_) return true;
-  if (owner < 0 || owner >= kMostProcesses) return false;  // no process has such a byte
+  if (owner < 0 || owner >= kMostProcesses) return false;  // the lock file has no byte for such a number
   struct flock lock = byte_lock(owner);
   return ::fcntl(descriptor_, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
 }

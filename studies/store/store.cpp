@@ -30,7 +30,7 @@ constexpr int kWaitMs = 60'000;
 /// Columns of a point that are no parameter and no quantity.
 constexpr int kFixedColumns = 5;
 constexpr const char* kAllPoints = "SELECT * FROM points ORDER BY point";
-/// Maximum length of the reason that a message gives.
+/// Maximum number of characters of a reason that a message quotes.
 constexpr std::size_t kMaxReasonLength = 160;
 
 std::string quoted(const std::string& name) {
@@ -62,7 +62,7 @@ void remove_store(const fs::path& file) {
   }
 }
 
-/// Returns the SQL statements that create the tables of a store, by name of the table.
+/// Returns the names of the tables of a store and the SQL statements that create them.
 std::vector<std::pair<std::string, std::string>> tables_of(const StoreLayout& layout) {
   std::string columns =
       "point INTEGER PRIMARY KEY, failed INTEGER NOT NULL, reason TEXT, elapsed_s REAL NOT NULL, version TEXT NOT NULL";
@@ -73,8 +73,8 @@ std::vector<std::pair<std::string, std::string>> tables_of(const StoreLayout& la
           {"points", "CREATE TABLE points (" + columns + ")"}};
 }
 
-/// Returns true if SQLite failed for a reason outside of the file, such as a full disk, a missing permission or another
-/// process.
+/// Returns true if an SQLite error has a cause outside of the file. Examples are a full disk, a missing permission and
+/// a lock of another process.
 bool is_of_the_system(int code) {
   constexpr std::array kOfTheSystem = {SQLITE_BUSY, SQLITE_CANTOPEN, SQLITE_FULL,     SQLITE_IOERR, SQLITE_INTERRUPT,
                                        SQLITE_AUTH, SQLITE_LOCKED,   SQLITE_READONLY, SQLITE_PERM,  SQLITE_NOLFS};
@@ -143,21 +143,22 @@ void ResultStore::Database::connect() {
                                               SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kWaitMs);
 }
 
-/// Returns true if the file has no tables yet. Its first page exists as soon as a transaction has begun.
+/// Returns true if the file has no tables yet. A file that has only its first page is also empty, because SQLite writes
+/// this page when the first transaction begins.
 bool ResultStore::Database::is_empty() const {
   return sqlite->execAndGet("PRAGMA page_count").getInt() <= 1 &&
          sqlite->execAndGet("PRAGMA application_id").getInt() == 0 &&
          sqlite->execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
 }
 
-/// Sets whether closing the file keeps the write-ahead log that a killed process has left. If not, SQLite merges the
-/// log into the file.
+/// Sets whether SQLite keeps the write-ahead log of a killed process when the file is closed. Otherwise, SQLite merges
+/// the log into the file.
 void ResultStore::Database::keep_log(bool keep) const {
   sqlite3_db_config(sqlite->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
 }
 
-/// Opens and checks an existing store. A refused file is not changed. If a process was killed while it created a store,
-/// the store is empty.
+/// Opens and checks an existing store. A store that is refused is not changed. An empty store is accepted, because a
+/// process may have been killed while it created the store.
 void ResultStore::Database::check_existing() {
   const bool has_log = !is_new(file.string() + "-wal");
   connect();
@@ -173,10 +174,10 @@ void ResultStore::Database::open() {
   if (is_empty())
     make_tables();
   else if (!is_checked)
-    check();  // another process has made it
+    check();  // another process has created the store
   transaction.commit();
-  // A commit in the write-ahead log survives the death of the process without waiting for the disk; a power cut may
-  // cost the last points, never the file.
+  // With `synchronous = NORMAL`, commits are in the write-ahead log and survive the death of the process without
+  // waiting for the disk. A power failure may lose the last points, but never damages the file.
   if (!file.empty()) switch_to_log();
 }
 
@@ -193,7 +194,7 @@ void ResultStore::Database::switch_to_log() {
   }
 }
 
-/// Checks the format, the pages, the tables, the study and every point of a store.
+/// Checks everything in a store: format, pages, tables, study and points.
 void ResultStore::Database::check() {
   check_kind();
   const std::string pages = sqlite->execAndGet("PRAGMA integrity_check(1)").getString();
@@ -278,7 +279,8 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
     throw InputError({file.string(), 0, ""},
                      "exists: --resume goes on with it, --overwrite starts anew, another --out keeps it");
   try {
-    // The store is checked before other files are created, so that none remains next to a refused store.
+    // An existing store is checked before other files are created. If the store is refused, no new files remain next to
+    // it.
     if (!is_new(file) && if_exists == IfExists::resume) database_->check_existing();
     if (!file.empty()) {
       database_->locks = std::make_unique<ProcessLocks>(file.string() + "-lock");
@@ -425,7 +427,7 @@ bool is_duration(const SQLite::Column& value) {
 bool is_output(const SQLite::Column& value) {
   return is_nothing(value) || is_number(value);
 }
-/// SQLite stores NaN as nothing.
+/// Returns true if the value is a standard error: missing or >= 0. It may be missing because SQLite stores NaN as NULL.
 bool is_std_error(const SQLite::Column& value) {
   return is_nothing(value) || (value.isFloat() && value.getDouble() >= 0.0);
 }

@@ -42,8 +42,8 @@ struct StoreLayout {
   std::vector<std::pair<std::string, std::string>> parts;
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
-  /// Returns why a point cannot be of this study, by its number and its inputs; an empty text if it can. Every point
-  /// that is read from a file is checked.
+  /// Function that checks the number and the inputs of a point against the study. It returns an error message, or an
+  /// empty text if the point is valid. Every point that is read from a file is checked.
   std::function<std::string(const StoredPoint& point)> fault_of = {};
 };
 
@@ -54,9 +54,10 @@ enum class IfExists { refuse, resume, overwrite };
 /// are void. Safe to call from several threads.
 class ResultStore {
  public:
-  /// \param file empty: in memory, for this process alone
-  /// \throw InputError for a file that exists although it may not, that is no store, damaged, of another study, or of a
-  /// newer version; nothing is written then. OutputError if it cannot be written
+  /// \param file empty: the store is in memory and only this process can access it
+  /// \throw InputError if the file exists although it must not, is no store, is damaged, belongs to another study or
+  /// has a newer version. Nothing is written then.
+  /// \throw OutputError if the file cannot be written
   ResultStore(const std::filesystem::path& file, const StoreLayout& layout, IfExists if_exists);
   ~ResultStore();
   ResultStore(const ResultStore&) = delete;
@@ -73,9 +74,11 @@ class ResultStore {
 
   /// Voids the claims of processes that died. \return how many points others still have claimed
   std::size_t claimed_by_others();
-  /// Numbers of the finished points, ascending. \throw InputError as points()
+  /// Returns the numbers of the finished points in ascending order.
+  /// \throw InputError if the file is damaged
   std::vector<std::uint64_t> finished() const;
-  /// All finished points in ascending order. \throw InputError if the file has been damaged
+  /// Returns all finished points in ascending order.
+  /// \throw InputError if the file is damaged
   std::vector<StoredPoint> points() const;
 
  private:

@@ -105,7 +105,8 @@ PointValues values_at(const Study& study, const std::vector<double>& shares) {
 
 namespace {
 
-/// Returns true if a stored value equals that of the study. Another machine may have rounded it differently.
+/// Returns true if a stored value equals the value in the study. Numbers may differ by rounding errors, because another
+/// machine may have computed them.
 bool is_same(const StoredValue& stored, const StoredValue& of_study) {
   const double* const a = std::get_if<double>(&stored);
   const double* const b = std::get_if<double>(&of_study);
@@ -118,8 +119,8 @@ std::string text_of_value(const StoredValue& value) {
   return number != nullptr ? shortest(*number) : in_quotes(std::get<std::string>(value));
 }
 
-/// Compares the number and the parameter values of a stored point with those of the sweep. Returns a message about
-/// the first difference, or an empty text if there is none.
+/// Compares the number and the parameter values of a stored point with those of the sweep. Returns a message about the
+/// first difference. The text is empty if there is none.
 std::string fault_of(const Sweep& sweep, const StoredPoint& point) {
   if (point.point >= sweep.size()) return fmt::format("the study has only {} points", sweep.size());
   const PointValues values = sweep.values(point.point);
@@ -142,8 +143,8 @@ StoreLayout Sweep::layout() const {
 
 namespace {
 
-/// Reports the progress of the quantities of one point. Quantities that share a tracing count as one, and quantities
-/// without a tracing do not count.
+/// Divides the progress of one point among its quantities. Quantities that share one tracing count as one. Quantities
+/// that trace nothing do not count.
 class QuantityProgress {
  public:
   QuantityProgress(const Quantities& quantities, Progress* whole) : whole_(whole) {
@@ -216,8 +217,8 @@ struct SweepCount::State {
   }
 };
 
-/// Passes the progress of the points that were not finished at the beginning on to an observer. One mutex guards all
-/// calls of the observer.
+/// Receives the progress of the points that were unfinished at the start, and passes the progress of the whole sweep on
+/// to the observer. A mutex serializes all calls of the observer.
 struct SweepCount::Share : Progress {
   explicit Share(State& its_state)
       : state(its_state),

@@ -63,11 +63,10 @@ class Sweep {
   std::optional<UnitSamples> samples_;
 };
 
-/// Computes one point of a study. An error is recorded in the point and not thrown. Returns nothing if it was
-/// cancelled.
-/// \param ran_out receives true if the point failed because the budget of memory or beams was exhausted; null: not
-///        needed
-/// \param progress receives the finished fraction of the point; null: nothing is reported
+/// Computes one point of a study. An error is not thrown but recorded in the point. Returns nothing if the computation
+/// was cancelled.
+/// \param ran_out receives true if the point failed because the budget of memory or beams was exhausted; may be null
+/// \param progress receives the finished fraction of the point; may be null
 /// \throw std::bad_alloc: a later attempt with more free memory may succeed
 std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
                                          const Cancellation* cancel, bool* ran_out = nullptr,
@@ -78,8 +77,8 @@ class SweepObserver {
  public:
   virtual ~SweepObserver() = default;
   virtual void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) = 0;
-  /// Reports the finished fraction of all points while points are being computed, in addition to at().
-  /// \param share finished fraction, in which unfinished points count with their own progress
+  /// Reports the finished fraction of all points. It is called while points are being computed, in addition to at().
+  /// \param share finished fraction; an unfinished point counts with its own progress
   virtual void at_share(double share) { static_cast<void>(share); }
 };
 
@@ -89,7 +88,7 @@ class SweepCount {
   SweepCount(const Sweep& sweep, const ResultStore& store, SweepObserver* observer);
   ~SweepCount();
   void finished(bool failed);
-  /// Returns the sum of the progress of unfinished points, which calls SweepObserver::at_share().
+  /// Returns the total progress of the unfinished points. It is passed on to SweepObserver::at_share().
   TaskProgress& points();
 
  private:

@@ -91,7 +91,7 @@ std::string error_text(const AppearanceError& error) {
                      percent(error.greatest));
 }
 
-/// Returns the name of the central direction of view.
+/// Returns a description of the central direction of view, for the header of a file.
 std::string_view where_of(const ReflectionTable& table) {
   if (table.back == geometry::Vec2::Ones()) return "back to the source";
   return table.back.y() < 0.0 ? "that is back along x and on along y" : "that is back along y and on along x";

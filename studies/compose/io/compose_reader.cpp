@@ -70,7 +70,8 @@ void check_parameters(const Study& study) {
       throw InputError(parameter.location, "a distribution is no family of cells: give values, or from and to");
 }
 
-/// Checks that each cell has one kind of element. Cells that cannot be made are reported later as failed points.
+/// Checks that each cell has only one kind of element. Cells that cannot be made are accepted here; the search reports
+/// them as failed points.
 void check_cells(const Study& study) {
   std::optional<Candidate> cell;
   try {

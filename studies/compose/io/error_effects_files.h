@@ -9,11 +9,13 @@
 
 namespace retrace::studies {
 
-/// \param for_worst file text of the zones that are optimal for the worst parts; empty: there are none
+/// Returns the effects of errors of angle as a JSON object.
+/// \param for_worst JSON list of the zones that are optimized for the worst parts; used only if there are any
 nlohmann::ordered_json error_effects_json(const ComposeRequest& request, const ErrorEffects& effects,
                                           const nlohmann::ordered_json& for_worst);
 
-/// \param for_worst file text of the zones that are optimal for the worst parts; empty: there are none
+/// Returns the effects of errors of angle as text for the terminal.
+/// \param for_worst text about the zones that are optimized for the worst parts; used only if there are any
 /// \param are_margins true if the goals are margins to limits, in percent
 std::string error_effects_text(const ComposeRequest& request, const ErrorEffects& effects, const std::string& for_worst,
                                bool are_margins);

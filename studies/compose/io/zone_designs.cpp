@@ -88,7 +88,7 @@ std::string changes_text(const Study& study, const PointValues& values) {
   return text.empty() ? text : fmt::format("set = [{}]\n", text);
 }
 
-/// Returns the option that sets a key of the design of the whole part.
+/// Returns the command-line option that sets this key in the design of the whole part.
 std::string_view option_of(std::string_view key) {
   if (key == "array.x_length_mm") return "--x-length-mm";
   return key == "array.y_length_mm" ? "--y-length-mm" : "--design";

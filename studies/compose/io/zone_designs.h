@@ -16,8 +16,8 @@ namespace retrace::studies {
 /// Of how many zones, the largest, designs are written at most.
 std::size_t most_zone_designs(const ComposeRequest& request);
 
-/// Returns the design file of an array that consists only of a zone's cells. A comment in the file gives the zone's
-/// fraction of the area and its rotation.
+/// Returns the text of a design file with the cells of a single zone. A comment in the file gives the zone's fraction
+/// of the area and its rotation.
 /// \param zone index in `zones`
 /// \throw InputError as make_candidate()
 std::string zone_design_text(const Study& study, const std::vector<Zone>& zones, std::size_t zone);

@@ -285,8 +285,8 @@ std::vector<fs::path> Design::files() const {
 
 namespace {
 
-/// Returns a warning for each length of roughness or waviness whose height the document does not give. A height of 0
-/// that is given causes no warning: studies vary heights from 0 on.
+/// Returns a warning for each correlation length or waviness period whose rms height is missing in the document. An
+/// explicit height of 0 causes no warning, because parameter studies vary heights starting from 0.
 std::vector<std::string> lengths_without_heights(const Document& document) {
   std::vector<std::string> warnings;
   for (const auto& [length, height] : {std::pair("surface.correlation_length_um", "surface.roughness_sq_nm"),

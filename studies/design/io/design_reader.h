@@ -26,14 +26,15 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
 /// \pre if it is from a file, it is as that file says \param overrides as of read_design() \throw InputError likewise
 Design with(const Design& design, std::span<const std::string> overrides);
 
-/// A file that a key of a design names.
+/// File whose name is the value of a key of a design.
 struct NamedFile {
   std::filesystem::path file;
   std::string key;
   InputLocation where;  ///< position of the key
 };
 
-/// Returns the files that the keys of a design name, up to the first wrong key. The text need not be a valid design.
+/// Returns the files whose names are values of keys of a design. Reading stops at the first key with an error. The text
+/// need not be a valid design.
 std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
                                    std::span<const std::string> overrides = {});
 

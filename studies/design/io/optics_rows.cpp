@@ -81,7 +81,8 @@ constexpr Row kWetBackRows[] = {
     {"half_plane", Numbers{3, kPlaceInPart, "numbers, x and y in mm and an azimuth in degrees"}, kNone,
      "`[x_mm, y_mm, azimuth_deg]`: those whose middle lies on the side towards that azimuth of a line through x, y."}};
 
-// Metals have indices up to about 500 in the far infrared.
+// Allowed refractive indices of a coating layer. The upper limit is high because metals have indices up to about 500 in
+// the far infrared.
 constexpr NumberRange kIndexOfLayer{.low = 0.0, .low_included = false, .high = 1000.0};
 
 constexpr Row kLayerRows[] = {

@@ -170,13 +170,14 @@ void complete_ies(Lines& lines, Table& table, LuminousIntensity::Planes kind) {
   }
 }
 
-/// Year in which the first edition of LM-63 appeared. Files of this edition have no header line.
+/// Year of the first edition of the standard LM-63. Files of this edition have no header line.
 constexpr int kFirstEdition = 1986;
-/// Year of the last edition in which the number after the ballast factor is a factor of the intensities. In later
-/// editions this number is reserved, or it is a code for the way in which the file was generated.
+/// Year of the last edition of LM-63 in which the number after the ballast factor multiplies the intensities. In later
+/// editions, this number is reserved or states how the file was generated.
 constexpr int kLastWithLampFactor = 1991;
 
-/// If a line starts with `word`, removes `word` and the separators after it.
+/// Removes `word` and the separators that follow it from the start of a line. Returns false and changes nothing if the
+/// line does not start with `word`.
 /// \param line a line in lower case
 bool skip(std::string_view& line, std::string_view word) {
   if (!line.starts_with(word)) return false;
@@ -185,9 +186,9 @@ bool skip(std::string_view& line, std::string_view word) {
   return true;
 }
 
-/// Returns the year of the edition that a header line names, such as "IESNA91", "IESNA:LM-63-2002" or
-/// "ANSI/IES LM-63-19", in upper or lower case. Returns 0 for other lines, such as the labels of files of 1986.
-/// \throw InputError if the line names LM-63 of the IES without a year
+/// Returns the year of the LM-63 edition that a header line names. Examples: "IESNA91", "IESNA:LM-63-2002", "ANSI/IES
+/// LM-63-19", in upper or lower case. Returns 0 for other lines, such as the labels in files of 1986.
+/// \throw InputError if the line names LM-63 without a year
 int edition_in(const Lines& lines, std::string_view line) {
   const std::string lower = lower_case(line);
   std::string_view rest = lower;
@@ -207,13 +208,14 @@ int edition_in(const Lines& lines, std::string_view line) {
   return 0;
 }
 
-/// Returns the text after a keyword at the start of a line, such as "[LUMINAIRE] Headlamp", in upper or lower case.
+/// Returns the text after a keyword at the start of a line, for example "Headlamp" in "[LUMINAIRE] Headlamp". Upper and
+/// lower case are equal. Returns an empty text if the line starts with another text.
 std::string text_behind(std::string_view line, std::string_view keyword) {
   const bool is_there = lower_case(line.substr(0, keyword.size())) == lower_case(keyword);
   return is_there ? printable(trimmed(line.substr(keyword.size()))) : std::string();
 }
 
-/// Returns the value of a line "TILT=VALUE".
+/// Returns VALUE of a line "TILT=VALUE", or an empty text for other lines.
 std::string tilt_in(std::string_view line) {
   const std::string rest = text_behind(line, "TILT");
   return rest.starts_with('=') ? std::string(trimmed(std::string_view(rest).substr(1))) : std::string();

@@ -18,7 +18,7 @@ std::string photometry_csv(const PhotometryResult& result);
 /// source and above it.
 std::string far_field_map_csv(const PhotometryResult& result);
 
-/// Preliminary readings with their standard errors, for a terminal.
+/// Returns a table of the preliminary readings with their standard errors, for the terminal.
 std::string first_answer_table(const PhotometricFirstAnswer& answer);
 
 /// For people at a terminal: the table, the verdict, and what to change.

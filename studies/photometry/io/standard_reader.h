@@ -30,7 +30,9 @@ PhotometryRequest photometry_request(const StandardChoice& choice);
 std::filesystem::path dye_file_of(const std::optional<std::string>& dye, bool design_is_coloured,
                                   const std::string& colour);
 
-/// Gives a request its dye. \param file as dye_file_of() has it \throw InputError at --dye if it cannot be read
+/// Sets the dye of a request.
+/// \param file file of the dye, as returned by dye_file_of()
+/// \throw InputError at --dye if the dye cannot be read
 void set_dye(PhotometryRequest& request, const std::optional<std::string>& dye, const std::filesystem::path& file);
 
 }  // namespace retrace::studies

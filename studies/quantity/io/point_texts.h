@@ -32,8 +32,8 @@ struct PointTexts {
 /// \param values one for each parameter
 PointTexts texts_at(const Study& study, std::span<const ParameterValue> values);
 
-/// Returns the files that the designs of a study name, each once. If a parameter of the study sets the key of a file,
-/// the files of all its values are included, and their positions are that of the parameter.
+/// Returns the files that the designs of a study name, without duplicates. If a parameter of the study sets the key of
+/// a file, the files of all values of the parameter are included. Their position is that of the parameter.
 std::vector<NamedFile> files_of_designs(const Study& study);
 
 }  // namespace retrace::studies

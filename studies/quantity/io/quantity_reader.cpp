@@ -137,7 +137,7 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& d
   const std::optional<std::string> dye = optional_text(document, at + ".dye");
   const std::filesystem::path dye_file =
       with_keys(document, at, [&] { return dye_file_of(dye, false, request.programme.colour); });
-  if (dye && dye_file == *dye)  // not a shipped one
+  if (dye && dye_file == *dye)  // the dye is a file of the user and not a shipped one
     files.push_back({dye_file, at + ".dye", document.where(at + ".dye")});
   with_keys(document, at, [&] { set_dye(request, dye, dye_file); });
   table.dye_unless_coloured = !dye;

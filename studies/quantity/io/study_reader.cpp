@@ -234,8 +234,8 @@ std::string fingerprint(const std::string& text) {
   return fmt::format("{} bytes, {:016x}", text.size(), hash);
 }
 
-/// Returns the fingerprints of the files that are named in the designs and quantities of a study.
-/// \throw InputError with the position at which a file is named if the file cannot be read
+/// Returns the fingerprints of the files that the designs and quantities of a study name.
+/// \throw InputError at the position where the file is named if the file cannot be read
 std::string fingerprints(const std::vector<NamedFile>& files) {
   std::string parts;
   for (const auto& [file, key, where] : files) {

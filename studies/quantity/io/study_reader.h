@@ -27,8 +27,8 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
 /// The design of a study at one point, with its analysis. \param values one for each parameter \throw InputError
 Candidate make_candidate(const Study& study, std::span<const ParameterValue> values);
 
-/// Returns warnings about keys without effect. The keys are checked in one example design of the study. If the example
-/// is invalid, the result is empty.
+/// Returns a warning for each key that has no effect. The keys are checked in one example design of the study. If the
+/// example is invalid, there are no warnings.
 std::vector<std::string> keys_without_effect(const Study& study);
 
 }  // namespace retrace::studies
