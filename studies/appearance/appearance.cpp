@@ -30,8 +30,10 @@ namespace {
 using geometry::Vec2, geometry::Vec3;
 using View = raytrace::PhotometricDirections;
 
-// Spans of each colour matching function, of two wavelengths each; of the eye, to judge the table by.
+// Number of spans into which each colour matching function is divided, with two wavelengths each.
 constexpr std::size_t kParts = 2;
+// Number of spans for the random geometries by which the table is judged. They are computed for the eye's response
+// only.
 constexpr std::size_t kPartsOfProbes = 4;
 // Initial resolution of a grid of view directions: number of grid steps across the radius of the aperture kernel. The
 // kernel averages over the discs of source and receiver. Its radius is taken along the plane of incidence at the
@@ -49,19 +51,21 @@ constexpr std::size_t kMostColumnsForError = 121;
 // Azimuth of the test light by which back_of() distinguishes prisms from cube corners. At this azimuth, prisms and cube
 // corners return light into clearly different directions.
 constexpr double kAsideDeg = 30.0;
-// Extents of the first cells, at most.
+// Maximum extents of the first cells, in entrance angle and azimuth.
 constexpr double kFirstEntranceDeg = 20.0;
 constexpr double kFirstAzimuthDeg = 30.0;
-// Halvings of a first cell, at most: 3 steps of a cell times this are a lattice on which directions are known again.
+// Maximum number of halvings of a first cell. A first cell has 3 x 2^8 steps of the lattice of light directions, so
+// that neighbouring cells share the directions on their common sides.
 constexpr int kMostHalvings = 8;
 // Minimum third difference of the values along one side of a cell, relative to that along the other side. If the third
 // difference is smaller, the cell is not halved along the first side.
 constexpr double kLeastBend = 0.3;
-// Directions of light that are computed at once, and views of each by which a cell is judged.
+// Number of directions of light that are computed in parallel.
 constexpr std::size_t kBatch = 16;
+// Number of random views by which a cell is judged.
 constexpr std::uint32_t kViews = 48;
 constexpr std::uint32_t kProbes = 200;
-// A cell is judged by this share of its views.
+// Fraction of the views of a cell whose errors must be below the requested error.
 constexpr double kJudgedShare = 0.95;
 constexpr RandomKey kViewKey{.seed = 0x6d61746cU, .stream = 1};
 constexpr RandomKey kProbeKey{.seed = 0x6d61746cU, .stream = 2};
@@ -82,11 +86,12 @@ void check(const AppearanceRequest& request) {
   check(arcmin_of(request.apertures.receiver), discs, "--receiver-arcmin");
 }
 
-/// \param back as ReflectionTable has it
+/// \param back value of ReflectionTable::back
 PhotometryRequest photometry_of(const AppearanceRequest& request, const Vec2& back) {
   PhotometryRequest photometry;
   photometry.apertures = request.apertures;
-  // The corners of the square, seen aslant, from the direction back to the source.
+  // The window is a disc about the direction to the source that contains the corners of the square range of views. The
+  // cosine accounts for oblique incidence.
   photometry.window_deg =
       std::numbers::sqrt2 * request.window_deg / std::cos(Angle::from_deg(request.entrance_deg).rad());
   if (back != Vec2::Ones()) photometry.window_deg += 2.0 * request.entrance_deg;
@@ -95,8 +100,9 @@ PhotometryRequest photometry_of(const AppearanceRequest& request, const Vec2& ba
   return photometry;
 }
 
-/// Linear red, green and blue of X, Y and Z: the inverse of the matrix whose columns are the primaries of IEC 61966-2-1
-/// (ITU-R BT.709), as bright as makes the light's own colour 1, 1, 1.
+/// Returns the matrix that converts X, Y, Z to linear red, green, blue. It is the inverse of the matrix whose columns
+/// are the primaries of IEC 61966-2-1 (ITU-R BT.709). The primaries are scaled so that the colour of the light becomes
+/// 1, 1, 1.
 Eigen::Matrix3d rgb_from_xyz(const materials::Tristimulus& white) {
   Eigen::Matrix3d primaries;
   primaries << 0.64, 0.30, 0.15, 0.33, 0.60, 0.06, 0.03, 0.10, 0.79;
@@ -111,10 +117,10 @@ std::optional<View> view_of(const Vec3& to_source, const Vec2& across) {
   return View{to_source, {across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm())}};
 }
 
-/// A place on the lattice of directions that cells share.
-using LatticePlace = std::pair<int, int>;  ///< in entrance angle and azimuth
+/// Position on the lattice of light directions that cells share.
+using LatticePlace = std::pair<int, int>;  ///< entrance angle and azimuth, in lattice steps
 
-/// A cell of the table to be.
+/// Cell of the reflection table while the table is being made.
 struct PlannedCell {
   /// Position of the lower corner on the lattice of light directions: entrance angle, azimuth.
   std::array<int, 2> corner{};
@@ -124,7 +130,8 @@ struct PlannedCell {
   bool is_least() const { return size[0] <= 3 && size[1] <= 3; }
 };
 
-/// Of x, y or z, without the mirror image, which goes where a mirror's does and not back to the source.
+/// Returns a photometer for the response x, y or z. It ignores the mirror image of the light, which the entrance face
+/// reflects like a mirror and not back to the source.
 Photometer photometer_of(const Design& design, const PhotometryRequest& request, std::size_t response,
                          std::size_t parts) {
   Photometer photometer(design, request_of_response(request, response), parts,
@@ -133,7 +140,8 @@ Photometer photometer_of(const Design& design, const PhotometryRequest& request,
   return photometer;
 }
 
-/// \throw InputError for a design that the exact engine does not take
+/// Checks that the exact engine supports the design.
+/// \throw InputError if it does not
 void check_engine(const Design& design, PhotometryRequest request) {
   request.engine = Engine::automatic;
   const Photometer photometer(design, request, kParts);
@@ -206,7 +214,8 @@ class TableMaker {
       instruments_[response] = std::make_unique<Instrument>(photometer_of(design, photometry_, response, kParts));
     const materials::SpectralCurve lamp = lamp_power(photometry_.light);
     const materials::Tristimulus sent = materials::tristimulus(lamp, materials::shipped_colour_matching());
-    // Photometers tell shares of what their response makes of the light.
+    // The readings of a photometer are relative to its response to the incident light. The matrix therefore contains
+    // this response, `sent`.
     rgb_of_shares_ = rgb_from_xyz(sent) * Eigen::Vector3d(sent[0], sent[1], sent[2]).asDiagonal() / sent[1];
     table_.back = back;
     table_.half_width = std::sin(Angle::from_deg(request.window_deg).rad());
@@ -218,7 +227,7 @@ class TableMaker {
     table_.columns = std::clamp(static_cast<std::size_t>(std::ceil(steps)) + 1, kPerSide, kMostColumns);
   }
 
-  /// False if it was cancelled.
+  /// Computes the table. Returns false if the computation was cancelled.
   bool make(Progress* progress, const Cancellation* cancel) {
     if (!refine_grid(cancel)) return false;
     cells_ = first_cells();
@@ -242,7 +251,7 @@ class TableMaker {
     return true;
   }
 
-  /// Random geometries and what the photometer reads there; none if it was cancelled.
+  /// Returns random geometries with their photometer readings. Returns nothing if the computation was cancelled.
   std::optional<std::vector<AppearanceProbe>> probes(const Cancellation* cancel) const {
     std::vector<AppearanceProbe> probes;
     std::vector<PhotometerSetting> settings;
@@ -281,7 +290,7 @@ class TableMaker {
     return cell.error * (to * to - from * from) * cell.size[1];
   }
   const Photometer& eye() const { return instruments_[kEye]->photometer; }
-  /// Lattice steps along a first cell.
+  /// Returns the number of lattice steps along each side of a first cell.
   static int lattice_size() { return 3 << kMostHalvings; }
   int entrance_cells() const { return static_cast<int>(std::ceil(request_.entrance_deg / kFirstEntranceDeg)); }
   int azimuth_cells() const {
@@ -344,7 +353,9 @@ class TableMaker {
     return bends;
   }
 
-  /// By azimuth, then by entrance angle. At normal incidence azimuths are one, and those of a full turn meet.
+  /// Returns the lattice positions of a cell's 4 x 4 directions, ordered by azimuth and then by entrance angle. At
+  /// normal incidence, all azimuths are the same direction. If the azimuths cover a full circle, the last azimuth is
+  /// the same as the first.
   std::vector<LatticePlace> places_of(const PlannedCell& cell) const {
     std::vector<LatticePlace> places;
     const bool closes = !table_.mirrors[0] && !table_.mirrors[1];
@@ -367,7 +378,8 @@ class TableMaker {
     return places;
   }
 
-  /// The directions that cells need and that are not known. False if it was cancelled.
+  /// Computes the directions of light that the cells need and that are not yet known. Returns false if the computation
+  /// was cancelled.
   bool compute(const std::vector<PlannedCell>& cells, Progress* progress, const Cancellation* cancel) {
     const std::vector<LatticePlace> places = new_places(cells);
     for (std::size_t first = 0; first < places.size(); first += kBatch) {
@@ -378,8 +390,9 @@ class TableMaker {
     return true;
   }
 
-  /// The first cells are half of the work, and of the other half nobody knows how much will be done. \param first
-  /// directions of the first cells, while these are computed
+  /// Returns the finished fraction of the work. The first cells count as one half, and the refinement as the other
+  /// half, because its amount is not known in advance.
+  /// \param first number of directions of the first cells, while these are computed
   double share_done(std::size_t first) const {
     const auto done = static_cast<double>(table_.directions.size());
     if (first_directions_ == 0) return 0.5 * done / static_cast<double>(first);
@@ -484,7 +497,7 @@ class TableMaker {
     return table_.half_width * Vec2(2.0 * unit_interval(x) - 1.0, 2.0 * unit_interval(y) - 1.0);
   }
 
-  /// The greatest value of a direction that the table holds.
+  /// Returns the maximum R_A of the table for one direction of light, weighted by the eye's response.
   double most_of(const Vec3& to_source) const {
     const auto among = table_.at(to_source).value();
     double most = 0.0;
@@ -497,7 +510,8 @@ class TableMaker {
     return most;
   }
 
-  /// Compares the cells from the `first` on with the photometer between their directions. False if it was cancelled.
+  /// Measures random geometries inside the cells from index `first` on, and sets the errors of these cells. Returns
+  /// false if the computation was cancelled.
   bool judge(std::size_t first, const Cancellation* cancel) {
     std::vector<PhotometerSetting> settings;
     std::vector<double> told;
@@ -536,8 +550,8 @@ class TableMaker {
   Eigen::Matrix3d rgb_of_shares_;
   ReflectionTable table_;
   std::vector<PlannedCell> cells_;
-  std::map<LatticePlace, std::size_t> known_;  ///< index of the direction there
-  std::size_t first_directions_ = 0;           ///< of the first cells; 0 until they are computed
+  std::map<LatticePlace, std::size_t> known_;  ///< index in the table's directions
+  std::size_t first_directions_ = 0;           ///< number of directions of the first cells; 0 until they are computed
 };
 
 }  // namespace

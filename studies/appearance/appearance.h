@@ -1,7 +1,7 @@
 #pragma once
 
-// The reflection of a part as a material for renderers and simulators of lidar. The study behind `retrace export` to a
-// file of a material.
+// Reflection of a part as a material for renderers and for simulators of lidar. This study is behind `retrace export`
+// to a material file.
 
 #include <cstdint>
 #include <string>
@@ -15,7 +15,7 @@
 namespace retrace::studies {
 
 struct AppearanceRequest {
-  /// Of the source and the receiver that values are means over.
+  /// Angular diameters of source and receiver. The values of the table are means over both discs.
   raytrace::PhotometricApertures apertures{Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)};
   /// Half-width, in degrees, of the square range of view directions around the central direction, for light at normal
   /// incidence. Allowed: 0.1 to 5.
@@ -25,8 +25,9 @@ struct AppearanceRequest {
   std::size_t most_directions = 1000;  ///< maximum number of directions of light; 64 to 10000
 };
 
-/// How far a table, or what was fitted to it, is from the photometer, at random directions of light and of view. Of a
-/// value, or of this share of the greatest one with that light where the value is smaller.
+/// Errors of a table, or of lobes that are fitted to it, compared with the photometer at random directions of light and
+/// view. Each error is relative to the value, or to the fraction kFloor of the maximum value for the same light if the
+/// value is smaller.
 struct AppearanceError {
   static constexpr double kFloor = 0.01;
   std::size_t geometries = 0;
@@ -35,12 +36,12 @@ struct AppearanceError {
   double greatest = 0.0;
 };
 
-/// A random geometry and what the photometer reads there.
+/// Random geometry with its photometer reading.
 struct AppearanceProbe {
   geometry::Vec3 to_source;
   geometry::Vec3 to_observer;
-  double r_a = 0.0;       ///< weighed by the eye
-  double r_a_most = 0.0;  ///< the greatest of the table for that light
+  double r_a = 0.0;       ///< reading for the eye's response
+  double r_a_most = 0.0;  ///< maximum value of the table for the same direction of light
 };
 
 struct AppearanceResult {
@@ -48,14 +49,16 @@ struct AppearanceResult {
   AppearanceRequest request;
   ReflectionTable table;
   std::vector<AppearanceProbe> probes;
-  AppearanceError error;        ///< of the table
+  AppearanceError error;        ///< error of the table
   double least_cell_deg = 0.0;  ///< extent of the smallest cell in entrance angle
   double elapsed_s = 0.0;
-  bool complete = true;  ///< else it was cancelled, and the table is of no use
+  bool complete = true;  ///< false: the computation was cancelled, and the table must not be used
   std::vector<std::string> warnings;
 };
 
-/// \param r_a of each probe \pre as many as probes, > 0
+/// Returns the errors of values against the probes.
+/// \param r_a value at each probe
+/// \pre `r_a` has one value for each probe, and there is at least one
 AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, const std::vector<double>& r_a);
 
 /// Computes the reflection table with the exact engine (beam tracing) and diffraction, for CIE D65 and the CIE 1931

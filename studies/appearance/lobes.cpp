@@ -15,18 +15,20 @@ using Eigen::ArrayXd, Eigen::ArrayXXd, Eigen::Index;
 using geometry::Vec2, geometry::Vec3;
 
 constexpr int kIterations = 300;
-// Lobes to begin with: distance from the middle and spread, in units of the pattern's own, and how many in a ring.
+// Ring of initial lobes. Distance from the centre and spread are in units of the standard deviation of the mean
+// pattern; `count` is the number of lobes.
 struct Ring {
   double distance, spread;
   int count;
 };
 constexpr std::array<Ring, 3> kRings = {{{0.0, 0.3, 1}, {0.7, 0.3, 6}, {1.2, 0.4, 12}}};
-// For what is dim, lobes on a square lattice over all deviations: its steps in steps of the table, their spread in its
-// own, and how many lobes are in a row, at most: shaders keep all of them in registers or in a small memory.
+// Step of the square lattice of lobes that represent dim light, in grid steps of the table.
 constexpr double kStepsPerLattice = 2.5;
+// Standard deviation of these lobes, in steps of the lattice.
 constexpr double kLatticeSpread = 0.7;
+// Maximum number of these lobes in a row. Shaders keep all lobes in registers or in a small memory.
 constexpr int kMostInARow = 15;
-// Least variance of a lobe, in squares of the table's step: narrower ones would fall between grid points.
+// Minimum variance of a lobe, in squares of the table's grid step. Narrower lobes would fall between grid points.
 constexpr double kLeastVariance = 0.5;
 
 std::array<double, Lobe::kTerms> terms_of(const Vec2& place) {
@@ -88,7 +90,7 @@ class Fit {
   }
 
  private:
-  /// Rings about the middle, as wide as the pattern.
+  /// Creates the initial lobes in rings about the centre. Their size is proportional to the spread of the mean pattern.
   void begin() {
     const ArrayXd mean = luminous_.rowwise().sum();
     Vec2 squares = Vec2::Zero();
@@ -108,7 +110,7 @@ class Fit {
 
   double least_variance() const { return kLeastVariance * table_.step() * table_.step(); }
 
-  /// Of the lobes at the grid points.
+  /// Returns the densities of the lobes at the grid points, by grid point and lobe.
   ArrayXXd lobe_densities() const {
     ArrayXXd densities(luminous_.rows(), static_cast<Index>(lobes_.size()));
     for (Index k = 0; k < densities.cols(); ++k)
@@ -118,7 +120,7 @@ class Fit {
     return densities;
   }
 
-  /// In the colour of the middle.
+  /// Adds a square lattice of lobes over all deviations. They have the colour of the central lobe.
   void add_lattice() {
     const double steps = static_cast<double>(table_.columns - 1) / kStepsPerLattice;
     const int row = std::clamp(static_cast<int>(std::ceil(steps)) + 1, 2, kMostInARow);
@@ -134,8 +136,8 @@ class Fit {
     of_light_ = ArrayXXd::Zero(luminous_.cols(), static_cast<Index>(lobes_.size()));
   }
 
-  /// The powers of each direction of light that miss its grid least, by the measure of AppearanceError: the lobes lie
-  /// where most light is, and dim places take what they leave.
+  /// Computes the powers of the lobes for each direction of light by a least-squares fit. The errors are relative, as
+  /// in AppearanceError.
   void fit_powers() {
     const Eigen::MatrixXd densities = table_.step() * table_.step() * lobe_densities().matrix();
     for (Index light = 0; light < luminous_.cols(); ++light) {
@@ -147,12 +149,13 @@ class Fit {
     }
   }
 
-  /// What lobes make of the grid points, by direction of light.
+  /// Returns the sum of the lobes at the grid points, by grid point and direction of light.
   ArrayXXd model_of(const ArrayXXd& densities) const {
     return (densities.matrix() * of_light_.matrix().transpose()).array().max(1e-300);
   }
 
-  /// Gives every grid point's power to the lobes by how much of it they make, and makes the lobes of what they got.
+  /// Runs one step of expectation maximization. The power at each grid point is divided among the lobes in proportion
+  /// to their densities. The shape of each lobe is then computed from its part of the power.
   void improve() {
     const ArrayXXd densities = lobe_densities();
     const ArrayXXd ratio = luminous_ / model_of(densities);
@@ -161,7 +164,7 @@ class Fit {
     of_light_ *= (ratio.matrix().transpose() * densities.matrix()).array();
   }
 
-  /// The colour of what each lobe gets in the same way.
+  /// Sets the colour of each lobe to that of its part of the power, divided as in improve().
   void colour() {
     const ArrayXXd densities = lobe_densities();
     const ArrayXXd model = model_of(densities);
@@ -175,7 +178,8 @@ class Fit {
     }
   }
 
-  /// Mean and spread of the power that a lobe got, by grid point.
+  /// Sets centre and covariance of a lobe to the mean and covariance of its part of the power.
+  /// \param got part of the power at each grid point
   void reshape(Lobe& lobe, const ArrayXd& got) const {
     const double sum = got.sum();
     if (!(sum > 0.0)) return;

@@ -1,6 +1,6 @@
 #pragma once
 
-// A few lobes about the direction back to the source, fitted to a reflection table, for shaders.
+// Fit of a few Gaussian lobes to a reflection table, for shaders.
 
 #include <array>
 #include <vector>
@@ -9,38 +9,41 @@
 
 namespace retrace::studies {
 
-/// A Gaussian over the deviation, with a power that is a polynomial of the direction of light.
+/// Gaussian lobe over the deviation from the central direction of view. Its power is a polynomial of the direction of
+/// light.
 struct Lobe {
-  /// Terms x^i y^j of degree 4 or less, by rising i + j, then by rising j.
+  /// Number of terms x^i y^j with i + j <= 4. The terms are ordered by i + j, then by j.
   static constexpr std::size_t kTerms = 15;
 
   geometry::Vec2 centre = geometry::Vec2::Zero();
   geometry::Vec2 spread = geometry::Vec2::Zero();  ///< variances along x and y
   double covariance = 0.0;
-  Rgb colour{};  ///< of its light, with luminous() = 1
-  /// Share of the power of light of x and y, in units of ReflectionLobes::scale; may be below 0, where the sum over
-  /// lobes counts as 0 if it is.
+  Rgb colour{};  ///< colour of the lobe's light, normalized so that luminous() = 1
+  /// Coefficients of the polynomial for the fraction of the incident power. Its variables are x and y of the direction
+  /// to the source, divided by ReflectionLobes::scale. The power of a single lobe may be negative. If the sum over all
+  /// lobes is negative, it counts as 0.
   std::array<double, kTerms> power{};
 
   double determinant() const { return spread.x() * spread.y() - covariance * covariance; }
-  /// Density at the centre, whose integral over deviations is 1.
+  /// Returns the density at the centre. The integral of the density over all deviations is 1.
   double peak() const;
 };
 
-/// BRDF = sum over lobes of colour x power x density of the Gaussian at the deviation. Where the table has mirrors,
-/// light and deviation are mirrored to where the table has directions first.
+/// Sum of lobes as a BRDF: colour times power times density of the Gaussian at the deviation. If the table has mirror
+/// symmetries, directions are first mirrored into the range that the table covers.
 struct ReflectionLobes {
   std::vector<Lobe> lobes;
-  double scale = 1.0;  ///< sine of the largest entrance angle
+  double scale = 1.0;  ///< sine of the maximum entrance angle
   std::array<bool, 2> mirrors{};
-  geometry::Vec2 back = geometry::Vec2::Ones();  ///< as ReflectionTable has it
+  geometry::Vec2 back = geometry::Vec2::Ones();  ///< value of ReflectionTable::back
 
-  /// In cd/(lx m^2), as ReflectionTable::r_a(); 0 of light from beyond the largest entrance angle.
+  /// Returns R_A in cd/(lx m^2), as ReflectionTable::r_a(). Returns 0 for light beyond the maximum entrance angle.
   Rgb r_a(const geometry::Vec3& to_source, const geometry::Vec3& to_observer) const;
 };
 
-/// Fits the lobes by expectation and maximisation over all directions of the table, then their powers to each by least
-/// squares of relative errors, then the polynomials to these.
+/// Fits lobes to a table in three steps. Expectation maximization over all directions of light determines the shapes of
+/// the lobes. Least squares of relative errors determine their powers for each direction of light. Finally, polynomials
+/// are fitted to these powers.
 ReflectionLobes fitted_lobes(const ReflectionTable& table);
 
 }  // namespace retrace::studies

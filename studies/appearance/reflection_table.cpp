@@ -9,10 +9,10 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
-// Directions within this of a border belong to the table, for rounding.
+// Tolerance, in radians, by which directions may lie outside the table because of rounding errors.
 constexpr double kSlackRad = 1e-9;
 
-/// Weights of the values at 0, 1, 2, 3 in the cubic through them, at `x`.
+/// Returns the weights of the values at 0, 1, 2 and 3 for the cubic through them, evaluated at `x`.
 std::array<double, kPerSide> cubic_weights(double x) {
   std::array<double, kPerSide> weights{};
   for (std::size_t k = 0; k < kPerSide; ++k) {
@@ -24,13 +24,14 @@ std::array<double, kPerSide> cubic_weights(double x) {
   return weights;
 }
 
-/// Four grid points about a place, and their weights.
+/// Four neighbouring grid points and their interpolation weights.
 struct Stencil {
   std::size_t first = 0;
   std::array<double, kPerSide> weights{};
 };
 
-/// \param place in steps from the first of `count` points
+/// Returns the interpolation stencil at a position.
+/// \param place position in steps from the first of `count` grid points
 Stencil stencil_at(double place, std::size_t count) {
   Stencil stencil;
   const double first = std::clamp(std::floor(place) - 1.0, 0.0, static_cast<double>(count - kPerSide));
@@ -50,7 +51,7 @@ double thirds_of(const std::array<Angle, 2>& range, double rad) {
 }  // namespace
 
 double luminous(const Rgb& rgb) {
-  // The second row of the matrix of IEC 61966-2-1, with the digits that it gives.
+  // The coefficients are the second row of the matrix of IEC 61966-2-1, with all digits of the standard.
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Coefficients of retroreflection over direction of light and of view, as a table that is looked up.
+// Table of the coefficient of retroreflection over the directions of light and view.
 
 #include <array>
 #include <cmath>
@@ -13,14 +13,14 @@
 
 namespace retrace::studies {
 
-/// Linear red, green and blue of IEC 61966-2-1 (sRGB): 1, 1, 1 is the light's own colour, CIE D65. May be negative, of
-/// colours that no mixture of the three makes.
+/// Linear red, green and blue of IEC 61966-2-1 (sRGB). The values 1, 1, 1 are the colour of the light, CIE D65.
+/// Components may be negative, for colours outside the sRGB gamut.
 using Rgb = std::array<double, 3>;
 
-/// CIE Y of linear red, green and blue: what the eye weighs.
+/// Returns CIE Y, the luminous component, of linear red, green and blue.
 double luminous(const Rgb& rgb);
 
-/// Values that a cubic is laid through, and directions along each side of a cell.
+/// Number of points of a cubic, which is also the number of directions along each side of a cell.
 inline constexpr std::size_t kPerSide = 4;
 
 /// Table of the coefficient of retroreflection R_A, in cd/(lx m^2), for views close to a central direction. For cube
@@ -34,21 +34,21 @@ inline constexpr std::size_t kPerSide = 4;
 /// corners and at thirds of its sides. Values between grid points and between directions are interpolated with cubics
 /// through four points per axis.
 struct ReflectionTable {
-  /// The R_A of one direction of light, row by row of rising y, x rising.
+  /// Values of R_A for one direction of light. The grid is stored row by row, with ascending y and then ascending x.
   struct Direction {
     Angle entrance;
     Angle azimuth;
     std::vector<Rgb> r_a;
   };
   struct Cell {
-    std::array<Angle, 2> entrance;  ///< from, to
+    std::array<Angle, 2> entrance;  ///< lower and upper limit
     std::array<Angle, 2> azimuth;
-    /// Of `directions`, by azimuth, then by entrance angle.
+    /// Indices in `directions`, ordered by azimuth and then by entrance angle.
     std::array<std::size_t, kPerSide * kPerSide> directions{};
   };
 
-  double half_width = 0.0;  ///< of the square of deviations: a share of a unit vector
-  std::size_t columns = 0;  ///< and rows; >= 4
+  double half_width = 0.0;  ///< half-width of the square of deviations, in components of a unit vector
+  std::size_t columns = 0;  ///< number of columns, and of rows; >= 4
   Angle most_entrance;
   /// Signs for x and y: 1 if the part reverses the component of the direction of light along this axis, otherwise -1.
   geometry::Vec2 back = geometry::Vec2::Ones();
@@ -64,24 +64,28 @@ struct ReflectionTable {
   geometry::Vec2 middle(const geometry::Vec3& to_source) const { return back.cwiseProduct(to_source.head<2>()); }
   /// Returns the interpolated value of a grid at a deviation. The deviation must be within the grid.
   Rgb between(const std::vector<Rgb>& grid, const geometry::Vec2& deviation) const;
-  /// The range of azimuths that the cells cover: what mirrors do not tell.
+  /// Returns the range of azimuths that the cells cover. Other azimuths follow from mirror symmetry.
   std::array<Angle, 2> azimuths() const;
 
-  /// Weights of directions that make a map of their maps. \return none outside the table
+  /// Directions of light and their weights, from which the grid for another direction is interpolated.
   struct Weighted {
-    geometry::Vec2 signs = geometry::Vec2::Ones();  ///< of deviations in these maps
+    /// Signs that mirror a deviation into the grids of these directions.
+    geometry::Vec2 signs = geometry::Vec2::Ones();
     std::array<std::size_t, kPerSide * kPerSide> directions{};
     std::array<double, kPerSide * kPerSide> weights{};
   };
   std::optional<Weighted> at(const geometry::Vec3& to_source) const;
-  /// \return none outside the table
+  /// Returns R_A for directions to source and observer in the part frame. Returns nothing outside the table.
   std::optional<Rgb> r_a(const geometry::Vec3& to_source, const geometry::Vec3& to_observer) const;
 
-  /// Calls visit(x and y of the view, share of the power from `to_source` that goes there), weighed by the eye, for
-  /// every grid point: R_A / (cos beta cos nu) times the point's part of the square. \pre the table holds that light
+  /// Calls visit(view, fraction) for every grid point. `view` contains x and y of the view direction. `fraction` is the
+  /// fraction of the power from `to_source` that goes into the grid point's part of the square, weighted by the eye's
+  /// response: R_A / (cos beta cos nu) times the area of this part.
+  /// \pre the table covers the direction `to_source`
   template <class Visit>
   void for_each_power(const geometry::Vec3& to_source, Visit visit) const;
-  /// The sum of these shares: what comes back within the square. \pre likewise
+  /// Returns the sum of the fractions of for_each_power(): the fraction of the power that returns within the square.
+  /// \pre the table covers the direction `to_source`
   double returned(const geometry::Vec3& to_source) const;
 };
 

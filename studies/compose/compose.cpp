@@ -16,12 +16,12 @@ namespace retrace::studies {
 namespace {
 
 constexpr const char* kStoreKind = "retrace.composition/1";
-/// A cell that gains less than this share of the merit's size does not help.
+/// Minimum gain, relative to the size of the merit, with which a cell counts as an improvement.
 constexpr double kHelps = 1e-3;
-/// A first step of searches by prices, as a share of each interval: a tenth of the family.
+/// First step of a search by prices, as a fraction of each parameter's interval.
 constexpr double kFirstStep = 0.1;
 
-/// What one cell alone is to be best at.
+/// Returns the search for the best part with only one kind of cell.
 OptimiseRequest single_request(const ComposeRequest& request) {
   OptimiseRequest single;
   for (const std::string& goal : request.goals) single.objective.weights.emplace_back(goal, 1.0);
@@ -35,13 +35,13 @@ bool has_intervals(const Study& study) {
   return std::ranges::any_of(study.parameters, [](const Parameter& p) { return p.interval.has_value(); });
 }
 
-/// Where a quantity stands among those of a study.
+/// Returns the index of a quantity in the list of a study's quantities.
 std::size_t index_of(const Study& study, const std::string& quantity) {
   const auto found = std::ranges::find_if(study.quantities, [&](const auto& each) { return each->name() == quantity; });
   return static_cast<std::size_t>(found - study.quantities.begin());
 }
 
-/// Makes cells of designs that were looked at.
+/// Converts evaluated designs to cells of the family.
 class CellReader {
  public:
   CellReader(const Study& study, const ComposeRequest& request) {
@@ -51,7 +51,7 @@ class CellReader {
     for (const auto& [quantity, price] : request.price) prices_.emplace_back(index_of(study, quantity), price);
   }
 
-  /// Nothing where a quantity has no value.
+  /// Returns nothing if the design is infeasible or a quantity has no value.
   std::optional<FamilyCell> cell_of(const Variant& variant) const {
     if (!variant.feasible()) return std::nullopt;
     FamilyCell cell{variant.number, variant.values, {}};
@@ -74,7 +74,7 @@ class CellReader {
   std::vector<std::pair<std::size_t, double>> prices_;
 };
 
-/// One composition, from the first look to the last.
+/// Runs one composition from the scan to the result.
 class Composer {
  public:
   Composer(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
@@ -129,7 +129,8 @@ class Composer {
     return rules;
   }
 
-  /// Any number of zones, of any share: the linear programme alone.
+  /// Returns rules that allow any number of zones with any fraction of the area. The problem is then a plain linear
+  /// programme.
   MixtureRules relaxed_rules() const {
     MixtureRules relaxed = rules({});
     relaxed.least_share = 0.0;
@@ -151,7 +152,8 @@ class Composer {
     return zones;
   }
 
-  /// Cells that gain by the prices of the best mixture, with any number of zones and with as many as are allowed.
+  /// Adds cells that gain at the dual prices of the best mixture. The prices are first those without a limit on zones,
+  /// then those with the limit if the limit lowers the merit.
   void search_by_prices(Composition& composition) {
     for (std::size_t round = 0; round < request_.rounds; ++round) {
       const Mixture relaxed = mixture_of(composition, relaxed_rules());
@@ -166,7 +168,7 @@ class Composer {
     }
   }
 
-  /// What a cell adds to the merit by the prices of a mixture, as an objective of the search for one.
+  /// Returns the search for the cell that adds most to the merit of a mixture at its dual prices.
   OptimiseRequest pricing_request(const Mixture& mixture) const {
     std::map<std::string, double> weights;
     for (std::size_t k = 0; k < request_.goals.size(); ++k)
@@ -180,7 +182,8 @@ class Composer {
     return pricing;
   }
 
-  /// Looks for cells that gain, from the mixture's own and from those that gain most. \return whether one was found
+  /// Searches for cells that gain. The search starts from the cells of the mixture and from the cells that gain most.
+  /// \return true if a cell that gains was found
   bool search(Composition& composition, const Mixture& mixture) {
     if (!has_intervals(study_)) return false;
     const OptimiseRequest pricing = pricing_request(mixture);
@@ -195,7 +198,8 @@ class Composer {
                                [&](const FamilyCell& cell) { return gain(mixture.prices, cell.mixed) > least_gain; });
   }
 
-  /// The cells that gain most, the largest zones first among equals, no two of them near each other.
+  /// Returns the starting points of a search: the cells of the mixture, the largest zones first, then the cells that
+  /// gain most. Cells near an earlier starting point are left out.
   std::vector<PointValues> starts_of(const Composition& composition, const Mixture& mixture) const {
     std::vector<std::size_t> order;
     for (const ZoneShare& zone : mixture.zones) order.push_back(zone.cell);
@@ -216,7 +220,8 @@ class Composer {
     return starts;
   }
 
-  /// Whether one search would do for both: alike in all but a step of the search.
+  /// Returns true if two cells are so similar that one search covers both. All their parameters differ by at most one
+  /// first step.
   bool are_near(const PointValues& a, const PointValues& b) const {
     for (std::size_t k = 0; k < a.size(); ++k) {
       const std::optional<Interval>& interval = study_.parameters[k].interval;
@@ -229,7 +234,8 @@ class Composer {
     return true;
   }
 
-  /// The best of so many zones at most, or of fewer, where those were found and no better ones.
+  /// Returns the best mixture of at most `most_zones` zones. If the mixture that was found for fewer zones is better,
+  /// that mixture is returned.
   Mixture mixture_of_zones(const Composition& composition, std::size_t most_zones) const {
     Mixture mixture = mixture_of(composition, rules(most_zones));
     if (composition.by_zones.empty()) return mixture;
@@ -263,7 +269,7 @@ class Composer {
       composition.proof = has_intervals(study_) ? Proof::catalogue : Proof::family;
   }
 
-  /// What keeps every mixture from holding the bounds.
+  /// Returns why no mixture satisfies the bounds.
   std::string why_none(const Composition& composition, const Mixture& relaxed) const {
     if (composition.catalogue.empty())
       return composition.failed > 0 ? fmt::format("no cell can be computed: {}", composition.first_failure)
@@ -287,13 +293,15 @@ class Composer {
     if (mixture.is_there()) composition.by_zones.push_back({zones_of(composition, mixture), mixture, zones});
   }
 
-  /// What one zone more than is allowed, or than serves, is worth.
+  /// Adds the best part with one zone more than allowed, or than the best part has. It shows what a further zone is
+  /// worth.
   void count_zones(Composition& composition) const {
     const PartOfZones& last = composition.by_zones.empty() ? *composition.best : composition.by_zones.back();
     add_by_zones(composition, std::max(last.most_zones, composition.best->zones.size()) + 1);
   }
 
-  /// Parts from the best mean that there is to the mean of the best part, in equal steps.
+  /// Computes the parts of the Pareto front. Their means are equally spaced from the best possible mean to the mean of
+  /// the best part.
   void draw_front(Composition& composition) const {
     if (!request_.front) return;
     const double sign = request_.front->largest ? 1.0 : -1.0;
@@ -332,7 +340,8 @@ std::vector<Zone> zones_for_worst(const Composition& composition) {
 StoreLayout compose_layout(const Study& study) {
   StoreLayout layout = optimise_layout(study);
   layout.kind = kStoreKind;
-  // What is asked of mixtures changes no cell.
+  // Constraints and objectives of the mixture do not change the values of cells, so that they are not part of the
+  // store's identity.
   std::erase_if(layout.parts, [](const auto& part) {
     return part.first == "constraint" || part.first == "optimize" || part.first == "sweep" || part.first == "tolerance";
   });

@@ -1,7 +1,7 @@
 #pragma once
 
-// Composes a part of zones of cells: which designs of a family, in which shares of the area, make the worst of all
-// goals as good as it can be. The study behind `retrace compose`.
+// Composes a part of zones with different cells. The study selects designs of a family and their fractions of the area,
+// so that the minimum of all goals is as large as possible. It is behind `retrace compose`.
 
 #include <cstddef>
 #include <optional>
@@ -15,39 +15,40 @@
 
 namespace retrace::studies {
 
-/// How the angles between facets are spread, Gaussian and independent: in minutes of arc.
+/// Standard deviations of random errors of the angles between facets, in minutes of arc. All errors are Gaussian and
+/// independent.
 struct ErrorSpread {
-  double cell_sigma_arcmin = 0.0;  ///< from cell to cell, which averages out over a zone
-  double zone_sigma_arcmin = 0.0;  ///< from zone to zone, the same in all cells of one, which does not
-  std::size_t parts = 1024;        ///< that are drawn
+  double cell_sigma_arcmin = 0.0;  ///< from cell to cell; these errors average out over a zone
+  double zone_sigma_arcmin = 0.0;  ///< from zone to zone; all cells of a zone have the same error
+  std::size_t parts = 1024;        ///< number of random parts
   /// Fraction of the random parts that counts as the worst. If it is given, a further part is optimized for these
   /// parts.
   std::optional<double> worst_share;
 };
 
 struct ComposeRequest {
-  std::vector<std::string> goals;                     ///< quantities, the least of which is to be as large as it can be
-  std::vector<Constraint> of_cells;                   ///< a cell that breaks one is none of the family
-  std::vector<Constraint> of_part;                    ///< on means over the part
-  std::vector<std::pair<std::string, double>> price;  ///< what one more of the mean of a quantity takes from the merit
-  std::optional<FrontAxis> front;                     ///< the mean that the least goal is told against
+  std::vector<std::string> goals;                     ///< quantities whose minimum is maximized
+  std::vector<Constraint> of_cells;                   ///< constraints that each cell of the family must satisfy
+  std::vector<Constraint> of_part;                    ///< constraints on means over the part
+  std::vector<std::pair<std::string, double>> price;  ///< quantity, and reduction of the merit per unit of its mean
+  std::optional<FrontAxis> front;                     ///< mean for the Pareto front against the minimum goal
   std::size_t front_points = 9;
-  std::optional<double> least_goal;  ///< a part that does not reach it is none
-  double least_share = 0.0;          ///< of a zone
+  std::optional<double> least_goal;  ///< minimum goal that a part must reach
+  double least_share = 0.0;          ///< minimum fraction of the area for a zone
   double most_share = 1.0;
-  std::optional<std::size_t> most_zones;  ///< none: as many as serve
-  std::size_t scan = 65;                  ///< cells of the first look, for each combination of discrete values
-  std::size_t rounds = 4;                 ///< searches by prices, at most
-  std::size_t starts = 3;                 ///< cells from which each goes out
-  int looks = 20;                         ///< cells that are looked at from each
+  std::optional<std::size_t> most_zones;  ///< maximum number of zones; none: no limit
+  std::size_t scan = 65;                  ///< cells of the first scan, per combination of discrete values
+  std::size_t rounds = 4;                 ///< maximum number of searches by dual prices
+  std::size_t starts = 3;                 ///< number of cells from which each such search starts
+  int looks = 20;                         ///< maximum number of cells that are evaluated from each start
   std::optional<ErrorSpread> errors;
 };
 
-/// A cell of the family: a design that was looked at.
+/// Cell of the family: a design that has been evaluated.
 struct FamilyCell {
-  std::uint64_t point = 0;  ///< in the store
+  std::uint64_t point = 0;  ///< number of the point in the store
   PointValues values;
-  MixedCell mixed;  ///< goals in the request's order; means are those of `of_part`, then that of the front
+  MixedCell mixed;  ///< goals in the order of the request; means of `of_part`, then the mean of the front
 };
 
 struct Zone {
@@ -55,25 +56,25 @@ struct Zone {
   double share = 0.0;
 };
 
-/// A part with so many zones at most.
+/// Best part with a limited number of zones.
 struct PartOfZones {
   std::vector<Zone> zones;     ///< the largest first
-  Mixture mixture;             ///< whose cells are numbers in the catalogue
-  std::size_t most_zones = 0;  ///< that were allowed
+  Mixture mixture;             ///< its cells are indices in the catalogue
+  std::size_t most_zones = 0;  ///< maximum number of zones
 };
 
-/// A part on the front, of a mean and the merit.
+/// Part on the Pareto front of a mean and the minimum goal.
 struct FrontPart {
   double mean = 0.0;
   double least = 0.0;
   std::vector<Zone> zones;
 };
 
-/// Of parts that are drawn.
+/// Yield of random parts.
 struct PartYield {
-  std::vector<double> leasts;           ///< their least goals, the lowest first
-  std::optional<std::size_t> good;      ///< how many reach what is asked
-  std::optional<double> mean_of_worst;  ///< of the share of the worst that is asked for
+  std::vector<double> leasts;           ///< minimum goal of each part, in ascending order
+  std::optional<std::size_t> good;      ///< number of parts that reach ComposeRequest::least_goal
+  std::optional<double> mean_of_worst;  ///< mean over the worst parts, whose fraction is worst_share
 };
 
 /// Composition that is optimized for the worst random parts: the mean of the minimum goal over these parts is maximal.
@@ -83,34 +84,35 @@ struct PartForWorst {
   PartYield yield;
 };
 
-/// What errors of the angles between facets make of a part.
+/// Effects of errors of the angles between facets on a part.
 struct ErrorEffects {
-  std::vector<double> goals;                ///< with what spreads from cell to cell alone
-  std::vector<std::vector<double>> slopes;  ///< of the least goal, per minute of arc, by zone and angle; shares follow
+  std::vector<double> goals;  ///< goals of the part with errors from cell to cell only
+  /// Slopes of the minimum goal, per arcmin, by zone and angle; areas are re-optimized.
+  std::vector<std::vector<double>> slopes;
   PartYield yield;
   std::optional<PartForWorst> for_worst;
-  double missed_by = 0.0;  ///< no goal of the part is missed by more where polynomials were held against computed ones
+  double missed_by = 0.0;  ///< maximum error of the polynomials, found by comparison with computed goals
 };
 
-/// What is known about how good the part is.
+/// Proof of optimality of the part.
 enum class Proof {
-  family,     ///< all cells of the family were looked at: nothing is better
-  catalogue,  ///< nothing is better of the cells that were looked at
-  none        ///< the search among these was cut short
+  family,     ///< the whole family was evaluated, and no part of its cells is better
+  catalogue,  ///< no part of the evaluated cells is better
+  none        ///< the search among the evaluated cells ended at a limit
 };
 
 struct Composition {
   std::vector<FamilyCell> catalogue;  ///< all cells that satisfy the constraints, in the order of their evaluation
-  std::optional<PartOfZones> best;    ///< none if no mixture holds the bounds
-  std::string none_because;           ///< then, which bounds exclude all
-  std::optional<FamilyCell> single;   ///< the best part of one kind of cell, as `optimise` finds it
+  std::optional<PartOfZones> best;    ///< none if no mixture satisfies the bounds
+  std::string none_because;           ///< if there is no best part: the bounds that exclude all mixtures
+  std::optional<FamilyCell> single;   ///< cell of the best part with only one kind of cell, as found by `optimise`
   Proof proof = Proof::none;
-  bool has_converged = false;         ///< the last search by prices found nothing that helps
-  double unlimited = 0.0;             ///< merit with any number of zones, of any share
-  std::vector<PartOfZones> by_zones;  ///< the best of 1, 2, ... zones at most, up to one more than the best has
+  bool has_converged = false;         ///< true if the last search by dual prices found no cell that gains
+  double unlimited = 0.0;             ///< merit without limits on the number and the areas of zones
+  std::vector<PartOfZones> by_zones;  ///< best parts of at most 1, 2, ... zones, up to one zone more than `best` has
   std::vector<FrontPart> front;
   std::optional<ErrorEffects> errors;
-  std::size_t failed = 0;  ///< designs that could not be computed
+  std::size_t failed = 0;  ///< number of designs that could not be computed
   std::string first_failure;
   std::size_t evaluations = 0;
   bool complete = true;
@@ -122,7 +124,7 @@ std::vector<Zone> zones_for_worst(const Composition& composition);
 
 StoreLayout compose_layout(const Study& study);
 
-/// The cells of the first look as points of a sweep, for who wants them in the store before the search.
+/// Returns the cells of the first scan as points of a sweep, so that they can be computed before the search.
 /// \throw InputError for too many combinations of discrete values
 Sweep compose_scan(const Study& study, const ComposeRequest& request);
 

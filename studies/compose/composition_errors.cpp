@@ -13,22 +13,23 @@
 namespace retrace::studies {
 namespace {
 
-/// A step, in standard deviations, at which second differences have the mean over a Gaussian right to the fifth degree.
+/// Step of second differences, in standard deviations. With this step, the mean over a Gaussian distribution is exact
+/// for polynomials up to the fifth degree.
 const double kStepOfSpread = std::sqrt(3.0);
-/// A step where there is no spread, in minutes of arc.
+/// Minimum step, in minutes of arc, used if the errors have no spread.
 constexpr double kLeastStep = 0.1;
-/// Sets of errors, of each zone, at which the polynomials are held against goals that are computed.
+/// Number of random sets of errors per zone at which the polynomials are compared with computed goals.
 constexpr std::size_t kChecked = 2;
 /// Maximum number of cells that are candidates for the composition optimized for the worst random parts. The number is
 /// small because all sets of candidates are tried.
 constexpr std::size_t kMostCells = 8;
 
-/// The largest error that is looked at.
+/// Returns the largest error, in minutes of arc, for which goals are computed.
 double step_of(const ErrorSpread& spread) {
   return std::max(kLeastStep, kStepOfSpread * std::max(spread.cell_sigma_arcmin, spread.zone_sigma_arcmin));
 }
 
-/// Errors of up to a step.
+/// Returns random errors of angle between minus and plus `step_arcmin`.
 std::vector<std::vector<double>> errors_to_check(std::size_t angles, double step_arcmin, std::uint32_t seed) {
   const UnitSamples samples(UnitSamples::Kind::sobol, angles, kChecked, seed);
   std::vector<std::vector<double>> errors;
@@ -39,7 +40,7 @@ std::vector<std::vector<double>> errors_to_check(std::size_t angles, double step
   return errors;
 }
 
-/// A response, and by how much it misses goals that are computed.
+/// Response of a cell's goals to errors of angle, and its largest deviation from computed goals.
 struct CheckedResponse {
   ErrorResponse response;
   double missed_by = 0.0;
@@ -79,7 +80,7 @@ std::vector<FamilyCell> cells_for_worst(const Composition& composition) {
   return cells;
 }
 
-/// Goals of the part with what spreads from cell to cell.
+/// Returns the goals of the part with errors from cell to cell only. Errors from zone to zone are 0.
 std::vector<double> mean_goals(const std::vector<ErrorResponse>& responses, const std::vector<double>& shares) {
   std::vector<double> goals;
   for (std::size_t z = 0; z < responses.size(); ++z) {
@@ -90,7 +91,8 @@ std::vector<double> mean_goals(const std::vector<ErrorResponse>& responses, cons
   return goals;
 }
 
-/// By the prices of the goals: what remains when the shares follow.
+/// Returns the slopes of the minimum goal by the errors of angle. They follow from the dual prices of the goals,
+/// because the areas of the zones are re-optimized.
 std::vector<std::vector<double>> slopes_of(const std::vector<ErrorResponse>& responses, const PartOfZones& part) {
   std::vector<std::vector<double>> slopes;
   for (std::size_t z = 0; z < responses.size(); ++z) {

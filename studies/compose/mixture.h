@@ -1,7 +1,7 @@
 #pragma once
 
-// The best shares of given cells, of which a part is mixed: coefficients of cells add up, weighted by their shares of
-// the area, so that the shares are a linear programme. Knows nothing of optics.
+// Computes the best fractions of the area for given cells. The coefficients of a part are area-weighted means of those
+// of its cells, so that the problem is a linear programme. This file does not depend on optics.
 
 #include <cstddef>
 #include <limits>
@@ -12,31 +12,32 @@
 
 namespace retrace::studies {
 
-/// What a part is that is all of one kind of cell.
+/// Values of a part that consists of only one kind of cell.
 struct MixedCell {
   std::vector<double> goals;  ///< each is to be large
-  std::vector<double> means;  ///< each is to be within bounds, over the part
-  double cost = 0.0;          ///< what it takes from the merit
+  std::vector<double> means;  ///< each must be within bounds, as a mean over the part
+  double cost = 0.0;          ///< reduction of the merit
 };
 
-/// What shares may be.
+/// Rules for the fractions of the area.
 struct MixtureRules {
-  std::vector<Bounds> means = {};                                    ///< of the part
-  double least_share = 0.0;                                          ///< of a cell that is there; 0..1
-  double most_share = 1.0;                                           ///< of each cell; above 0
-  std::size_t most_zones = std::numeric_limits<std::size_t>::max();  ///< cells that are there
+  std::vector<Bounds> means = {};                                    ///< bounds of the part's means
+  double least_share = 0.0;                                          ///< minimum fraction of a cell that is used; 0..1
+  double most_share = 1.0;                                           ///< maximum fraction of each cell; above 0
+  std::size_t most_zones = std::numeric_limits<std::size_t>::max();  ///< maximum number of cells that are used
 };
 
-/// What one more of something is worth: by how much the merit of a mixture grows. Together they tell which cell would
-/// help.
+/// Dual prices of a mixture: the change of its merit per unit of a constraint. They show which other cell would improve
+/// the mixture.
 struct MixturePrices {
-  std::vector<double> goals;  ///< what asking one more of the part there would cost; they add to 1
-  std::vector<double> means;  ///< what one more of the bound that a mean touches is worth; 0 where it touches none
-  double share = 0.0;         ///< what one more of the whole area is worth
+  std::vector<double> goals;  ///< price of each goal of the part; the sum is 1
+  std::vector<double> means;  ///< price of each active bound of a mean; 0 if no bound is active
+  double share = 0.0;         ///< price of the whole area
 };
 
-/// What a share of a cell adds to the merit of the mixture of those prices, per unit, in place of what is there: no
-/// mixture with it gains more than that times the share, and one with cells that all gain nothing is none the better.
+/// Returns the gain of a cell: the increase of the mixture's merit per unit of area that the cell replaces, at the
+/// mixture's prices. A mixture with the cell gains at most this value times the fraction of the cell. If no cell has a
+/// positive gain, no mixture of the cells is better.
 double gain(const MixturePrices& prices, const MixedCell& cell);
 
 struct ZoneShare {
@@ -47,24 +48,27 @@ struct ZoneShare {
 struct Mixture {
   enum class Kind {
     optimal,     ///< no mixture of these cells is better
-    best_found,  ///< the limit on mixtures that are tried was reached: `bound` says what may be left
-    infeasible,  ///< no mixture holds the bounds: `prices.means` are Farkas's multipliers
+    best_found,  ///< the limit on tried sets of cells was reached; `bound` limits the possible improvement
+    infeasible,  ///< no mixture satisfies the bounds; `prices.means` are Farkas multipliers
     interrupted
   };
   Kind kind = Kind::infeasible;
   std::vector<ZoneShare> zones;  ///< the largest first
-  double least = 0.0;            ///< of the goals
-  double merit = 0.0;            ///< that less the cost of the shares
-  double bound = 0.0;            ///< on the merit of any mixture of these cells that the rules allow
-  std::vector<double> goals;     ///< of the mixture
+  double least = 0.0;            ///< minimum goal
+  double merit = 0.0;            ///< minimum goal minus the cost of the cells
+  double bound = 0.0;            ///< upper bound of the merit of any allowed mixture of these cells
+  std::vector<double> goals;     ///< goals of the mixture
   std::vector<double> means;
-  MixturePrices prices;  ///< among the cells of the mixture; without a limit on zones or a least share: among all
+  /// For the cells of the mixture; without a limit on zones and a minimum fraction: for all cells.
+  MixturePrices prices;
   bool is_there() const { return kind == Kind::optimal || kind == Kind::best_found; }
 };
 
-/// The mixture whose least goal, less its cost, is largest. A limit on zones and a least share are held by branch and
-/// bound over sets of cells: whatever prices are taken, a better set has a cell that is better by them. \param
-/// most_sets that are tried \pre cells of equally many goals, one or more, and means as many as the rules
+/// Computes the mixture with the largest merit: the minimum goal minus the cost. A limit on zones and a minimum
+/// fraction are enforced by branch and bound over sets of cells. At any prices, a better set contains a cell with a
+/// positive gain.
+/// \param most_sets maximum number of tried sets
+/// \pre all cells have the same number of goals, at least one, and as many means as the rules
 Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules,
                      const Cancellation* cancel = nullptr, std::size_t most_sets = 10'000);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// What errors of angle make of a part of zones: parts that are drawn at random, and the shares that are best for the
-// worst of them. Knows nothing of optics.
+// Random parts of zones with errors of angle, and the areas of zones that are optimal for the worst of these parts.
+// This file does not depend on optics.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,27 +15,30 @@
 
 namespace retrace::studies {
 
-/// Goals of each zone's cells in parts that were made: by part, zone and goal.
+/// Goals of the cells in random parts, by part, zone and goal.
 using DrawnParts = std::vector<std::vector<std::vector<double>>>;
 
-/// Parts whose zones have errors of their own, Gaussian and independent, the same for all cells of a zone.
-/// \param responses of the zones, with what spreads from cell to cell in them
+/// Returns random parts. Each zone has random errors of angle, Gaussian and independent, which are the same for all its
+/// cells.
+/// \param responses response of each zone, which includes the errors from cell to cell
 DrawnParts drawn_parts(const std::vector<ErrorResponse>& responses, double sigma_arcmin, std::size_t parts,
                        std::uint32_t seed);
 
-/// The least goal of each part that is mixed in these shares.
+/// Returns the minimum goal of each part for the given fractions of the area.
 std::vector<double> leasts_of(const DrawnParts& parts, const std::vector<double>& shares);
 
-/// The mean of the worst of some values: of a share of them, above 0, to 1.
+/// Returns the mean of the worst values.
+/// \param share fraction of the values that counts as the worst, above 0 and at most 1
 double mean_of_worst(std::vector<double> values, double share);
 
-/// The shares whose parts have the largest mean of the worst of their least goals, a linear programme (Rockafellar and
-/// Uryasev 2000): a row for each part and goal that comes into question. \param bounds of a share \return nothing if it
-/// was cancelled or no shares are allowed
+/// Computes the fractions of the area for which the mean minimum goal of the worst parts is largest. This is a linear
+/// programme (Rockafellar and Uryasev 2000) with a row for each part and each goal that may be the minimum.
+/// \param bounds bounds of each fraction
+/// \return nothing if the computation was cancelled or no fractions are allowed
 std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double worst_share, const Bounds& bounds,
                                                const Cancellation* cancel);
 
-/// Cells and their shares, the largest first.
+/// Cells and their fractions of the area, the largest first.
 using CellShares = std::vector<std::pair<std::size_t, double>>;
 
 /// Searches for the set of at most `most_zones` cells, and their fractions of the area, for which best_shares() has the

@@ -347,7 +347,7 @@ struct Takes {
   std::string_view what;  ///< asks, such as "retrace job"
   bool balls = false;
   bool solids = false;  ///< meshes and plates are supported
-  bool zones = false;   ///< parts of zones are supported; set also if solids are supported
+  bool zones = false;   ///< parts of zones are supported, even if `solids` is false
   bool substrates = true;
   bool entrances = false;
   bool wet_backs = false;

@@ -33,7 +33,7 @@ Json range_json(const std::array<Angle, 2>& range) {
   return Json::array({range[0].deg(), range[1].deg()});
 }
 
-/// What was asked, and how the table covers it.
+/// Returns the request and the ranges that the table covers.
 Json request_json(const AppearanceResult& result) {
   const AppearanceRequest& request = result.request;
   return {{"illuminant", "D65"},
@@ -70,7 +70,7 @@ std::string table_text(const AppearanceResult& result, const std::string& values
   return result_text("retrace.material/1", std::move(json), result.warnings);
 }
 
-/// Row by row of each direction's grid.
+/// Returns the values of all grids as CSV, direction by direction and row by row.
 std::string values_text(const ReflectionTable& table) {
   std::string text = "direction,row,column,red,green,blue\n";
   for (std::size_t k = 0; k < table.directions.size(); ++k)

@@ -12,7 +12,9 @@ namespace {
 using Leaf = std::pair<std::uint64_t, double>;
 constexpr std::uint64_t kBranches = 16;
 
-/// A branch of the tree: a value, or 16 branches. \param leaves below it \param level of the branch, from the leaves
+/// Writes a branch of the tree: a single value, or 16 smaller branches.
+/// \param leaves leaves of this branch
+/// \param level number of levels below this branch
 void write_branch(std::span<const Leaf> leaves, int level, std::string& text) {
   if (leaves.empty()) {
     text += "{0}";

@@ -16,7 +16,7 @@ namespace {
 
 using schema::Document;
 
-/// The quantities that a name stands for: the one, or those that are numbered after it.
+/// Returns the quantities with a name: the quantity `name` itself, or all quantities `name.*`.
 std::vector<std::string> quantities_of(const Study& study, const std::string& name) {
   std::vector<std::string> found;
   for (const auto& quantity : study.quantities)
@@ -25,7 +25,8 @@ std::vector<std::string> quantities_of(const Study& study, const std::string& na
   return found;
 }
 
-/// \return the name, if a mixture has the mean of that quantity
+/// Checks that the value of a mixture is the area-weighted mean of the quantity's values.
+/// \return `name`
 std::string checked_mean(const Study& study, const std::string& name, const InputLocation& where) {
   checked_quantity(study, name, where);
   const auto found = std::ranges::find_if(study.quantities, [&](const auto& q) { return q->name() == name; });
@@ -82,7 +83,7 @@ void check_cells(const Study& study) {
   check_taken(cell->design(), {.what = "retrace compose", .wet_backs = true});
 }
 
-/// \throw InputError where cells have no angles between facets
+/// \throw InputError if cells have no angles between facets
 std::optional<ErrorSpread> read_errors(const Document& document, const Study& study) {
   const auto cells = document.number_if("compose.cell_sigma_arcmin");
   const auto zones = document.number_if("compose.zone_sigma_arcmin");

@@ -1,6 +1,6 @@
 #pragma once
 
-// What errors of angle make of a composed part, in the document and on the terminal.
+// Output of the effects of errors of angle on a composed part, as JSON and as text for the terminal.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>

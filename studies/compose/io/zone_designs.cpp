@@ -20,13 +20,14 @@ namespace {
 using geometry::Rectangle, geometry::Vec2;
 
 constexpr std::string_view kTurn = "analysis.rotation_deg";
-/// Rows of a zone are at least so many elements high, so that most have room as whole ones ...
+/// Minimum height of a row of a zone, in elements, so that most elements fit into the row as a whole.
 constexpr double kElementsOfRow = 8.0;
-/// ... and in all no more than a design file has room for.
+/// Maximum number of rows of all zones, limited by what a design file can contain.
 constexpr double kMostRows = 120.0;
 
-/// Blocks of these shares, which are told from `first` on, in a rectangle: halves of about the same area, each divided
-/// in turn along its longer side.
+/// Divides a rectangle into blocks for the zones from `first` to `end`. The zones are split into two groups of about
+/// the same area. The rectangle is split across its longer side, and both halves are divided in the same manner.
+/// \param shares fractions of the area of all zones
 void add_blocks(const std::vector<double>& shares, std::size_t first, std::size_t end, const Rectangle& room,
                 std::vector<std::vector<Rectangle>>& regions) {
   if (end - first == 1) {
@@ -52,6 +53,7 @@ std::vector<std::vector<Rectangle>> blocks_of(const std::vector<double>& shares,
   return regions;
 }
 
+/// Divides the part into rows and assigns them to the zones in turn.
 /// \param element_mm height of the highest element
 std::vector<std::vector<Rectangle>> rows_of(const std::vector<double>& shares, const Vec2& size_mm, double element_mm) {
   const double least = *std::ranges::min_element(shares);
@@ -79,7 +81,7 @@ std::string regions_text(const std::vector<Rectangle>& regions) {
   return fmt::format("rectangles_mm = [\n{}]\n", text);
 }
 
-/// What of the parameters a zone sets.
+/// Returns the `set` key of a zone, with the parameter values that may differ between zones.
 std::string changes_text(const Study& study, const PointValues& values) {
   std::string text;
   for (std::size_t k = 0; k < study.parameters.size(); ++k)
@@ -94,7 +96,8 @@ std::string_view option_of(std::string_view key) {
   return key == "array.y_length_mm" ? "--y-length-mm" : "--design";
 }
 
-/// The design all over the part, finite and of that size.
+/// Returns the design of the whole part, with the elements of these parameter values everywhere. The part is finite and
+/// has the size of the request.
 Design whole_design(const Study& study, const PointValues& values, const ZonedDesignRequest& request) {
   const Design design = make_candidate(study, values).design();
   if (!request.size_mm) return design;
@@ -174,7 +177,7 @@ std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones
     if (turn_deg != 0.0) text += fmt::format("rotation_deg = {}\n", shortest(turn_deg));
     text += changes_text(study, values);
   }
-  parse_design(text, "--design");  // refuses what is too small for its elements
+  parse_design(text, "--design");  // refuses zones that are too small for their elements
   return text;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The cells of zones, and the part of all zones, as design files.
+// Writes the cells of zones, and the part of all zones, as design files.
 
 #include <cstddef>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace retrace::studies {
 
-/// Of how many zones, the largest, designs are written at most.
+/// Returns the maximum number of zones for which design files are written. The largest zones come first.
 std::size_t most_zone_designs(const ComposeRequest& request);
 
 /// Returns the text of a design file with the cells of a single zone. A comment in the file gives the zone's fraction
@@ -22,28 +22,29 @@ std::size_t most_zone_designs(const ComposeRequest& request);
 /// \throw InputError as make_candidate()
 std::string zone_design_text(const Study& study, const std::vector<Zone>& zones, std::size_t zone);
 
-/// How zones lie in a part.
+/// Arrangement of the zones in a part.
 enum class ZoneLayout {
-  stripes,  ///< each over the whole height, side by side
-  blocks,   ///< rectangles as nearly square as shares allow
-  rows      ///< each in many rows over the whole width, one zone's after another's
+  stripes,  ///< side by side, each over the whole height
+  blocks,   ///< rectangles that are as square as the areas allow
+  rows      ///< many rows per zone over the whole width, with the zones in turn
 };
 inline constexpr std::string_view kZoneLayouts[] = {"stripes", "blocks", "rows"};
-/// \throw InputError naming --layout
+/// Reads the name of an arrangement.
+/// \throw InputError at --layout
 ZoneLayout read_zone_layout(const std::string& word);
 
-/// Where the part of zones lies and how large it is.
+/// Arrangement and size of the part of zones.
 struct ZonedDesignRequest {
   ZoneLayout layout = ZoneLayout::stripes;
-  std::optional<geometry::Vec2> size_mm;  ///< none: that of the study's design
+  std::optional<geometry::Vec2> size_mm;  ///< none: size in the study's design
 };
 
-/// Whether a part of zones can be written. \throw InputError for a size that is missing, and for parameters that make
-/// zones differ in what is the same all over a part
+/// Checks that a part of zones can be written as one design.
+/// \throw InputError if the size is missing, or if a parameter may not differ between the zones of a part
 void check_zoned_design(const Study& study, const ZonedDesignRequest& request);
 
-/// The design of the whole part. \throw InputError as check_zoned_design(), and where a zone is smaller than one
-/// element
+/// Returns the text of the design file of the whole part.
+/// \throw InputError as check_zoned_design(), and if a zone is smaller than one element
 std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones, const ZonedDesignRequest& request);
 
 }  // namespace retrace::studies
