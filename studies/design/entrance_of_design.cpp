@@ -20,7 +20,7 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Corners of the outline and points of its edges, in the frame of the file.
+/// Returns points on the edges of the outline, including its corners, in the frame of the file.
 std::vector<Vec2> border_points(const geometry::Polygon& outline, const Vec2& origin_mm) {
   constexpr int kPointsOfEdge = 64;
   std::vector<Vec2> points;
@@ -32,7 +32,7 @@ std::vector<Vec2> border_points(const geometry::Polygon& outline, const Vec2& or
   return points;
 }
 
-/// What of the part lies beyond what is turned, or where the design's surface is only extrapolated.
+/// Checks that the turned surface covers the whole part, without extrapolation of the design surface.
 void check_region(const geometry::TurnedFront& front, const std::vector<Vec2>& border) {
   constexpr double kRoom = 1.0 + 1e-9;
   const auto is_turned = [&](const Vec2& p) {
@@ -83,7 +83,8 @@ Vec3 origin_of(const EntranceFile& file, const geometry::Part& part) {
   return {centre.x(), centre.y(), part.thickness_mm};
 }
 
-/// \throw InputError unless it lies above the highest place of the back
+/// Checks that the entrance face is above the highest point of the back.
+/// \throw InputError if it is not
 void check_room(const geometry::Entrance& entrance, const geometry::Part& part, const std::string& name) {
   try {
     const geometry::EntranceRange range = geometry::entrance_range(entrance, part.outline);

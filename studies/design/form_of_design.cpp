@@ -21,15 +21,16 @@ using geometry::Polygon, geometry::Vec2, surface_models::FacetForm, surface_mode
 
 constexpr double kMmPerUm = 1e-3;
 constexpr double kMissingShareToTell = 0.05;
-/// First order in the slope is good to this times itself.
+/// Maximum slope of a form. The model is of first order in the slope, so that its relative error is at most this value.
 constexpr double kSteepest = 0.03;
-/// Of a facet's extent, that a map must reach to. The polynomial goes on beyond.
+/// Minimum fraction of a facet's extent that a map must cover. The polynomial is extrapolated to the remainder.
 constexpr double kLeastCover = 0.9;
 constexpr std::size_t kLeastPoints = 8;
-/// Points along a side of the triangles of a facet: exact for squares of polynomials of degree 8.
+/// Number of quadrature points along each side of a triangle of a facet. The quadrature is exact for squares of
+/// polynomials of degree 8.
 constexpr std::size_t kPoints = 10;
 
-/// A facet of the design's element without errors and cant, in its frame.
+/// Facet of the design's element without errors of angle and without cant, in the frame of the facet.
 struct NominalFacet {
   Polygon corners;
   double radius_mm = 0.0;
@@ -45,7 +46,7 @@ struct NominalFacet {
     }
   }
 
-  /// Calls visit(place, share of the area).
+  /// Calls visit(point, weight) for the quadrature points of the facet. The weight is the point's fraction of the area.
   template <class Visit>
   void for_each_point(const Visit& visit) const {
     static const raytrace::GaussRule rule = raytrace::gauss_legendre(kPoints);
@@ -62,7 +63,7 @@ struct NominalFacet {
     }
   }
 
-  /// Height in the middle and slopes of the plane that fits a form best.
+  /// Returns the plane that fits a form best: height at the origin, and slopes along x and y.
   Eigen::Vector3d best_plane(const FacetForm& form) const {
     Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -101,7 +102,8 @@ FacetForm sink(const NominalFacet& facet, double sink_um) {
   return facet.less_plane(form);
 }
 
-/// \throw InputError
+/// Reads a height map and fits the form polynomial to it.
+/// \throw InputError if the map cannot be read or does not cover the facet
 FacetForm measured(const NominalFacet& facet, const FormMap& map, const std::string& source,
                    std::vector<std::string>& warnings) {
   const HeightMap level = level_map_of(map.file, map.level_axis, source, warnings);
@@ -150,7 +152,7 @@ FacetForm form_of_design(const Design& design, std::vector<std::string>& warning
   if (given.map) try {
       form.add(measured(facet, *given.map, design.source_name(), warnings));
     } catch (const InputError& error) {
-      throw InputError(design.where("form.map"), error.what());  // adds the key that names the file
+      throw InputError(design.where("form.map"), error.what());  // adds the position of the key that names the file
     }
   const double steepest = facet.steepest(form);
   if (!(steepest <= kSteepest))

@@ -29,12 +29,13 @@ constexpr double kMostFringesPerStep = 0.5;
 constexpr std::string_view kFacetLayers = "coating.facets";
 constexpr std::string_view kEntranceLayers = "coating.entrance";
 
-/// Where the design says what wavelengths its light has.
+/// Returns the position of the key that determines the wavelengths of the light.
 InputLocation light_location(const Design& design) {
   return design.where(design.light.spectrum() ? "light.spectrum" : "light.wavelength_nm");
 }
 
-/// What the design is made of: a glass of its catalogue, the material of a record, or a shipped material.
+/// Returns the material of the part: a glass of the design's catalogue, the material of an index record, or a shipped
+/// material.
 materials::Material material_of(const Design& design, const materials::MaterialLibrary& library) {
   const Substance& substance = design.substance;
   const InputLocation where = design.where("body.material");
@@ -43,7 +44,8 @@ materials::Material material_of(const Design& design, const materials::MaterialL
     try {
       return read();
     } catch (const InputError& error) {
-      throw InputError(design.where("body.catalogue"), error.what());  // adds the key that names the file
+      // Adds the position of the key that names the file.
+      throw InputError(design.where("body.catalogue"), error.what());
     }
   };
   if (materials::is_index_record(substance.catalogue->file))
@@ -53,7 +55,8 @@ materials::Material material_of(const Design& design, const materials::MaterialL
   return in_catalogue([&] { return catalogue.glass(substance.material); });
 }
 
-/// \throw InputError at `body.temperature_c` if the material's data do not serve it
+/// Checks that the data of the material cover the temperature of the design.
+/// \throw InputError at `body.temperature_c` if they do not
 void require_temperature(const Design& design, const materials::Material& material) {
   const std::optional<double>& temperature_c = design.substance.temperature_c;
   if (temperature_c && *temperature_c != material.temperature_c && !material.thermo_optic)
@@ -67,11 +70,12 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
   try {
     return materials::index_relative_to_air(material, air, wavelength_nm, temperature_c);
   } catch (const InputError& error) {
-    throw InputError(light_location(design), error.what());  // which knows the number but not where it was given
+    throw InputError(light_location(design), error.what());  // adds the position at which the wavelength was given
   }
 }
 
-/// The map as it lies on a facet, x level, less its form. Warnings are appended.
+/// Returns the height map in the orientation of the facet, with its x axis horizontal and its form removed. Warnings
+/// are appended.
 surface_models::HeightMap levelled_map(const HeightMapTexture& t, const std::string& source,
                                        std::vector<std::string>& warnings) {
   const surface_models::HeightMap level = level_map_of(t.file, t.level_axis, source, warnings);
@@ -82,14 +86,14 @@ surface_models::HeightMap levelled_map(const HeightMapTexture& t, const std::str
   }
 }
 
-/// The measured map of the facets; nothing for other models of their texture. Warnings are appended.
+/// Returns the measured height map of the facets, or nothing if their texture has another model. Warnings are appended.
 std::optional<surface_models::HeightMap> facet_map(const Design& design, std::vector<std::string>& warnings) {
   const auto* const texture = std::get_if<HeightMapTexture>(&design.surface.texture);
   if (texture == nullptr) return std::nullopt;
   try {
     return levelled_map(*texture, design.source_name(), warnings);
   } catch (const InputError& error) {
-    throw InputError(design.where_texture(), error.what());  // adds the key that names the file
+    throw InputError(design.where_texture(), error.what());  // adds the position of the key that names the file
   }
 }
 
@@ -102,7 +106,8 @@ surface_models::ScatterModel height_map_model(const HeightMapTexture& t, const s
   }
 }
 
-/// \param optics all but their texture
+/// Returns the Harvey-Shack scatter model of a texture.
+/// \param optics optical properties of the part, complete but for the texture
 surface_models::ScatterModel harvey_shack_model(const HarveyShackTexture& t, const raytrace::Optics& optics) {
   const surface_models::Roughness heights = {t.roughness_sq_nm, t.correlation_length_um, t.waviness_sq_nm,
                                              t.waviness_length_um, t.down_correlation_length_um};
@@ -110,7 +115,9 @@ surface_models::ScatterModel harvey_shack_model(const HarveyShackTexture& t, con
   return surface_models::HarveyShack(heights, {optics.index, optics.back_index, optics.wavelength_nm});
 }
 
-/// \param map that of facet_map() \param optics all but their texture
+/// Returns the scatter model of the facets' texture.
+/// \param map result of facet_map()
+/// \param optics optical properties of the part, complete but for the texture
 surface_models::ScatterModel scatter_model(const Design& design, const std::optional<surface_models::HeightMap>& map,
                                            const raytrace::Optics& optics) {
   using surface_models::ScatterModel;
@@ -127,7 +134,7 @@ surface_models::ScatterModel scatter_model(const Design& design, const std::opti
                    [&](const HeightMapTexture& t) { return height_map_model(t, *map, optics.wavelength_nm); }},
         design.surface.texture);
   } catch (const InputError& error) {
-    throw InputError(design.where_texture(), error.what());  // which knows the values but not where they were given
+    throw InputError(design.where_texture(), error.what());  // adds the position at which the values were given
   }
 }
 
@@ -148,7 +155,8 @@ double absorption_at(const Design& design, const materials::Material& material, 
   return curve.at(wavelength_nm);
 }
 
-/// Relative to air. \throw InputError at `where` if the material has no index there
+/// Returns the complex refractive index of a coating layer, relative to air.
+/// \throw InputError at `where` if the material has no index at this wavelength
 std::complex<double> index_of_layer(const Design& design, const materials::MaterialLibrary& library,
                                     const CoatingLayer& layer, const InputLocation& where, double wavelength_nm) {
   if (layer.material.empty()) return {layer.refractive_index, layer.extinction_coefficient};
@@ -156,8 +164,8 @@ std::complex<double> index_of_layer(const Design& design, const materials::Mater
   return std::visit(
       Overloaded{
           [&](const materials::Material* material) {
-            // exp(-4 pi k / wavelength) is left of power after a length; k of the index relative
-            // to air
+            // The power decreases as exp(-4 pi k / wavelength) per unit of length. The extinction coefficient k is
+            // relative to air.
             const double extinction = materials::absorption_per_mm(*material, wavelength_nm) * 1e-6 * wavelength_nm /
                                       (4.0 * std::numbers::pi * air);
             return std::complex<double>(
@@ -168,7 +176,8 @@ std::complex<double> index_of_layer(const Design& design, const materials::Mater
       library.find_any(layer.material, where));
 }
 
-/// \param list the key of the layers
+/// Returns the layers of a coating with their indices at one wavelength.
+/// \param list key of the list of layers
 materials::LayerStack stack_of(const Design& design, const materials::MaterialLibrary& library,
                                const std::vector<CoatingLayer>& layers, std::string_view list, double wavelength_nm) {
   const double air = materials::refractive_index(library.air().dispersion, wavelength_nm);
@@ -186,7 +195,8 @@ materials::LayerStack stack_of(const Design& design, const materials::MaterialLi
   return stack;
 }
 
-/// \param map that of facet_map()
+/// Returns the optical properties of the part at one wavelength.
+/// \param map result of facet_map()
 raytrace::Optics optics_at(const Design& design, const materials::Material& material,
                            const materials::MaterialLibrary& library,
                            const std::optional<surface_models::HeightMap>& map, double wavelength_nm) {
@@ -212,7 +222,7 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
   return optics;
 }
 
-/// The flux of a lamp, or of its lines, before wavelengths are chosen.
+/// Returns the spectral flux of the design's lamp or of its lines, before wavelengths are selected.
 materials::Spectrum flux_of(const Design& design) {
   using Kind = LightSpectrum::Kind;
   const LightSpectrum& light = *design.light.spectrum();
@@ -229,7 +239,7 @@ materials::Spectrum flux_of(const Design& design) {
   return materials::line_spectrum(lines, efficiency);
 }
 
-/// Every line of a design, or the wavelengths that stand for a lamp.
+/// Returns the wavelengths to trace: every line of the design, or a few wavelengths that represent a lamp.
 materials::Spectrum wavelengths_to_trace(const Design& design) {
   if (!design.light.spectrum()) return materials::monochromatic(design.light.wavelength_nm());
   const LightSpectrum& light = *design.light.spectrum();
@@ -238,7 +248,7 @@ materials::Spectrum wavelengths_to_trace(const Design& design) {
     return light.kind == LightSpectrum::Kind::lines ? flux : materials::traced_spectrum(flux);
   } catch (const InputError& error) {
     throw InputError(design.where("light.spectrum"),
-                     error.what());  // adds the key that names the file
+                     error.what());  // adds the position of the key that names the file
   }
 }
 
@@ -246,7 +256,7 @@ bool is_valid_at(const materials::Metal& metal, double wavelength_nm) {
   return wavelength_nm >= metal.valid_from_nm && wavelength_nm <= metal.valid_to_nm;
 }
 
-/// Orders of interference that a stack has in all, at normal incidence.
+/// Returns the interference order of a stack of layers at normal incidence, summed over all layers.
 double orders_in(const materials::LayerStack& stack) {
   double orders = 0.0;
   for (const materials::ThinLayer& layer : stack.layers)
@@ -254,7 +264,7 @@ double orders_in(const materials::LayerStack& stack) {
   return orders;
 }
 
-/// Says so where the index of a material or a metal is not backed by data.
+/// Adds a warning if the index of a material or a metal is extrapolated beyond its data.
 template <class Substance>
 void warn_of_extrapolation(const Design& design, const Substance& substance, OpticalModel& model) {
   std::vector<double> outside_nm;
@@ -274,7 +284,8 @@ void warn_of_extrapolation(const Design& design, const Substance& substance, Opt
                                100.0 * share, outside_nm.size(), outside_nm.front(), outside_nm.back()));
 }
 
-/// Of layers: indices that are not backed by data, each material once, and fringes that few wavelengths do not resolve.
+/// Adds warnings about coatings: indices that are extrapolated, and interference fringes that the few traced
+/// wavelengths do not resolve. Each material causes at most one warning.
 void add_coating_warnings(const Design& design, const materials::MaterialLibrary& library, OpticalModel& model) {
   std::vector<std::string> told = {design.substance.refractive_index ? "" : design.substance.material, ""};
   for (const auto* const layers : {&design.surface.coating.facets, &design.surface.coating.entrance})
@@ -286,7 +297,7 @@ void add_coating_warnings(const Design& design, const materials::MaterialLibrary
     }
   if (!design.light.spectrum() || design.light.spectrum()->kind == LightSpectrum::Kind::lines) return;
   for (const auto stack : {&raytrace::Optics::facet_layers, &raytrace::Optics::entrance_layers}) {
-    double fringes = 0.0;  // from one traced wavelength to the next, at most
+    double fringes = 0.0;  // maximum number of fringes between neighbouring traced wavelengths
     for (std::size_t k = 1; k < model.spectral.size(); ++k)
       fringes = std::max(fringes, std::abs(orders_in(model.spectral[k].optics.*stack) -
                                            orders_in(model.spectral[k - 1].optics.*stack)));
@@ -298,7 +309,7 @@ void add_coating_warnings(const Design& design, const materials::MaterialLibrary
   }
 }
 
-/// Says so where no data back how the index changes with temperature.
+/// Adds a warning if the index is extrapolated beyond the temperature range of the thermo-optic data.
 void warn_of_temperature(const Design& design, const materials::Material& material, OpticalModel& model) {
   const double temperature_c = design.substance.temperature_c.value_or(material.temperature_c);
   if (temperature_c == material.temperature_c) return;
@@ -309,9 +320,12 @@ void warn_of_temperature(const Design& design, const materials::Material& materi
       material.name, shortest(data.valid_from_c), shortest(data.valid_to_c), shortest(temperature_c)));
 }
 
-/// What the model of a face's texture says of its range, at the shortest wavelength that gives reason to: surfaces are
-/// roughest to it. \param name that warnings begin with \param texture of the face at one wavelength \param behind
-/// index of the medium on its other side \throw InputError at `where` beyond every model
+/// Adds the warnings of a texture's model about its range of validity. Only the first wavelength with warnings is
+/// reported.
+/// \param name beginning of the warnings
+/// \param texture function that returns the texture of the face at one wavelength
+/// \param behind function that returns the index of the medium on the other side of the face
+/// \throw InputError at `where` if the texture is beyond the range of every model
 template <class Texture, class Behind>
 void add_texture_warnings(const std::string& name, const InputLocation& where, const Texture& texture,
                           const Behind& behind, OpticalModel& model) {
@@ -341,7 +355,7 @@ void add_texture_warnings(const Design& design, OpticalModel& model) {
       [](const Optics& o) -> const auto& { return o.entrance.roughness; }, [](const Optics&) { return 1.0; }, model);
 }
 
-/// The wavelength of those to trace that lies nearest to `wavelength_nm`.
+/// Returns the traced wavelength that is nearest to `wavelength_nm`.
 const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double wavelength_nm) {
   return *std::min_element(light.begin(), light.end(), [&](const SpectralOptics& a, const SpectralOptics& b) {
     return std::abs(a.wavelength_nm - wavelength_nm) < std::abs(b.wavelength_nm - wavelength_nm);
@@ -355,7 +369,7 @@ raytrace::Optics with_back_index(const Design& design, raytrace::Optics optics, 
   return optics;
 }
 
-/// Gives chosen elements of a design their back index.
+/// Sets the index of the medium behind the selected elements of a design.
 void wet(const Design& design, const std::shared_ptr<const geometry::ChosenElements>& chosen,
          raytrace::Optics& optics) {
   if (chosen->is_nothing()) return;
@@ -366,7 +380,7 @@ void wet(const Design& design, const std::shared_ptr<const geometry::ChosenEleme
     optics.wet = std::make_shared<const raytrace::WetBack>(raytrace::WetBack{std::move(wet_optics), chosen});
 }
 
-/// At every wavelength.
+/// Sets the selected wet elements in the model, at every wavelength.
 void add_wet_back(const Design& design, OpticalModel& model) {
   model.wet_elements = std::make_shared<const geometry::ChosenElements>(model.part, design.wet_back->where);
   for (SpectralOptics& at : model.spectral) wet(design, model.wet_elements, at.optics);

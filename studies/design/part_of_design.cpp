@@ -22,7 +22,8 @@
 namespace retrace::studies {
 namespace {
 
-// Meshes come in single precision, and thicknesses from drawings.
+// Relative tolerance of the thickness of a mesh. STL files have single precision, and thicknesses may be rounded values
+// from drawings.
 constexpr double kSameThickness = 1e-4;
 
 void tell(std::vector<std::string>* warnings, const Design& design, const std::string& text) {

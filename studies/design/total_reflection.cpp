@@ -10,8 +10,9 @@
 namespace retrace::studies {
 namespace {
 
-/// Directions to the light inside that meets a facet squarely: its inward normal, and that of its mirror images, as
-/// light meets a facet after others as it would meet their image of it on its straight way.
+/// Returns the directions to light inside the part that is incident normally on a facet. There is one direction for
+/// each facet and each order of reflections. Light that has been reflected by other facets is incident on the facet as
+/// unreflected light would be on its mirror image.
 std::vector<geometry::Vec3> square_directions(const geometry::PartSpec& part) {
   std::vector<geometry::Vec3> normals;
   for (const geometry::CellFacet& facet : geometry::element_cell(part.element, part.angle_errors).facets)
@@ -30,7 +31,7 @@ std::vector<geometry::Vec3> square_directions(const geometry::PartSpec& part) {
   return directions;
 }
 
-/// Degrees from 0 to below 360, without the last digits that differ between equal facets.
+/// Returns the azimuth from 0 to below 360 degrees. It is rounded so that equivalent facets have equal azimuths.
 double azimuth_deg(const geometry::Vec3& direction) {
   const double deg = Angle::from_rad(std::atan2(direction.y(), direction.x())).deg();
   const double rounded = 1e-9 * std::round(1e9 * std::remainder(deg, 360.0));
@@ -41,7 +42,7 @@ double critical_rad(double index, double back_index) {
   return std::asin(std::min(1.0, back_index / index));
 }
 
-/// Angles inside, of light at one azimuth, that meet a facet too squarely to be totally reflected.
+/// Range of angles inside the part, for light at one azimuth, at which a facet does not reflect totally.
 struct ShutOut {
   double from_rad = 0.0;
   double to_rad = 0.0;
@@ -104,7 +105,7 @@ std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, 
   const double sine = index * std::sin(inside);
   const geometry::Vec3 light = geometry::direction_at(Angle::from_rad(inside), azimuth);
   for (const geometry::Vec3& direction : directions)
-    if (direction.dot(light) <= 0.0) return std::nullopt;  // does not meet all facets
+    if (direction.dot(light) <= 0.0) return std::nullopt;  // the light does not reach all facets
   return sine < 1.0 ? std::optional(Angle::from_rad(std::asin(sine)).deg()) : std::nullopt;
 }
 

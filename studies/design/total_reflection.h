@@ -1,6 +1,7 @@
 #pragma once
 
-// Limits of total internal reflection of prisms and cube corners over incidence and azimuth, in closed form.
+// Limits of total internal reflection in prisms and cube corners, as functions of incidence and azimuth, in closed
+// form.
 
 #include <optional>
 #include <vector>
@@ -10,20 +11,26 @@
 
 namespace retrace::studies {
 
-/// Largest incidence of total reflection for a part's elements at this index, of what is behind them; closed form.
-/// \pre both >= 1
+/// Returns the maximum angle of incidence up to which the elements of a part reflect totally at every azimuth.
+/// \param index refractive index of the part
+/// \param back_index refractive index of the medium behind the facets
+/// \pre both indices are >= 1
 std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index, double back_index);
 
-/// The azimuth of the light whose total reflection ends first; 0 to below 360, the least of equal ones.
+/// Returns the azimuth of the light for which total reflection ends at the smallest incidence. It is 0 to below 360
+/// degrees; the smallest of equivalent azimuths.
 double tir_limit_azimuth_deg(const geometry::PartSpec& part);
 
-/// Least incidence at this azimuth at which every facet reflects the retroreflected light totally; none if there is
-/// none. \pre both >= 1
+/// Returns the minimum incidence at this azimuth at which every facet reflects the retroreflected light totally.
+/// Returns nothing if there is no such incidence.
+/// \pre both indices are >= 1
 std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, double index, double back_index,
                                                 Angle azimuth);
 
-/// All angles of incidence between -90 and 90 degrees at this azimuth at which the total reflection of retroreflected
-/// light begins or ends at a facet, be it met first or after others; ascending. RRE has kinks there. \pre both >= 1
+/// Returns all angles of incidence, between -90 and 90 degrees at this azimuth, at which total reflection of
+/// retroreflected light begins or ends at a facet. The facet may be the first, second or third that light hits. The
+/// angles are in ascending order. The function RRE over incidence has knees at these angles.
+/// \pre both indices are >= 1
 std::vector<double> total_reflection_edges_deg(const geometry::PartSpec& part, double index, double back_index,
                                                Angle azimuth);
 

@@ -13,10 +13,10 @@ namespace {
 
 using geometry::ArrayCell, geometry::ArrayPlan, geometry::Vec2;
 
-/// Middles of elements that differ by less than this share of an element are in one line.
+/// Tolerance, as a fraction of an element, within which centres of elements are in one row or column.
 constexpr double kSameLine = 1e-6;
 
-/// Where rows or columns of elements lie.
+/// Positions of the rows or columns of elements.
 class Lines {
  public:
   Lines(const ArrayPlan& plan, Eigen::Index axis) : axis_(axis) {
@@ -35,7 +35,7 @@ class Lines {
   }
 
   std::size_t size() const { return at_mm_.size(); }
-  /// From 1.
+  /// Returns the number of the row or column of an element, counted from 1.
   double number_of(const ArrayCell& cell) const {
     const double middle_mm = geometry::bounding_box(cell.outline).middle()[axis_];
     const auto after = std::upper_bound(at_mm_.begin(), at_mm_.end(), middle_mm + near_mm_);
@@ -53,7 +53,8 @@ bool has(const std::vector<double>& numbers, const std::optional<double>& every,
   return std::ranges::find(numbers, number) != numbers.end();
 }
 
-/// \param dark covers the part
+/// Returns true if the pixel of the mask at a position is dark.
+/// \param dark mask that covers the whole part
 bool is_dark_at(const std::vector<std::string>& dark, const Vec2& place_mm, const Vec2& size_mm) {
   const auto pixel = [](double share, std::size_t count) {
     const double at = std::floor(share * static_cast<double>(count));

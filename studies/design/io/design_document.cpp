@@ -23,7 +23,7 @@ Value text_of(std::string_view word) {
   return std::string(word);
 }
 
-/// Gives the keys of a table one after another; where a key depends on others, these come first.
+/// Sets the keys of a table one after another. A key on which other keys depend must be set before them.
 class Keys {
  public:
   Keys(Document& document, std::string table) : document_(document), table_(std::move(table)) {
@@ -31,7 +31,7 @@ class Keys {
   }
   void set(std::string_view key, Value value) { document_.set(schema::path_in(table_, key), std::move(value)); }
   void set_word(std::string_view key, std::string_view word) { set(key, text_of(word)); }
-  /// \param index of the word among those that the key has here
+  /// \param index index of the word among the words that the key allows at this point
   template <class Enum>
   void set_choice(std::string_view key, Enum index) {
     const schema::Row* const row = document_.row(schema::path_in(table_, key));
@@ -129,7 +129,8 @@ void set_balls(Document& document, const raytrace::BallLayer& balls) {
   array.set("gap_mm", *balls.pitch_mm - balls.diameter_mm);
 }
 
-/// [[x_from, y_from, x_to, y_to], ...] of regions that are boxes; else the corners of the one that there is.
+/// Writes regions that are rectangles as [[x_from, y_from, x_to, y_to], ...]. Otherwise writes the corners of the only
+/// region.
 void set_regions(Keys& keys, const std::vector<geometry::Polygon>& regions) {
   std::vector<std::vector<double>> boxes;
   for (const geometry::Polygon& region : regions) {
@@ -167,7 +168,7 @@ void set_zones(Document& document, const ZonedPart& part) {
   }
 }
 
-/// The tables that say what is designed.
+/// Sets the tables that describe the shape.
 void set_shape(Document& document, const Design& design) {
   std::visit(Overloaded{[&](const ElementArray& array) {
                           set_element(document, array.part.element);
@@ -297,7 +298,7 @@ void set_entrance_face(Document& document, const EntranceState& face) {
   }
 }
 
-/// As the design file has it.
+/// Returns the spectrum as a value of a design file.
 Value spectrum_value(const LightSpectrum& spectrum) {
   if (spectrum.kind == LightSpectrum::Kind::illuminant_a) return text_of("A");
   if (spectrum.kind == LightSpectrum::Kind::illuminant_d65) return text_of("D65");
@@ -307,7 +308,7 @@ Value spectrum_value(const LightSpectrum& spectrum) {
   return lines;
 }
 
-/// The word that the design file has for it, or [i, q, u, v].
+/// Returns the polarisation as a word of the design file, or as [i, q, u, v] if there is no such word.
 Value polarisation_value(const raytrace::Stokes& stokes) {
   const std::array<double, 4> values = stokes.values();
   if (values == raytrace::kUnpolarised.values()) return text_of("unpolarised");

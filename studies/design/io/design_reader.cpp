@@ -68,7 +68,7 @@ Absorption read_absorption(const Document& document) {
   return curve;
 }
 
-/// Heights of 0 are no texture.
+/// Reads the texture of models with rms heights. If all heights are 0, the facets are smooth.
 FacetTexture read_heights(const Document& document, std::string_view model) {
   const double waviness_sq_nm = document.number("surface.waviness_sq_nm");
   const double waviness_length_um = document.number("surface.waviness_length_um");
@@ -92,7 +92,7 @@ FacetTexture read_texture(const Document& document) {
   return read_heights(document, model);
 }
 
-/// What `facet_coating = "aluminium"` says.
+/// Layer that `facet_coating = "aluminium"` describes.
 const CoatingLayer kPlainAluminium = {"aluminium", 1.0, 0.0, {}};
 
 std::vector<CoatingLayer> read_layers(const Document& document, std::string_view list) {
@@ -184,7 +184,7 @@ std::variant<double, LightSpectrum> read_colour(const Document& document) {
 
 raytrace::Stokes read_polarisation(const Document& document) {
   constexpr std::string_view key = "light.polarisation";
-  if (document.is_list(key)) {  // in the unit of i
+  if (document.is_list(key)) {  // Stokes parameters relative to i
     const std::vector<double> given = document.numbers(key);
     return {1.0, given[1] / given[0], given[2] / given[0], given[3] / given[0]};
   }
@@ -203,7 +203,7 @@ std::vector<double> read_acceptance(const Document& document) {
   return angles_deg;
 }
 
-/// The face through which light enters; none without such a table.
+/// Reads the curved entrance face. Returns nothing if the document has no table [front].
 std::optional<EntranceFile> read_entrance(const Document& document) {
   if (!document.has("front")) return std::nullopt;
   EntranceFile entrance;
@@ -216,13 +216,14 @@ std::optional<EntranceFile> read_entrance(const Document& document) {
   return entrance;
 }
 
-/// The catalogue that the material is of; none without such a key.
+/// Reads the glass catalogue that contains the material. Returns nothing if the document has no such key.
 std::optional<GlassCatalogueFile> read_catalogue(const Document& document) {
   if (!document.has("body.catalogue")) return std::nullopt;
   return GlassCatalogueFile{document.text("body.catalogue"), document.file("body.catalogue")};
 }
 
-/// Of a record its file's name, which a design need not repeat.
+/// Returns the name of the material. For a file with a single index record it is the name of the file, which a design
+/// need not repeat.
 std::string read_material(const Document& document) {
   std::string material = document.text("body.material");
   if (!document.has("body.catalogue") || !materials::is_index_record(document.file("body.catalogue"))) return material;
@@ -233,7 +234,7 @@ std::string read_material(const Document& document) {
   return recorded;
 }
 
-/// Which elements are wet; none without such a table.
+/// Reads the selection of wet elements. Returns nothing if the document has no table [wet_back].
 std::optional<WetElements> read_wet_back(const Document& document) {
   if (!document.has("wet_back")) return std::nullopt;
   WetElements wet{document.number("wet_back.index"), {}};
@@ -252,7 +253,7 @@ std::optional<WetElements> read_wet_back(const Document& document) {
   return wet;
 }
 
-/// What a document says, without the files that it names.
+/// Returns the design of a document. Files that it names are not read.
 Design resolved(std::shared_ptr<const Document> given) {
   const Document& document = *given;
   schema::check(document, design_format().root, "", &document);
@@ -418,8 +419,8 @@ Design with(const Design& design, std::span<const std::string> overrides) {
   return changed;
 }
 
-/// The order in which stores of studies have the files of a design: it is part of what a study is. New keys come
-/// behind.
+/// Keys of files in the order in which the stores of studies list the files of a design. The order determines the
+/// identity of a study, so that new keys must be appended at the end.
 constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",   "array.mask",     "surface.height_map",
                                                             "part.facets", "light.spectrum", "front.turned",
                                                             "front.mesh",  "body.catalogue", "form.map"};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads design files, applies --set overrides, and varies designs that were read.
+// Reads design files, applies overrides of the option --set, and creates variants of designs.
 
 #include <filesystem>
 #include <span>
@@ -13,17 +13,20 @@
 namespace retrace::studies {
 
 /// Reads and checks a design file; "-" is standard input.
-/// \param overrides Each text `key=value`, such as `element.base_mm=0.4`, replaces the value in the file. A value that
-///        is invalid as TOML is read as a string, such as `array.arrangement=offset`. The text `key=` removes the key.
-///        If several texts have the same key, the last one applies.
-/// \throw InputError naming file, line, key, what was given and what is allowed, on one line.
+/// \param overrides list of `key=value`, such as `element.base_mm=0.4`. Each replaces the value in the file. A value
+///        that is invalid as TOML is read as a string, such as `array.arrangement=offset`. The text `key=` removes the
+///        key. If several texts have the same key, the last one applies.
+/// \throw InputError with a message on one line that contains file, line, key, the allowed values and the given value
 Design read_design(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
-/// The same for the text of a design file; `source_name` stands for the file in messages and in Design::source.
+/// Reads and checks the text of a design file. `source_name` is the name of the file in messages and in Design::source.
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides = {});
 
-/// A design with some keys at other values: it is read again, so that all that is checked of designs holds of it.
-/// \pre if it is from a file, it is as that file says \param overrides as of read_design() \throw InputError likewise
+/// Returns a variant of a design with other values of some keys. The variant is read again, so that all checks of
+/// designs are applied to it.
+/// \pre a design that was read from a file has not been changed since
+/// \param overrides as for read_design()
+/// \throw InputError as read_design()
 Design with(const Design& design, std::span<const std::string> overrides);
 
 /// File whose name is the value of a key of a design.
@@ -38,8 +41,9 @@ struct NamedFile {
 std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
                                    std::span<const std::string> overrides = {});
 
-/// The text of a TOML file as read_design() reads it: "-" is standard input, and no more is read of it or of any other
-/// file without an end than shows that it is too long. \throw InputError
+/// Returns the text of a TOML file; "-" is standard input. Files above the size limit are refused without being read to
+/// their end.
+/// \throw InputError if the file cannot be read or is too long
 std::string read_toml_text(const std::filesystem::path& file);
 
 }  // namespace retrace::studies

@@ -28,10 +28,10 @@ using geometry::AngleErrors, geometry::Arrangement, geometry::Cell, geometry::Ed
     geometry::Extent, geometry::HexagonalCube, geometry::PartSpec, geometry::PlaneSubstrate, geometry::RtpElement,
     geometry::Scratch, geometry::TriangularCube, schema::Document;
 
-/// Most elements that one design may have; keeps element numbers within 32 bits and memory within reason.
+/// Maximum number of elements of a design. It keeps element numbers within 32 bits and limits the memory.
 constexpr double kMostElements = 1e8;
 constexpr std::size_t kMostScratches = 200;
-/// Lengths this close (relative) to a whole number of elements count as whole; also for "equal" sizes.
+/// Relative tolerance within which lengths count as a whole number of elements, and sizes count as equal.
 constexpr double kRelativeTolerance = 1e-9;
 constexpr NumberRange kApexAngle{.low = 60.0, .high = 120.0};
 
@@ -43,12 +43,12 @@ std::string of_range(const NumberRange& range, double given) {
   return fmt::format("must be {}, got {}", range.text(), shortest(given));
 }
 
-/// A rule of parts that are elements.
+/// Applies a rule to the part if the design consists of elements.
 template <void (*check)(const Document&, const PartSpec&)>
 void of_part(const Document& document) {
   if (has_elements(document)) check(document, read_part(document));
 }
-/// The same of what is known before errors, edges and base.
+/// Applies a rule to the array, before errors of angle, edges and the base are read.
 template <void (*check)(const Document&, const PartSpec&)>
 void of_array(const Document& document) {
   if (has_elements(document)) check(document, read_array(document));
@@ -62,7 +62,7 @@ void check_square(const Document& document, const PartSpec& part) {
                                                 shortest(rtp.base_mm), shortest(rtp.width_mm)));
 }
 
-/// Bounding box of an element's aperture and the area of the cell it repeats in; mm, mm^2.
+/// Bounding box of an element's aperture in mm, and area of the cell in which the element repeats in mm^2.
 struct Footprint {
   double x_mm;
   double y_mm;
@@ -75,12 +75,12 @@ struct FootprintOf {
   Footprint operator()(const RtpElement& rtp) const {
     return {rtp.base_mm, rtp.width_mm, (rtp.base_mm + part.array.x_gap_mm) * (rtp.width_mm + part.array.y_gap_mm)};
   }
-  /// Vertices on +-x.
+  /// The hexagon has vertices on the positive and negative x axis.
   Footprint operator()(const HexagonalCube& cube) const {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 1.5 * std::numbers::sqrt3 * radius * radius};
   }
-  /// The apex is at the extent's centre, so the vertex on +x at one radius asks for as much room on the other side.
+  /// The apex is at the centre of the extent. The vertex on +x is one radius away, and the extent is symmetric.
   Footprint operator()(const TriangularCube& cube) const {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 0.75 * std::numbers::sqrt3 * radius * radius};
@@ -151,7 +151,7 @@ void check_random_tilts(const Document& document, const PartSpec& part) {
 constexpr std::string_view kEdges[] = {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um",
                                        "surface.rim_chamfer_um"};
 
-/// What an edge takes of a facet must leave some of it.
+/// Checks that rounded or chamfered edges do not remove a whole facet.
 void check_widths(const Document& document, const PartSpec& part) {
   const auto* const rtp = std::get_if<RtpElement>(&part.element);
   const Cell cell = geometry::element_cell(part.element, part.angle_errors);
@@ -177,12 +177,13 @@ void check_one_shape(const Document& document, const PartSpec& part) {
     document.fail("surface.rim_chamfer_um", "must be 0 where rim_radius_um is given");
 }
 
-/// Rims that land keeps apart are rounded against it, so that it must be wide enough.
+/// Checks that the gap between elements is wide enough for rounded or chamfered rims on both sides.
 void check_land(const Document& document, const PartSpec& part) {
   if (!part.edges.rounds_rims() || !is_prism(part)) return;
   const bool is_checker = part.array.arrangement == Arrangement::checker;
   const double reach_mm = geometry::rim_reach_over_land_mm(part);
-  const double needed_mm = is_checker ? reach_mm : 2.0 * reach_mm;  // in a checker one of two neighbours is turned
+  // In a checker array, one of two neighbours is rotated by 90 degrees.
+  const double needed_mm = is_checker ? reach_mm : 2.0 * reach_mm;
   const auto check = [&](std::string_view gap, double gap_mm) {
     if (gap_mm <= 0.0 || gap_mm >= needed_mm) return;
     document.fail(part.edges.rim_radius_mm > 0.0 ? "surface.rim_radius_um" : "surface.rim_chamfer_um",
@@ -225,14 +226,15 @@ void check_scratches(const Document& document, const PartSpec& part) {
   for (std::size_t i = 0; i < part.scratches.size(); ++i) check_scratch(document, part, i);
 }
 
-/// The key of an error of angle that was given, to be blamed for all of them.
+/// Returns the key that messages about errors of angle name: the first such key that was given.
 std::string_view blamed_error(const Document& document, std::string_view otherwise) {
   for (const std::string_view key : {kDihedralError, kFacetTilt})
     if (document.has(key)) return key;
   return otherwise;
 }
 
-/// Errors of angle must not let a facet of a canted cube stand upright, nor leave a prism none of its own.
+/// Checks that no facet of a canted cube becomes almost vertical, and that the apex angle of a prism stays within its
+/// range.
 void check_angles(const Document& document, const PartSpec& part) {
   if (const auto* const rtp = std::get_if<RtpElement>(&part.element)) {
     const auto& [dihedral, tilt] = part.angle_errors;
@@ -243,7 +245,8 @@ void check_angles(const Document& document, const PartSpec& part) {
     return;
   }
   constexpr double steepest_deg = 88.0;
-  constexpr double deviations = 6.0;  // of random tilts; none in 10^8 facets goes beyond
+  // Limit of random tilts in standard deviations; fewer than 1 in 10^8 facets exceeds it.
+  constexpr double deviations = 6.0;
   const double deg = geometry::steepest_facet_deg(part.element, part.angle_errors) +
                      deviations * part.random_tilts.sigma_arcmin / 60.0;
   if (deg > steepest_deg)
@@ -256,7 +259,7 @@ void check_mask(const Document& document, const PartSpec& part) {
   if (document.has("array.mask") && part.substrate) document.fail("array.mask", "not allowed together with [base]");
 }
 
-/// What else turns or shapes all facets alike has no place beside planes of single ones.
+/// Refuses the combination of individual facet planes with keys that rotate or deform all facets.
 void check_facet_planes(const Document& document, const PartSpec& part) {
   constexpr std::string_view key = "part.facets";
   if (!document.has(key)) return;
@@ -280,7 +283,7 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
   }
 }
 
-/// The plate covers all rims.
+/// Checks that the plate covers all rims.
 void check_thickness(const Document& document, const PartSpec& part) {
   const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
   const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;

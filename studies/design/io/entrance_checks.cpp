@@ -19,7 +19,7 @@ std::string key_of(std::string_view name) {
   return "entrance." + std::string(name);
 }
 
-/// How much there is of something means nothing without what it is like.
+/// Checks that an amount above 0 comes with the key that describes its properties.
 void require_beside(const Document& document, std::string_view amount, std::string_view needed) {
   if (document.number(key_of(amount)) > 0.0 && !(document.number_if(key_of(needed)).value_or(-1.0) >= 0.0))
     document.fail(key_of(needed), fmt::format("missing: needed where {} is given", amount));
@@ -45,7 +45,8 @@ void check_roughness_of_face(const Document& document) {
     document.fail("entrance.roughness_sq_nm", "must be 0 under layers or a film_coverage, which fill it");
 }
 
-/// The first key of the table that makes its face scatter; empty if none does.
+/// Returns the first key of the table [entrance] that makes the face scatter light. Returns an empty text if there is
+/// none.
 std::string_view scattering_key(const Document& document) {
   for (const std::string_view key : {"entrance.drop_coverage", "entrance.dust_coverage", "entrance.scratch_coverage",
                                      "entrance.haze", "entrance.roughness_sq_nm"})

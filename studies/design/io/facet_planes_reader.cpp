@@ -21,13 +21,13 @@ using geometry::ElementPlanes, geometry::HeightPlane, geometry::Vec2;
 
 constexpr std::array<std::string_view, 6> kColumns = {"x_mm", "y_mm", "facet", "height_mm", "x_slope", "y_slope"};
 constexpr NumberRange kValue{.low = -1e6, .high = 1e6};
-/// Flares are the facets behind the three of an element.
+/// Number of the first flare. Flares are the facets that follow the three facets of an element.
 constexpr std::size_t kFlares = 3;
 constexpr std::size_t kCaps = 6;
 constexpr double kMostTurnDeg = 5.0;
 constexpr double kMostHeightShare = 0.1;
 
-/// One line of the table.
+/// Line of the table of planes.
 struct FacetRow {
   Vec2 centre_mm = Vec2::Zero();
   std::size_t facet = 0;
@@ -90,8 +90,9 @@ class Reader {
   bool is_prism() const { return std::holds_alternative<geometry::RtpElement>(spec_.element); }
   bool is_hexagonal() const { return std::holds_alternative<geometry::HexagonalCube>(spec_.element); }
 
-  /// Whether a plane resembles that of a nominal facet; in a checker every second element is turned, and in an array of
-  /// triangles by 180 degrees. A flare lies in the plane of the facet across its edge.
+  /// Returns true if a plane is similar to that of the nominal facet. A flare lies in the plane of the facet across its
+  /// edge.
+  /// \param rotated compare with the rotated element: 90 degrees in a checker, 180 degrees in a triangular array
   bool resembles(const FacetRow& row, bool rotated) const {
     const std::size_t facet = row.facet < kFlares ? row.facet : (row.facet - kFlares + 1) % 3;
     Vec2 slope = nominal_slopes_[facet];
@@ -101,7 +102,8 @@ class Reader {
     return own.dot(nominal) >= std::cos(Angle::from_deg(kMostTurnDeg).rad());
   }
 
-  /// Of a facet over the root or apex; of a flare over the middle of its hexagon, whose corner is half as deep.
+  /// Returns the nominal height of a plane. For a facet it is the height at the root or apex. For a flare it is the
+  /// height at the centre of its hexagon; the corner of the flare is half as deep as the apex.
   double nominal_height_mm(const FacetRow& row) const {
     if (row.facet < kFlares) return -depth_mm_;
     const Angle angle = Angle::from_deg(120.0 * static_cast<double>(row.facet - kFlares));
@@ -110,7 +112,8 @@ class Reader {
     return -0.5 * depth_mm_ - nominal_slopes_[(row.facet - kFlares + 1) % 3].dot(corner);
   }
 
-  /// A cap may lean as its tool did, but it passes over the apex and below the rim.
+  /// Checks the plane of a cap, the flat that a tool leaves above the apex. It may have any tilt, but it must be above
+  /// the apex and below the rim.
   void check_cap(const FacetRow& row) const {
     if (!(row.plane.height_mm > -depth_mm_ && row.plane.height_mm < 0.0))
       fail(row.line, "height_mm",
@@ -153,7 +156,7 @@ class Reader {
     pending_.clear();
   }
 
-  /// Caps stand behind the facets of their element, in their order.
+  /// Adds a cap to its element. Caps must follow the facets of their element, in the order of the facets.
   void take_cap(const FacetRow& row) {
     if (elements_.empty() || elements_.back().planes.empty() || elements_.back().centre_mm != row.centre_mm)
       fail(row.line, "facet", "must stand behind the three facets of its element");
@@ -163,7 +166,7 @@ class Reader {
     caps[k] = row.plane;
   }
 
-  /// Flares of one place stand together.
+  /// Adds a flare. All flares at one position must follow each other.
   void take_flare(const FacetRow& row) {
     const bool is_same =
         !elements_.empty() && elements_.back().planes.empty() && elements_.back().centre_mm == row.centre_mm;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Files that a design names.
+// Files that the keys of a design name.
 
 #include <string_view>
 
@@ -8,8 +8,10 @@
 
 namespace retrace::studies {
 
-/// For who has the design alone. \pre the design is from a file
-/// \throw InputError at the key that names a file. \param why that is no use: "which the live page cannot read"
+/// Checks that a design names no files, for environments that have only the text of the design.
+/// \pre the design was read from a file
+/// \throw InputError at the key that names a file
+/// \param why reason for the message, such as "which the live page cannot read"
 void check_names_no_file(const Design& design, std::string_view why);
 
 /// Returns the factor that converts the unit of a design's STL file to mm.

@@ -7,7 +7,8 @@ using namespace schema;
 
 constexpr NumberRange kAtLeastZero{.low = 0.0};
 constexpr NumberRange kAngleError{.low = -300.0, .high = 300.0};
-// Beyond the optics of surfaces; keeps squares and exponentials finite.
+// Limits of heights and lengths. They are beyond the values of optical surfaces and keep squares and exponentials
+// finite.
 constexpr NumberRange kHeight{.low = 0.0, .high = 1e5};
 constexpr NumberRange kLength{.low = 0.0, .high = 1e6};
 

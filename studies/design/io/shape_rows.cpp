@@ -44,7 +44,7 @@ constexpr Row kElementRows[] = {
     {"width_mm", kSize, kRequired, "Length along the roof edge.", kPrismOnly},
     {"apex_angle_deg", Number{{.low = 60.0, .high = 120.0}}, 90.0, "Included angle of the two facets.", kPrismOnly},
     {"aperture_mm", kSize, kRequired, "Diameter of the circle round the aperture.", kCubeOnly},
-    // Beyond 35.26 degrees a facet can stand upright.
+    // Facets would become vertical at a cant of 35.26 degrees.
     {"cant_deg", Number{{.low = 0.0, .high = 30.0}}, 0.0,
      "Angle between the cube's axis, from the apex into the part, and +z.", kCantOnly, kZeroIsNone},
     {"cant_azimuth_deg", Number{kAzimuth}, 0.0, "Azimuth towards which the axis leans, from +x towards +y.", kCantOnly,
