@@ -21,7 +21,7 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
-// The picture shows this much more than the part.
+// Ratio of the width that the picture shows to the width of the part.
 constexpr double kMargin = 1.15;
 
 void require(bool holds, std::string_view option, std::string_view allowed, double given) {
@@ -71,7 +71,7 @@ void check(const CameraRequest& r) {
     require(length > 0.0 && length <= 1e5, "--film-mm", "be above 0 and at most 1e5", length);
 }
 
-/// Width over height of the sheet must not go round more than half the cylinder.
+/// Checks the size of the sheet. Its width must not cover more than half the circumference of the cylinder.
 void check_film(const CameraRequest& r, bool is_infinite) {
   if (!is_infinite) {
     constexpr std::string_view need = "needs a design with extent = \"infinite\": ";
@@ -107,7 +107,7 @@ bool is_inside(const geometry::Part& part, const Vec3& p) {
   return true;
 }
 
-/// Whether a place is behind the face of a sheet, where there is the body.
+/// Returns true if a point is on the side of the sheet where the body of the part is.
 bool is_behind(const raytrace::Film& film, double thickness_mm, const Vec3& p) {
   if (!film.radius_mm) return p.z() <= thickness_mm;
   const double from_axis = std::hypot(p.x(), p.z() - thickness_mm + *film.radius_mm);
@@ -151,7 +151,7 @@ raytrace::CameraScene scene_of(const CameraRequest& r, const geometry::Part& par
   scene.lamp.illuminance_lx =
       r.lamp ? r.lamp->intensity.cd(from_aimed(-Vec3::UnitZ(), r.lamp_aim_deg)) / (lamp_m * lamp_m) : r.illuminance_lx;
   scene.lamp.diameter = Angle::from_deg(r.lamp_arcmin / 60.0);
-  // A half space of even luminance L lights a plane with pi L.
+  // A plane illuminated by a half space of uniform luminance L has the illuminance pi L.
   scene.surroundings = {r.ambient_lx / std::numbers::pi, r.backlight_lx / std::numbers::pi};
   const auto [film_x_mm, film_y_mm] = r.film_size_mm();
   if (part.period_mm) scene.film = raytrace::Film{film_x_mm, film_y_mm, r.cylinder_mm};
@@ -195,7 +195,7 @@ double passes_needed(const raytrace::CameraImage& image, const CameraRequest& re
   return image.passes * std::pow(image.relative_noise() / request.noise, 2.0);
 }
 
-/// The picture as its passes come in, each added when those before it are.
+/// Adds the passes of a picture in ascending order, whatever the order in which they are finished.
 class PassLedger : public TaskLedger {
  public:
   PassLedger(const CameraRequest& request, raytrace::CameraImage& image, Progress* progress,
@@ -249,7 +249,7 @@ class PassLedger : public TaskLedger {
   Progress* progress_;
   const std::function<void(const raytrace::CameraImage&)>& after_pass_;
   std::uint32_t goal_;
-  std::size_t most_ahead_;  ///< passes that may wait for one before them
+  std::size_t most_ahead_;  ///< maximum number of passes that are finished before their turn
   std::uint64_t next_ = 0;
   std::set<std::uint64_t> given_back_;
   std::map<std::uint64_t, std::string> ahead_;

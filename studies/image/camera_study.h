@@ -1,6 +1,7 @@
 #pragma once
 
-// Pictures of a part in the light of a lamp as an eye sees it: `retrace image` with a camera.
+// Pictures of a part that is illuminated by a lamp and seen by an eye. This study is behind `retrace image` with a
+// camera.
 
 #include <array>
 #include <cstdint>
@@ -21,31 +22,33 @@ namespace retrace::studies {
 /// Default width and height, in mm, of the sheet that the picture shows for an infinite part.
 inline constexpr std::array<double, 2> kUsualFilmMm = {100.0, 100.0};
 
-/// What is asked of a camera: a picture of the part in the light of a lamp. Positions are those of CameraScene.
+/// Request for a picture of the part in the light of a lamp. Positions are those of CameraScene.
 struct CameraRequest {
-  double distance_m = 10.0;       ///< of lamp and eye from the middle of the face; > 0
-  double observation_deg = 0.33;  ///< by which the eye is above the lamp; 0 to 180
-  double v_deg = 0.0;             ///< where the lamp is, as regulations say it; -90 to 90
+  double distance_m = 10.0;       ///< distance of lamp and eye from the centre of the face; > 0
+  double observation_deg = 0.33;  ///< angle between lamp and eye; the eye is above the lamp; 0 to 180
+  double v_deg = 0.0;             ///< direction of the lamp as in regulations; -90 to 90
   double h_deg = 0.0;
-  double rotation_deg = 0.0;                     ///< of the part about its normal
-  std::optional<std::array<double, 3>> eye_mm;   ///< in place of distance and angles
-  std::optional<std::array<double, 3>> lamp_mm;  ///< likewise
-  double lamp_arcmin = 10.0;                     ///< diameter of its disc; > 0, up to 600
-  double pupil_arcmin = 10.0;                    ///< likewise, of the eye's pupil; >= 0
-  double illuminance_lx = 10.0;                  ///< of the lamp across its beam, at the part; without `lamp`
-  std::optional<PhotometricLamp> lamp;  ///< whose intensity gives it; its axis points at the middle of the face
-  double lamp_aim_deg = 0.0;            ///< by which that axis is turned down; -45 to 45
-  double ambient_lx = 0.0;              ///< of even light from all of the half space in front, on the face
-  double backlight_lx = 0.0;            ///< likewise from behind and round the part
+  double rotation_deg = 0.0;                     ///< rotation of the part about its normal
+  std::optional<std::array<double, 3>> eye_mm;   ///< position of the eye; replaces distance and angles
+  std::optional<std::array<double, 3>> lamp_mm;  ///< position of the lamp; replaces distance and angles
+  double lamp_arcmin = 10.0;                     ///< angular diameter of the lamp; > 0, up to 600
+  double pupil_arcmin = 10.0;                    ///< angular diameter of the eye's pupil; 0 to 600
+  /// Illuminance by the lamp at the part, perpendicular to the light; not used with `lamp`.
+  double illuminance_lx = 10.0;
+  /// Lamp with this intensity distribution; its axis points at the centre of the face.
+  std::optional<PhotometricLamp> lamp;
+  double lamp_aim_deg = 0.0;  ///< angle by which the lamp's axis is rotated downwards; -45 to 45
+  double ambient_lx = 0.0;    ///< illuminance of the face by uniform light from the half space in front
+  double backlight_lx = 0.0;  ///< illuminance by uniform light from behind and around the part
   std::size_t columns = 400;
   std::size_t rows = 300;
-  std::optional<double> field_mm;  ///< what the picture's width shows at the part; none: the part and some margin
+  std::optional<double> field_mm;  ///< width that the picture shows at the part; none: the part and a margin
   /// Width and height, in mm, of the sheet that the picture shows for an infinite part. Default: kUsualFilmMm. Not
   /// allowed for finite parts.
   std::optional<std::array<double, 2>> film_mm;
-  std::optional<double> cylinder_mm;    ///< radius of the cylinder that the sheet is bent over; < 0: its hollow side
-  double noise = 0.02;                  ///< relative, of a pixel, to reach
-  std::optional<std::uint32_t> passes;  ///< in place of it
+  std::optional<double> cylinder_mm;    ///< radius of the cylinder on which the sheet is bent; < 0: on its inside
+  double noise = 0.02;                  ///< relative noise of a pixel to reach
+  std::optional<std::uint32_t> passes;  ///< number of passes; replaces the noise
   std::uint32_t seed = 1;
   raytrace::DiscAverage discs = raytrace::DiscAverage::kernel;
 
@@ -57,8 +60,8 @@ struct CameraResult {
   CameraRequest request;
   raytrace::CameraScene scene;
   raytrace::CameraImage image;
-  std::string engine;            ///< cell, with Embree at borders, or embree
-  double observation_deg = 0.0;  ///< as seen from the middle of the face
+  std::string engine;            ///< "cell" (with Embree at borders) or "embree"
+  double observation_deg = 0.0;  ///< angle as seen from the centre of the face
   double entrance_deg = 0.0;
   double viewing_deg = 0.0;
   double elapsed_s = 0.0;
@@ -66,24 +69,29 @@ struct CameraResult {
   bool complete = true;  ///< false: fewer passes than requested
 };
 
-/// A checked request, ready to run.
+/// Study of a checked request, ready to run.
 class CameraStudy {
  public:
-  static constexpr std::size_t kMostSide = 16384;        ///< pixels along a side
-  static constexpr std::size_t kMostPixels = 1U << 26U;  ///< in all
-  static constexpr std::uint32_t kFewestPasses = 8;      ///< before the noise is looked at
+  static constexpr std::size_t kMostSide = 16384;        ///< maximum number of pixels along a side
+  static constexpr std::size_t kMostPixels = 1U << 26U;  ///< maximum number of pixels
+  /// Minimum number of passes before the noise is compared with the request.
+  static constexpr std::uint32_t kFewestPasses = 8;
   static constexpr std::uint32_t kMostPasses = 65536;
-  static constexpr std::uint32_t kPassesToJudge = 64;  ///< before a noise counts as out of reach
+  /// Minimum number of passes before a noise may be judged unreachable.
+  static constexpr std::uint32_t kPassesToJudge = 64;
 
-  /// \throw InputError for numbers out of range, an eye or a lamp inside the part, polarised light
+  /// \throw InputError for numbers out of range, for an eye or a lamp inside the part, and for polarised light
   CameraStudy(Design design, CameraRequest request);
 
-  /// \param after_pass told of the picture after every pass, one call at a time \param share has the passes traced by
-  /// several processes, each with an equal study; none: by this one
+  /// Computes the picture.
+  /// \param after_pass function that receives the picture after every pass; one call at a time
+  /// \param share function that distributes the passes among several processes with equal studies; none: this process
+  ///        traces all
   CameraResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                    const std::function<void(const raytrace::CameraImage&)>& after_pass = {},
                    const ShareTasks& share = {}) const;
-  /// Traces passes as tasks of their numbers, each on all threads. \pre the study outlives it
+  /// Returns a task that traces passes by their numbers, each on all threads.
+  /// \pre the study exists as long as the task
   ComputeTask passes() const;
 
   const raytrace::CameraScene& scene() const { return scene_; }

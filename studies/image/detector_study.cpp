@@ -18,9 +18,9 @@ using geometry::Rectangle, geometry::Vec2, geometry::Vec3;
 
 constexpr std::size_t kMostPixels = 8192;
 constexpr std::size_t kMostAnglePixels = 2049;
-// What beams leave behind is invisible in a picture at this share of the power.
+// Fraction of the power that beams may leave untraced. It is too small to be visible in a picture.
 constexpr double kTruncatedGoal = 1e-5;
-// Beams up to which the choice is the exact engine: some seconds.
+// Maximum number of beams for which the engine `auto` traces exactly. They take some seconds.
 constexpr std::uint64_t kBeamsOfAutomatic = 1'000'000;
 
 void check(const DetectorRequest& request) {
@@ -58,7 +58,7 @@ raytrace::ReturnFrame frame_of(const raytrace::Illumination& light) {
   return frame;
 }
 
-/// Square pixels, `longer` of them along the longer side.
+/// Returns a grid of square pixels over the face, with `longer` pixels along its longer side.
 raytrace::PixelGrid face_grid(const geometry::Part& part, std::size_t longer) {
   const Rectangle bounds =
       part.period_mm ? Rectangle{Vec2::Zero(), *part.period_mm} : geometry::bounding_box(part.outline);
@@ -115,7 +115,7 @@ DetectorStudy::DetectorStudy(Design design, DetectorRequest request)
 raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const raytrace::DetectorSetting& setting,
                                             std::size_t number, bool exact, Progress* progress,
                                             const Cancellation* cancel) const {
-  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
+  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd, so that all wavelengths have different seeds
   const raytrace::Illumination illumination = illumination_of(design_, request_);
   if (!exact)
     return raytrace::sampled_detector_maps(
@@ -161,7 +161,7 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
     trace_all();
   } catch (const BudgetError&) {
     if (!exact || request_.engine == Engine::exact) throw;
-    exact = false;  // too many beams
+    exact = false;  // the exact engine needs too many beams
     attempt.begin_again();
     trace_all();
   }

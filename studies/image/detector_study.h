@@ -1,6 +1,6 @@
 #pragma once
 
-// Maps of the light that comes back over face and angles: `retrace image` with a detector.
+// Maps of the returned light over the face and over angles. This study is behind `retrace image` with a detector.
 
 #include <cstdint>
 #include <optional>
@@ -17,15 +17,15 @@ namespace retrace::studies {
 /// Default number of rays for a detector.
 inline constexpr std::uint64_t kUsualDetectorRays = std::uint64_t{1} << 22;
 
-/// What is asked of a detector: maps of the light that comes back, for one direction of incidence.
+/// Request for a detector: maps of the returned light for one direction of incidence.
 struct DetectorRequest {
   double incidence_deg = 0.0;  ///< in (-90, 90)
   double azimuth_deg = 0.0;
-  std::size_t pixels = 400;           ///< along the longer side of the face; 1 to 8192
-  std::size_t angle_pixels = 201;     ///< along either side of the angular map; 1 to 2049
-  double window_deg = 1.0;            ///< half width of the angular map; > 0, up to 90
+  std::size_t pixels = 400;           ///< pixels along the longer side of the face; 1 to 8192
+  std::size_t angle_pixels = 201;     ///< pixels along each side of the angular map; 1 to 2049
+  double window_deg = 1.0;            ///< half-width of the angular map; > 0, up to 90
   Engine engine = Engine::automatic;  ///< neither stochastic nor cell
-  std::optional<double> cutoff;       ///< exact engine: least power of a beam, as a share of the incident
+  std::optional<double> cutoff;       ///< exact engine: minimum power of a beam, as a fraction of the incident power
   std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays; empty: kUsualDetectorRays
   std::uint32_t seed = 1;
 };
@@ -36,20 +36,22 @@ struct DetectorResult {
   std::string engine;
   double acceptance_half_angle_deg = 0.0;
   raytrace::PixelGrid face{{geometry::Vec2::Zero(), geometry::Vec2::Ones()}, 1, 1};
-  bool is_period = false;  ///< the face is one period of an endless part
+  bool is_period = false;  ///< true: the face is one period of an infinite part
   raytrace::DetectorMaps maps;
   double elapsed_s = 0.0;
   std::vector<std::string> warnings;
   bool complete = true;
 };
 
-/// A checked request, ready to run.
+/// Study of a checked request, ready to run.
 class DetectorStudy {
  public:
-  /// \throw InputError for numbers out of range, an unknown material, light or facets that the engine cannot trace
+  /// \throw InputError for numbers out of range, an unknown material, and for light or facets that the engine cannot
+  /// trace
   DetectorStudy(Design design, DetectorRequest request);
 
-  /// \throw BudgetError if power was lost, or too many beams are needed
+  /// Computes the maps.
+  /// \throw BudgetError if power was lost, or if too many beams are needed
   DetectorResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
  private:

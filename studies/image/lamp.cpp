@@ -13,7 +13,7 @@ namespace {
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kTurnDeg = 360.0;
 
-/// Integral of a + (b - a) (t - from) / (to - from) times cos t over t = from .. to, in rad.
+/// Returns the integral of f(t) cos(t) over t = from .. to, in rad. f is linear with f(from) = a and f(to) = b.
 double cosine_integral(double from, double to, double a, double b) {
   const double slope = (b - a) / (to - from);
   return b * std::sin(to) - a * std::sin(from) + slope * (std::cos(to) - std::cos(from));
@@ -61,7 +61,8 @@ double LuminousIntensity::cd(const geometry::Vec3& direction) const {
                    (plane_deg - planes_deg_[k - 1]) / (planes_deg_[k] - planes_deg_[k - 1]));
 }
 
-/// Per rad of turn of the plane: rings of gamma are as long as its sine, those of Y and H as their cosine.
+/// Returns the luminous flux per radian of rotation of a plane. The length of a ring is proportional to the sine of
+/// gamma, or to the cosine of the angle in planes of type A and B.
 double LuminousIntensity::flux_of_plane(std::size_t plane) const {
   const double from_axis_deg = kind_ == Planes::c ? 90.0 : 0.0;
   const double* const row = cd_.data() + plane * angles_deg_.size();

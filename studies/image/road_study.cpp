@@ -23,7 +23,7 @@ namespace {
 using geometry::Vec2, geometry::Vec3, std::numbers::pi;
 
 constexpr std::size_t kMostViews = 6;
-// Points of a pixel along either side.
+// Number of sample points of a pixel along each side.
 constexpr int kFiner = 4;
 
 // Diffuse reflectances, typical of dark paint, glass, tyres, asphalt, and white paint on plates and lines.
@@ -31,8 +31,8 @@ constexpr double kPaint = 0.025, kGlass = 0.004, kTyre = 0.012, kAsphalt = 0.05,
 constexpr double kNightSky = 0.002;   ///< cd/m^2, overcast over inhabited land
 constexpr double kNightLight = 0.02;  ///< lx, all round
 
-/// Scattered light in the eye, as a share of the illuminance at the pupil per steradian: 10 / theta^2 with theta in
-/// degrees (W. S. Stiles 1929, L. L. Holladay 1927; CIE 146:2002), of light from theta > 0.2 degrees.
+/// Returns the luminance of light scattered in the eye, per illuminance at the pupil, in 1/sr. It is 10 / theta^2 with
+/// theta in degrees (W. S. Stiles 1929, L. L. Holladay 1927; CIE 146:2002). Below 0.2 degrees, it is constant.
 double veil_per_lx(double theta_deg) {
   constexpr double kLeast = 0.2;
   return 10.0 / std::pow(std::max(theta_deg, kLeast), 2.0);
@@ -62,7 +62,7 @@ Vec3 reflector_place(const RoadScene& s, std::size_t side) {
   return {side == 0 ? -s.reflector_half_gap : s.reflector_half_gap, s.reflector_height, 0.0};
 }
 
-/// The rear of the car by the reflectance of its parts; nothing beside it.
+/// Returns the reflectance of the car's rear at a point. Returns nothing beside the car.
 std::optional<double> car_reflectance(const RoadScene& s, const Vec2& p) {
   const double half = 0.5 * s.car_width;
   for (const double side : {-1.0, 1.0})
@@ -70,9 +70,9 @@ std::optional<double> car_reflectance(const RoadScene& s, const Vec2& p) {
   const double sill = 0.22;
   const double shoulder = 0.92;
   if (p.y() < sill || p.y() > s.car_tall) return std::nullopt;
-  // The cabin narrows towards the roof.
+  // The cabin becomes narrower towards the roof.
   const double slope = p.y() > shoulder ? 0.28 * (p.y() - shoulder) / (s.car_tall - shoulder) : 0.0;
-  // Round corners.
+  // The corners are round.
   const double corner = 0.12;
   const double down = std::max(0.0, sill + corner - p.y());
   const double up = std::max(0.0, p.y() - s.car_tall + corner);
@@ -93,7 +93,8 @@ double road_reflectance(const RoadScene& s, const Vec3& p) {
   return on_edge || on_middle ? kWhite : kAsphalt;
 }
 
-/// Intensity of a headlamp towards a place: of a dipped beam a tenth above the horizon, or what its file says.
+/// Returns the intensity of a headlamp towards a point. Without a lamp file, it is that of a dipped beam, which falls
+/// to one tenth above the horizon.
 double intensity(const RoadRequest& r, const Vec3& lamp, const Vec3& at) {
   const Vec3 way = at - lamp;
   if (r.lamp) return r.lamp->intensity.cd(from_aimed(way, r.lamp_aim_deg));
@@ -101,7 +102,7 @@ double intensity(const RoadRequest& r, const Vec3& lamp, const Vec3& at) {
   return way.z() < 0.0 ? std::clamp(0.55 - 1.5 * rise_deg, 0.1, 1.0) * r.lamp_cd : 0.0;
 }
 
-/// Illuminance of a surface by the headlamps and the night.
+/// Returns the illuminance of a surface by the headlamps and the night sky.
 double illuminance(const RoadRequest& r, const std::array<Vec3, 2>& lamps, const Vec3& at, const Vec3& normal) {
   double sum = kNightLight;
   for (const Vec3& lamp : lamps) {
@@ -135,7 +136,7 @@ Seen seen_along(const RoadScene& s, const RoadRequest& r, const RoadView& view, 
   return {road_reflectance(s, ground) / pi * illuminance(r, lamps, ground, Vec3::UnitY()), 0.0};
 }
 
-/// Adds the light that the eye scatters of the reflectors.
+/// Adds the veil of light from the reflectors that is scattered in the eye.
 void add_veil(const RoadScene& s, const RoadRequest& r, RoadView& view, double degrees_per_pixel,
               const std::function<Vec2(const Vec3&)>& pixel_of) {
   const Vec3 eye = eye_at(s, view.distance_m);
@@ -178,7 +179,7 @@ void check(const RoadRequest& r) {
 void draw_road(const RoadScene& s, const RoadRequest& r, RoadView& view) {
   const std::array<Vec3, 2> lamps = lamps_at(s, view.distance_m);
   const Vec3 eye = eye_at(s, view.distance_m);
-  // Level, towards the middle of the car; the horizon a little above the middle of the picture.
+  // The view is horizontal and towards the centre of the car. The horizon is a little above the centre of the picture.
   const double pixel = 2.0 * std::tan(0.5 * r.field_deg * pi / 180.0) / static_cast<double>(r.columns);
   const double middle_row = 0.42 * static_cast<double>(r.rows);
   const double half_columns = 0.5 * static_cast<double>(r.columns);
@@ -235,7 +236,7 @@ PhotometryRequest photometry_at(const RoadRequest& r, const RoadScene& s, double
   return request;
 }
 
-/// Exactly, or by Monte Carlo where that takes too many beams.
+/// Measures with the exact engine, or by Monte Carlo if the exact engine needs too many beams.
 std::optional<std::vector<PhotometerReading>> measured(Photometer& photometer,
                                                        const std::vector<PhotometerSetting>& settings,
                                                        Progress* progress, const Cancellation* cancel) {
@@ -265,7 +266,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
     const Vec3 eye = eye_at(result.scene, distance_m);
     std::vector<PhotometerSetting> settings;
     for (const auto& [side, lamp] : {Pair{0, 0}, Pair{0, 1}, Pair{1, 0}, Pair{1, 1}}) {
-      // The reflector as it hangs on the car: its frame is that of the scene.
+      // The reflector is mounted on the car, so that its frame is that of the scene.
       const Vec3 reflector = reflector_place(result.scene, side);
       settings.push_back(setting_of({(lamps[lamp] - reflector).normalized(), (eye - reflector).normalized()}));
     }
@@ -285,7 +286,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
       reflector.observation_deg[lamp] = settings[k].observation_deg.front();
       reflector.r_a[lamp] = (*readings)[k].r_a.front();
       const Vec3 place = reflector_place(result.scene, side);
-      // Without a file lamp_cd is what they send to the reflectors themselves.
+      // Without a lamp file, `lamp_cd` is the intensity towards the reflectors.
       const double cd = request_.lamp ? intensity(request_, lamps[lamp], place) : request_.lamp_cd;
       reflector.illuminance_lx[lamp] = cd / (lamps[lamp] - place).squaredNorm();
       reflector.luminance += (*readings)[k].r_l.front() * reflector.illuminance_lx[lamp];

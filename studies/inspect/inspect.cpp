@@ -18,10 +18,13 @@
 namespace retrace::studies {
 namespace {
 
-// Boundaries of more elements than this are checked on a smaller part of the same kind: CGAL needs seconds beyond.
+// Maximum number of elements whose boundary is checked completely. For more elements, a smaller part of the same kind
+// is checked, because CGAL would need many seconds.
 constexpr double kElementsToCheck = 1000.0;
 
-/// A finite part of the same elements that CGAL checks quickly: the design itself if it is small.
+/// Returns a finite part with the same elements that CGAL can check quickly. If the design is small, returns the design
+/// itself.
+/// \param is_whole receives true if the part is the design itself
 geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_mm, bool& is_whole) {
   geometry::PartSpec small = spec;
   is_whole = spec.array.arrangement == geometry::Arrangement::single;
@@ -45,8 +48,8 @@ geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_
 
 std::string finding_of(const geometry::Part& part) {
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
-  // Errors of angle and cant may leave neighbours at such heights that the part touches itself where more than three
-  // cells meet.
+  // With errors of angle or cant, neighbouring elements may differ in height. The part may then touch itself where more
+  // than three cells meet.
   return report.ok()           ? "closed, free of self-intersections"
          : !report.is_closed   ? "not closed"
          : !report.is_manifold ? "closed, touches itself along edges"
@@ -67,7 +70,7 @@ double least_index(const std::vector<SpectralOptics>& light) {
   return std::min_element(light.begin(), light.end(), smaller)->optics.index;
 }
 
-/// Of what lies behind the elements, or behind those of them that are dry.
+/// Returns the refractive index of the medium behind the elements, or behind the dry elements if some are wet.
 double back_index(const Inspection& result) {
   return result.light.front().optics.back_index;
 }
@@ -78,7 +81,7 @@ double mean_index(const std::vector<SpectralOptics>& light) {
   return mean;
 }
 
-/// What is unusual about the facets, so that total reflection ends early; empty if nothing is.
+/// Returns the properties of the elements that reduce the range of total reflection. Empty if there are none.
 std::string circumstances(const Inspection& result) {
   std::string text;
   if (back_index(result) > 1.0) text += fmt::format(", {} behind them", shortest(back_index(result)));
@@ -87,7 +90,8 @@ std::string circumstances(const Inspection& result) {
   return text;
 }
 
-/// Where light on the other side of the normal is totally reflected after all; empty if nowhere.
+/// Returns the incidence at which total reflection begins for light from the opposite azimuth. Empty if it never
+/// begins.
 std::string where_it_begins(const Inspection& result) {
   const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element)) return {};
@@ -103,7 +107,8 @@ std::string of_turned_elements(const geometry::PartSpec& part) {
                                                                      : "";
 }
 
-/// Says where total reflection ends in cube corners that do worse than upright ones in air.
+/// Adds a warning about the limit of total reflection, for cube corners that are canted or have a medium other than air
+/// behind them.
 void tell_early_end(Inspection& result) {
   const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element) || circumstances(result).empty()) return;
@@ -113,15 +118,15 @@ void tell_early_end(Inspection& result) {
       least_index(result.light), circumstances(result), of_turned_elements(part)));
 }
 
-/// Says so if light that falls in along the normal is not totally reflected, or not all of it.
+/// Adds a warning if light at normal incidence is not totally reflected at some wavelengths.
 void warn_of_lost_reflection(Inspection& result) {
   if (!result.design.needs_total_reflection()) return;
-  if (result.coating.facets && result.coating.facets->stack.absorbs()) return;  // they reflect by other means
+  if (result.coating.facets && result.coating.facets->stack.absorbs()) return;  // the facets reflect by their coating
   if (result.tir_limit_deg) return tell_early_end(result);
   const std::string lost =
       fmt::format("{}: no total reflection at the facets at normal incidence", result.design.source_name());
   double share = 0.0;
-  double from_nm = 0.0;  // indices fall with the wavelength, but need not
+  double from_nm = 0.0;  // range of the wavelengths without total reflection
   double to_nm = 0.0;
   for (const SpectralOptics& at : result.light) {
     if (tir_limit_deg(result.design.part(), at.optics.index, at.optics.back_index)) continue;
@@ -140,7 +145,8 @@ void warn_of_lost_reflection(Inspection& result) {
                                           circumstances(result), ends));
 }
 
-/// Of elements that stand at many angles only the depth is that of each; the part is as deep as its base as well.
+/// Adds the report on the base. The depth of an element is measured along its own axis; the depth of the part includes
+/// that of the base.
 void add_base(Inspection& result, const geometry::Part& part) {
   const geometry::PartSpec& spec = part.spec;
   SubstrateReport report;
@@ -207,6 +213,7 @@ void add_zones(Inspection& result, const OpticalModel& model) {
                         : "not checked: more than 1000 elements";
 }
 
+/// Returns the report on the elements that have another medium behind them.
 /// \pre model.wet_elements
 WetReport report_wet_back(const Design& design, const OpticalModel& model) {
   WetReport wet{model.wet_elements->count(), model.wet_elements->of_all(), {}};

@@ -155,11 +155,12 @@ void Evaluator::judge(Variant& variant) const {
 
 namespace {
 
-/// The parameter of RRE that a parameter of a study is, and how much of it one unit is.
+/// Returns the RRE parameter that a parameter of a study corresponds to, and its change per unit of the study's
+/// parameter.
 std::optional<std::pair<RreParameter, double>> rre_parameter(const Parameter& parameter, const Design& design) {
   constexpr double deg_per_arcmin = 1.0 / 60.0;
   const std::set<std::string> varied(parameter.keys.begin(), parameter.keys.end());
-  // An error of the angle between the facets of a prism is one of its apex.
+  // For a prism, the error of the angle between the facets is an error of the apex angle.
   const bool is_prism = std::holds_alternative<geometry::RtpElement>(design.part().element);
   if (varied == std::set<std::string>{"surface.dihedral_error_arcmin"})
     return {{is_prism ? RreParameter::apex_angle_deg : RreParameter::dihedral_error_deg, deg_per_arcmin}};

@@ -1,6 +1,7 @@
 #pragma once
 
-// Computes and judges candidates for all stages of a search, each point only once: what a store has is looked up.
+// Evaluates the designs of all stages of a search. Each design is computed only once; results in the store are used
+// again.
 
 #include <map>
 #include <set>
@@ -11,31 +12,34 @@
 
 namespace retrace::studies {
 
-/// Ends an optimisation that was cancelled.
+/// Thrown to end an optimization that was cancelled.
 struct Interrupted {};
 
-/// Looks designs up in the store, computes what it lacks, and judges them.
+/// Evaluates designs: takes their results from the store or computes them, and checks the constraints.
 class Evaluator {
  public:
   Evaluator(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
             const Cancellation* cancel);
 
-  /// The designs, in the order given; several are computed at a time. \throw Interrupted, OutputError
+  /// Evaluates designs and returns the results in the given order. Several designs are computed in parallel.
+  /// \throw Interrupted if the search was cancelled
+  /// \throw OutputError if a result cannot be stored
   std::vector<Variant> look_at(const std::vector<PointValues>& designs);
   Variant look_at(const PointValues& design) { return look_at(std::vector<PointValues>{design}).front(); }
   /// Adds designs that another search of this study has evaluated. They are not evaluated again.
   void take_in(const std::vector<Variant>& seen);
 
-  /// Everything looked at so far, in the order of its first look.
+  /// Returns all designs evaluated so far, in the order of their first evaluation.
   const std::vector<Variant>& seen() const { return seen_; }
   /// Returns the number of designs that failed because the budget of memory or beams was exhausted. Such designs are
   /// not stored, so that a resumed search with a larger budget evaluates them again.
   std::size_t ran_out() const { return ran_out_; }
   /// Returns the error message of the first design that exhausted the budget. Empty if there is none.
   const std::string& ran_out_because() const { return ran_out_because_; }
-  /// What a quantity came to; nothing if it has no value.
+  /// Returns the value of a quantity, or nothing if the quantity has no value for this design.
   std::optional<double> value(const Variant& variant, const std::string& quantity) const;
-  /// Slope of the objective by a parameter, where every quantity in it knows one.
+  /// Returns the slope of the objective by a parameter. Returns nothing if a quantity of the objective has no computed
+  /// slope.
   std::optional<double> slope(const PointValues& design, std::size_t parameter) const;
 
  private:
@@ -49,8 +53,8 @@ class Evaluator {
   ResultStore& store_;
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
-  std::map<std::string, std::size_t> numbers_;  ///< in seen_, by values
-  std::map<std::string, StoredPoint> stored_;   ///< of a run that is resumed
+  std::map<std::string, std::size_t> numbers_;  ///< index in seen_, by parameter values
+  std::map<std::string, StoredPoint> stored_;   ///< points of an earlier run, by parameter values
   std::vector<Variant> seen_;
   std::set<std::uint64_t> taken_;  ///< numbers of the points in the store
   std::size_t ran_out_ = 0;

@@ -17,13 +17,13 @@
 namespace retrace::studies {
 namespace {
 
-/// Combinations of discrete values that are refined.
+/// Number of combinations of discrete values that are refined.
 constexpr std::size_t kRefined = 3;
-/// What rounder numbers may cost, as a share of the objective.
+/// Maximum loss by rounding to fewer digits, as a fraction of the objective.
 constexpr double kForRoundness = 1e-6;
-/// What a cheaper design may cost, likewise.
+/// Maximum loss by choosing a cheaper design, as a fraction of the objective.
 constexpr double kNearlyAsGood = 0.01;
-/// What it must gain, as a share of what the chosen one has.
+/// Minimum gain of a cheaper design, as a fraction of the value of the chosen design.
 constexpr double kWorthIt = 1e-3;
 constexpr std::uint64_t kMostCombinations = 10'000;
 constexpr const char* kStoreKind = "retrace.optimum/1";
@@ -46,7 +46,7 @@ bool is_better(const Variant& a, const Variant& b) {
   return *a.objective > *b.objective;
 }
 
-/// The designs of the first look.
+/// Designs of the first scan.
 class Scan {
  public:
   Scan(const Study& study, const OptimiseRequest& request) : study_(study), request_(request) {
@@ -54,10 +54,10 @@ class Scan {
       if (study.parameters[k].interval) continuous_.push_back(k);
   }
 
-  /// Parameters with an interval.
+  /// Returns the indices of the parameters with an interval.
   const std::vector<std::size_t>& continuous() const { return continuous_; }
 
-  /// Discrete values, each with every other; continuous ones are set to their middle.
+  /// Returns all combinations of discrete values. Continuous parameters are set to the middle of their intervals.
   std::vector<PointValues> combinations() const {
     std::vector<PointValues> all(1);
     for (const Parameter& parameter : study_.parameters) {
@@ -87,7 +87,8 @@ class Scan {
     return design;
   }
 
-  /// A line from end to end for one continuous parameter; for more, their corners and Sobol points.
+  /// Returns the designs of the scan for one combination of discrete values. For one continuous parameter, they are
+  /// equally spaced. For several, they are the corners of the intervals and Sobol points.
   std::vector<PointValues> of(const PointValues& combination) const {
     const std::size_t dimensions = continuous_.size();
     if (dimensions == 0) return {combination};
@@ -114,7 +115,7 @@ class Scan {
   std::vector<std::size_t> continuous_;
 };
 
-/// All of them.
+/// All designs of the first scan, as points of a sweep.
 class ScannedPoints : public PointPlan {
  public:
   ScannedPoints(const Study& study, const OptimiseRequest& request) {
@@ -129,7 +130,7 @@ class ScannedPoints : public PointPlan {
   std::vector<PointValues> points_;
 };
 
-/// One search, from the first look to the last.
+/// Search for the best design, from the first scan to the result.
 class Search {
  public:
   Search(const Study& study, const OptimiseRequest& request, Evaluator& evaluator)
@@ -139,7 +140,7 @@ class Search {
         scan_(study, request),
         continuous_(scan_.continuous()) {}
 
-  /// The best design there is; nothing if none is feasible.
+  /// Runs the search. Returns the best design, or nothing if none is feasible.
   std::optional<Variant> run(Optimum& optimum) {
     std::vector<Variant> starts;
     for (const PointValues& combination : scan_.combinations()) {
@@ -159,7 +160,7 @@ class Search {
     return best ? std::optional(rounded(*best)) : std::nullopt;
   }
 
-  /// The designs beside the best one, each by one step of one parameter.
+  /// Returns the neighbours of the best design. Each differs from it by one step of one parameter.
   std::vector<Rejected> neighbours(const Variant& best) {
     std::vector<Rejected> found;
     for (std::size_t k = 0; k < study_.parameters.size(); ++k)
@@ -182,7 +183,8 @@ class Search {
   }
 
  private:
-  /// Where feasibility ends between two designs of a line, the last feasible one may be the best: it is looked at.
+  /// Searches for the limits of feasibility along a line of designs, by bisection. The last feasible design before a
+  /// limit may be the best.
   void look_at_edges(const std::vector<Variant>& line) {
     if (continuous_.size() != 1) return;
     for (std::size_t k = 0; k + 1 < line.size(); ++k)
@@ -203,7 +205,7 @@ class Search {
     }
   }
 
-  /// The design in as few digits as serve as well.
+  /// Returns the design rounded to as few digits as possible without a loss of the objective.
   Variant rounded(const Variant& best) {
     constexpr int most_digits = 9;
     for (int digits = 1; digits <= most_digits && !continuous_.empty(); ++digits) {
@@ -242,7 +244,7 @@ class Search {
   const std::vector<std::size_t>& continuous_;
 };
 
-/// Why a design was not chosen.
+/// Returns why a design was not chosen.
 std::string why_not(const Variant& variant, const Variant& best, const OptimiseRequest& request,
                     const Evaluator& evaluator) {
   if (variant.failed) return variant.reason;
@@ -262,7 +264,8 @@ std::string why_not(const Variant& variant, const Variant& best, const OptimiseR
   return fmt::format("objective lower by {:.3g}", less);
 }
 
-/// The best of the designs that only some constraints keep from being chosen. \param excluded whether a design is one
+/// Returns the best of the designs that were not chosen because of some constraints.
+/// \param excluded function that returns true for such a design
 template <class Excluded>
 std::optional<Variant> best_excluded(const Evaluator& evaluator, Excluded excluded) {
   std::optional<Variant> found;
@@ -286,7 +289,8 @@ std::vector<Rejected> excluded_designs(const OptimiseRequest& request, const Eva
   return rejected;
 }
 
-/// Values of the axes of the front, signed so that more is better; nothing if one has no value.
+/// Returns the values of the front's axes, with signs so that larger is better. Returns nothing if a quantity has no
+/// value.
 std::optional<std::vector<double>> merits(const Variant& variant, const OptimiseRequest& request,
                                           const Evaluator& evaluator) {
   std::vector<double> merits;
@@ -298,7 +302,7 @@ std::optional<std::vector<double>> merits(const Variant& variant, const Optimise
   return merits;
 }
 
-/// Whether a is at least as good in everything and better in something.
+/// Returns true if `a` is at least as good as `b` on every axis and better on one.
 bool dominates(const std::vector<double>& a, const std::vector<double>& b) {
   bool better = false;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -314,7 +318,8 @@ std::vector<Variant> entrance_of(const OptimiseRequest& request, const Evaluator
     if (!variant.feasible()) continue;
     if (auto m = merits(variant, request, evaluator)) open.emplace_back(std::move(*m), &variant);
   }
-  // Best first on the first axis: what dominates a design comes before it.
+  // The designs are sorted by the first axis, the best first, so that a design comes after all designs that dominate
+  // it.
   std::stable_sort(open.begin(), open.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Variant> front;
   std::vector<std::vector<double>> kept;
@@ -327,7 +332,8 @@ std::vector<Variant> entrance_of(const OptimiseRequest& request, const Evaluator
   return front;
 }
 
-/// Of the front, the design within 1 % of the objective that is best on an axis that the objective does not have.
+/// Returns a design of the front that loses at most 1 % of the objective and is best on an axis that is not part of the
+/// objective.
 std::optional<Variant> cheaper_than(const Optimum& optimum, const OptimiseRequest& request,
                                     const Evaluator& evaluator) {
   const auto axis = std::find_if(request.front.begin(), request.front.end(), [&](const FrontAxis& a) {
@@ -347,7 +353,7 @@ std::optional<Variant> cheaper_than(const Optimum& optimum, const OptimiseReques
   return is_worth_it ? found : std::nullopt;
 }
 
-/// What keeps every design from being feasible.
+/// Returns why no design is feasible.
 std::string why_none(const OptimiseRequest& request, const Evaluator& evaluator) {
   std::vector<std::size_t> broken_by(request.constraints.size(), 0);
   std::vector<double> nearest(request.constraints.size(), std::numeric_limits<double>::infinity());
@@ -387,7 +393,7 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
     return;
   }
   std::vector<Rejected> neighbours = searching.neighbours(*optimum.best);
-  // A neighbour may turn out to be better than what the search found.
+  // A neighbour may be better than the result of the search. It then replaces the result.
   if (const auto best = searching.best_seen();
       *best->objective > *optimum.best->objective + kForRoundness * std::abs(*optimum.best->objective)) {
     optimum.best = best;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Searches the parameters of a study for the best candidate under constraints, and how far each parameter may be off
-// before the objective suffers.
+// Searches the parameters of a study for the best design under constraints. Also computes by how much each parameter
+// may deviate before the objective becomes worse.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,69 +18,70 @@
 
 namespace retrace::studies {
 
-/// What is to be as large as it can be: a weighted sum of quantities, negative weights for what is to be small.
+/// Objective that is maximized: a weighted sum of quantities. Negative weights minimize a quantity.
 struct Objective {
   std::vector<std::pair<std::string, double>> weights;
-  bool is_least = false;  ///< the least of the weighted quantities, in place of their sum
+  bool is_least = false;  ///< true: the minimum of the weighted quantities replaces their sum
 };
 
-/// A quantity of the Pareto front.
+/// Axis of the Pareto front.
 struct FrontAxis {
   std::string quantity;
-  bool largest = true;  ///< is best
+  bool largest = true;  ///< true: large values are good; false: small values are good
 };
 
 struct OptimiseRequest {
   Objective objective;
   std::vector<Constraint> constraints;
   std::vector<FrontAxis> front;
-  std::size_t scan = 65;              ///< designs of the first look, for each combination of discrete values
+  std::size_t scan = 65;              ///< number of designs in the first scan, for each combination of discrete values
   std::vector<std::string> bands_of;  ///< keys whose tolerance bands are requested
   double band_loss = 0.01;            ///< relative loss of the objective that ends a band
 };
 
-/// A design that was looked at.
+/// Design that has been evaluated.
 struct Variant {
-  std::uint64_t number = 0;  ///< of its point in the store
-  PointValues values;        ///< of the parameters, in their order
+  std::uint64_t number = 0;  ///< number of its point in the store
+  PointValues values;        ///< values of the parameters, in the order of the study
   bool failed = false;
-  std::string reason;  ///< why it failed
+  std::string reason;  ///< error message if the computation failed
   std::vector<StoredOutput> outputs;
-  std::optional<double> objective;  ///< none if it failed or a quantity of it has no value
-  std::vector<std::size_t> broken;  ///< constraints, by number
+  std::optional<double> objective;  ///< none if the computation failed or a quantity has no value
+  std::vector<std::size_t> broken;  ///< indices of the violated constraints
   bool feasible() const { return objective.has_value() && broken.empty(); }
 };
 
-/// A design that was not chosen, and why.
+/// Design that was not chosen, and the reason.
 struct Rejected {
   Variant variant;
-  std::string role;  ///< how it stands to the chosen one
+  std::string role;  ///< relation to the chosen design
   std::string why;
 };
 
-/// How far a key may be off before the objective has lost `band_loss`.
+/// Range of a key within which the relative loss of the objective is below `band_loss`.
 struct ToleranceBand {
   std::string key;
   double nominal = 0.0;
-  std::optional<double> down;  ///< largest loss-free change to smaller values; none: no loss that far, or not possible
+  /// Maximum decrease of the value; none: no loss within the tested range, or no decrease is possible.
+  std::optional<double> down;
   std::optional<double> up;
 };
 
 struct Optimum {
   std::optional<Variant> best;  ///< none if no design is feasible
-  std::string none_because;     ///< which constraint excludes all
-  std::vector<Variant> front;   ///< feasible designs that no other dominates
+  std::string none_because;     ///< constraint that excludes all designs
+  std::vector<Variant> front;   ///< feasible designs that no other design dominates
   std::vector<Rejected> rejected;
-  std::optional<Variant> cheaper;  ///< within 1 % of the objective, the best of the front's other axes
+  std::optional<Variant> cheaper;  ///< loses at most 1 % of the objective and is best on the front's other axes
   std::vector<ToleranceBand> bands;
-  std::string method;  ///< of the refinement: "exact slopes" or "no slopes"
+  std::string method;  ///< method of the refinement: "exact slopes" or "no slopes"
   std::size_t evaluations = 0;
   std::size_t ran_out = 0;      ///< number of designs that failed because the budget of memory or beams was exhausted
   std::string ran_out_because;  ///< error message of the first of the designs that `ran_out` counts
   bool complete = true;
 };
 
-/// Told how many designs have been looked at.
+/// Receives the number of designs that have been evaluated.
 class OptimiseObserver {
  public:
   virtual ~OptimiseObserver() = default;
@@ -96,14 +97,15 @@ class OptimiseObserver {
 
 StoreLayout optimise_layout(const Study& study);
 
-/// The designs of the first look as points of a sweep, for who wants them in the store before the search: it finds them
-/// there. \throw InputError for too many combinations of discrete values
+/// Returns the designs of the first scan as points of a sweep, so that they can be computed before the search. The
+/// search then finds them in the store.
+/// \throw InputError for too many combinations of discrete values
 Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 
-/// Searches for the best design. The search scans every combination of discrete values and a grid of continuous values.
-/// It then follows the edges of the feasible region and refines the best designs within bounds and constraints.
-/// Finally, values are rounded if this does not make the design worse. Designs that are already in the store are not
-/// computed again, and the result is the same.
+/// Searches for the best design. The search scans every combination of discrete values and a set of continuous values.
+/// For a single continuous parameter, limits of feasibility are then located by bisection. The best designs are refined
+/// within bounds and constraints. Finally, values are rounded if this does not make the design worse. Designs that are
+/// already in the store are not computed again, and the result is the same.
 /// \throw OutputError as ResultStore::record()
 Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
                  const Cancellation* cancel);

@@ -16,15 +16,15 @@ double share_of(const Interval& interval, double value) {
 
 namespace {
 
-/// A slope costs as much as a hundred looks.
+/// Maximum number of slopes. A slope takes about as much time as a hundred evaluations.
 constexpr int kMostSlopes = 12;
 constexpr double kSmallestStep = 1e-8;
 constexpr double kDifference = 1e-6;
 
-/// No slope where one was needed.
+/// Thrown if a required slope is not available.
 struct NoSlope {};
 
-/// The design as a vector of shares of the continuous parameters' intervals.
+/// Design as a vector of the continuous parameters, each as a fraction of its interval.
 class Problem {
  public:
   Problem(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Variant& from)
@@ -37,7 +37,7 @@ class Problem {
       if (study.parameters[k].interval) continuous_.push_back(k);
   }
 
-  std::exception_ptr thrown;  ///< by the last evaluation that NLopt requested
+  std::exception_ptr thrown;  ///< exception of the last evaluation for NLopt
 
   std::size_t dimensions() const { return continuous_.size(); }
 
@@ -70,7 +70,7 @@ class Problem {
     return variant.objective.value_or(fallback_);
   }
 
-  /// What is <= 0 where the constraint's limit on one side holds.
+  /// Returns by how much a design exceeds one limit of a constraint; <= 0 if the limit is satisfied.
   double excess(const std::vector<double>& shares, const Constraint& constraint, bool most) {
     const std::optional<double> value = evaluator_.value(evaluator_.look_at(design(shares)), constraint.quantity);
     if (!value) return 1.0;
@@ -86,7 +86,7 @@ class Problem {
   std::vector<std::size_t> continuous_;
 };
 
-/// A constraint on one side, for NLopt.
+/// One limit of a constraint, as data for NLopt.
 struct Side {
   Problem* problem = nullptr;
   const Constraint* constraint = nullptr;
@@ -104,7 +104,8 @@ double excess(const Side& side, const std::vector<double>& shares, std::vector<d
   return here;
 }
 
-/// NLopt takes function pointers and swallows exceptions: they are kept, and the search is stopped.
+/// Runs a function that NLopt calls. NLopt discards exceptions, so that an exception is stored and the search is
+/// stopped.
 template <class Work>
 double kept(Problem& problem, Work work) {
   try {
@@ -151,7 +152,7 @@ void run(nlopt::algorithm algorithm, const OptimiseRequest& request, Problem& pr
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {
-    // NLopt gave up: what it looked at counts all the same.
+    // NLopt has failed. The designs that it has evaluated are used nevertheless.
   }
   if (problem.thrown) std::rethrow_exception(std::exchange(problem.thrown, nullptr));
 }
@@ -168,7 +169,7 @@ bool refine(const Study& study, const OptimiseRequest& request, Evaluator& evalu
   } catch (const NoSlope&) {
     has_slopes = false;
   }
-  // Slopes find the top of one smooth piece; a look without them goes over its kinks.
+  // Methods with slopes find the maximum of a smooth function. A second search without slopes also handles kinks.
   run(nlopt::LN_COBYLA, request, problem, limits);
   return has_slopes;
 }

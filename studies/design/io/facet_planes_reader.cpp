@@ -21,8 +21,11 @@ using geometry::ElementPlanes, geometry::HeightPlane, geometry::Vec2;
 
 constexpr std::array<std::string_view, 6> kColumns = {"x_mm", "y_mm", "facet", "height_mm", "x_slope", "y_slope"};
 constexpr NumberRange kValue{.low = -1e6, .high = 1e6};
-/// Number of the first flare. Flares are the facets that follow the three facets of an element.
+/// First facet number of flares. Facets 0 to 2 belong to an element. Flares 3 to 5 replace a missing hexagonal element:
+/// the cavities of its neighbours extend over its corners.
 constexpr std::size_t kFlares = 3;
+/// First facet number of caps. A cap is the surface that a chisel with a straight edge leaves over the apex of an
+/// element.
 constexpr std::size_t kCaps = 6;
 constexpr double kMostTurnDeg = 5.0;
 constexpr double kMostHeightShare = 0.1;
@@ -103,7 +106,8 @@ class Reader {
   }
 
   /// Returns the nominal height of a plane. For a facet it is the height at the root or apex. For a flare it is the
-  /// height at the centre of its hexagon; the corner of the flare is half as deep as the apex.
+  /// height at the centre of the missing hexagon. It is extrapolated from the corner, which is half as deep as the
+  /// apex.
   double nominal_height_mm(const FacetRow& row) const {
     if (row.facet < kFlares) return -depth_mm_;
     const Angle angle = Angle::from_deg(120.0 * static_cast<double>(row.facet - kFlares));
@@ -112,8 +116,7 @@ class Reader {
     return -0.5 * depth_mm_ - nominal_slopes_[(row.facet - kFlares + 1) % 3].dot(corner);
   }
 
-  /// Checks the plane of a cap, the flat that a tool leaves above the apex. It may have any tilt, but it must be above
-  /// the apex and below the rim.
+  /// Checks the plane of a cap. It may have any tilt, but it must be above the apex and below the rim.
   void check_cap(const FacetRow& row) const {
     if (!(row.plane.height_mm > -depth_mm_ && row.plane.height_mm < 0.0))
       fail(row.line, "height_mm",

@@ -19,10 +19,10 @@ namespace retrace::studies {
 namespace {
 
 constexpr std::size_t kMostLampBytes = std::size_t{16} << 20;
-constexpr double kMostAngles = 3601;  ///< planes, and angles of a plane
+constexpr double kMostAngles = 3601;  ///< maximum number of planes, and of angles in a plane
 constexpr double kFullTurnDeg = 360.0;
 
-/// A text line by line, which knows where it is.
+/// Text that is read line by line. The object stores the current position for messages.
 class Lines {
  public:
   Lines(std::string_view text, const std::string& file)
@@ -36,13 +36,13 @@ class Lines {
   [[noreturn]] void fail(std::string_view key, std::string_view text) const {
     throw InputError({file_, static_cast<int>(next_), std::string(key)}, text);
   }
-  /// The line as one finite number of a range; a decimal comma is taken.
+  /// Reads a line that consists of one finite number within a range. A decimal comma is accepted.
   double number(std::string_view key, double least, double most) {
     std::string text(next(key));
     std::replace(text.begin(), text.end(), ',', '.');
     return checked(number_in(text), text, key, least, most);
   }
-  /// The next number of those that stand on this and further lines.
+  /// Reads the next number. Numbers may continue on the following lines.
   double word(std::string_view key, double least, double most) {
     constexpr const char* kBetween = " \t\r,";
     while (word_ == std::string_view::npos) word_ = next(key).find_first_not_of(kBetween);
@@ -54,7 +54,7 @@ class Lines {
   }
   void leave_line() { word_ = std::string_view::npos; }
 
-  // The same of whole numbers.
+  // Reads whole numbers like number() and word().
   std::size_t count(std::string_view key, double least, double most) { return whole(key, number(key, least, most)); }
   std::size_t count_word(std::string_view key, double least, double most) { return whole(key, word(key, least, most)); }
 
@@ -73,14 +73,14 @@ class Lines {
   const std::string& file_;
   std::vector<std::string_view> lines_;
   std::size_t next_ = 0;
-  std::size_t word_ = std::string_view::npos;  ///< where the next one begins in the line before
+  std::size_t word_ = std::string_view::npos;  ///< position of the next number in the last line that was read
 };
 
 constexpr double kMost = 1e12;
 
 using Row = std::vector<double>;
 
-/// Planes and the candela in each.
+/// Planes, and the intensities in candela in each plane.
 struct Table {
   std::vector<double> planes_deg;
   std::vector<double> angles_deg;
@@ -93,13 +93,14 @@ void check_ascending(const Lines& lines, const std::vector<double>& angles, std:
       lines.fail(key, fmt::format("must ascend, got {} behind {}", shortest(angles[k]), shortest(angles[k - 1])));
 }
 
-/// Adds what lies on the other side of a plane, whose angles are 2 * mirror_deg minus those that are there.
+/// Adds the planes on the other side of a plane of symmetry. Their angles are 2 * mirror_deg minus the present angles.
+/// \param in_front true: the new planes come before the present planes
 void mirror(Table& table, double mirror_deg, bool in_front) {
   Table made{{}, table.angles_deg, {}};
   const std::size_t count = table.planes_deg.size();
   for (std::size_t k = count; k-- > 0;) {
     const double other = 2.0 * mirror_deg - table.planes_deg[k];
-    if (other == table.planes_deg[k]) continue;  // the plane of symmetry itself
+    if (other == table.planes_deg[k]) continue;  // this plane is the plane of symmetry
     made.planes_deg.push_back(other);
     made.rows.push_back(table.rows[k]);
   }
@@ -108,7 +109,7 @@ void mirror(Table& table, double mirror_deg, bool in_front) {
   table.rows.insert(table.rows.end(), made.rows.begin(), made.rows.end());
 }
 
-/// Planes from -90 or so to 270 as planes from 0 to 360.
+/// Converts planes with negative angles to planes from 0 to 360 degrees, in ascending order.
 void turn_to_zero(Table& table) {
   std::vector<std::pair<double, Row>> planes;
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
@@ -136,7 +137,7 @@ LuminousIntensity intensity_of(LuminousIntensity::Planes kind, Table table, doub
   return {kind, std::move(table.planes_deg), std::move(table.angles_deg), std::move(cd)};
 }
 
-/// By the first and last plane of LM-63 (LM-63-2002, 5.3; -19, 5.3).
+/// Adds planes by the symmetry that the first and the last plane determine (LM-63-2002, 5.3; LM-63-19, 5.3).
 void complete_ies(Lines& lines, Table& table, LuminousIntensity::Planes kind) {
   constexpr std::string_view key = "horizontal angles";
   const double first = table.planes_deg.front();
@@ -164,7 +165,7 @@ void complete_ies(Lines& lines, Table& table, LuminousIntensity::Planes kind) {
     mirror(table, 90.0, true);
     turn_to_zero(table);
   } else if (first == 0.0 && last > 180.0 && last <= kFullTurnDeg) {
-    if (last < kFullTurnDeg) turn_to_zero(table);  // the last plane is the first
+    if (last < kFullTurnDeg) turn_to_zero(table);  // adds the first plane again at 360 degrees
   } else {
     refuse("reach from 0 to 0, 90, 180 or 360, or from 90 to 270");
   }
@@ -221,7 +222,7 @@ std::string tilt_in(std::string_view line) {
   return rest.starts_with('=') ? std::string(trimmed(std::string_view(rest).substr(1))) : std::string();
 }
 
-/// Factors for other positions of burning, which are left out.
+/// Reads and ignores the factors for lamps that are operated in tilted positions.
 void pass_tilt(Lines& lines, const std::string& tilt) {
   const std::string word = lower_case(tilt);
   if (word != "none" && word != "include")
@@ -252,7 +253,7 @@ Table read_ies_table(Lines& lines, LuminousIntensity::Planes kind, std::size_t a
   return table;
 }
 
-/// Its angles as planes, and its planes as angles.
+/// Returns the table with angles and planes exchanged.
 Table turned_over(const Table& table) {
   Table turned{table.angles_deg, table.planes_deg,
                std::vector<Row>(table.angles_deg.size(), Row(table.planes_deg.size()))};
@@ -290,7 +291,7 @@ PhotometricLamp parse_ies(std::string_view text, const std::string& file) {
   using enum LuminousIntensity::Planes;
   const auto kind = type == 1 ? c : type == 2 ? b : a;
   Table table = read_ies_table(lines, kind, angles, planes);
-  // The horizontal angle of A is that of its planes, of B that within them.
+  // The horizontal angle of type A is the angle of its planes. In type B, it is the angle within the planes.
   if (kind == b) table = turned_over(table);
   return {file, title, intensity_of(kind, std::move(table), multiplier * ballast * with_lamp),
           lumens > 0.0 ? lamps * lumens : 0.0};
@@ -298,12 +299,12 @@ PhotometricLamp parse_ies(std::string_view text, const std::string& file) {
 
 namespace {
 
-/// Of the first of the sets of light sources that the lamp may have.
+/// Returns the luminous flux of the first set of light sources.
 double read_ldt_lumens(Lines& lines) {
   const std::size_t sets = lines.count("number of sets", 1, 20);
   double lumens = 0.0;
   for (std::size_t k = 0; k < sets; ++k) {
-    lines.number("number of light sources", -1e6, 1e6);  // negative where intensities are measured as they are
+    lines.number("number of light sources", -1e6, 1e6);  // negative if intensities are absolute
     lines.next("the type of light sources");
     const double of_set = lines.number("luminous flux", 1e-9, kMost);
     if (k == 0) lumens = of_set;
@@ -320,8 +321,8 @@ Table read_ldt_table(Lines& lines, std::size_t symmetry, std::size_t planes, std
   Table table;
   for (std::size_t k = 0; k < angles; ++k) table.angles_deg.push_back(lines.number("angles", 0, 180));
   check_ascending(lines, table.angles_deg, "angles");
-  // First plane and number of those whose intensities stand there, by symmetry: none, about the axis, about C0 - C180,
-  // C90 - C270, both.
+  // First plane with intensities in the file, and number of such planes. The index is the symmetry: none, about the
+  // axis, to the plane C0 - C180, to the plane C90 - C270, to both planes.
   const std::size_t begins[] = {0, 0, 0, 3 * planes / 4, 0};
   const std::size_t counts[] = {planes, 1, planes / 2 + 1, planes / 2 + 1, planes / 4 + 1};
   if ((symmetry > 1 && planes % (symmetry == 2 ? 2 : 4) != 0) || all_planes.front() != 0.0)
@@ -329,7 +330,7 @@ Table read_ldt_table(Lines& lines, std::size_t symmetry, std::size_t planes, std
                fmt::format("must begin at 0 and be as many as symmetry {} parts, got {}", symmetry, planes));
   for (std::size_t k = 0; k < counts[symmetry]; ++k) {
     const std::size_t plane = begins[symmetry] + k;
-    // Those of symmetry 3 go from 270 through 0 to 90.
+    // The planes of symmetry 3 go from 270 degrees through 0 to 90 degrees.
     table.planes_deg.push_back(all_planes[plane % planes] - (symmetry == 3 && plane < planes ? kFullTurnDeg : 0.0));
     Row row;
     for (std::size_t j = 0; j < angles; ++j) row.push_back(lines.number("luminous intensity", 0, kMost));
@@ -339,7 +340,7 @@ Table read_ldt_table(Lines& lines, std::size_t symmetry, std::size_t planes, std
   return table;
 }
 
-/// By its symmetry.
+/// Adds planes by the symmetry of the file.
 void complete_ldt(Table& table, std::size_t symmetry) {
   if (symmetry == 3 || symmetry == 4) mirror(table, 90.0, false);
   if (symmetry == 2 || symmetry == 4) mirror(table, 180.0, false);

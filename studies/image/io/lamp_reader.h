@@ -11,8 +11,8 @@
 
 namespace retrace::studies {
 
-/// Reads a lamp by the ending of the file's name. \throw InputError naming file and line, at `option` for another
-/// ending
+/// Reads the file of a lamp. The ending of the file's name determines the format.
+/// \throw InputError that names the file and the line, or at `option` for an unknown ending
 PhotometricLamp read_lamp(const std::filesystem::path& file, const std::string& option);
 
 /// Reads a photometric file of the editions LM-63-86, -91, -95, -2002 and -19 (ANSI/IESNA). The planes may be of type

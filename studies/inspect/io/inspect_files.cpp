@@ -26,7 +26,7 @@ std::string total_reflection(const Inspection& i) {
                      is_rtp ? "across the roof edge" : "at every azimuth");
 }
 
-/// The index, and of a spectrum a line of its own: what it spans, and what its wavelengths see.
+/// Returns the lines on the refractive index and, for a spectrum, on its range and the indices at its wavelengths.
 std::string light_text(const Inspection& i) {
   const std::string wavelength = i.design.light.spectrum() ? fixed(i.wavelength_nm, 1) : shortest(i.wavelength_nm);
   const std::optional<double>& temperature_c = i.design.substance.temperature_c;
@@ -120,7 +120,7 @@ std::string layer_text(const CoatingLayer& layer) {
   return layer.thickness_nm ? fmt::format("{} {} nm", name, shortest(*layer.thickness_nm)) : name + ", opaque";
 }
 
-/// \param label of 20 characters at most
+/// \param label text of at most 20 characters
 std::string coating_text(std::string_view label, const std::optional<CoatingReport>& face) {
   if (!face) return {};
   std::vector<std::string> layers;
@@ -131,7 +131,7 @@ std::string coating_text(std::string_view label, const std::optional<CoatingRepo
                      fixed(100.0 * face->absorptance, 3));
 }
 
-/// What the entrance face is like where it is not clean.
+/// Returns the lines on the contamination and damage of the entrance face.
 std::string entrance_state_text(const Inspection& i) {
   if (!i.entrance_state) return {};
   const EntranceStateReport& face = *i.entrance_state;
@@ -150,7 +150,7 @@ std::string entrance_state_text(const Inspection& i) {
   return text;
 }
 
-/// The layers that the design gives its faces, and what else the entrance face is like.
+/// Returns the lines on the coatings of the faces and on the state of the entrance face.
 std::string coatings_text(const Inspection& i) {
   return coating_text("facets", i.coating.facets) + coating_text("entrance face", i.coating.entrance) +
          entrance_state_text(i);
@@ -176,7 +176,7 @@ std::string place_text(const geometry::ElementChoice& choice) {
       choice);
 }
 
-/// Those of the elements that are wet.
+/// Returns the lines on the elements that have another medium behind them.
 std::string wet_back_text(const Inspection& i) {
   if (!i.wet_back) return {};
   return fmt::format("  wet back            {} of {} elements, {} behind them: {}\n", i.wet_back->elements,
@@ -213,7 +213,7 @@ std::string substrate_text(const Inspection& i) {
 
 namespace {
 
-/// What both kinds of designs begin with.
+/// Returns the keys that the documents of all kinds of designs have in common.
 nlohmann::ordered_json common_json(const Inspection& i) {
   return {{"design", to_json(i.design)},
           {"elements_full", i.elements_full},
@@ -239,7 +239,7 @@ std::string ball_json(const Inspection& i) {
   return result_text("retrace.inspect/1", json, i.warnings);
 }
 
-/// Of a part of zones: how large each is, and what fills it; how much light meets two of them.
+/// Returns the lines on the zones of a part: their sizes, elements and the distance that light travels across zones.
 std::string zones_text(const Inspection& i) {
   std::string text;
   if (!i.zones) return text;
@@ -284,7 +284,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.design.zoned()) {
     json.erase("full_element_share");
   } else if (!i.design.elements()) {
-    // A mesh tells no elements.
+    // The number of elements in a mesh is not known.
     for (const char* key : {"elements_full", "elements_partial", "full_element_share"}) json.erase(key);
   }
   if (!i.design.elements()) json["thickness_mm"] = i.thickness_mm;
