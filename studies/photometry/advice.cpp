@@ -15,18 +15,20 @@ namespace retrace::studies {
 namespace {
 
 constexpr std::size_t kSearchParts = 1;
-// Changes of the angle errors that are tried, in arc minutes, and of the size, as factors.
+// Changes of the errors of angle that are tried, in minutes of arc.
 constexpr std::array<double, 14> kAngleSteps = {0.5,  -0.5, 1.0,  -1.0, 1.5,  -1.5, 2.0,
                                                 -2.0, 3.0,  -3.0, 4.5,  -4.5, 7.0,  -7.0};
+// Factors of the element size that are tried.
 constexpr std::array<double, 8> kSizeFactors = {0.7, 1.4, 0.5, 2.0, 0.35, 2.8, 0.25, 4.0};
 constexpr int kBisections = 4;
-// Of a value over its limit: what the few wavelengths of the search may be wrong by is added.
+// Ratio of a reading to its limit that counts as passing during the search. It is above 1 because the search uses few
+// wavelengths.
 constexpr double kEnough = 1.01;
 constexpr double kMostErrorArcmin = 300.0;
 constexpr double kNothingMade = -1.0;  // result of ratio_at() if the part cannot be made
 constexpr double kWholeTable = -std::numeric_limits<double>::infinity();
 
-/// A parameter of the design and how it is changed.
+/// Parameter of the design that is varied, with its start value and the values that are tried.
 struct Knob {
   std::string key;
   double from = 0.0;

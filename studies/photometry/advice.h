@@ -10,13 +10,14 @@
 
 namespace retrace::studies {
 
-/// The table of a changed design, with two wavelengths for each of `parts` spans of the lamp: the whole, or as much of
-/// it as shows that least_ratio() is below `enough`. Nothing if it was cancelled. May throw InputError for a design
-/// that cannot be made.
+/// Function that measures the table of readings of a changed design, with two wavelengths for each of `parts` spans of
+/// the lamp's spectrum. It may stop after the first readings that show that least_ratio() is below `enough`. It returns
+/// nothing if it was cancelled, and it may throw InputError if the design cannot be made.
 using TableOfDesign =
     std::function<std::optional<std::vector<PhotometricPoint>>(const Design& design, std::size_t parts, double enough)>;
 
-/// The least of value over limit, where an undetermined point is no more than 1; infinite if there are none.
+/// Returns the minimum of value divided by limit over all points. Undetermined points count with at most 1. Returns
+/// infinity if there are no points.
 double least_ratio(const std::vector<PhotometricPoint>& points);
 
 /// Searches for a change of one parameter with which a failing design passes. The first parameter tried is the error of

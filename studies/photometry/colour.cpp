@@ -10,21 +10,21 @@
 namespace retrace::studies {
 namespace {
 
-// Spans of each colour matching function, of two wavelengths each.
+// Number of spans into which each colour matching function is divided, with two wavelengths each.
 constexpr std::size_t kColourParts = 4;
-// A colour nearer to a boundary than this many standard errors says nothing.
+// Distance to a boundary, in standard errors, below which a colour is undetermined.
 constexpr double kErrorsOfAColour = 2.0;
-// Odd, so that no two responses share a seed.
+// Difference of the seeds of consecutive responses. It is odd, so that all responses have different seeds.
 constexpr std::uint32_t kSeedStep = 0x85ebca6bU;
 
-/// Tristimulus values of the light that comes back in one geometry, and their standard errors.
+/// Tristimulus values of the returned light in one geometry, and their standard errors.
 struct MeasuredTristimulus {
   materials::Tristimulus values{};
   materials::Tristimulus errors{};
   bool lacks_diffraction = false;
 };
 
-/// In the order of the settings; nothing if it was cancelled.
+/// Measures the tristimulus values for each setting, in the order of the settings. Returns nothing if it was cancelled.
 std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Design& design,
                                                                      const PhotometryRequest& request,
                                                                      const Photometer& photometer,
@@ -47,7 +47,8 @@ std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Desig
   return measured;
 }
 
-/// Standard error of a x + b y, whose derivative by tristimulus value k is (a_k - a x - b y) / (X + Y + Z).
+/// Returns the standard error of of_x x + of_y y. The derivatives by X, Y and Z are (of_x - m, of_y - m, -m) / (X + Y +
+/// Z), where m = of_x x + of_y y.
 double error_of(double of_x, double of_y, const materials::Chromaticity& at, const MeasuredTristimulus& measured) {
   const double sum = measured.values[0] + measured.values[1] + measured.values[2];
   const double mean = of_x * at.x + of_y * at.y;
@@ -76,7 +77,7 @@ PhotometricColour colour_of(const PhotometerSetting& setting, const MeasuredTris
   return colour;
 }
 
-/// The least of the margins.
+/// Returns the minimum of the margins to all boundaries.
 double least_margin(const PhotometricColour& colour) {
   double least = std::numeric_limits<double>::infinity();
   for (const ColourPoint& point : colour.boundaries) least = std::min(least, point.margin);

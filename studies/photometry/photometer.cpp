@@ -16,14 +16,16 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
 
-// Share of a direction's power by which the budget of polygons may fall short.
+// Maximum power, as a fraction of a direction's power, that may lack diffraction because the budget of polygons is
+// exhausted.
 constexpr double kMostBeyondBudget = 1e-4;
 
 Angle deg(double value) {
   return Angle::from_deg(value);
 }
 
-/// What a design's body takes of the light, wavelength by wavelength; empty where it is one number or the material's.
+/// Returns the spectral absorption of a design's body. Empty if the absorption is a single number or that of the
+/// material.
 materials::SpectralCurve absorption_per_mm(const Design& design) {
   materials::SpectralCurve curve;
   if (const auto* const given = std::get_if<std::vector<SpectralAbsorption>>(&design.substance.absorption_per_mm))
@@ -34,7 +36,7 @@ materials::SpectralCurve absorption_per_mm(const Design& design) {
   return curve;
 }
 
-/// Length of the way through a design and back, for the dye.
+/// Returns the length of the path of light through a design and back, which determines the absorption by a dye.
 double way_through_mm(const Design& design) {
   if (design.balls()) return 2.0 * design.balls()->diameter_mm;
   const geometry::Part part = part_of_design(design, nullptr);
@@ -45,7 +47,7 @@ OpticalModel model_of(const Design& design, const materials::MaterialLibrary& li
   return design.balls() ? make_light_model(design, library) : make_model(design, library, Entrances::any);
 }
 
-/// R_A is of an area, which a single ball has none of, and rays are followed in one way alone.
+/// Checks a design of balls. R_A requires an area, which a single ball does not have. Balls are traced only by rays.
 void check_balls(const Design& design, const PhotometryRequest& request) {
   if (!design.balls()->pitch_mm)
     throw InputError(design.where("element.kind"),
@@ -54,7 +56,8 @@ void check_balls(const Design& design, const PhotometryRequest& request) {
     throw InputError({"", 0, "--engine"}, "must be auto or montecarlo for balls");
 }
 
-/// Width of the cells whose edges diffract. 0: not known, as of meshes, and of fronts whose own cells divide the light.
+/// Returns the width of the cells whose edges diffract light. 0 if the width is not known, as for meshes, and for
+/// curved entrance faces that divide the light into cells of their own.
 double cell_width_mm(const Design& design) {
   if (design.balls()) return design.balls()->diameter_mm;
   if (!design.elements() || design.entrance) return 0.0;
@@ -64,7 +67,7 @@ double cell_width_mm(const Design& design) {
   return std::get<geometry::TriangularCube>(design.part().element).aperture_mm;
 }
 
-/// The design in the light of the photometer.
+/// Returns the design with the light of the photometer.
 Design lit(Design design, const PhotometryRequest& request, const materials::Spectrum& light) {
   LightSpectrum spectrum;
   spectrum.kind = LightSpectrum::Kind::lines;
@@ -84,7 +87,8 @@ Design dyed(Design design, const PhotometryRequest& request) {
   return design;
 }
 
-/// What the discs make of a map, by the kernel's values on its own pixels.
+/// Returns a map after averaging over the discs of source and receiver. The kernel is evaluated at the pixels of the
+/// map.
 std::vector<double> blurred(const std::vector<double>& map, std::size_t columns, double step_rad,
                             const raytrace::ApertureKernel& kernel) {
   const auto reach = static_cast<std::ptrdiff_t>(std::ceil(kernel.reach_rad() / step_rad));
@@ -223,7 +227,7 @@ std::size_t Photometer::middle_wavelength() const {
 }
 
 std::uint32_t Photometer::seed_of(std::size_t wavelength) const {
-  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
+  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd, so that all wavelengths have different seeds
   return request_.seed + kGolden * static_cast<std::uint32_t>(wavelength);
 }
 
@@ -272,7 +276,7 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   return reading;
 }
 
-/// Forms of facets may be told in frames that a mirror does not keep.
+/// Returns no mirror symmetry for facets with a form, because its frame may not be symmetric.
 std::array<bool, 2> Photometer::mirrors() const {
   const raytrace::Stokes& light = design_.light.polarisation;
   std::array<bool, 2> mirrors{};

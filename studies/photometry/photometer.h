@@ -1,6 +1,6 @@
 #pragma once
 
-// A goniophotometer in software: R_A and R_L of a design for given directions of light and observation.
+// Software goniophotometer: measures R_A and R_L of a design for given directions of light and observation.
 
 #include <array>
 #include <map>
@@ -17,43 +17,44 @@
 
 namespace retrace::studies {
 
-/// A design lit from one direction and looked at from several.
+/// Direction of light and several observation angles, for one measurement of a design.
 struct PhotometerSetting {
   double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
   std::vector<double> observation_deg;
-  std::size_t map_columns = 0;  ///< 0: no map
+  std::size_t map_columns = 0;  ///< number of columns of the map; 0: no map
   bool split = false;
 };
 
 raytrace::PhotometricGeometry geometry_of(const PhotometerSetting& setting, double observation_deg);
-/// A design lit from one direction and looked at from another. \param directions in the part frame
+/// Returns the setting for one direction of light and one of observation.
+/// \param directions directions in the part frame
 PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions);
-/// Directions round the return, in the part frame.
+/// Returns the frame of directions around the direction back to the source, in the part frame.
 raytrace::ReturnFrame frame_of(const PhotometerSetting& setting);
 
-/// What the receiver weighs light by.
-enum class PhotometricResponse { x_bar, y_bar, z_bar };  ///< of the CIE 1931 observer; y_bar is V
+/// Spectral response of the receiver.
+enum class PhotometricResponse { x_bar, y_bar, z_bar };  ///< functions of the CIE 1931 observer; y_bar is V
 
 struct PhotometerReading {
-  std::vector<double> r_a;  ///< by observation angle, cd/(lx m^2)
+  std::vector<double> r_a;  ///< R_A for each observation angle, in cd/(lx m^2)
   std::vector<double> r_l;
   std::vector<double> r_a_error;
   PhotometricDirection direction;
   std::vector<double> map_r_a;
-  bool lacks_diffraction = false;  ///< although it would count
+  bool lacks_diffraction = false;  ///< true: the reading lacks significant diffraction
 };
 
-/// Measures the coefficients of retroreflection of a design, as a goniophotometer does: one direction of incidence at a
-/// time, all its wavelengths weighed by the lamp and the eye.
+/// Measures the coefficients of retroreflection of a design, as a goniophotometer does. Each direction of incidence is
+/// measured separately. Wavelengths are weighted by the lamp's power and the response of the receiver.
 class Photometer {
  public:
-  /// \param parts spans of the lamp's spectrum, two wavelengths each
-  /// \param response of the receiver to the lamp's light; values are shares of its response to what falls on the part
+  /// \param parts number of spans of the lamp's spectrum, with two wavelengths each
+  /// \param response response of the receiver; values are relative to its response to the light that falls on the part
   /// \throw InputError as make_model()
   Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts,
              PhotometricResponse response = PhotometricResponse::y_bar);
 
-  /// In the order of the settings; nothing if it was cancelled.
+  /// Measures all settings. Returns the readings in the order of the settings, or nothing if it was cancelled.
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
                                                         Progress* progress, const Cancellation* cancel) const;
 
@@ -74,9 +75,9 @@ class Photometer {
   raytrace::BeamTracer make_tracer() const;
   const raytrace::ApertureKernel& kernel() const { return kernel_; }
 
-  /// Whether the part, and the polarisation of the light, are their own mirror images along x and along y.
+  /// Returns for x and y whether the part and the polarisation of the light are mirror-symmetric along this axis.
   std::array<bool, 2> mirrors() const;
-  /// Which settings share their light.
+  /// Returns groups of settings that can share one traced far field.
   std::vector<LitAlike> settings_lit_alike(const std::vector<PhotometerSetting>& settings) const;
 
   const std::vector<std::string>& warnings() const { return model_.warnings; }
@@ -85,18 +86,18 @@ class Photometer {
   /// Returns the cut-off power, as a fraction of the power that falls on one element. Weaker beams are resampled or
   /// truncated.
   double cutoff_of_element() const;
-  /// What makes standard errors smaller.
+  /// Returns advice for reducing standard errors, for messages.
   std::string remedy_for_noise() const { return is_exact_ ? "give a lower --cutoff" : "give more samples"; }
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
-  /// Why readings lack diffraction, if they do.
+  /// Returns the reason why readings lack diffraction, for messages.
   std::string why_undiffracted() const;
-  /// Width from which on cells need none.
+  /// Returns the cell width, in mm, from which diffraction is not significant.
   double least_undiffracted_mm() const;
-  /// Of a part whose facets scatter and that was measured without diffraction: the photometer of its mean field, with
-  /// diffraction, which is nowhere brighter than the part (docs/theory/photometry.md). Nothing for other parts, and
-  /// where engine or far field were chosen otherwise.
+  /// Returns the photometer of the mean field, with diffraction, for a part whose rough facets were measured without
+  /// diffraction. The mean field is nowhere brighter than the part (docs/theory/photometry.md). Returns nothing for
+  /// other parts, and if the request selects another engine or far field.
   std::optional<Photometer> mean_field() const;
-  /// From now on by Monte Carlo.
+  /// Switches later measurements to Monte Carlo.
   void leave_exact() { is_exact_ = false; }
   bool is_exact() const { return is_exact_; }
   /// Makes later measurements faster and less accurate, because fewer resampled beams represent the weak beams. Such
@@ -106,8 +107,9 @@ class Photometer {
   /// The cut-off power of beams is higher. The search structures of the part may use at most half of their memory
   /// budget, because another photometer measures the part at the same time.
   void only_first_answer() { is_guide_ = is_first_answer_ = true; }
-  /// From now on without the mirror image of the light: what the entrance face reflects, from outside and, between
-  /// elements that send it back, from inside. \pre is_exact()
+  /// Ignores the mirror image of the light in later measurements. This is the light that the entrance face reflects
+  /// from outside, and from inside between elements that reflect it back.
+  /// \pre is_exact()
   void leave_out_mirror_image() { has_mirror_image_ = false; }
 
  private:
@@ -123,7 +125,7 @@ class Photometer {
     /// \param knees_nm wavelengths at which total reflection begins or ends at a facet, in ascending order
     materials::Spectrum light(const std::vector<double>& knees_nm) const;
   };
-  /// What one wavelength adds.
+  /// Contribution of one wavelength to a reading.
   struct Piece {
     std::vector<double> per_sr;
     std::vector<double> error_per_sr;
@@ -135,11 +137,11 @@ class Photometer {
     double std_error = 0.0;
     double truncated = 0.0;
     std::optional<PhotometricDirection::Split> split;
-    double beyond_budget = 0.0;  ///< power that is not diffracted for want of time
+    double beyond_budget = 0.0;  ///< power that lacks diffraction because the budget of polygons is exhausted
     bool complete = false;
   };
-  /// Cells this many times as wide as the wavelength over the diameter of the discs, or wider, need no diffraction:
-  /// what it carries past the edge of a disc is less than 1 % (docs/theory/photometry.md).
+  /// Minimum width of cells that need no diffraction, in units of the wavelength divided by the angular diameter of the
+  /// discs. Diffraction of wider cells carries less than 1 % past the edge of a disc (docs/theory/photometry.md).
   static constexpr double kWidthsWithoutDiffraction = 64.0;
 
   raytrace::FarFieldPolicy far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const;
@@ -173,7 +175,8 @@ class Photometer {
   /// \param tracer ray tracer of the part; null for balls, which have their own tracer
   Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
                         Progress& progress, const Cancellation* cancel) const;
-  /// All of them. \param pieces by setting and wavelength; filled. False if it was cancelled
+  /// Measures all settings by ray tracing. Returns false if it was cancelled.
+  /// \param pieces receives the pieces by setting and wavelength
   bool measure_by_rays(const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel,
                        std::vector<std::vector<Piece>>& pieces) const;
   /// Groups the settings by their knees and returns the indices of the settings in each group. Knees are the
@@ -197,18 +200,20 @@ class Photometer {
   Design design_;
   PhotometryRequest request_;
   OpticalModel model_;
-  std::optional<Lamp> lamp_;     ///< empty if the spectrum of the design is used
-  std::vector<double> weights_;  ///< of the wavelengths: of flux without the dye, which the tracer applies
+  std::optional<Lamp> lamp_;  ///< empty if the spectrum of the design is used
+  /// Weights of the wavelengths by flux, without absorption in the dye, which the tracer applies.
+  std::vector<double> weights_;
   raytrace::ApertureKernel kernel_;
   bool is_exact_ = true;
   bool is_guide_ = false;
   bool is_first_answer_ = false;
   bool has_mirror_image_ = true;
   bool has_form_ = false;
-  bool keeps_phases_ = false;  ///< exact: textures scatter by their phases, diffracted
+  bool keeps_phases_ = false;  ///< true: rough facets scatter by phases of the exact engine, with diffraction
 };
 
-/// Relative spectral power of a CIE illuminant, per nm. \pre not the design's own light
+/// Returns the relative spectral power of a CIE illuminant, per nm.
+/// \pre `light` is not the design's own light
 materials::SpectralCurve lamp_power(PhotometricLight light);
 
 }  // namespace retrace::studies

@@ -1,4 +1,4 @@
-// What one wavelength adds to a reading: the members of Photometer that trace it exactly.
+// Members of Photometer that trace light exactly at one wavelength.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,12 +16,15 @@ namespace {
 
 using raytrace::ReturnFrame;
 
-// Least power of a beam that is followed exactly, as a share of what falls on an element. What is left behind, or does
-// not interfere, changes readings by up to 5e-4, as the choice of wavelengths does by up to 1e-3.
+// Default cut-off power of beams, as a fraction of the power that falls on one element. Light below it, which is
+// truncated or does not interfere, changes readings by up to 5e-4. The choice of wavelengths changes them by up to
+// 1e-3.
 constexpr double kCutoff = 1e-5;
-// The same where weaker beams of a finite part are resampled: its many elements take their time. Of very many it is
-// this share of all light that counts.
+// Default cut-off power for finite parts whose weak beams are resampled. It is higher because many elements take much
+// time.
 constexpr double kCutoffOfFinite = 5e-5;
+// Minimum default cut-off power for such parts, as a fraction of all light. It applies to parts with very many
+// elements.
 constexpr double kCutoffOfAll = 5e-7;
 constexpr std::uint32_t kReplicates = 16;
 // Number of replicates for a photometer that only guides a search. Such readings have errors of about 1e-3 unless
@@ -36,7 +39,7 @@ constexpr std::uint64_t kMostBeams = 4'000'000;
 // Minimum trace of the linear map from exit to entry position by which a beam counts as mirror image of the light. The
 // map is ReturnedBeam::entry_from_exit. Its trace is 2 for a plane mirror and at most 0 for retroreflection.
 constexpr double kLeastMirrorTrace = 1.0;
-// Lattice points of the window, beyond which its power is not integrated.
+// Maximum number of lattice points of the window for which the power in the window is integrated.
 constexpr double kMostLatticePoints = 300'000.0;
 
 // Maximum truncated power, as a fraction of the incident power, that is neglected. If more power is truncated,
@@ -90,7 +93,7 @@ geometry::Vec3 receiver_in(const ReturnFrame& frame, double observation_deg) {
   return frame.direction({0.0, Angle::from_deg(observation_deg).rad()});
 }
 
-/// Of a beam that keeps its phases.
+/// Returns the power that rough facets scatter out of a beam that keeps its phases.
 double scattered_power(const raytrace::ReturnedBeam& beam) {
   double variance = 0.0;
   for (const raytrace::TexturedHit& hit : beam.hits) variance += hit.phase.variance();
@@ -113,7 +116,7 @@ double Photometer::cutoff_of_element() const {
   return element_count() * cutoff();
 }
 
-/// As a share of all light.
+/// Returns the cut-off power as a fraction of all light.
 double Photometer::cutoff() const {
   const double elements = element_count();
   const double given = request_.cutoff.value_or(0.0) / elements;
@@ -264,7 +267,7 @@ void Photometer::estimate_missing(const std::vector<PhotometerSetting>& settings
   }
 }
 
-/// What a setting sees of a far field that it shares.
+/// Evaluates the far field for one of the settings that share it.
 void Photometer::look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
                       std::size_t wavelength, Piece& piece) const {
   const ReturnFrame frame = shared_frame(setting, shared);

@@ -1,4 +1,4 @@
-// What a photometer measures by sampling rays: its members that know of Monte Carlo.
+// Members of Photometer that measure by tracing rays (Monte Carlo).
 #include <algorithm>
 
 #include "core/task_progress.h"

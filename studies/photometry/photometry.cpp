@@ -28,9 +28,9 @@ constexpr double kMostApertureArcmin = 300.0;
 /// Minimum diameter of the larger of the two apertures, source and receiver. If both were points, computed intensities
 /// would be infinite or 0.
 constexpr double kLeastApertureArcmin = 0.006;
-// A value nearer to its limit than this many standard errors says nothing.
+// Distance to a limit, in standard errors, below which a reading is undetermined.
 constexpr double kErrorsOfAMargin = 2.0;
-// Wavelengths for figures, and for pictures.
+// Number of spans of the spectrum for pictures. Each span has two wavelengths.
 constexpr std::size_t kPictureParts = 1;
 // Number of spans of the spectrum for preliminary readings. Each span has two wavelengths.
 constexpr std::size_t kFirstAnswerParts = 1;
@@ -38,8 +38,9 @@ constexpr std::size_t kFirstAnswerParts = 1;
 constexpr double kMinRaysOfFirstAnswer = 4096.0;
 constexpr std::size_t kMapColumns = 97;
 constexpr std::size_t kMostMaps = 6;
-// Entrance angles and observation angles of the curves.
+// Entrance angles of the curves over the observation angle.
 constexpr std::array<double, 4> kCurveEntranceDeg = {0.0, 10.0, 20.0, 30.0};
+// Number of observation angles of a curve.
 constexpr std::size_t kCurvePoints = 41;
 constexpr std::size_t kMostRotations = 720;
 
@@ -86,10 +87,11 @@ void check(const PhotometryRequest& request) {
                                    shortest(request.window_deg), shortest(point.observation_deg)));
 }
 
-/// One setting for every direction, with all its observation angles.
+/// Settings of the measurement: one for each direction of light, with all its observation angles.
 struct Plan {
   std::vector<PhotometerSetting> settings;
-  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> readings_of_point;  ///< setting, observation angle
+  /// Indices of setting and observation angle.
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> readings_of_point;
 };
 
 std::size_t index_of(std::vector<double>& values, double value) {
@@ -99,18 +101,18 @@ std::size_t index_of(std::vector<double>& values, double value) {
   return values.size() - 1;
 }
 
-/// Whether the face sends its mirror image of the source back: what turning the part slightly shows.
+/// Returns true if the entrance face sends a mirror image of the source back when the light is perpendicular to it.
 bool mirrors_source(const Design& design) {
   return !design.balls() && !design.entrance && !design.idealisation.lossless_entrance;
 }
 
-/// Where V of a point, or of a colour, is measured.
+/// Returns the angles V at which a test point or a colour is measured.
 template <class Point>
 std::vector<double> measured_v_deg(const Point& point, bool mirrors) {
   return mirrors && !point.v_beside_deg.empty() ? point.v_beside_deg : std::vector{point.v_deg};
 }
 
-/// \param mirrors whether the face does
+/// \param mirrors true if the entrance face sends a mirror image of the source back
 Plan plan_of(const PhotometryRequest& request, bool mirrors) {
   Plan plan;
   std::map<std::tuple<double, double, double>, std::size_t> known;
@@ -126,10 +128,10 @@ Plan plan_of(const PhotometryRequest& request, bool mirrors) {
   return plan;
 }
 
-/// By setting; nothing where it was not measured.
+/// Readings by setting. Empty for settings that were not measured.
 using Readings = std::vector<std::optional<PhotometerReading>>;
 
-/// All readings of each point, in the points' order; none of one that was not measured.
+/// Returns all readings of each test point, in the order of the points. Empty for points that were not measured.
 std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometryRequest& request, const Plan& plan,
                                                               const Readings& readings) {
   std::vector<std::vector<PhotometricPoint>> of_points;
@@ -157,7 +159,7 @@ std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometryRe
   return of_points;
 }
 
-/// The reading of least value of each point that was measured.
+/// Returns the reading with the minimum value for each test point that was measured.
 std::vector<PhotometricPoint> least_of(const std::vector<std::vector<PhotometricPoint>>& readings) {
   std::vector<PhotometricPoint> points;
   for (const std::vector<PhotometricPoint>& of_point : readings) {
@@ -169,7 +171,7 @@ std::vector<PhotometricPoint> least_of(const std::vector<std::vector<Photometric
   return points;
 }
 
-/// One map for each entrance angle that is measured.
+/// Returns settings for the maps: one for each entrance angle that is measured.
 std::vector<PhotometerSetting> map_settings(const PhotometryRequest& request, const Plan& plan) {
   std::vector<PhotometerSetting> settings;
   for (const PhotometerSetting& measured : plan.settings)
@@ -207,7 +209,7 @@ bool add_pictures(const Design& design, const PhotometryRequest& request, const 
   return true;
 }
 
-/// The table of a design; nothing if it was cancelled.
+/// Measures the table of readings of a design. Returns nothing if it was cancelled.
 std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photometer, const PhotometryRequest& request,
                                                       Plan plan, const Cancellation* cancel) {
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
@@ -216,8 +218,8 @@ std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photomet
   return least_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
 }
 
-/// Measures tables of changed designs, one direction that is lit by itself after the other, those first at which
-/// earlier designs failed.
+/// Measures the tables of changed designs. Directions of light are measured one after the other. Directions at which
+/// earlier designs failed come first.
 class TablesOfChanges {
  public:
   TablesOfChanges(const PhotometryRequest& request, const Plan& plan, bool exact, const Cancellation* cancel)
@@ -226,7 +228,7 @@ class TablesOfChanges {
     std::iota(order_.begin(), order_.end(), 0U);
   }
 
-  /// As TableOfDesign.
+  /// Measures a table as described for TableOfDesign.
   std::optional<std::vector<PhotometricPoint>> table(const Design& design, std::size_t parts, double enough) {
     Photometer photometer(design, request_, parts);
     if (!exact_) photometer.leave_exact();
@@ -269,7 +271,7 @@ class TablesOfChanges {
   Plan plan_;
   bool exact_;
   const Cancellation* cancel_;
-  std::vector<std::size_t> order_;  ///< of settings
+  std::vector<std::size_t> order_;  ///< order in which the settings are measured
 };
 
 }  // namespace
@@ -363,8 +365,8 @@ bool PhotometryStudy::follows_beams() const {
 
 namespace {
 
-/// Of a part whose facets scatter, points without diffraction that the mean field alone lifts above their limits.
-/// False if it was cancelled.
+/// Replaces readings that lack diffraction by the readings of the mean field if these are above the limits. The mean
+/// field of a part with rough facets is a lower bound. Returns false if the computation was cancelled.
 bool raise_to_mean_field(const Photometer& photometer, const PhotometryRequest& request, const Plan& plan,
                          const Cancellation* cancel, std::vector<PhotometricPoint>& points) {
   const auto lacks = [](const PhotometricPoint& p) { return p.lacks_diffraction; };
@@ -379,12 +381,12 @@ bool raise_to_mean_field(const Photometer& photometer, const PhotometryRequest& 
       bound.is_lower_bound = true;
       points[k] = bound;
     }
-  } catch (const BudgetError&) {  // too many beams: no bound is known
+  } catch (const BudgetError&) {  // too many beams, so that there is no lower bound
   }
   return true;
 }
 
-/// Why points are undetermined; empty if none is.
+/// Returns why points are undetermined. Empty if none is.
 std::string reason_of(const std::vector<PhotometricPoint>& points, const Photometer& photometer) {
   const auto is_open = [](const PhotometricPoint& p) { return p.verdict() == Verdict::undetermined; };
   if (std::none_of(points.begin(), points.end(), is_open)) return {};
@@ -394,7 +396,8 @@ std::string reason_of(const std::vector<PhotometricPoint>& points, const Photome
                      photometer.why_undiffracted(), fixed(photometer.least_undiffracted_mm(), 1));
 }
 
-/// By Monte Carlo where the exact engine may be left and takes too many beams.
+/// Measures with the exact engine, or by Monte Carlo if the exact engine needs too many beams and the request allows
+/// both.
 std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer, const PhotometryRequest& request,
                                                           const Plan& plan, Progress* progress,
                                                           const Cancellation* cancel) {
@@ -409,7 +412,7 @@ std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer
   }
 }
 
-/// What to change of a design that fails. False if it was cancelled.
+/// Adds a proposal for a change of a design that fails. Returns false if the computation was cancelled.
 bool add_change(const Photometer& photometer, const Plan& plan, const Cancellation* cancel, PhotometryResult& result) {
   const Design& design = result.design;
   const PhotometryRequest& request = result.request;
@@ -425,7 +428,7 @@ bool add_change(const Photometer& photometer, const Plan& plan, const Cancellati
   return !is_cancelled(cancel);
 }
 
-/// The colour of the returned light, if it is asked for. False if it was cancelled.
+/// Adds the colour of the returned light if it is requested. Returns false if the computation was cancelled.
 bool add_colour(const Photometer& photometer, const Cancellation* cancel, PhotometryResult& result) {
   const PhotometryRequest& request = result.request;
   const TestProgramme& programme = request.programme;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Coefficients of retroreflection at the test points of a standard, and the verdict. The study behind `retrace
+// Coefficients of retroreflection at the test points of a standard, and the verdict. This study is behind `retrace
 // photometry`.
 
 #include <cstdint>
@@ -19,135 +19,141 @@
 
 namespace retrace::studies {
 
-/// What a part is lit by.
+/// Light that illuminates the part.
 enum class PhotometricLight {
-  illuminant_a,    ///< CIE A, which the standards ask, seen by the eye
-  illuminant_d65,  ///< CIE D65, seen by the eye
-  of_design        ///< what the design's [light] says
+  illuminant_a,    ///< CIE A, as required by the standards, with the response of the eye
+  illuminant_d65,  ///< CIE D65, with the response of the eye
+  of_design        ///< light of the design's table [light]
 };
-/// "a", "d65" or "design"
+/// Returns the name of the light: "a", "d65" or "design".
 std::string_view light_name(PhotometricLight light);
-/// \throw InputError for a name that is none of them
+/// Returns the light with a name.
+/// \throw InputError for an unknown name
 PhotometricLight light_from_name(std::string_view name);
 
 /// Default number of rays per direction of incidence.
 inline constexpr std::uint64_t kUsualRaysOfDirection = std::uint64_t{1} << 20;
 
-/// What is asked: the coefficients of retroreflection of a part at the test points of a standard.
+/// Request for the coefficients of retroreflection of a part at the test points of a standard.
 struct PhotometryRequest {
   TestProgramme programme;
-  std::string limits_source;                 ///< of the programme: a name or a file
-  double area_cm2 = 0.0;                     ///< of the part, > 0; the design shows how it is made
-  std::vector<double> rotation_deg = {0.0};  ///< epsilon; the least value over them counts
+  std::string limits_source;  ///< origin of the limits: the name of a standard or a file
+  double area_cm2 = 0.0;      ///< area of the part to which R_I refers, > 0; the design only shows the structure
+  std::vector<double> rotation_deg = {0.0};  ///< rotations epsilon of the part; the minimum reading over them counts
   raytrace::PhotometricApertures apertures;
-  double window_deg = 2.0;  ///< half angle of the far field that is computed; 0.05 to 10
+  double window_deg = 2.0;  ///< half-angle of the computed far field; 0.05 to 10
   PhotometricLight light = PhotometricLight::illuminant_a;
-  std::string dye;                                 ///< what the dye is called; empty: none
-  materials::SpectralCurve dye_absorption_per_mm;  ///< empty: none
+  std::string dye;                                 ///< name of the dye; empty: no dye
+  materials::SpectralCurve dye_absorption_per_mm;  ///< absorption of the dye; empty: no dye
   bool diffraction = true;
   Engine engine = Engine::automatic;  ///< neither stochastic nor cell
-  std::optional<double> cutoff;       ///< least power of beams that are followed exactly, as a share of an element's
+  /// Minimum power of beams that are traced exactly, as a fraction of the power on one element.
+  std::optional<double> cutoff;
   std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays per direction; empty: kUsualRaysOfDirection
   std::uint32_t seed = 1;
-  bool pictures = false;      ///< maps and curves
-  bool window_power = false;  ///< power in the window and outside of it, by integrations: a check that takes long
-  bool advice = true;         ///< what to change if it fails
-  bool colour = false;        ///< the chromaticity of the returned light; none of the design's own light
+  bool pictures = false;  ///< true: maps and curves are computed
+  /// True: the power inside and outside the window is integrated, as a check that takes long.
+  bool window_power = false;
+  bool advice = true;   ///< true: if the design fails, a change is searched
+  bool colour = false;  ///< true: the chromaticity of the returned light is computed; not for the design's own light
 };
 
 /// Returns a diameter in minutes of arc, rounded so that the errors of the conversion from radians disappear.
 double arcmin_of(Angle diameter);
 
-/// From best to worst: the worst of several decides.
+/// Verdict on a reading, in order from best to worst. The worst of several verdicts counts.
 enum class Verdict { pass, unconfirmed, undetermined, fail };
 std::string_view verdict_name(Verdict verdict);
 inline bool every_point_holds(Verdict verdict) {
   return verdict == Verdict::pass || verdict == Verdict::unconfirmed;
 }
 
-/// A test point and what was found there.
+/// Test point with its reading.
 struct PhotometricPoint {
   TestPoint asked;
-  double v_deg = 0.0;         ///< at which it was measured: that of the test point unless the face mirrors there
-  double rotation_deg = 0.0;  ///< at which the value is least
+  /// Angle V of the measurement, which differs from V of the test point if the face mirrors the lamp there.
+  double v_deg = 0.0;
+  double rotation_deg = 0.0;  ///< rotation at which the reading is minimal
   double r_i_mcd_per_lx = 0.0;
   double r_a = 0.0;                   ///< cd/(lx m^2)
   double r_l = 0.0;                   ///< cd/(lx m^2)
-  double std_error_mcd_per_lx = 0.0;  ///< of rays, and of beams that are resampled
+  double std_error_mcd_per_lx = 0.0;  ///< standard error of ray tracing or of resampled beams
   double limit_mcd_per_lx = 0.0;
-  bool lacks_diffraction = false;  ///< although it would count: the value says nothing against the limit
-  bool is_lower_bound = false;     ///< the part reaches the value at least
+  /// True: the reading lacks significant diffraction, so that it cannot be compared with the limit.
+  bool lacks_diffraction = false;
+  bool is_lower_bound = false;  ///< true: the value is a lower bound
 
   double margin() const { return r_i_mcd_per_lx / limit_mcd_per_lx - 1.0; }
-  /// Pass, fail or undetermined: without diffraction that counts, and nearer to the limit than two standard errors.
+  /// Returns pass, fail or undetermined. A reading is undetermined if it lacks significant diffraction, or if it is
+  /// within two standard errors of the limit.
   Verdict verdict() const;
 };
 
-/// One direction of incidence.
+/// Result for one direction of incidence.
 struct PhotometricDirection {
   double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
   double incidence_deg = 0.0, azimuth_deg = 0.0;
-  double rre = 0.0;        ///< geometric, of the design's widest cone; of the light that is weighed
-  double std_error = 0.0;  ///< of it
-  double truncated = 0.0;  ///< by how much it may be too low
-  /// Power within the window and outside of it, through the entrance face, at one wavelength; nothing by Monte Carlo,
-  /// or where cells are so large that it would take long.
+  double rre = 0.0;        ///< RRE for the design's widest cone by geometrical optics, in the light of the photometer
+  double std_error = 0.0;  ///< standard error of the RRE
+  double truncated = 0.0;  ///< maximum amount by which the RRE may be too low
+  /// Power inside and outside of the window, through the entrance face, at one wavelength. Not computed by Monte Carlo,
+  /// and not for large cells, which would take too long.
   struct Split {
     double wavelength_nm = 0.0;
     double window = 0.0;
     double outside = 0.0;
-    double geometric = 0.0;  ///< what both must add up to
+    double geometric = 0.0;  ///< power by geometrical optics, which `window` and `outside` must add up to
   };
   std::optional<Split> split;
 };
 
-/// R_A around the return, for one direction of incidence.
+/// Map of R_A around the direction back to the source, for one direction of incidence.
 struct FarFieldMap {
   double v_deg = 0.0;
   double h_deg = 0.0;
   double half_width_deg = 0.0;
-  std::size_t columns = 0;  ///< and rows
-  std::vector<double> r_a;  ///< row by row from below, as source and receiver see it
+  std::size_t columns = 0;  ///< number of columns, and of rows
+  std::vector<double> r_a;  ///< row by row from below, as seen from the source
 };
 
-/// R_A over the observation angle at one entrance angle.
+/// Curve of R_A over the observation angle, for one entrance angle.
 struct ObservationCurve {
-  double entrance_deg = 0.0;  ///< beta2
+  double entrance_deg = 0.0;  ///< angle beta2
   std::vector<double> observation_deg;
   std::vector<double> r_a;
 };
 
-/// A change of the design that passes, or comes nearest to it.
+/// Change of a design with which it passes, or else the best change tried.
 struct PhotometricChange {
-  std::string key;  ///< of the design file
+  std::string key;  ///< key of the design file
   double from = 0.0;
   double to = 0.0;
-  std::vector<PhotometricPoint> points;  ///< the whole table again
+  std::vector<PhotometricPoint> points;  ///< readings of the changed design at all test points
   Verdict verdict = Verdict::fail;
 
   bool passes() const { return every_point_holds(verdict); }
 };
 
-/// A bound on the colour and how the returned light stands to it.
+/// Boundary of the allowed colours, and distance of the returned light's colour from it.
 struct ColourPoint {
   ColourBoundary asked;
-  double margin = 0.0;     ///< most - of_x x - of_y y: >= 0 holds
-  double std_error = 0.0;  ///< of the margin
+  double margin = 0.0;     ///< most - of_x x - of_y y; the boundary is satisfied if it is >= 0
+  double std_error = 0.0;  ///< standard error of the margin
 };
 
-/// The colour of the light that comes back in one geometry: the one that is nearest to its boundaries, or farthest past
-/// them, of those that are asked.
+/// Colour of the returned light. Of all requested geometries, the one with the smallest margin to its boundaries is
+/// kept.
 struct PhotometricColour {
   double observation_deg = 0.0;
   double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
-  std::optional<materials::Chromaticity> chromaticity;  ///< none if nothing comes back
-  materials::Chromaticity std_error;                    ///< of x and of y
-  std::vector<ColourPoint> boundaries;                  ///< none if the standard's are not known
-  bool lacks_diffraction = false;                       ///< although it would count
-  bool is_of_another_light = false;                     ///< than CIE A, which the boundaries are of
-  std::string reason;                                   ///< why the verdict is undetermined; empty if it is not
+  std::optional<materials::Chromaticity> chromaticity;  ///< none if no light returns
+  materials::Chromaticity std_error;                    ///< standard errors of x and y
+  std::vector<ColourPoint> boundaries;                  ///< empty if the boundaries of the standard are not known
+  bool lacks_diffraction = false;                       ///< true: the result lacks significant diffraction
+  bool is_of_another_light = false;  ///< true: the light is not CIE A, for which the boundaries are defined
+  std::string reason;                ///< reason of an undetermined verdict; empty otherwise
 
-  /// What the boundaries say together; nothing if there are none.
+  /// Returns the verdict on all boundaries. Returns nothing if there are no boundaries.
   std::optional<Verdict> verdict() const;
 };
 
@@ -158,13 +164,14 @@ struct PhotometryResult {
   std::vector<double> wavelengths_nm;
   bool has_diffraction = true;
   std::vector<PhotometricPoint> points;
-  std::vector<PhotometricPoint> measured;  ///< the same before lower bounds took the place of values
-  /// Of each point all that its measured value is the least of: one for each V beside it and each turn of the part.
+  std::vector<PhotometricPoint> measured;  ///< readings at the test points, before lower bounds replaced some of them
+  /// All readings of each test point, one for each measured angle V and each rotation of the part. Their minimum is the
+  /// value in `measured`.
   std::vector<std::vector<PhotometricPoint>> readings;
   std::vector<PhotometricDirection> directions;
   Verdict verdict = Verdict::fail;
-  std::string reason;                       ///< why points are undetermined; empty if none is
-  std::optional<PhotometricColour> colour;  ///< has a verdict of its own
+  std::string reason;                       ///< reason of undetermined points; empty if there are none
+  std::optional<PhotometricColour> colour;  ///< colour, which has its own verdict
   std::optional<PhotometricChange>
       change;  ///< for a failing design: a change with which it passes, or else the best change tried
   std::vector<FarFieldMap> maps;
@@ -173,13 +180,13 @@ struct PhotometryResult {
   std::vector<std::string> warnings;
   bool complete = true;
 
-  /// Every point and the area hold, and the colour is none that fails.
+  /// Returns true if every point and the area satisfy their limits, and if the colour does not fail.
   bool passes() const { return every_point_holds(verdict) && !(colour && colour->verdict() == Verdict::fail); }
 };
 
-/// Approximate systematic error of preliminary readings, as a fraction of the value. The standard error does not
-/// include it. It results from the small number of wavelengths and from weak beams, whose interference is ignored. If
-/// the light of the design is used, the number of wavelengths is not reduced.
+/// Approximate systematic error of preliminary readings, as a fraction of the value. It is not part of the standard
+/// error. It results from the small number of wavelengths and from weak beams, whose interference is ignored. With the
+/// design's own light, the number of wavelengths is not reduced.
 inline constexpr double kSystematicErrorOfFirstAnswer = 0.02;
 
 /// Preliminary readings at the test points, from a much faster and less accurate computation.
@@ -189,18 +196,18 @@ struct PhotometricFirstAnswer {
   bool lacks_diffraction = false;  ///< true if diffraction is omitted although the request includes it
 };
 
-/// What points say together: one that fails decides, then one that is undetermined. Points of recalled limits, and
-/// programmes that are not complete, confirm nothing.
+/// Returns the common verdict of several points. One point that fails decides; otherwise one that is undetermined. If
+/// limits are unconfirmed or the test plan is incomplete, the verdict is at most `unconfirmed`.
 Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme);
 
-/// Whether a part is as small and as large as a programme asks: pass, unconfirmed if it holds a recalled limit, or
-/// fail.
+/// Compares the area of a part with the limits of a test plan. Returns pass, fail, or `unconfirmed` if the part
+/// satisfies a limit that is unconfirmed.
 Verdict area_verdict(const TestProgramme& programme, double area_cm2);
 
-/// A checked request, ready to run.
+/// Study of a checked request, ready to run.
 class PhotometryStudy {
  public:
-  /// \throw InputError for numbers out of range, an observation angle outside the window, an unknown material
+  /// \throw InputError for numbers out of range, an observation angle outside the window, and an unknown material
   PhotometryStudy(Design design, PhotometryRequest request);
   ~PhotometryStudy();
 
@@ -211,6 +218,7 @@ class PhotometryStudy {
   /// request or the default.
   double cutoff() const;
 
+  /// Computes the readings.
   /// \throw BudgetError if power was lost
   PhotometryResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 

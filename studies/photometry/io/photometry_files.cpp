@@ -121,7 +121,7 @@ std::string point_text(const PhotometricPoint& p) {
   return text;
 }
 
-/// Rows of a table for the terminal.
+/// Returns the readings as the rows of a table for the terminal.
 std::string rows_of(const std::vector<PhotometricPoint>& points) {
   std::string table = fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n", "alpha", "V", "H",
                                   "rotation", "mcd/lx", "limit", "margin_%", "R_A", "verdict");
@@ -133,7 +133,7 @@ std::string rows_of(const std::vector<PhotometricPoint>& points) {
   return table;
 }
 
-/// A line for each bound on the area.
+/// Returns a line for each limit of the area.
 std::string areas_text(const PhotometryRequest& asked) {
   std::string text;
   for (const LimitArea& limit : asked.programme.areas)
@@ -143,7 +143,7 @@ std::string areas_text(const PhotometryRequest& asked) {
   return text;
 }
 
-/// The colour, its verdict, and the boundaries that it does not hold.
+/// Returns the colour, its verdict, and the boundaries that the colour violates.
 std::string colour_text(const PhotometricColour& colour) {
   std::string text = "colour: ";
   if (const auto verdict = colour.verdict())
@@ -158,7 +158,7 @@ std::string colour_text(const PhotometricColour& colour) {
   return text + (colour.reason.empty() ? "" : "; " + colour.reason) + "\n";
 }
 
-/// What the part is lit by.
+/// Returns the name of the light that illuminates the part.
 std::string_view light_text(PhotometricLight light) {
   switch (light) {
     case PhotometricLight::illuminant_a: return "CIE A";
@@ -168,7 +168,7 @@ std::string_view light_text(PhotometricLight light) {
   return {};
 }
 
-/// \param reason of a verdict that is undetermined
+/// \param reason reason of an undetermined verdict
 std::string verdict_text(Verdict verdict, const TestProgramme& programme, const std::string& reason = {}) {
   switch (verdict) {
     case Verdict::pass: return "verdict: pass\n";

@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace photometry`.
+// Output documents and tables of `retrace photometry`.
 
 #include <string>
 
@@ -8,20 +8,20 @@
 
 namespace retrace::studies {
 
-/// The result as JSON, schema retrace.photometry/1.
+/// Returns the result as JSON with the schema retrace.photometry/1.
 std::string photometry_json(const PhotometryResult& result);
 
-/// One line a test point.
+/// Returns the readings as CSV, with one line for each test point.
 std::string photometry_csv(const PhotometryResult& result);
 
-/// R_A around the return, one line a direction: of every map, in degrees to the right of the direction back to the
-/// source and above it.
+/// Returns the maps of R_A around the direction back to the source as CSV, with one line for each direction of view.
+/// Directions are in degrees to the right of the direction to the source and above it.
 std::string far_field_map_csv(const PhotometryResult& result);
 
 /// Returns a table of the preliminary readings with their standard errors, for the terminal.
 std::string first_answer_table(const PhotometricFirstAnswer& answer);
 
-/// For people at a terminal: the table, the verdict, and what to change.
+/// Returns the table, the verdict and the advice for the terminal.
 std::string photometry_table(const PhotometryResult& result);
 
 }  // namespace retrace::studies

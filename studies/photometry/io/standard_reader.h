@@ -1,6 +1,6 @@
 #pragma once
 
-// Turns the name of a standard with class, colour and dye into a photometry request.
+// Converts the name of a standard, with class, colour and dye, to a photometry request.
 
 #include <filesystem>
 #include <optional>
@@ -10,22 +10,24 @@
 
 namespace retrace::studies {
 
-/// How a standard is requested, by the words of the command line or of a study.
+/// Selection of a standard, in the words of the command line or of a study.
 struct StandardChoice {
-  std::string standard;  ///< of shipped_standards(), or a limits file
+  std::string standard;  ///< name in shipped_standards(), or a file with limits
   std::optional<std::string> part_class;
   std::optional<std::string> colour;
 };
 
-/// The file with the limits: the shipped one, or the user's. \throw InputError at --standard
+/// Returns the file with the limits: a shipped file or one of the user.
+/// \throw InputError at --standard
 std::filesystem::path limits_file_of(const std::string& standard);
 
-/// What the standard asks, with its apertures and rotations: a request that lacks area and dye. \throw InputError at
-/// --standard, --class, --colour or a line of the limits
+/// Returns the request for a standard, with its apertures and rotations. The area and the dye must still be set.
+/// \throw InputError at --standard, --class, --colour or a line of the file with limits
 PhotometryRequest photometry_request(const StandardChoice& choice);
 
-/// The dye's file; empty for none. \param dye none, red, amber or a file; unless told, that of the colour
-/// \param design_is_coloured its absorption is spectral already: then only a dye that is told counts
+/// Returns the file of a dye. Empty if there is no dye.
+/// \param dye none, red, amber or the name of a file; by default the dye of the colour
+/// \param design_is_coloured true if the design has a spectral absorption; only an explicit dye is then used
 /// \throw InputError at --dye
 std::filesystem::path dye_file_of(const std::optional<std::string>& dye, bool design_is_coloured,
                                   const std::string& colour);
