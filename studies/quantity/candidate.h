@@ -1,6 +1,7 @@
 #pragma once
 
-// A design at one point of a study, with the settings of its analysis and what several quantities compute only once.
+// Design at one point of a study, with the settings of its analysis and with intermediate results that several
+// quantities share.
 
 #include <cstdint>
 #include <map>
@@ -18,11 +19,11 @@
 
 namespace retrace::studies {
 
-/// How quantities of a study are computed where they do not say otherwise.
+/// Settings of the analysis, for quantities that do not give their own.
 struct AnalysisSettings {
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  double rotation_deg = 0.0;  ///< of the part about its normal, counter-clockwise as seen from the light
+  double rotation_deg = 0.0;  ///< rotation of the part about its normal, counter-clockwise as seen from the light
   Engine engine = Engine::automatic;
   std::optional<double> target_error;  ///< as RreRequest::target_error
   std::optional<std::uint64_t> rays;
@@ -30,7 +31,7 @@ struct AnalysisSettings {
   std::uint32_t seed = 1;
 };
 
-/// A design at one point of a study, with what is to be known to judge it. For one thread at a time.
+/// Design at one point of a study, with everything that quantities need. Only one thread at a time may use it.
 class Candidate {
  public:
   Candidate(Design design, const AnalysisSettings& analysis, const MachiningProcess& machining)
@@ -44,13 +45,15 @@ class Candidate {
   void report_to(Progress* progress) { progress_ = progress; }
   /// Returns the object to which the quantity being measured reports its progress. May be null.
   Progress* progress() const { return progress_; }
-  /// Built when it is first requested. \throw InputError as part_of_design()
+  /// Returns the part, which is built at the first call.
+  /// \throw InputError as part_of_design()
   const geometry::Part& part() const {
     if (!part_) part_ = part_of_design(design_, nullptr);
     return *part_;
   }
-  /// What several quantities need, made when it is first requested. \param key says what it is, with its type \param
-  /// make gives a shared pointer to it
+  /// Returns an intermediate result that several quantities need. It is made at the first call.
+  /// \param key identifier of the result, which includes its type
+  /// \param make function that returns a shared pointer to the result
   template <class Value, class Make>
   std::shared_ptr<const Value> shared(const std::string& key, Make make) const {
     std::shared_ptr<const void>& kept = shared_[key];

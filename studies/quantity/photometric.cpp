@@ -11,12 +11,12 @@
 namespace retrace::studies {
 namespace {
 
-/// Without points if it was cancelled.
+/// Readings at the test points. Empty if the computation was cancelled.
 struct Points {
-  std::vector<PhotometricPoint> judged;    ///< may be lower bounds
-  std::vector<PhotometricPoint> measured;  ///< may lack diffraction
+  std::vector<PhotometricPoint> judged;    ///< readings that are compared with the limits; may be lower bounds
+  std::vector<PhotometricPoint> measured;  ///< measured readings; may lack diffraction
   std::vector<std::vector<PhotometricPoint>> readings;
-  std::string reason;  ///< why points are undetermined; empty if none is
+  std::string reason;  ///< reason of undetermined points; empty if there are none
 };
 
 class PhotometricQuantity final : public Quantity {
@@ -85,7 +85,8 @@ class PhotometricQuantity final : public Quantity {
     return result.complete ? Points{result.points, result.measured, result.readings, result.reason} : Points{};
   }
 
-  /// A margin without the diffraction that was requested would be taken for a verdict.
+  /// Returns the margin to the limit. A margin that lacks requested diffraction is refused, because it would be
+  /// mistaken for a verdict.
   Measured margin_of(const PhotometricPoint& point, const std::string& reason) const {
     if (point.lacks_diffraction && table_->request.diffraction)
       throw BudgetError(fmt::format("the margin of the photometry is undetermined: {}", reason));

@@ -1,6 +1,6 @@
 #pragma once
 
-// Quantities of studies that come from photometric standards, such as the margin to a limit.
+// Quantities of studies that are defined by photometric standards, such as the margin to a limit.
 
 #include <cstddef>
 #include <memory>
@@ -12,24 +12,25 @@
 
 namespace retrace::studies {
 
-/// What a photometric quantity tells of a test point.
+/// Value of a test point that a photometric quantity returns.
 enum class PhotometricFigure {
-  margin,          ///< value over limit - 1: >= 0 passes
+  margin,          ///< value / limit - 1; the point passes if it is >= 0
   r_i_mcd_per_lx,  ///< coefficient of luminous intensity
   r_a              ///< coefficient of retroreflection, cd/(lx m^2)
 };
 
-/// A standard as a study asks it of every design. Engine, samples, cut-off and seed are those of the analysis.
+/// Standard by which a study measures every design. Engine, samples, cut-off and seed are those of the analysis.
 struct PhotometricTable {
-  std::string key;  ///< tells it from other tables of the study
+  std::string key;  ///< identifier of the table within the study
   PhotometryRequest request;
-  /// Without a dye that the study names, that of the colour goes into designs that are not coloured themselves.
+  /// True if the study names no dye. The dye of the standard's colour then applies to designs without a spectral
+  /// absorption of their own.
   bool dye_unless_coloured = false;
 };
 
-/// Which of the values of a table is meant.
+/// Selection of a value from a table of readings.
 struct PhotometricChoice {
-  std::optional<std::size_t> point;  ///< of the standard's programme, from 0; none: the least over all
+  std::optional<std::size_t> point;  ///< index of the test point, from 0; none: the minimum over all points
   /// One reading of a test point. If it is not set, the minimum of all readings of the point is used.
   /// `beside` is the index of the angle V. There are several such angles for V = 0, because readings are taken beside
   /// the mirror image of the lamp. For a part without a mirror image, all these angles are equal to V of the point.
@@ -41,11 +42,11 @@ struct PhotometricChoice {
   std::optional<Reading> reading;
 };
 
-/// Quantities of one table measure a candidate once.
+/// Returns a photometric quantity. All quantities of a table share one measurement of a candidate.
 std::shared_ptr<const Quantity> make_photometric(std::string name, std::shared_ptr<const PhotometricTable> table,
                                                  const PhotometricChoice& choice, PhotometricFigure figure);
 
-/// One quantity for each reading of each point, named after point and reading.
+/// Returns a quantity for each reading of each test point. Names contain the point and the reading.
 Quantities make_photometric_readings(const std::string& name, const std::shared_ptr<const PhotometricTable>& table,
                                      PhotometricFigure figure);
 

@@ -21,12 +21,12 @@ std::optional<double> Quantity::slope(const Candidate&, RreParameter, const Canc
 
 namespace {
 
-/// Directions are those of the request in its own order: azimuth by azimuth, incidence by incidence.
+/// Returns the RRE request for the directions of a window. Directions are ordered by azimuth and then by incidence.
 RreRequest request_of(const AngleWindow& window, const AnalysisSettings& analysis) {
   RreRequest request;
   request.incidence_deg = window.incidence_deg.value_or(std::vector{analysis.incidence_deg});
   request.azimuth_deg = window.azimuth_deg.value_or(std::vector{analysis.azimuth_deg});
-  // A part that is turned sees light from a direction that is turned back.
+  // Rotating the part by an angle is equivalent to rotating the light by the opposite angle.
   for (double& azimuth_deg : request.azimuth_deg) azimuth_deg -= analysis.rotation_deg;
   request.engine = analysis.engine;
   request.target_error = analysis.target_error;
@@ -36,13 +36,14 @@ RreRequest request_of(const AngleWindow& window, const AnalysisSettings& analysi
   return request;
 }
 
-/// A share with its error, and that at each direction.
+/// Fraction of the incident power, with its standard error.
 struct Share {
   double value = 0.0;
   double std_error = 0.0;
 };
 
-/// The mean of shares by weight. Directions share their random numbers, so that their errors are taken to add up.
+/// Returns the weighted mean. Directions use the same random numbers, so that their errors are correlated and added
+/// linearly.
 Share mean_of(const std::vector<Share>& shares, const std::vector<double>& weights) {
   Share mean;
   double total = 0.0;
@@ -119,7 +120,7 @@ class ShareQuantity final : public Quantity {
   }
 
  private:
-  /// The design with the acceptance cones that are needed, ascending.
+  /// Returns the design with the acceptance cones of the quantity, in ascending order.
   Design design_of(const Candidate& candidate) const {
     Design design = candidate.design();
     std::vector<double>& cones = design.detector.acceptance_half_angle_deg;
@@ -149,7 +150,7 @@ double full_element_area_mm2(const geometry::PartSpec& spec) {
 }
 
 std::optional<double> total_reflection_limit_deg(const Design& design) {
-  if (design.part().substrate) return std::nullopt;  // elements stand at angles of their own
+  if (design.part().substrate) return std::nullopt;  // elements on a base have different orientations
   const auto library = materials::MaterialLibrary::shipped();
   const OpticalModel model = make_model(design, library);
   double least = model.spectral.front().optics.index;
@@ -157,33 +158,35 @@ std::optional<double> total_reflection_limit_deg(const Design& design) {
   return tir_limit_deg(design.part(), least, model.optics.back_index);
 }
 
-/// The machine cuts whole elements alone.
+/// Returns the machining time in hours. The machine cuts only whole elements.
 double machining_time_h(const Candidate& candidate) {
   constexpr double seconds_per_hour = 3600.0;
   return static_cast<double>(candidate.part().elements_full) *
          seconds_per_element(prism_of(candidate), candidate.machining()) / seconds_per_hour;
 }
 
-/// Without a tool there is one that fits.
+/// Returns the width that remains beside the tool in an element. 0 if the process gives no tool width.
 double tool_fit_mm(const Candidate& candidate) {
   const double width_mm = prism_of(candidate).width_mm;
   return width_mm - candidate.machining().tool_width_mm.value_or(width_mm);
 }
 
-/// A design of one kind of element. \throw InputError for others
+/// Returns the design of a candidate that has only one kind of element.
+/// \throw InputError for other designs
 const Design& elements_of(const Candidate& candidate, const std::string& name) {
   check_taken(candidate.design(), {.what = name, .wet_backs = true});
   return candidate.design();
 }
 
-/// \param name of the quantity, for messages
+/// \param name name of the quantity, for messages
 std::optional<double> plain_value(PlainQuantity which, const Candidate& candidate, const std::string& name) {
   constexpr double um_per_mm = 1e3;
   switch (which) {
     case PlainQuantity::elements_full: return static_cast<double>(candidate.part().elements_full);
     case PlainQuantity::elements_partial: return static_cast<double>(candidate.part().elements_partial);
     case PlainQuantity::element_depth_mm:
-      // A part on a base is deeper than its elements.
+      // The depth of a part on a base includes the depth of the base, so that the depth of a single element is
+      // computed.
       return candidate.design().elements() && candidate.design().part().substrate
                  ? geometry::element_depth_mm(candidate.part().spec.element, candidate.part().spec.angle_errors)
                  : candidate.part().element_depth_mm;

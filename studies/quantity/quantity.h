@@ -1,6 +1,6 @@
 #pragma once
 
-// Quantities that a study computes of each candidate design, such as RRE, areas or machining time, behind one
+// Quantities that a study computes for each candidate design, such as RRE, areas or machining time. They have a common
 // interface.
 
 #include <memory>
@@ -13,20 +13,20 @@
 
 namespace retrace::studies {
 
-/// What a quantity of a candidate came to.
+/// Value of a quantity for a candidate.
 struct Measured {
-  std::optional<double> value;  ///< none where there is none, such as a limit that does not exist
+  std::optional<double> value;  ///< none if the quantity has no value, such as a limit that does not exist
   double std_error = 0.0;
 };
 
-/// The limit that a margin is counted from: value over limit - 1.
+/// Limit to which a margin refers. The margin is value / limit - 1.
 struct QuantityLimit {
   double value = 0.0;
   std::string unit;
 };
 
-/// Something that a study asks of every design: the one way in which sweeps, optimisation and tolerance studies reach
-/// the rest of retrace. Values without state, shared by threads.
+/// Quantity that a study computes for every design. Sweeps, optimizations and tolerance studies use the other studies
+/// only through this interface. Objects have no state and are shared by threads.
 class Quantity {
  public:
   explicit Quantity(std::string name) : name_(std::move(name)) {}
@@ -34,23 +34,25 @@ class Quantity {
   Quantity(const Quantity&) = delete;
   Quantity& operator=(const Quantity&) = delete;
 
-  /// Its column in tables; unique in a study.
+  /// Returns the name of the quantity's column in tables. It is unique in a study.
   const std::string& name() const { return name_; }
-  /// Nothing if it was cancelled. \throw Error if it cannot be computed for this candidate
+  /// Computes the value for a candidate. Returns nothing if it was cancelled.
+  /// \throw Error if the quantity cannot be computed for this candidate
   virtual std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const = 0;
   /// Returns an identifier of the ray or beam tracing from which the value is computed. Quantities with equal
   /// identifiers share one tracing. The identifier is empty if nothing is traced and the computation takes negligible
   /// time.
   virtual std::string tracing() const { return {}; }
-  /// What it is of, for people: "20' V 5 H -20".
+  /// Returns a readable description of the quantity, such as "20' V 5 H -20".
   virtual std::string label() const { return name_; }
-  /// Whether a part that is mixed of several has their mean, weighted by shares of the area: no least of several
-  /// values.
+  /// Returns true if the value of a part with several kinds of cells is the area-weighted mean of their values. A
+  /// minimum of several values does not have this property.
   virtual bool adds_up() const { return true; }
-  /// Of the margin to a limit: that limit.
+  /// Returns the limit to which a margin refers. Returns nothing for other quantities.
   virtual std::optional<QuantityLimit> limit() const { return std::nullopt; }
-  /// Its change with a parameter of the design, per unit of the parameter's name; none where it cannot be told
-  /// reliably, or only by differences. \throw Error as measure()
+  /// Returns the slope of the quantity by a parameter of the design, in the unit of the parameter. Returns nothing if
+  /// the slope is unreliable or available only by finite differences.
+  /// \throw Error as measure()
   virtual std::optional<double> slope(const Candidate& candidate, RreParameter parameter,
                                       const Cancellation* cancel) const;
 
@@ -60,29 +62,30 @@ class Quantity {
 
 using Quantities = std::vector<std::shared_ptr<const Quantity>>;
 
-/// Directions over which a quantity is taken, and how they count.
+/// Directions over which a quantity is averaged or minimized, and their weights.
 struct AngleWindow {
-  std::optional<std::vector<double>> incidence_deg;  ///< without it, that of the analysis
-  std::optional<std::vector<double>> azimuth_deg;    ///< likewise
-  bool by_solid_angle = false;                       ///< directions count by |sin t|; else all alike
+  std::optional<std::vector<double>> incidence_deg;  ///< none: incidence of the analysis
+  std::optional<std::vector<double>> azimuth_deg;    ///< none: azimuth of the analysis
+  bool by_solid_angle = false;                       ///< true: weights proportional to |sin t|; false: equal weights
 };
 
-/// `each`: a quantity for each direction.
+/// Combination of the values at several directions; `each` makes one quantity for each direction.
 enum class Reduction { mean, least, each };
 
-/// A share of the incident light over a window: RRE, or another account of the ledger. One quantity has one direction
-/// where each has its own.
+/// Fraction of the incident light over a window of directions: RRE, or another account of the ledger. With
+/// Reduction::each, every quantity has a window of one direction.
 struct ShareSpec {
   AngleWindow window;
   Reduction reduction = Reduction::mean;
   std::size_t account = static_cast<std::size_t>(raytrace::Account::retroreflected);
-  std::optional<double> acceptance_half_angle_deg;  ///< without it, the design's narrowest
-  /// Far field: what comes back between this half-angle and the other.
+  std::optional<double> acceptance_half_angle_deg;  ///< none: smallest cone of the design
+  /// Inner half-angle of a far-field quantity, which counts light between this half-angle and
+  /// acceptance_half_angle_deg.
   std::optional<double> beyond_half_angle_deg;
 };
 std::shared_ptr<const Quantity> make_share(std::string name, const ShareSpec& spec);
 
-/// What needs no light; see docs/study_file.md.
+/// Quantities that need no ray tracing; see docs/study_file.md.
 enum class PlainQuantity {
   elements_full,
   elements_partial,

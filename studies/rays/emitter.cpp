@@ -14,33 +14,35 @@
 namespace retrace::studies {
 namespace {
 
-// Philox stream of places and directions.
+// Philox stream of the random positions and directions.
 constexpr std::uint32_t kEmitterStream = 19;
 
-/// A point of a disc of radius 1, or a direction by its shares of sine: radius and angle apart.
+/// Returns the Cartesian coordinates of a point in polar coordinates.
+/// \param turns angle in full turns
 geometry::Vec2 polar(double radius, double turns) {
   const double angle = 2.0 * std::numbers::pi * turns;
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// exp(-2 r^2) of all power lies beyond r.
+/// Returns the radius r of a Gaussian beam within which the fraction u of the power lies; the fraction outside r is
+/// exp(-2 r^2).
 double gaussian_radius(double u) {
   return std::sqrt(-0.5 * std::log1p(-u));
 }
 
-/// By solid angle from the axis up to the half angle; `u` is the share of the power that lies closer to the axis.
+/// Returns the angle between a ray and the axis, within which the fraction `u` of the power is emitted.
 double polar_angle_rad(EmitterKind kind, double half_angle_rad, double u) {
   switch (kind) {
     case EmitterKind::lambertian: return std::asin(std::sqrt(u) * std::sin(half_angle_rad));
     case EmitterKind::gaussian: {
-      // Of a law that is cut at 90 degrees.
+      // The Gaussian distribution of angles is truncated at 90 degrees.
       const double cut = half_angle_rad > 0.0 ? std::pow(0.5 * std::numbers::pi / half_angle_rad, 2.0) : 0.0;
       const double most = half_angle_rad > 0.0 ? -std::expm1(-2.0 * cut) : 0.0;
       return half_angle_rad * gaussian_radius(most * u);
     }
     case EmitterKind::collimated: break;
   }
-  // 1 - cos without cancellation where the angle is small.
+  // This form of 1 - cos has no cancellation at small angles.
   return 2.0 * std::asin(std::sqrt(u) * std::sin(0.5 * half_angle_rad));
 }
 

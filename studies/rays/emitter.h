@@ -1,6 +1,6 @@
 #pragma once
 
-// An emitter of our own in place of a file: a disc that sends out rays by one of three laws.
+// Built-in emitter that replaces a ray file: a disc that emits rays with one of three distributions.
 
 #include <array>
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace retrace::studies {
 
-/// How rays are spread over the disc and about its axis.
+/// Distribution of rays over the disc and over directions.
 enum class EmitterKind {
-  lambertian,  ///< evenly over a disc, radiance alike in all directions up to the half angle
-  gaussian,    ///< both like exp(-2 (q / w)^2), with w half the diameter, and the half angle
-  collimated   ///< evenly over a disc, and evenly by solid angle up to the half angle
+  lambertian,  ///< uniform over the disc; constant radiance up to the half-angle
+  gaussian,    ///< both like exp(-2 (q / w)^2); w is half the diameter or the half-angle
+  collimated   ///< uniform over the disc, and per solid angle up to the half-angle
 };
 inline constexpr std::array<std::string_view, 3> kEmitterNames = {"lambertian", "gaussian", "collimated"};
 
-/// A disc round the origin that faces +z.
+/// Disc around the origin that emits rays towards +z.
 struct Emitter {
   EmitterKind kind = EmitterKind::lambertian;
   double disc_mm = 0.0;  ///< diameter of the emitting disc; 0 for a point source
@@ -29,29 +29,30 @@ struct Emitter {
   std::optional<std::array<Vec3, 2>> period_mm = {};
   double half_angle_deg = 90.0;  ///< 0 to 90
   std::uint64_t rays = 1'000'000;
-  double power = 1.0;        ///< of all rays together
-  bool is_luminous = false;  ///< power is in lm; else in W
+  double power = 1.0;        ///< power of all rays together
+  bool is_luminous = false;  ///< true: power in lm; false: power in W
   std::uint32_t seed = 1;
 };
 
-/// \throw InputError for another name
+/// Returns the kind of emitter with this name.
+/// \throw InputError for an unknown name
 EmitterKind emitter_from_name(std::string_view name);
 
 /// Maximum number of rays of an emitter.
 inline constexpr std::uint64_t kMaxEmitterRays = std::uint64_t{1} << 40;
 
-/// What is asked of one.
+/// Request for an emitter.
 struct EmitterRequest {
   EmitterKind kind = EmitterKind::lambertian;
   /// Diameter of the emitting disc. By default, a collimated emitter covers the entrance face, or one period of an
   /// infinite part. Other emitters are points by default.
   std::optional<double> disc_mm;
-  std::optional<double> half_angle_deg;  ///< none: 90, but of other light than lambertian 0
+  std::optional<double> half_angle_deg;  ///< none: 90 for `lambertian`, otherwise 0
   std::uint64_t rays = 1'000'000;
   double power = 1.0;
 };
 
-/// Random rays of equal power.
+/// Source of random rays of equal power.
 class EmitterSource : public RaySource {
  public:
   explicit EmitterSource(const Emitter& emitter);

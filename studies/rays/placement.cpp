@@ -27,7 +27,7 @@ Vec3 place_of(const std::array<double, 3>& numbers, const char* option) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-/// Axes of a source that looks along `forward`.
+/// Returns the axes of a source whose z axis points along `forward`.
 Eigen::Matrix3d aimed(const Vec3& forward) {
   Vec3 right = Vec3::UnitX() - forward.x() * forward;
   if (right.norm() < 1e-9) right = Vec3::UnitY() - forward.y() * forward;

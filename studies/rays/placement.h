@@ -1,6 +1,6 @@
 #pragma once
 
-// Where a source of rays stands, and how it is turned: from its frame to that of the part.
+// Position and orientation of a ray source: transformation from the frame of the source to the part frame.
 
 #include <array>
 #include <optional>
@@ -11,23 +11,23 @@
 
 namespace retrace::studies {
 
-/// What is asked; `at_mm` or the three angles and distance, not both.
+/// Request for a placement. It gives either `at_mm`, or the angles and the distance.
 struct RayPlacementRequest {
-  std::optional<std::array<double, 3>> at_mm;   ///< where its origin lies, in the part frame
-  std::optional<std::array<double, 3>> aim_mm;  ///< what its +z points at
-  // It stands in that direction from the middle of the entrance face, and its +z points there.
+  std::optional<std::array<double, 3>> at_mm;   ///< origin of the source in the part frame
+  std::optional<std::array<double, 3>> aim_mm;  ///< point at which the +z axis of the source is aimed
+  // Direction and distance of the source from the centre of the entrance face. Its +z axis points at this centre.
   std::optional<double> incidence_deg;
   std::optional<double> azimuth_deg;
   std::optional<double> distance_mm;
 
   bool is_by_angles() const { return incidence_deg || azimuth_deg || distance_mm; }
-  /// Where no place is asked for, the source stands before the face.
+  /// Places the source in front of the entrance face if the request gives no position.
   void face_part() {
     if (!at_mm && !is_by_angles()) incidence_deg = 0.0;
   }
 };
 
-/// Turns and moves rays.
+/// Transformation of rays from the frame of the source to the part frame.
 struct RayPlacement {
   Eigen::Matrix3d part_from_source = Eigen::Matrix3d::Identity();
   Vec3 at_mm = Vec3::Zero();
@@ -39,12 +39,13 @@ struct RayPlacement {
   }
 };
 
-/// The middle of the entrance face, or of a period of it.
+/// Returns the centre of the entrance face, or of one period of it.
 Vec3 middle_of_face(const geometry::Part& part);
 
-/// A source that is aimed has its x axis along the part's, seen along its own z axis (where that is x, along y). The
-/// frame of a source that nothing is asked of is that of the part.
-/// \throw InputError for what contradicts itself, or is out of range
+/// Computes the placement of a source. The x axis of an aimed source is the part's x axis, projected perpendicular to
+/// the source's z axis. If both are parallel, the y axis is used. Without a request, the frame of the source is the
+/// part frame.
+/// \throw InputError for contradictory values and values out of range
 RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Part& part);
 
 }  // namespace retrace::studies

@@ -21,7 +21,8 @@ namespace {
   throw InputError({"", 0, array}, fmt::format("ray {}: {}", ray, text));
 }
 
-/// \param more_may_be other numbers of values that it may have
+/// Checks the number of values in an array.
+/// \param more_may_be other numbers of values that are allowed
 void require_size(std::span<const double> values, const char* array, std::size_t size,
                   std::initializer_list<std::size_t> more_may_be = {}) {
   if (values.size() == size || std::ranges::count(more_may_be, values.size()) > 0) return;
@@ -34,8 +35,8 @@ Vec3 three(std::span<const double> values, std::size_t ray, const char* array) {
   return v;
 }
 
-/// Takes memory for so many values, where the system can in large pages: each page is cleared when it is first touched,
-/// and with the usual ones that takes longer than filling them does.
+/// Reserves memory, in large pages if the system supports them. Each page is cleared at its first use, which would take
+/// longer than filling it if pages were small.
 template <class Value>
 void reserve_in_large_pages(std::vector<Value>& values, std::size_t count) {
   values.reserve(count);
@@ -44,7 +45,7 @@ void reserve_in_large_pages(std::vector<Value>& values, std::size_t count) {
   const auto begin = reinterpret_cast<std::uintptr_t>(values.data());
   const std::uintptr_t first = (begin + page - 1) / page * page;
   const std::uintptr_t end = (begin + count * sizeof(Value)) / page * page;
-  // Advice alone: where it is not followed nothing changes.
+  // madvise() is only a hint, so that errors are ignored.
   if (end > first) ::madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
 #endif
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rays in memory: sources and sinks of plain arrays, numbers of one ray after those of another.
+// Rays in memory: ray sources and sinks that use plain arrays. The numbers of each ray are contiguous.
 
 #include <span>
 #include <vector>
@@ -10,18 +10,18 @@
 
 namespace retrace::studies {
 
-/// Arrays of a source; they must outlive it.
+/// Arrays of a source. They must exist as long as the source.
 struct RaySpans {
-  std::span<const double> origins_mm;      ///< three a ray
-  std::span<const double> directions;      ///< three a ray, of any length above 0
-  std::span<const double> stokes;          ///< four a ray, the first its power; or four for all
-  std::span<const double> axes;            ///< three a ray, across the direction; empty: +x seen across it
-  std::span<const double> wavelengths_nm;  ///< one a ray, one for all, or none
+  std::span<const double> origins_mm;  ///< three numbers per ray
+  std::span<const double> directions;  ///< three numbers per ray; any length above 0
+  std::span<const double> stokes;      ///< four numbers per ray, the first is its power; or four for all rays
+  std::span<const double> axes;        ///< three numbers per ray, perpendicular to the direction; empty: +x projected
+  std::span<const double> wavelengths_nm;  ///< one number per ray, one for all rays, or none
 };
 
 class ArraySource : public RaySource {
  public:
-  /// \throw InputError naming the array: `origins`, `directions`, `stokes`, `axes` or `wavelength_nm`
+  /// \throw InputError at the array: `origins`, `directions`, `stokes`, `axes` or `wavelength_nm`
   explicit ArraySource(const RaySpans& arrays);
 
   const RaySetInfo& info() const override { return info_; }
@@ -38,10 +38,10 @@ class ArraySource : public RaySource {
   TotalPower total_;
 };
 
-/// Keeps what leaves.
+/// Sink that stores the leaving rays in arrays.
 class ArraySink : public RaySink {
  public:
-  /// \param rays about so many: memory is taken at once
+  /// \param rays approximate number of rays, for which memory is reserved
   explicit ArraySink(std::size_t rays);
   void begin(const RaySinkLayout&) override {}
   void write(std::span<const AccountedRay> rays) override;
@@ -53,7 +53,7 @@ class ArraySink : public RaySink {
   std::vector<double> axes;
   std::vector<double> wavelengths_nm;
   std::vector<std::uint8_t> accounts;
-  std::vector<std::uint64_t> incident;  ///< from 0
+  std::vector<std::uint64_t> incident;  ///< number of the incident ray, from 0
 };
 
 }  // namespace retrace::studies

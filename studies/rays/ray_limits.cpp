@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kLeastNm = 100.0;
 constexpr double kMostNm = 100'000.0;
-// Stokes parameters come in single precision.
+// Tolerance of Stokes parameters, which may be in single precision.
 constexpr double kRounding = 1e-5;
-// Of the sine between axis and direction.
+// Minimum sine of the angle between axis and direction.
 constexpr double kLeastAcross = 1e-3;
 
 /// Multiplies a finite vector by a power of two so that its largest coordinate is between 1 and 2. A power of two

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/rays: what sources may hold of each ray, whatever their format.
+// Limits of the values of a ray, for sources of all formats. Internal to studies/rays.
 
 #include <optional>
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace retrace::studies {
 
-/// From X rays to the far infrared: what lies outside is in another unit.
+/// Returns true for wavelengths from X rays to the far infrared. Other values are probably in another unit.
 bool is_wavelength(double nm);
-/// A message of one that is none.
+/// Returns the error message for a value that is no wavelength.
 std::string wavelength_text(double nm);
 
 /// Returns the unit vector in the direction of a vector. Very long and very short vectors cause no overflow or
 /// underflow. Returns nothing if the length is 0 or not finite.
 std::optional<Vec3> unit_along(const Vec3& direction);
 
-/// +x, seen across a direction; another axis where the direction lies along it.
+/// Returns the x axis projected perpendicular to a direction. If the direction is parallel to x, another axis is used.
 Vec3 axis_across(const Vec3& direction);
 
 /// Maximum total power of all rays, in W or lm. With this limit, the sum of the squares of the powers is finite, too.
@@ -37,7 +37,8 @@ class TotalPower {
 /// Returns the error message for a ray with which the total power exceeds kMaxTotalPower.
 std::string total_power_text(double power);
 
-/// Turns the axis across the direction. \return what is wrong with the Stokes parameters; null if nothing is
+/// Makes the axis of a ray perpendicular to its direction.
+/// \return error message on the Stokes parameters; null if they are valid
 const char* settle_stokes(SetRay& ray);
 
 }  // namespace retrace::studies

@@ -20,8 +20,9 @@
 namespace retrace::studies {
 namespace {
 
-// Rays that are read at a time, and of those that leave about as many: what bounds memory.
+// Number of rays that are read and traced together. It limits the memory, because about as many rays leave.
 constexpr std::size_t kRaysAtATime = 16384;
+// Minimum number of rays that are traced together.
 constexpr std::size_t kFewestAtATime = 1024;
 // Maximum number of surfaces that a branch of a ray meets, and maximum number of segments of all branches of a ray.
 constexpr std::uint32_t kMaxSurfaces = 10'000;
@@ -36,7 +37,8 @@ std::u32string wide_text(std::string_view ascii) {
   return {ascii.begin(), ascii.end()};
 }
 
-/// Light of a ray in its part's frame. \param of_design polarisation, for rays of sources that tell none
+/// Returns the light of a ray in the part frame.
+/// \param of_design polarisation of the design, for rays of sources without polarisation
 raytrace::Light light_of(const SetRay& ray, double power, bool has_stokes, const raytrace::Stokes& of_design) {
   if (has_stokes) return {{power, power * ray.stokes[0], power * ray.stokes[1], power * ray.stokes[2]}, ray.axis};
   const bool is_along_x = ray.direction.cross(Vec3::UnitX()).squaredNorm() < raytrace::Light::kNormalIncidence;
@@ -47,7 +49,7 @@ raytrace::Light light_of(const SetRay& ray, double power, bool has_stokes, const
   return light;
 }
 
-/// With the long axis of the polarisation ellipse as its axis, so that S2 is 0.
+/// Sets the axis of a ray to the long axis of the polarisation ellipse, so that S2 is 0.
 void settle_polarisation(const raytrace::Light& light, AccountedRay& ray) {
   const raytrace::Stokes& s = light.stokes;
   ray.axis = light.s_axis;
@@ -95,7 +97,7 @@ struct RayStudy::Hidden {
   RayRequest request;
   materials::MaterialLibrary library;
   OpticalModel model;
-  std::vector<std::string> ignored;  ///< warnings that the model has as well
+  std::vector<std::string> ignored;  ///< warnings that the model also contains
   OpticsOfDesign optics;
   RayPlacement placement;
 };
@@ -139,7 +141,7 @@ Emitter RayStudy::emitter_of(const EmitterRequest& request) const {
   return emitter;
 }
 
-/// One source at one part.
+/// Traces one source through one part.
 class RayStudy::Run {
  public:
   Run(const Hidden& hidden, RaySource& source, RaySink* sink)
@@ -193,7 +195,7 @@ class RayStudy::Run {
     if (sink_ != nullptr) sink_->begin(layout_);
   }
 
-  /// What the rays hold that leave.
+  /// Returns the data that leaving rays contain.
   RaySinkLayout layout() const {
     RaySinkLayout layout{source_.info(), wavelengths_.are_several()};
     RaySetInfo& info = layout.info;

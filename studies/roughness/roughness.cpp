@@ -34,7 +34,8 @@ void check(const Design& design) {
                      fmt::format("must be one angle here, got {}", design.detector.acceptance_half_angle_deg.size()));
 }
 
-/// The design with that texture. \param where to blame for it
+/// Returns the design with the texture of a point.
+/// \param where location for error messages about the texture
 Design textured(const Design& design, const RoughnessPoint& point, double waviness_length_um,
                 const InputLocation& where) {
   Design rough = design;
@@ -52,7 +53,8 @@ RreRequest direction_of(const RoughnessRequest& asked) {
   return request;
 }
 
-/// Points of a curve leave the range of a model one after the other: one warning of each kind is enough.
+/// Returns a warning without its numbers. Several points of a curve may leave the range of a model, but one warning of
+/// each kind is enough.
 std::string without_numbers(std::string warning) {
   std::erase_if(warning, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
   return warning;
@@ -80,9 +82,9 @@ struct RoughnessStudy::Prepared {
   Design design;
   RoughnessRequest request;
   std::vector<RoughnessPoint> points;
-  std::vector<std::size_t> rough;  ///< which of them are not smooth
+  std::vector<std::size_t> rough;  ///< indices of the points that are not smooth
   std::unique_ptr<RreStudy> smooth_study;
-  std::unique_ptr<RreStudy> rough_study;  ///< of those, in their order
+  std::unique_ptr<RreStudy> rough_study;  ///< study of the rough points, in their order
 };
 
 RoughnessStudy::RoughnessStudy(Design design, RoughnessRequest request) : prepared_(std::make_unique<Prepared>()) {
@@ -121,10 +123,11 @@ RoughnessStudy::~RoughnessStudy() = default;
 
 namespace {
 
-/// Traced points, as they come from other processes.
+/// Collects traced points, which may come from other processes.
 class RoughnessLedger : public TaskLedger {
  public:
-  /// \param at where they are \param progress may be null
+  /// \param at request that contains the direction of incidence
+  /// \param progress may be null
   RoughnessLedger(std::size_t size, const RoughnessRequest& at, Progress* progress)
       : at_(at), progress_(progress), found_(size) {
     for (std::size_t k = 0; k < size; ++k) open_.insert(k);
@@ -209,7 +212,7 @@ RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* canc
   for (const RrePoint& point : traced.points) found[p.rough[point.design]] = &point;
   for (std::size_t k = 0; k < p.points.size(); ++k) {
     const bool is_rough = std::binary_search(p.rough.begin(), p.rough.end(), k);
-    if (is_rough && found[k] == nullptr) continue;  // interrupted before
+    if (is_rough && found[k] == nullptr) continue;  // the run was interrupted before this point
     RoughnessPoint point = p.points[k];
     point.rre = is_rough ? found[k]->rre : result.smooth_rre;
     point.std_error = is_rough ? found[k]->std_error : result.smooth_std_error;

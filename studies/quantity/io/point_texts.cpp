@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kSettingTables = {"analysis", "machining"};
 
-/// Points where each text that a parameter may have occurs: a design and what it names may depend on it.
+/// Returns points of the study such that each text value of a parameter occurs at least one time. Designs and the files
+/// that they name may depend on these texts.
 std::vector<PointValues> points_of_texts(const Study& study) {
   std::vector<PointValues> points = {some_values(study)};
   for (std::size_t k = 0; k < study.parameters.size(); ++k)

@@ -1,6 +1,6 @@
 #pragma once
 
-// A point of a study as overrides of its design and study files, which is how a candidate is made.
+// Point of a study as overrides of its design file and its study file, from which a candidate is made.
 
 #include <filesystem>
 #include <span>
@@ -13,23 +13,23 @@
 
 namespace retrace::studies {
 
-/// Whether an override or a parameter is one of how designs are analysed or made.
+/// Returns true if the key is a setting of the analysis or the machining, and not a key of the design.
 bool is_setting(std::string_view key);
 
-/// The key of an override.
+/// Returns the key of an override.
 std::string key_of(const std::string& override_text);
 
-/// Those of the overrides that are meant for the study file, or for designs.
+/// Returns the overrides of the study file if `study` is true, otherwise the overrides of designs.
 std::vector<std::string> overrides_for(std::span<const std::string> overrides, bool study);
 
-/// A point of a study as the files that are read for it.
+/// Point of a study as files and their overrides.
 struct PointTexts {
-  std::string design;                   ///< file
-  std::vector<std::string> for_design;  ///< overrides
-  std::vector<std::string> for_study;   ///< overrides of its document, beside those that it was read with
+  std::string design;                   ///< name of the design file
+  std::vector<std::string> for_design;  ///< overrides of the design file
+  std::vector<std::string> for_study;   ///< overrides of the study file, in addition to those with which it was read
 };
 
-/// \param values one for each parameter
+/// \param values one value for each parameter
 PointTexts texts_at(const Study& study, std::span<const ParameterValue> values);
 
 /// Returns the files that the designs of a study name, without duplicates. If a parameter of the study sets the key of

@@ -19,7 +19,8 @@ using schema::Document;
 
 constexpr double kMostDirections = 10000.0;
 
-/// The middles of `count` equal parts of a range: their mean is that over the range to second order.
+/// Returns the centres of `count` equal parts of a range. The mean over them is the mean over the range to second
+/// order.
 std::vector<double> middles(const Document& document, const std::string& at, const NumberRange& allowed) {
   const auto given = [&](const char* key, const NumberRange& range) {
     const double value = std::get<double>(document.named(at).at(key));
@@ -45,7 +46,7 @@ std::optional<std::vector<double>> angles_of(const Document& document, const std
   return document.numbers(at);
 }
 
-/// One, or one for each direction.
+/// Returns the quantity, or with `each` one quantity for each direction.
 Quantities shares_of(const std::string& name, const ShareSpec& spec) {
   if (spec.reduction != Reduction::each) return {make_share(name, spec)};
   using Angles = std::optional<std::vector<double>>;
@@ -90,7 +91,8 @@ Quantities read_share(const std::string& name, const Document& document, const s
   return shares_of(name, spec);
 }
 
-/// \throw InputError that says `--class` as the key `class` of the quantity
+/// Runs a function and converts the location of its errors: `--class` becomes the key `class` of the quantity.
+/// \throw InputError with the converted location
 template <class Work>
 auto with_keys(const Document& document, const std::string& at, Work work) {
   try {
@@ -113,7 +115,7 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& d
                                                                std::vector<NamedFile>& files) {
   PhotometricTable table;
   StandardChoice choice;
-  // A word is a shipped standard; anything else a file.
+  // The value is the name of a shipped standard or otherwise the name of a file.
   choice.standard = document.text(at + ".standard");
   if (find_standard(choice.standard) == nullptr) {
     const std::string key = at + ".standard";

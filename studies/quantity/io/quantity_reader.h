@@ -10,8 +10,11 @@
 
 namespace retrace::studies {
 
-/// One [[quantity]] of a study, which may stand for several, such as every point of a standard.
-/// \param at path of its table \param files the files that it names are added \throw InputError
+/// Reads a table [[quantity]] of a study. One table may describe several quantities, such as one for each test point of
+/// a standard.
+/// \param at path of the table
+/// \param files receives the files that the table names
+/// \throw InputError for invalid keys
 Quantities read_quantity(const schema::Document& document, const std::string& at, std::vector<NamedFile>& files);
 
 }  // namespace retrace::studies

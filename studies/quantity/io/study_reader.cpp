@@ -25,7 +25,7 @@ namespace {
 
 using schema::Document;
 
-/// Parts of a study that decide what its points are.
+/// Tables of a study that determine its points.
 constexpr std::array<std::string_view, 8> kParts = {"parameter", "quantity",  "analysis",   "machining",
                                                     "sweep",     "tolerance", "constraint", "optimize"};
 constexpr double kMostValues = 100'000.0;
@@ -83,7 +83,7 @@ MachiningProcess machining_of(const Document& document) {
   return process;
 }
 
-/// What is wrong with a key that a parameter names; empty if nothing is.
+/// Returns what is wrong with the key of a parameter. Empty if the key is valid.
 std::string complaint_about_parameter(const std::string& key) {
   if (key == "design") return {};
   return schema::complaint_about_key(is_setting(key) ? study_format() : design_format(), key);
@@ -96,7 +96,7 @@ ParameterValue value_of(const std::string& toml) {
   return {toml, toml};
 }
 
-/// The ends of a range.
+/// Reads the lower and upper limit of a range.
 Interval read_interval(const Document& document, const std::string& at) {
   Interval interval;
   interval.logarithmic = document.row(at + ".scale") != nullptr && document.text(at + ".scale") == "log";
@@ -111,7 +111,8 @@ Interval read_interval(const Document& document, const std::string& at) {
   return interval;
 }
 
-/// The values of a range with a step or a count: those of a LIST, or equal parts.
+/// Returns the values of a range with a step or a count. Steps work as in a LIST of the command line; a count divides
+/// the range into equal parts.
 std::vector<ParameterValue> range_values(const Document& document, const std::string& at, const Interval& interval) {
   std::vector<ParameterValue> values;
   if (const auto step = document.number_if(at + ".step")) {
@@ -143,14 +144,15 @@ Distribution read_distribution(const Document& document, const std::string& at) 
     if (!within.contains(distribution.mean))
       document.fail(at + ".mode", fmt::format("must be {}, got {}", within.text(), shortest(distribution.mean)));
   }
-  // With the mean outside the cut-off range all values would come from a tail of the distribution: surely a mistake.
+  // A mean outside the range of the distribution is refused. All values would come from a tail of the distribution,
+  // which is probably a mistake.
   if (normal && distribution.range &&
       (distribution.range->from > distribution.mean || distribution.range->to < distribution.mean))
     document.fail(at + ".mean", fmt::format("must lie between from and to, got {}", shortest(distribution.mean)));
   return distribution;
 }
 
-/// Paths of designs are meant from the folder of the study.
+/// Makes the names of designs relative to the folder of the study.
 void resolve_designs(const Document& document, const std::string& at, Parameter& parameter) {
   const fs::path folder = fs::path(document.source()).parent_path();
   for (ParameterValue& value : parameter.values) {
@@ -187,7 +189,7 @@ Parameter read_parameter(const Document& document, const std::string& at) {
   return parameter;
 }
 
-/// The paths of the tables of a list that must have one or more.
+/// Returns the paths of the tables in a list. The list must have at least one table.
 std::vector<std::string> entries_of(const Document& document, const std::string& list) {
   std::vector<std::string> paths;
   for (std::size_t k = 0; k < document.count(list); ++k) paths.push_back(schema::path_of_entry(list, k));
@@ -201,7 +203,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Columns of a table are told apart by their names, whatever their case.
+/// Checks that the names of columns are unique, ignoring upper and lower case.
 void check_columns(const Study& study, const std::vector<InputLocation>& quantity_locations) {
   std::set<std::string> taken = {"point", "failed", "reason", "elapsed_s", "version", "status"};
   const auto take = [&](const std::string& name, const InputLocation& where, std::string_view what) {
@@ -215,7 +217,7 @@ void check_columns(const Study& study, const std::vector<InputLocation>& quantit
   }
 }
 
-/// A key has one value at a point.
+/// Checks that no two parameters set the same key.
 void check_keys_once(const Study& study) {
   std::set<std::string> taken;
   for (const Parameter& parameter : study.parameters)
@@ -227,7 +229,7 @@ void check_keys_once(const Study& study) {
       throw InputError({"--set " + printable(text), 0, ""}, "the study varies this key");
 }
 
-/// FNV-1a: tells whether a file was changed; no protection against forgery.
+/// Returns a fingerprint (FNV-1a) that shows whether a file was changed. It gives no protection against forgery.
 std::string fingerprint(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
@@ -326,7 +328,7 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
     given = std::make_shared<const Document>(schema::with(study_format(), *given, texts.for_study));
   const Document& document = *given;
   const MachiningProcess machining = machining_of(document);
-  // What the study says of the surface counts more than what cutting leaves.
+  // Surface keys of the study take precedence over the surface that the machining process leaves.
   const std::vector<std::string> as_cut = surface_overrides(machining);
   texts.for_design.insert(texts.for_design.begin(), as_cut.begin(), as_cut.end());
   const Design varied = parse_design(study.design_texts.at(texts.design), texts.design, texts.for_design);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rays as tables of comma-separated values, a line each.
+// Reads and writes rays as tables of comma-separated values, with one line for each ray.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +17,8 @@
 
 namespace retrace::studies {
 
-/// Reads such a table. \throw InputError naming file, line and column
+/// Reads a table of rays.
+/// \throw InputError that names file, line and column
 class RayCsvSource : public RaySource {
  public:
   explicit RayCsvSource(const std::filesystem::path& file);
@@ -41,18 +42,18 @@ class RayCsvSource : public RaySource {
   std::uint64_t bytes_ = 0;
   std::uint64_t at_ = 0;
   std::string text_;
-  std::vector<std::string_view> values_;  ///< of the line
-  std::array<int, 17> columns_ = {};      ///< where the quantities stand; -1: nowhere
+  std::vector<std::string_view> values_;  ///< values of the current line
+  std::array<int, 17> columns_ = {};      ///< column of each quantity; -1: the table does not have it
   std::size_t column_count_ = 0;
   int line_ = 0;
   TotalPower total_;
   RaySetInfo info_;
 };
 
-/// Writes such a table, with the number of the ray that each comes from and its account.
+/// Writes a table of rays. Each line contains the number of the incident ray and the account of the ledger.
 class RayCsvSink : public RaySink {
  public:
-  /// \throw OutputError
+  /// \throw OutputError if the file cannot be written
   explicit RayCsvSink(const std::filesystem::path& file) : file_(file) {}
 
   void begin(const RaySinkLayout& layout) override;
