@@ -11,20 +11,22 @@
 namespace retrace::studies {
 namespace {
 
-// What the counts of work stand for, as benchmarks/engine_choice.cpp measured them.
+// Time in ns per unit of work of exact beams, as measured by benchmarks/engine_choice.cpp.
 constexpr double kNsPerLook = 30.0;
-/// Of stochastic beams, which are fewer and wider.
+/// Time in ns per unit of work of stochastic beams, which are fewer and wider.
 constexpr double kNsPerStochasticLook = 15.0;
-/// Looks that stochastic beams take to the usual error, before there was a round. Light that enters prisms askew
-/// wanders far, and little of it comes back.
+/// Expected work of stochastic beams until the default target error, used before their first round. It is greater for
+/// prisms, because light that enters them obliquely travels far and little of it returns.
 constexpr double kLooksForCubes = 300'000.0;
 constexpr double kLooksForPrisms = 1'000'000.0;
-/// Facets of a cell beyond which they take more, as measured with rounded edges: 300 times as many at 24.
+/// Number of facets of a cell above which stochastic beams need more work. With rounded edges, a cell with 24 facets
+/// needs 300 times the work.
 constexpr double kFewFacets = 4.0;
 constexpr double kGrowthWithFacets = 3.0;
-/// Share of what rays are expected to take that beams may take, however long they are expected to.
+/// Fraction of the predicted time of stochastic beams and rays that exact beams may always use. It is a hedge against a
+/// poor prediction of their own time.
 constexpr double kHedge = 0.2;
-/// Work after which the engines are compared for the first time: a millisecond.
+/// Work after which the methods are compared for the first time. It takes about one millisecond.
 constexpr double kFirstLook = 30'000.0;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 

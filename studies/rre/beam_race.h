@@ -1,6 +1,7 @@
 #pragma once
 
-// The two ways in which beams tell RRE - all of them, or weak ones resampled - side by side: the quicker one goes on.
+// Competition of the two beam methods for RRE: exact beams, and stochastic beams that resample weak beams. The method
+// with the smaller expected time continues.
 
 #include <functional>
 #include <memory>
@@ -13,32 +14,33 @@
 
 namespace retrace::studies {
 
-/// Of a part's cells, in the mean.
+/// Returns the mean number of facets of a part's cells.
 double facets_of_cell(const geometry::Part& part);
 
 /// Returns the expected time, in ns, for constructing the BeamTracer of a part. The time is infinite if the search
 /// structures of the tracer exceed the memory budget.
 double beam_tracer_ns(const geometry::Part& part);
 
-/// One direction at one wavelength, traced until the exact engine's goal or the stochastic one's target error is
-/// reached. Each way goes on where it was left when the other turns out to be slower than expected. Choices rest on
-/// counts of work and not on clocks, so that they are the same on every machine. For one thread.
+/// Tracing of one direction at one wavelength by the faster of two methods. It ends when the exact engine has reached
+/// its goal, or the stochastic engine the target error. A method continues where it stopped if the other method turns
+/// out to be slower than expected. Decisions depend on counts of work and not on clocks, so that they are the same on
+/// every machine. Only one thread at a time may use an object.
 class BeamRace {
  public:
   struct Options {
     bool may_resample = true;
-    /// Told of the beams that are followed exactly while others are resampled.
+    /// Receives the beams that are traced exactly while weak beams are resampled.
     raytrace::BeamObserver observer = {};
   };
 
-  /// \param scattered as that of StochasticBeams; with it, beams are resampled in any case
-  /// \pre `tracer`, `scattered` and `cancel` outlive this
+  /// \param scattered scattered light as for StochasticBeams; if it is given, beams are always resampled
+  /// \pre `tracer`, `scattered` and `cancel` exist as long as this object
   BeamRace(const raytrace::BeamTracer& tracer, const raytrace::ScatteredLight* scattered,
            const raytrace::Optics& optics, const raytrace::Illumination& illumination,
            const std::vector<double>& cones_deg, const raytrace::BeamPolicy& policy, const raytrace::Sampling& sampling,
            Options options, const Cancellation* cancel);
 
-  /// What the quicker way is expected to take in all; infinite if neither may do.
+  /// Returns the total time that the faster method is expected to take. Infinite if both methods are abandoned.
   double expected_ns() const;
   /// Returns the finished fraction of the work that the faster method is expected to need. 0 before the work begins.
   double share_done() const;
@@ -48,7 +50,8 @@ class BeamRace {
   /// \throw BudgetError if both methods are abandoned
   bool advance();
 
-  /// Which way did. \pre advance() was true
+  /// Returns true if the exact method has reached the goal, and false if it was the stochastic method.
+  /// \pre advance() has returned true
   bool is_exact() const { return is_exact_; }
   raytrace::BeamResult exact() const { return beams_->result(); }
   const raytrace::StochasticBeams& stochastic() const { return *stochastic_; }
@@ -60,8 +63,8 @@ class BeamRace {
   bool advance_stochastic();
 
   const Cancellation* cancel_;
-  std::optional<raytrace::BeamTrace> beams_;  ///< none: facets scatter
-  /// Made when it is first needed.
+  std::optional<raytrace::BeamTrace> beams_;  ///< none if facets scatter
+  /// Makes the stochastic beams when they are first needed.
   std::function<std::unique_ptr<raytrace::StochasticBeams>()> make_stochastic_;
   std::unique_ptr<raytrace::StochasticBeams> stochastic_;
   double first_looks_ = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// What becomes of the light from one direction at one wavelength, by the exact engine alone: points of RRE, and what
-// its returned beams show. What samples rays is in tracing.h.
+// Traces light from one direction at one wavelength by the exact engine only: points of RRE, footprint and far field.
+// Methods with random sampling are in tracing.h.
 
 #include <optional>
 #include <vector>
@@ -13,23 +13,24 @@
 
 namespace retrace::studies {
 
-/// The light of a point.
+/// Returns the illumination of a point.
 raytrace::Illumination illumination_of(const RrePoint& at, const Design& design);
 
-/// What is asked of the returned beams beyond RRE.
+/// Results that a request needs from returned beams in addition to RRE.
 struct BeamQuestion {
   bool footprint = false;
   bool far_field = false;
 };
 
-/// Gathers the returned beams of one direction, as far as they are asked for.
+/// Collects the returned beams of one direction for the footprint and the far field, if they are requested.
 class BeamCollector {
  public:
-  /// \param cones how many acceptance cones beams are sorted by
+  /// \param cones number of acceptance cones into which beams are sorted
   BeamCollector(const BeamQuestion& question, const geometry::Part& part, std::size_t cones,
                 const raytrace::Illumination& illumination);
 
-  /// None if nothing is asked. \pre the collector outlives it
+  /// Returns the observer that receives the beams. Empty if nothing is requested.
+  /// \pre the collector exists as long as the observer
   raytrace::BeamObserver observer();
   std::optional<Footprint> footprint() const;
   std::optional<FarField> far_field() const;
@@ -39,23 +40,26 @@ class BeamCollector {
   std::optional<FarFieldBuilder> far_field_;
 };
 
-/// What beams say of one direction at one wavelength.
+/// Results of exact beams for one direction at one wavelength.
 struct BeamAnswer {
-  raytrace::BeamResult traced;  ///< not complete if it was cancelled: the rest is then nothing
+  raytrace::BeamResult traced;  ///< not complete if it was cancelled; the other members are then empty
   std::optional<Footprint> footprint;
   std::optional<FarField> far_field;
 };
 
-/// \param part that `tracer` is of \throw BudgetError as BeamTracer::trace()
+/// Traces the beams of one direction at one wavelength.
+/// \param part part for which `tracer` was made
+/// \throw BudgetError as BeamTracer::trace()
 BeamAnswer follow_beams(const raytrace::BeamTracer& tracer, const geometry::Part& part, const raytrace::Optics& optics,
                         const raytrace::Illumination& illumination, const std::vector<double>& cones_deg,
                         const raytrace::BeamPolicy& policy, const BeamQuestion& question, const Cancellation* cancel,
                         Progress* progress);
 
-/// The points of a direction, one a cone. \param at what they have in common
+/// Returns the points of a direction, one for each acceptance cone, from exact beams.
+/// \param at data that the points have in common
 std::vector<RrePoint> points_of(const RrePoint& at, const std::vector<double>& cones_deg,
                                 const raytrace::BeamResult& traced);
-/// The same of what was sampled.
+/// Returns the points of a direction, one for each acceptance cone, from a sampled result.
 std::vector<RrePoint> points_of(const RrePoint& at, const raytrace::MonteCarloResult& traced);
 
 }  // namespace retrace::studies

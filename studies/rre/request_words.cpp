@@ -1,4 +1,4 @@
-// The words and numbers of requests for RRE, as options have them.
+// Words and numbers of RRE requests, as used in command-line options.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -53,7 +53,8 @@ void check(const RreRequest& request) {
   }
 }
 
-/// A slope asks for the part at neighbouring sizes, which planes of single facets do not say.
+/// Refuses derivatives of parts with individual facet planes or a mask. Derivatives rebuild the part at perturbed
+/// sizes, but a table of facet planes cannot be perturbed.
 void check_planes(const Design& design, const RreRequest& request) {
   if (request.derivatives && design.facet_planes())
     throw InputError(design.where("part.facets"), "has no derivatives: leave out --derivatives");
@@ -61,7 +62,8 @@ void check_planes(const Design& design, const RreRequest& request) {
     throw InputError(design.where("array.mask"), "has no derivatives: leave out --derivatives");
 }
 
-/// A slope, a footprint or a far field is that of one wavelength: a mean of them over others would show none of them.
+/// Refuses results that are defined at a single wavelength for light with a spectrum. Averaging them over a spectrum is
+/// meaningless.
 void check_light(const Design& design, const OpticalModel& model, const RreRequest& request) {
   if (model.spectral.size() < 2) return;
   for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
@@ -88,7 +90,7 @@ double target_error_of(const RreRequest& request) {
 
 namespace {
 
-/// Beams and cells know plane entrance faces alone.
+/// Refuses engines that support only plane entrance faces if the design has a curved one.
 void check_entrance(const Design& design, const RreRequest& request) {
   if (!design.entrance) return;
   if (request.engine == Engine::exact || request.engine == Engine::stochastic || request.engine == Engine::cell)
@@ -101,7 +103,7 @@ void check_entrance(const Design& design, const RreRequest& request) {
     if (asked) check_taken(design, {.what = option, .solids = true});
 }
 
-/// Beams and cells know backs alone that are all alike.
+/// Refuses results and engines that require the same medium behind all elements.
 void check_backs(const Design& design, const OpticalModel& model, const RreRequest& request) {
   if (model.optics.has_one_back()) return;
   for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
@@ -114,7 +116,8 @@ void check_backs(const Design& design, const OpticalModel& model, const RreReque
                                                       engine_name(request.engine), design.source_name()));
 }
 
-/// What would split or bend a beam is for rays, or for beams that are resampled where light stays specular in part.
+/// Refuses engines of beams if facets or the entrance face split or bend beams. Stochastic beams are allowed if some of
+/// the light stays specular.
 void check_beams(const Design& design, const raytrace::Optics& optics, Engine engine) {
   const bool may_resample = raytrace::StochasticBeams::serves(optics);
   if (engine == Engine::stochastic ? may_resample : optics.keeps_beams()) return;
@@ -128,7 +131,7 @@ void check_beams(const Design& design, const raytrace::Optics& optics, Engine en
   throw refused(design.where_entrance_scatters(), "entrance faces that scatter split");
 }
 
-/// Balls have one engine of their own.
+/// Returns the model of a design. Balls have a tracer of their own, so that most options are refused for them.
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreRequest& request) {
   if (!design.balls()) {
     check_entrance(design, request);
@@ -180,7 +183,8 @@ RreStudy::~RreStudy() = default;
 
 namespace {
 
-/// Says so if a cut-off took more than the error that was requested, or than shows in a table where none was.
+/// Adds a warning if more power was truncated than the target error allows. If a cut-off was given, the limit is 1e-6,
+/// the smallest change that tables show.
 void warn_of_truncation(const RreRequest& request, RreResult& result) {
   constexpr double kShows = 1e-6;
   const double allowed = request.cutoff ? kShows : std::max(kShows, target_error_of(request));
@@ -196,7 +200,8 @@ void warn_of_truncation(const RreRequest& request, RreResult& result) {
       shortest(worst->azimuth_deg)));
 }
 
-/// The engine of all points; if they took different ones, `montecarlo` where all followed rays, else `mixed`.
+/// Returns the engine of all points. If points have different engines, returns `montecarlo` if all traced rays,
+/// otherwise `mixed`.
 std::string engine_of(const std::vector<RrePoint>& points) {
   const auto all = [&](const auto& fits) { return std::all_of(points.begin(), points.end(), fits); };
   if (points.empty()) return "none";

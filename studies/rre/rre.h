@@ -1,7 +1,7 @@
 #pragma once
 
-// Retroreflective efficiency of designs over directions of the light, and where all other power goes. The study behind
-// `retrace rre`.
+// Retroreflective efficiency (RRE) of designs over directions of the light, and the distribution of all other power.
+// This study is behind `retrace rre`.
 
 #include <cstdint>
 #include <memory>
@@ -23,13 +23,16 @@
 
 namespace retrace::studies {
 
-/// The tracer of a request. `automatic` is that of `exact`, `stochastic` and `montecarlo` which is expected to reach
-/// the target error first, for each direction and wavelength; `montecarlo` is `cell` where that serves, else `embree`.
+/// Tracing method of a request. `automatic` selects for each direction and wavelength the method that is expected to
+/// reach the target error first: `exact`, `stochastic` or `montecarlo`. `montecarlo` is `cell` if that engine supports
+/// the part, otherwise `embree`.
 enum class Engine { automatic, exact, stochastic, montecarlo, cell, embree };
 
-/// \throw InputError listing the engines for a name that is none of them
+/// Returns the engine with this name.
+/// \throw InputError that lists all engines if the name is unknown
 Engine engine_from_name(std::string_view name);
-/// \throw InputError likewise
+/// Returns the sampling method with this name.
+/// \throw InputError that lists all methods if the name is unknown
 raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
@@ -52,108 +55,116 @@ bool is_one_of(Engine engine, std::span<const Engine> engines);
 /// \throw InputError at `option`
 void check_has_effect(const char* option, bool is_given, Engine engine, std::span<const Engine> engines);
 
-/// Of a share of power. \throw InputError at `option` unless it lies between 0 and 1
+/// Checks a fraction of the power.
+/// \throw InputError at `option` unless the value is between 0 and 1
 void check_share(double value, bool zero_allowed, const char* option);
 
-/// Default of RreRequest::target_error, of RRE as a fraction.
+/// Default of RreRequest::target_error, as a fraction of the incident power.
 inline constexpr double kUsualTargetError = 1e-4;
-/// Of RRE as a fraction: how far straight lines between chosen incidences may miss it, if target_error is less.
+/// Maximum error of linear interpolation between automatically chosen incidences, as a fraction of the incident power.
+/// It applies if target_error is smaller.
 inline constexpr double kCurveTolerance = 1e-3;
-/// The engine of what several have found.
+/// Engine of a result to which several engines have contributed.
 inline constexpr std::string_view kMixedEngines = "mixed";
 
 /// A request for retroreflective efficiency over a grid of directions.
 struct RreRequest {
   std::vector<double> incidence_deg = {0.0};  ///< each in (-90, 90)
-  /// Pieces in (-90, 90) over which incidences are chosen besides, the same for all designs and azimuths, until
-  /// straight lines between the points are within target_error or kCurveTolerance; those requested then come in
-  /// ascending order.
+  /// Intervals in (-90, 90) in which further incidences are chosen automatically. They are the same for all designs and
+  /// azimuths. Incidences are added until linear interpolation between the points is within target_error or
+  /// kCurveTolerance. All incidences are then sorted in ascending order.
   std::vector<CurveSpan> incidence_spans;
   std::vector<double> azimuth_deg = {0.0};
   Engine engine = Engine::automatic;
-  std::optional<std::uint64_t> rays;  ///< per point; else until target_error is reached
-  /// Of RRE as a fraction: the standard error of Monte Carlo, and the power that the exact engine may leave in
-  /// `truncated`. By default kUsualTargetError, or half of kCurveTolerance where incidences are chosen; 1e-10 where the
-  /// exact engine is requested by name, or what only it can tell.
+  std::optional<std::uint64_t> rays;  ///< number of rays per point; none: until target_error is reached
+  /// Maximum standard error of Monte Carlo, and maximum power in `truncated` for the exact engine, as fractions of the
+  /// incident power. The default is kUsualTargetError, or half of kCurveTolerance if incidences are chosen
+  /// automatically. It is 1e-10 if the exact engine is requested by name or needed for other results.
   std::optional<double> target_error;
-  raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< plain: on Embree
-  /// Least power followed, as a share of the incident. By default 1e-10 (Monte Carlo), or as little as target_error
-  /// takes (exact).
+  raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< `plain` uses Embree
+  /// Minimum power that is traced, as a fraction of the incident power. Default: 1e-10 (Monte Carlo), or the value that
+  /// target_error requires (exact).
   std::optional<double> cutoff;
   std::uint32_t seed = 1;
-  bool derivatives = false;  ///< exact engine: of RRE by the parameters of the design
-  bool footprint = false;    ///< exact engine: which regions of the entrance face send light back
-  bool far_field = false;    ///< exact engine: the directions in which light leaves the entrance face
+  bool derivatives = false;  ///< exact engine: compute derivatives of RRE by parameters of the design
+  bool footprint = false;    ///< exact engine: compute the regions of the entrance face that return light
+  bool far_field = false;    ///< exact engine: compute the directions in which light leaves the entrance face
 };
 
-/// The target error, or what stands in its place where none is given.
+/// Returns the target error of a request, or its default.
 double target_error_of(const RreRequest& request);
 
-/// RRE at one of the wavelengths of a spectrum.
+/// RRE at one wavelength of a spectrum.
 struct SpectralRre {
   double wavelength_nm = 0.0;
-  double weight = 0.0;  ///< share of the flux that it stands for
+  double weight = 0.0;  ///< fraction of the flux that the wavelength represents
   double rre = 0.0;
   double std_error = 0.0;
-  std::string engine;  ///< that ran
+  std::string engine;  ///< engine that was used
 };
 
 struct RrePoint {
   std::size_t design = 0;
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  double wavelength_nm = 0.0;  ///< of a spectrum: its centroid
+  double wavelength_nm = 0.0;  ///< centroid of the spectrum if the design has one
   double acceptance_half_angle_deg = 0.0;
   double rre = 0.0;
-  double std_error = 0.0;  ///< of sampling alone: what `truncated` may add to `rre` is apart
-  std::string engine;  ///< exact, stochastic, cell, embree or balls; of a spectrum kMixedEngines if wavelengths took
-                       ///< different ones
-  raytrace::Stokes stokes;  ///< of what is retroreflected, along raytrace::source_axis()
+  double std_error = 0.0;  ///< error of sampling only; does not include the possible effect of `truncated`
+  /// Engine that was used: exact, stochastic, cell, embree or balls; kMixedEngines if wavelengths of a spectrum used
+  /// several engines.
+  std::string engine;
+  raytrace::Stokes stokes;  ///< Stokes parameters of the retroreflected light, along raytrace::source_axis()
   raytrace::Ledger ledger;
-  std::uint64_t beams = 0;                      ///< exact and stochastic engine: followed for this point
-  std::uint32_t depth = 0;                      ///< exact engine: interfaces on the longest path
-  bool missed_target = false;                   ///< `std_error` stayed above what was asked for at some wavelength
-  std::vector<RreDerivative> derivatives = {};  ///< if they were requested
-  std::vector<SpectralRre> by_wavelength = {};  ///< designs with a spectrum: what the point is the mean of
+  std::uint64_t beams = 0;                      ///< exact and stochastic engine: number of beams traced for this point
+  std::uint32_t depth = 0;                      ///< exact engine: number of interfaces on the longest path
+  bool missed_target = false;                   ///< true: `std_error` is above the requested error at some wavelength
+  std::vector<RreDerivative> derivatives = {};  ///< empty if they were not requested
+  /// Values at the wavelengths of a spectrum, of which the point is the mean.
+  std::vector<SpectralRre> by_wavelength = {};
 };
 
-/// What was requested beyond RRE, for one direction.
+/// Results for one direction that were requested in addition to RRE.
 struct ReturnedLight {
-  RrePoint at;  ///< of the widest acceptance cone
+  RrePoint at;  ///< point of the widest acceptance cone
   std::optional<Footprint> footprint;
   std::optional<FarField> far_field;
 };
 
 struct RreResult {
   std::vector<Design> designs;
-  std::vector<std::vector<SpectralOptics>> light;  ///< by design: the wavelengths that were traced
-  std::string engine = "none";                     ///< that ran; if several did: montecarlo, or mixed with exact
+  std::vector<std::vector<SpectralOptics>> light;  ///< traced wavelengths, for each design
+  std::string engine = "none";  ///< engine that was used; "montecarlo" or "mixed" if there were several
   std::string engine_requested;
   std::uint32_t seed = 1;
-  std::vector<RrePoint> points;         ///< in the order design, wavelength, azimuth, incidence, acceptance
-  std::vector<ReturnedLight> returned;  ///< one a direction, in the same order, if a footprint or far field was asked
-  std::vector<EntranceFace> faces;      ///< one a design, if a footprint was asked
+  std::vector<RrePoint> points;  ///< ordered by design, wavelength, azimuth, incidence, acceptance cone
+  /// One for each direction in this order, if footprints or far fields were requested.
+  std::vector<ReturnedLight> returned;
+  std::vector<EntranceFace> faces;  ///< one for each design, if footprints were requested
   std::uint64_t rays = 0;
   double elapsed_s = 0.0;
   std::vector<std::string> warnings;
   bool complete = true;
 };
 
-/// A checked request, ready to run: everything that can be wrong with the input has been found once this exists.
+/// Study of a checked request, ready to run. The constructor reports all errors of the input.
 class RreStudy {
  public:
-  /// \throw InputError for an engine that this version lacks, a direction out of range, an unknown material
+  /// \throw InputError for an engine that this version does not have, a direction out of range, and an unknown material
   RreStudy(std::vector<Design> designs, RreRequest request);
   ~RreStudy();
 
-  /// RRE of every design at every direction. \throw BudgetError if power was lost, or too many beams are needed
+  /// Computes RRE of every design at every direction.
+  /// \throw BudgetError if power was lost, or if too many beams are needed
   RreResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
-  // For who has designs traced by several processes. \pre no incidences are to be chosen
+  // The following functions serve to trace designs in several processes. They require that no incidences are chosen
+  // automatically.
 
-  /// The points of one of the designs alone. \throw BudgetError as run()
+  /// Computes the points of one design.
+  /// \throw BudgetError as run()
   RreResult run_design(std::size_t design, const Cancellation* cancel) const;
-  /// What run() tells of the points of all designs, but for what was requested beyond RRE.
+  /// Returns the result of run() for given points of all designs. It contains only RRE and no other requested results.
   RreResult result_of(std::vector<RrePoint> points) const;
 
  private:

@@ -17,10 +17,10 @@
 namespace retrace::studies {
 namespace {
 
-// What the counts of work of the tracers stand for, as benchmarks/engine_choice.cpp measured them: choices rest on
-// counts and not on clocks, so that they are the same on every machine.
-/// Of a straight piece, and of each facet of an element besides; of a finite array Embree does what is near its
-/// borders.
+// Expected times of the tracers, as measured by benchmarks/engine_choice.cpp. Decisions depend on counts of work and
+// not on clocks, so that they are the same on every machine.
+/// Time of one ray segment, and additional time for each facet of an element. In finite arrays, Embree traces rays near
+/// the borders.
 struct SegmentCost {
   double ns = 0.0;
   double ns_per_facet = 0.0;
@@ -28,19 +28,20 @@ struct SegmentCost {
 constexpr SegmentCost kCell{50.0, 15.0};
 constexpr SegmentCost kCellOfFinite{220.0, 25.0};
 constexpr SegmentCost kEmbree{350.0, 25.0};
-/// Straight pieces of a first round of Monte Carlo, before there was one.
+/// Expected number of ray segments in the first round of Monte Carlo.
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
 /// Maximum time for constructing the beam tracer, as a fraction of the expected remaining time of ray tracing. With
 /// this limit, an unsuccessful attempt at beam tracing takes at most half of the time of ray tracing.
 constexpr double kMaxTracerShare = 0.3;
-/// What beams may take below the error that was requested: some 3 ms.
+/// Work, below the requested error, that beams may use anyway. It takes about 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
 
-/// The sampling of one wavelength. Rays are shared in proportion to the weights w: variances v / (w N) of the estimates
-/// then make w^2 v / (w N) each and v / N in all, as if all N rays were of one wavelength. A target t becomes
-/// t / sqrt(w) in the same way. Seeds differ, so that the estimates are independent; the first is the one requested.
+/// Returns the sampling parameters of one wavelength. Rays are distributed in proportion to the weights w of the
+/// wavelengths. An estimate then has the variance v / (w N) and contributes w^2 v / (w N). The sum is v / N, as if all
+/// N rays had one wavelength. A target error t becomes t / sqrt(w) in the same way. Wavelengths have different seeds,
+/// so that their estimates are independent. The first wavelength has the requested seed.
 raytrace::Sampling sampling_of(const RreRequest& request, double weight, std::size_t wavelength) {
-  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd: no two wavelengths share a seed
+  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd, so that all wavelengths have different seeds
   raytrace::Sampling sampling;
   sampling.kind = request.sampling;
   sampling.seed = request.seed + kGolden * static_cast<std::uint32_t>(wavelength);
@@ -51,7 +52,7 @@ raytrace::Sampling sampling_of(const RreRequest& request, double weight, std::si
   return sampling;
 }
 
-/// The point of a direction at one of its wavelengths, before it is traced.
+/// Returns the point of a direction at one of its wavelengths, before it is traced.
 RrePoint spectral_point(const Direction& direction, const SpectralOptics& light, std::string_view engine) {
   RrePoint at = direction.at;
   at.wavelength_nm = light.wavelength_nm;
@@ -63,8 +64,8 @@ bool asks_for_more(const RreRequest& request) {
   return request.footprint || request.far_field || request.derivatives;
 }
 
-/// How far beams are followed: as far as is requested, and to the finest goal where the exact engine was requested by
-/// name and nothing else.
+/// Returns the limits for tracing beams. They are those of the request. If only the engine `exact` is requested, its
+/// finest goal applies.
 raytrace::BeamPolicy beam_policy(const RreRequest& request) {
   raytrace::BeamPolicy policy;
   policy.cutoff = request.cutoff;
@@ -74,7 +75,7 @@ raytrace::BeamPolicy beam_policy(const RreRequest& request) {
   return policy;
 }
 
-/// False if it was cancelled.
+/// Adds the derivatives to the points. Returns false if the computation was cancelled.
 bool add_derivatives(const TracedDirection& traced, const Cancellation* cancel, std::vector<RrePoint>& points) {
   const auto by_cone = rre_derivatives(traced, cancel);
   if (!by_cone) return false;
@@ -94,7 +95,7 @@ std::size_t unit_count(const std::vector<Direction>& directions) {
 
 }  // namespace
 
-/// All directions of one design at all its wavelengths.
+/// Traces all directions of one design at all its wavelengths.
 class DesignTracing {
  public:
   DesignTracing(const Design& design, const OpticalModel& model, const RreRequest& request, const Cancellation* cancel)
@@ -103,7 +104,7 @@ class DesignTracing {
     follows_beams_ = may_follow_beams(design, model, request);
   }
 
-  /// Whether directions are shared out among the threads; else each takes all of them.
+  /// Returns true if threads work on different directions. Otherwise all threads work on the same direction.
   bool takes_several() const { return follows_beams_; }
 
   /// Sets the number of combinations of a direction and a wavelength. The construction time of the beam tracer is
@@ -112,7 +113,7 @@ class DesignTracing {
     if (follows_beams_ && !tracer_ns_) tracer_ns_ = beam_tracer_ns(model_.part) / static_cast<double>(units);
   }
 
-  /// False if it was cancelled: an unfinished point is no point.
+  /// Traces a direction at one wavelength. Returns false if it was cancelled; the direction then has no new point.
   /// \pre expect() was called
   bool trace(Direction& direction, std::size_t wavelength, Progress& progress) {
     if (!follows_beams_) return trace_rays(direction, wavelength, progress);
@@ -138,7 +139,7 @@ class DesignTracing {
     return cost.ns + cost.ns_per_facet * facets_of_cell(model_.part);
   }
 
-  /// Made when it is first needed, by whichever thread needs it.
+  /// Returns the beam tracer, which is constructed at the first call.
   const raytrace::BeamTracer& beam_tracer() {
     using Elements = raytrace::BeamTracer::Elements;
     std::call_once(beam_tracer_is_made_, [this] {
@@ -209,7 +210,7 @@ class DesignTracing {
     return true;
   }
 
-  /// Null where facets do not scatter.
+  /// Returns the light that rough facets scatter. Null if facets do not scatter.
   std::unique_ptr<raytrace::ScatteredLight> scattered_light(const raytrace::Optics& optics,
                                                             const raytrace::Illumination& illumination) {
     const raytrace::BeamTracer& tracer = beam_tracer();
@@ -254,8 +255,8 @@ class DesignTracing {
     }
   }
 
-  /// By the engine that is expected to reach the goal first, round by round: each goes on where it was left when
-  /// another turns out to be slower than expected.
+  /// Traces by the method that is expected to reach the goal first. The method is selected before every round. A method
+  /// continues where it stopped if another method turns out to be slower than expected.
   bool trace_fastest(Direction& direction, std::size_t wavelength, Progress& progress) {
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     const raytrace::Optics& optics = light(wavelength).optics;
@@ -291,7 +292,7 @@ class DesignTracing {
   std::optional<double> tracer_ns_;
   std::once_flag beam_tracer_is_made_;
   std::optional<raytrace::BeamTracer> beam_tracer_;
-  std::optional<raytrace::BackSurface> scattering_;  ///< for what rough facets take from beams
+  std::optional<raytrace::BackSurface> scattering_;  ///< for the light that rough facets scatter out of beams
   std::once_flag ray_tracer_is_made_;
   std::optional<raytrace::MonteCarlo> ray_tracer_;
 };

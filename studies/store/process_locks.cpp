@@ -34,7 +34,8 @@ ProcessLocks::ProcessLocks(const std::filesystem::path& file)
   if (descriptor_ < 0) fail();
   for (; own_ < kMostProcesses; ++own_) {
     struct flock lock = byte_lock(own_);
-    // Locks of the open file, not of the process: closing another descriptor of it does not end them.
+    // These locks belong to the open file and not to the process. Closing another descriptor of the file does not
+    // release them.
     if (::fcntl(descriptor_, F_OFD_SETLK, &lock) == 0) return;
     if (errno != EAGAIN && errno != EACCES) fail();
   }

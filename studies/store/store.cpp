@@ -22,12 +22,12 @@ namespace retrace::studies {
 namespace fs = std::filesystem;
 namespace {
 
-/// Number of the format, in the file's user_version. It changes when an older program would misread the file.
+/// Number of the file format, stored as user_version. It changes when older programs would misinterpret the file.
 constexpr int kFormat = 1;
-/// "rtrc": tells these files from other SQLite files.
+/// Identifier "rtrc" that distinguishes these files from other SQLite files.
 constexpr int kApplication = 0x72747263;
 constexpr int kWaitMs = 60'000;
-/// Columns of a point that are no parameter and no quantity.
+/// Number of columns of a point that are neither parameters nor quantities.
 constexpr int kFixedColumns = 5;
 constexpr const char* kAllPoints = "SELECT * FROM points ORDER BY point";
 /// Maximum number of characters of a reason that a message quotes.
@@ -48,7 +48,7 @@ std::vector<std::string> output_columns(const StoreLayout& layout) {
   return columns;
 }
 
-/// Whether nothing is stored at that place yet.
+/// Returns true if the file does not exist or is empty.
 bool is_new(const fs::path& file) {
   std::error_code ignored;
   return file.empty() || !fs::exists(file, ignored) || fs::file_size(file, ignored) == 0;
@@ -86,7 +86,7 @@ bool is_of_the_system(int code) {
 struct ResultStore::Database {
   fs::path file;
   StoreLayout layout;
-  std::unique_ptr<ProcessLocks> locks;  ///< null in memory
+  std::unique_ptr<ProcessLocks> locks;  ///< null for a store in memory
   std::unique_ptr<SQLite::Database> sqlite;
   std::unique_ptr<SQLite::Statement> claim;
   std::unique_ptr<SQLite::Statement> insert;
@@ -111,7 +111,7 @@ struct ResultStore::Database {
     throw OutputError(
         fmt::format("{}: cannot be written: {}; the points that are finished are kept", name(), error.getErrorStr()));
   }
-  /// Runs `work`, alone among the threads, with errors of SQLite as ours.
+  /// Calls `work` while the mutex is locked, and converts errors of SQLite to errors of this program.
   template <class Work>
   auto guarded(Work work) const {
     const std::lock_guard lock(mutex);
@@ -181,7 +181,8 @@ void ResultStore::Database::open() {
   if (!file.empty()) switch_to_log();
 }
 
-/// The switch fails at once, whatever the time-out, where another process is about it too.
+/// Switches SQLite to a write-ahead log. Several attempts are needed, because the switch fails without waiting if
+/// another process is switching, too.
 void ResultStore::Database::switch_to_log() {
   for (int attempt = 0;; ++attempt) {
     try {
@@ -293,7 +294,7 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
   } catch (const SQLite::Exception& error) {
     database_->fail(error);
   }
-  // Claims in our name are those of a process that died.
+  // Claims with our owner number belong to an earlier process that has died.
   if (!file.empty())
     database_->guarded(
         [&] { database_->sqlite->exec(fmt::format("DELETE FROM claims WHERE owner = {}", database_->owner())); });
@@ -368,7 +369,8 @@ std::size_t ResultStore::claimed_by_others() {
       }
     }
     if (dead.empty()) return claimed;
-    // Another process may take the byte of a dead one, but claims nothing before this transaction ends.
+    // Another process may take over the owner number of a dead process. It cannot claim points before this transaction
+    // ends.
     SQLite::Transaction transaction(*database_->sqlite, SQLite::TransactionBehavior::IMMEDIATE);
     for (const std::int64_t owner : dead)
       if (!database_->locks->is_alive(owner))

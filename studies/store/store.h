@@ -1,6 +1,6 @@
 #pragma once
 
-// Results of a study point by point in an SQLite database, so that an interrupted run goes on where it was cut off.
+// Stores the results of a study point by point in an SQLite database, so that an interrupted run can be resumed.
 
 #include <cstdint>
 #include <filesystem>
@@ -14,31 +14,31 @@
 
 namespace retrace::studies {
 
-/// A value of a parameter as it is stored: a number, or the text of anything else.
+/// Stored value of a parameter: a number, or a text for values of other types.
 using StoredValue = std::variant<double, std::string>;
 
-/// What a quantity came to at a point. Nothing if it has no value there, such as a limit that does not exist.
+/// Stored value of a quantity at a point. Empty if the quantity has no value, such as a limit that does not exist.
 struct StoredOutput {
   std::optional<double> value;
   double std_error = 0.0;
 };
 
-/// A finished point of a study: computed, or failed for a reason that doing it again would not change.
+/// Finished point of a study. It was computed, or it failed for a reason that would occur again.
 struct StoredPoint {
   std::uint64_t point = 0;
   bool failed = false;
-  std::string reason;                 ///< why it failed; empty if it did not
+  std::string reason;                 ///< error message if the computation failed; otherwise empty
   std::vector<StoredValue> inputs;    ///< in the order of StoreLayout::inputs
   std::vector<StoredOutput> outputs;  ///< in the order of StoreLayout::outputs; empty if it failed
   double elapsed_s = 0.0;
-  std::string version;  ///< of the program that computed it
+  std::string version;  ///< version of the program that computed the point
 };
 
-/// What a store holds. A store of another study is not taken for one of this.
+/// Contents of a store. They are compared with an existing file, so that a store of another study is refused.
 struct StoreLayout {
-  std::string kind;    ///< such as "retrace.sweep/1"
-  std::string source;  ///< the study file, for messages
-  /// The study in parts, each with a name and a canonical text. A store whose parts differ is of another study.
+  std::string kind;    ///< kind of the store, such as "retrace.sweep/1"
+  std::string source;  ///< name of the study file, for messages
+  /// Parts of the study, each with a name and a canonical text. A store with other parts belongs to another study.
   std::vector<std::pair<std::string, std::string>> parts;
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
@@ -49,9 +49,9 @@ struct StoreLayout {
 
 enum class IfExists { refuse, resume, overwrite };
 
-/// Finished points in one SQLite file. Every point is committed by itself: a process that is killed loses none. Several
-/// processes of one machine may work on one file, each on the points that it has claimed; claims of a process that died
-/// are void. Safe to call from several threads.
+/// Finished points in one SQLite file. Every point is committed separately, so that a killed process loses no finished
+/// points. Several processes on one machine may use one file. Each process computes the points that it has claimed;
+/// claims of dead processes are void. Several threads may use an object.
 class ResultStore {
  public:
   /// \param file empty: the store is in memory and only this process can access it
@@ -63,16 +63,17 @@ class ResultStore {
   ResultStore(const ResultStore&) = delete;
   ResultStore& operator=(const ResultStore&) = delete;
 
-  /// Whether the point is this process's to compute: not finished and not claimed by another that lives.
+  /// Claims a point for this process. Returns false if the point is finished or claimed by another living process.
   /// \throw OutputError as record()
   bool claim(std::uint64_t point);
-  /// Gives a claim up, so that another process may take the point.
+  /// Gives up a claim, so that another process may compute the point.
   void give_up(std::uint64_t point);
-  /// Stores a finished point and ends its claim; a point that is stored already stays as it is.
-  /// \throw OutputError if it cannot be written, as on a full disk; what is stored stays
+  /// Stores a finished point and ends its claim. A point that is already stored is not changed.
+  /// \throw OutputError if the point cannot be written, for example because the disk is full; stored points are kept
   void record(const StoredPoint& point);
 
-  /// Voids the claims of processes that died. \return how many points others still have claimed
+  /// Voids the claims of dead processes.
+  /// \return number of points that other processes have claimed
   std::size_t claimed_by_others();
   /// Returns the numbers of the finished points in ascending order.
   /// \throw InputError if the file is damaged

@@ -26,25 +26,25 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A rank of which nothing is heard for so long is given up, unless the environment says otherwise.
+/// Time without messages after which a rank is given up. It can be changed by the environment variable below.
 constexpr double kSilenceS = 15.0;
 constexpr const char* kSilenceVariable = "RETRACE_MPI_SILENCE_S";
-/// A large job may take its time to start.
+/// Maximum time for the start of a job; large jobs start slowly.
 constexpr std::chrono::minutes kStart{10};
-/// How long rank 0 waits for the others to leave, and every rank for MPI to end.
+/// Maximum time that rank 0 waits for the other ranks to leave, and that every rank waits for the end of MPI.
 constexpr std::chrono::seconds kPatience{10};
-// And for those that are interrupted, within the second that an interrupt may take.
+// Maximum time that rank 0 waits for ranks after an interrupt, which must take less than a second.
 constexpr std::chrono::milliseconds kLastCall{500};
 constexpr std::chrono::milliseconds kLook{20};
-/// Batches that take less are requested while the one before is computed.
+/// Computing time of a batch of tasks below which the next batch is requested in advance.
 constexpr std::chrono::seconds kQuick{1};
 
 enum Tag : int {
-  ask = 1,  ///< to rank 0: how many tasks are wanted
-  result,   ///< to rank 0: the number of a task and what it came to
-  leaving,  ///< to rank 0: gone after this, and why
-  deal,     ///< from rank 0: numbers of tasks
-  go        ///< from rank 0: there is no more; says whether all ranks are there to end MPI together
+  ask = 1,  ///< to rank 0: number of tasks that the rank wants
+  result,   ///< to rank 0: number of a task and its result
+  leaving,  ///< to rank 0: the rank leaves, with the reason
+  deal,     ///< from rank 0: numbers of tasks to compute
+  go        ///< from rank 0: no more tasks; contains whether all ranks can end MPI together
 };
 constexpr std::string_view kAllAreThere = "all";
 
@@ -52,7 +52,8 @@ std::string bytes_of_result(std::uint64_t task, const std::string& bytes) {
   return std::string(reinterpret_cast<const char*>(&task), sizeof task) + bytes;
 }
 
-/// \throw InputError
+/// Returns the time without messages after which a rank is given up.
+/// \throw InputError if the environment variable is invalid
 std::chrono::duration<double> silence_limit() {
   const char* const text = std::getenv(kSilenceVariable);
   if (text == nullptr) return std::chrono::duration<double>(kSilenceS);
@@ -69,10 +70,10 @@ struct MpiSession::State {
   std::chrono::duration<double> silence = silence_limit();
   std::unique_ptr<MpiMailbox> mailbox =
       open_mpi_mailbox(std::chrono::milliseconds(static_cast<long>(std::min(500.0, 1000.0 * silence.count() / 6.0))));
-  std::set<int> there;      ///< rank 0: the others that were not given up
-  std::set<int> at_work;    ///< rank 0: those of them that have not said that they leave
-  bool lost_ranks = false;  ///< MPI cannot be ended in order
-  bool may_go = false;      ///< the others: rank 0 has said so
+  std::set<int> there;      ///< rank 0: other ranks that have not been given up
+  std::set<int> at_work;    ///< rank 0: ranks in `there` that have not announced that they leave
+  bool lost_ranks = false;  ///< true: ranks were lost, so that MPI cannot be finalized
+  bool may_go = false;      ///< other ranks: true after the message `go` of rank 0
   bool has_ended = false;
   bool ended_well = true;
   std::vector<std::string> remarks;
@@ -80,7 +81,7 @@ struct MpiSession::State {
 
   bool is_silent(int rank) const { return mailbox->silence(rank) > silence; }
 
-  /// A process that was stopped for a while, or waited for its disk, has heard nothing meanwhile.
+  /// Ignores the silence of other ranks if this process itself was suspended or blocked for more than a second.
   void look() {
     const auto now = Clock::now();
     if (now - looked_last > std::chrono::seconds(1)) mailbox->forgive_silence();
@@ -103,7 +104,7 @@ struct MpiSession::State {
   void end_other();
 };
 
-/// Tells all ranks to end; ranks that do not answer within kPatience are given up.
+/// Tells all ranks to end. Ranks that do not answer within kPatience are given up.
 void MpiSession::State::end_rank_0() {
   for (const int rank : there) mailbox->post(rank, Tag::go, lost_ranks ? "" : std::string(kAllAreThere));
   const auto deadline = Clock::now() + kPatience;
@@ -158,7 +159,7 @@ bool MpiSession::end() {
   else
     state.end_other();
   const bool has_gone = state.mailbox->flush(std::chrono::seconds(2));
-  // With ranks gone astray MPI would wait for them for ever.
+  // MPI is not finalized if ranks were lost, because it would wait for them forever.
   state.ended_well = has_gone && !state.lost_ranks && state.mailbox->close(kPatience);
   return state.ended_well;
 }
@@ -179,12 +180,12 @@ std::vector<std::uint64_t> tasks_of(const std::string& bytes) {
   return tasks;
 }
 
-/// Which rank has which tasks of a ledger. Safe to call from the thread that deals and those that compute.
+/// Assignment of a ledger's tasks to ranks. The dealing thread and the computing threads may use it concurrently.
 class Dealer {
  public:
   explicit Dealer(TaskLedger& ledger) : ledger_(ledger) {}
 
-  /// Tasks for a rank.
+  /// Takes tasks for a rank.
   std::vector<std::uint64_t> take(int rank, std::size_t wanted) {
     const std::lock_guard lock(mutex_);
     std::vector<std::uint64_t> tasks;
@@ -202,7 +203,7 @@ class Dealer {
     if (dealt_.erase(task) > 0) ledger_.finish(task, bytes);
   }
 
-  /// What was dealt to a rank is to be dealt again.
+  /// Returns the unfinished tasks of a rank to the ledger.
   void take_back(int rank) {
     const std::lock_guard lock(mutex_);
     for (auto entry = dealt_.begin(); entry != dealt_.end();) {
@@ -215,7 +216,7 @@ class Dealer {
     }
   }
 
-  /// Whether a rank has tasks that it has not told the results of.
+  /// Returns true if a rank has tasks whose results have not arrived.
   bool has_tasks(int rank) {
     const std::lock_guard lock(mutex_);
     return std::any_of(dealt_.begin(), dealt_.end(), [rank](const auto& entry) { return entry.second == rank; });
@@ -232,7 +233,8 @@ class Dealer {
   std::map<std::uint64_t, int> dealt_;
 };
 
-/// Rank 0's own share of the work, on a thread beside the one that deals. What goes wrong is kept for that one.
+/// Computes the tasks of rank 0 itself, on a second thread beside the dealing thread. Errors are stored for the dealing
+/// thread.
 class OwnShare {
  public:
   OwnShare(const ComputeTask& compute, Dealer& dealer, std::size_t slots, const Cancellation* cancel)
@@ -268,10 +270,10 @@ class OwnShare {
   std::atomic<bool> stop_{false};
   std::atomic<bool> failed_{false};
   std::exception_ptr error_;
-  std::thread thread_;  ///< last: it uses the others
+  std::thread thread_;  ///< last member, because the thread uses the others
 };
 
-/// Ranks that wait for tasks, with how many they want.
+/// Ranks that wait for tasks, and the number of tasks that each wants.
 using Waiting = std::map<int, std::size_t>;
 
 }  // namespace
@@ -287,7 +289,7 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
     state.remarks.push_back(fmt::format("rank {} {}; its points went to others", rank, why));
   };
   const auto read = [&](const Letter& letter) {
-    if (!state.there.contains(letter.rank)) return;  // was given up, and is not dead after all
+    if (!state.there.contains(letter.rank)) return;  // the rank was given up, although it is alive
     if (letter.tag == Tag::ask) waiting[letter.rank] = std::stoul(letter.bytes);
     if (letter.tag == Tag::result)
       dealer.finish(tasks_of(letter.bytes.substr(0, sizeof(std::uint64_t))).front(),
@@ -321,7 +323,7 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
       if (dealer.is_finished()) return true;
     }
   }
-  // What the others have in work when everything is to stop may still come in.
+  // After a stop, the results of tasks that other ranks still compute may arrive for a short time.
   const auto deadline = Clock::now() + kLastCall;
   const auto has_tasks = [&](int rank) { return dealer.has_tasks(rank); };
   while (std::any_of(state.at_work.begin(), state.at_work.end(), has_tasks) && Clock::now() < deadline)
@@ -345,8 +347,8 @@ void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Canc
       return;
     }
     const std::vector<std::uint64_t> tasks = tasks_of(letter->bytes);
-    // The next batch of quick tasks is requested before this one is computed, to hide the latency of messages. Slow
-    // tasks are left with rank 0 until some rank is idle.
+    // If tasks are quick, the next batch is requested before this batch is computed, to hide the latency of messages.
+    // If tasks are slow, they stay with rank 0 until a rank is idle.
     if (is_quick) ask();
     const auto start = Clock::now();
     for_each_in_parallel(tasks.size(), [&](std::size_t k) {

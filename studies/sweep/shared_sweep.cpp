@@ -21,7 +21,7 @@ std::string to_message(const StoredPoint& point) {
       .dump(-1, ' ', false, PointJson::error_handler_t::replace);
 }
 
-/// \param sweep tells the inputs, which need not travel
+/// \param sweep sweep that contains the inputs of the point, which are not part of the message
 StoredPoint from_message(const std::string& message, const Sweep& sweep) {
   const PointJson json = PointJson::parse(message);
   StoredPoint point;
@@ -40,7 +40,7 @@ StoredPoint from_message(const std::string& message, const Sweep& sweep) {
   return point;
 }
 
-/// The points that a store lacks. Those that processes beside this one have claimed there are waited for.
+/// Tasks for the points that a store lacks. Points that other processes have claimed in the store are awaited.
 class SweepLedger : public TaskLedger {
  public:
   SweepLedger(const Sweep& sweep, ResultStore& store, SweepObserver* observer)

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kWaitForOthers{50};
 
-/// Nothing for points that are not sampled.
+/// Returns the kind of samples. Returns nothing for combinations without sampling.
 std::optional<UnitSamples::Kind> samples_of(Combine combine) {
   switch (combine) {
     case Combine::sobol: return UnitSamples::Kind::sobol;
@@ -165,7 +165,7 @@ class QuantityProgress {
   std::set<std::string> begun_;
 };
 
-/// Nothing if it was cancelled.
+/// Computes all quantities of a point. Returns nothing if it was cancelled.
 std::optional<std::vector<StoredOutput>> measure_all(const Study& study, const PointValues& values,
                                                      const Cancellation* cancel, Progress* progress) {
   Candidate candidate = make_candidate(study, values);
@@ -176,7 +176,7 @@ std::optional<std::vector<StoredOutput>> measure_all(const Study& study, const P
     candidate.report_to(&part);
     const std::optional<Measured> measured = quantity->measure(candidate, cancel);
     if (!measured) return std::nullopt;
-    // What is no number is no value either.
+    // NaN and infinity count as missing values.
     const bool has_value = measured->value && std::isfinite(*measured->value);
     outputs.push_back({has_value ? measured->value : std::nullopt, measured->std_error});
   }
@@ -269,13 +269,14 @@ std::vector<std::uint64_t> unfinished(const Sweep& sweep, const ResultStore& sto
 
 namespace {
 
-/// Computes those of the points that no other process has claimed. \return how many
+/// Computes the points that no other process has claimed.
+/// \return number of computed points
 std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& points, ResultStore& store,
                      SweepCount& count, const Cancellation* cancel) {
   std::atomic<std::size_t> next{0};
   std::atomic<std::size_t> computed{0};
   for_each_in_parallel(points.size(), [&](std::size_t) {
-    // In the order of their numbers, whatever pieces the threads were given.
+    // Points are computed in the order of their numbers, whatever index for_each_in_parallel() passes.
     const std::uint64_t number = points[next.fetch_add(1)];
     if (is_cancelled(cancel) || !store.claim(number)) return;
     TaskProgress::Task task(count.points());

@@ -1,6 +1,7 @@
 #pragma once
 
-// Quantities of a study at every point of a grid or a sample, on one machine or many. The study behind `retrace sweep`.
+// Computes the quantities of a study at every point of a grid or a sample, on one or several machines. This study is
+// behind `retrace sweep`.
 
 #include <cstdint>
 #include <memory>
@@ -16,16 +17,16 @@
 
 namespace retrace::studies {
 
-/// How the values of several parameters make points.
+/// Combination of the values of several parameters into points.
 enum class Combine {
-  grid,    ///< every value with every other; the last parameter varies fastest
-  zipped,  ///< the first values of all, the second of all, ...
+  grid,    ///< all combinations of values; the last parameter varies fastest
+  zipped,  ///< first values of all parameters, second values of all parameters, and so on
   sobol,
   latin_hypercube,
-  monte_carlo  ///< each point drawn by itself
+  monte_carlo  ///< independent random points
 };
 
-/// Which values the points of a study have, each told by its number alone.
+/// Plan of the points of a study. The number of a point determines its values.
 class PointPlan {
  public:
   virtual ~PointPlan() = default;
@@ -34,16 +35,20 @@ class PointPlan {
   virtual PointValues values(std::uint64_t point) const = 0;
 };
 
-/// Values of parameters at shares 0..1 of their distributions, intervals or lists. \pre one share for each
+/// Returns the values of parameters at given fractions (0..1) of their distributions, intervals or lists.
+/// \pre there is one fraction for each parameter
 PointValues values_at(const Study& study, const std::vector<double>& shares);
 
-/// A study whose points are known before any is computed.
+/// Study whose points are all known before the first is computed.
 class Sweep {
  public:
-  /// \param samples of `sobol`, `latin_hypercube` and `monte_carlo`
-  /// \throw InputError if the parameters cannot be combined so, or make more than most_points
+  /// \param samples number of points for `sobol`, `latin_hypercube` and `monte_carlo`
+  /// \throw InputError if the parameters cannot be combined in this manner, or if there are more than most_points
+  /// points
   Sweep(Study study, Combine combine, std::uint64_t samples);
-  /// Points of another making. \param kind of the store, such as "retrace.tolerance/1" \param plan for this study
+  /// Makes a sweep of the points of a plan.
+  /// \param kind kind of the store, such as "retrace.tolerance/1"
+  /// \param plan plan of points for this study
   Sweep(Study study, std::string kind, std::shared_ptr<const PointPlan> plan);
 
   static constexpr std::uint64_t most_points = 10'000'000;
@@ -57,7 +62,7 @@ class Sweep {
  private:
   Study study_;
   std::string kind_ = "retrace.sweep/1";
-  std::shared_ptr<const PointPlan> plan_;  ///< null: as `combine_` says
+  std::shared_ptr<const PointPlan> plan_;  ///< null: points as combined by `combine_`
   Combine combine_ = Combine::grid;
   std::uint64_t size_ = 0;
   std::optional<UnitSamples> samples_;
@@ -72,7 +77,7 @@ std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t numbe
                                          const Cancellation* cancel, bool* ran_out = nullptr,
                                          Progress* progress = nullptr);
 
-/// Told how far a sweep has come. Calls come from one thread at a time.
+/// Receives the progress of a sweep. Only one thread at a time calls its functions.
 class SweepObserver {
  public:
   virtual ~SweepObserver() = default;
@@ -82,7 +87,7 @@ class SweepObserver {
   virtual void at_share(double share) { static_cast<void>(share); }
 };
 
-/// Counts finished points and tells an observer, which may be null. Safe to call from several threads.
+/// Counts finished points and reports them to an observer, which may be null. Several threads may use an object.
 class SweepCount {
  public:
   SweepCount(const Sweep& sweep, const ResultStore& store, SweepObserver* observer);
@@ -99,24 +104,25 @@ class SweepCount {
   std::optional<TaskProgress> points_;
 };
 
-/// Numbers of the points of a sweep that are not in the store, ascending.
+/// Returns the numbers of the points of a sweep that are not in the store, in ascending order.
 std::vector<std::uint64_t> unfinished(const Sweep& sweep, const ResultStore& store);
 
-/// Computes what the store lacks, several points at a time, together with other processes that do the same; what those
-/// have taken is waited for. \return whether all points are finished: false if it was cancelled
+/// Computes the points that the store lacks, several at a time. Other processes may work on the same sweep; points that
+/// they have claimed are awaited.
+/// \return true if all points are finished, false if the computation was cancelled
 /// \throw OutputError if the store cannot be written
 bool run_sweep(const Sweep& sweep, ResultStore& store, SweepObserver* observer, const Cancellation* cancel);
 
-/// A sweep and what is known of it.
+/// Sweep with its finished points.
 struct SweepResult {
   const Sweep& sweep;
-  std::vector<StoredPoint> points;  ///< ascending
+  std::vector<StoredPoint> points;  ///< in ascending order of their numbers
   double elapsed_s = 0.0;
   bool complete = true;
   std::vector<std::string> warnings;
 };
 
-/// The finished points with what is to be said about them.
+/// Returns the finished points with warnings about the study.
 SweepResult collect(const Sweep& sweep, const ResultStore& store, bool complete);
 
 }  // namespace retrace::studies

@@ -24,17 +24,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// One line without the characters that end a text in STEP or a line in OBJ.
+/// Returns the title as one line, without characters that end a text in STEP or a line in OBJ.
 std::string title_of(const Solid& solid) {
   std::string title = printable(short_name(solid.design), 60) + ", " + name_of(solid.what);
   std::replace(title.begin(), title.end(), '\'', ' ');
-  // STEP and STL know ASCII only.
+  // STEP and STL support only ASCII.
   std::replace_if(
       title.begin(), title.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return title;
 }
 
-/// A part is as clear as its body at the wavelength of its light; a mould is of metal.
+/// Returns the solid as glTF. A part has the transmittance of its material at the wavelength of its light. A mould is
+/// metallic.
 std::string gltf_text(const Solid& solid) {
   if (solid.what == SolidKind::mould) return geometry::gltf_text(solid.mesh, title_of(solid), std::nullopt, 0.0);
   Design body = solid.design;
