@@ -35,7 +35,7 @@ StoreLayout optimise_layout(const Study& study) {
   for (const Parameter& parameter : study.parameters) layout.inputs.push_back(parameter.name);
   for (const auto& quantity : study.quantities) layout.outputs.push_back(quantity->name());
   layout.fault_of = [study](const StoredPoint& point) -> std::string {
-    return values_of(study, point.inputs) ? "" : "its values are outside of what the study's parameters allow";
+    return values_of(study, point.inputs) ? "" : "the study's parameters do not allow its values";
   };
   return layout;
 }

@@ -48,14 +48,15 @@ constexpr Row kBodyRows[] = {
      "a "
      "record of refractiveindex.info (`.yml`), which has one material: `material` is then not needed."},
     {"refractive_index", Number{{.low = 1.0, .high = 10.0}}, Computed{"the material's"},
-     "Relative to air; wins over the material."},
+     "Relative to air; takes precedence over the material."},
     {"temperature_c", Number{{.low = -200.0, .high = 400.0}}, Computed{"that of the material's data"},
      "Of the part and the air around it, whose indices change with it; lengths are those at that temperature. For "
      "materials with thermo-optic coefficients; not together with `refractive_index`.",
      kIndexOfMaterial},
     {"absorption_per_mm", Number{kAtLeastZero}, Computed{"the material's"},
-     "Napierian, for power; wins over the material. A list of two or more `[wavelength_nm, absorption_per_mm]`, linear "
-     "between, tells it by wavelength (coloured lenses) and must reach all wavelengths of the light."},
+     "Napierian, for power; takes precedence over the material. A list of two or more `[wavelength_nm, "
+     "absorption_per_mm]`, linear between, gives it by wavelength (coloured lenses) and must reach all wavelengths of "
+     "the light."},
     {"absorption_per_mm", Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]", 2}, kNone,
      "By wavelength."},
     {"facet_coating", Word{kCoatings}, "none",
@@ -88,7 +89,7 @@ constexpr NumberRange kIndexOfLayer{.low = 0.0, .low_included = false, .high = 1
 
 constexpr Row kLayerRows[] = {
     {"material", Text{}, kNone, "A name that `retrace list materials` shows, of a material or a metal."},
-    {"refractive_index", Number{kIndexOfLayer}, kNone, "In place of a material, relative to air."},
+    {"refractive_index", Number{kIndexOfLayer}, kNone, "Relative to air; replaces the index of a material."},
     {"extinction_coefficient", Number{{.low = 0.0, .high = 1000.0}}, 0.0, "Imaginary part of that index.",
      kWithLayerIndex},
     {"thickness_nm", Number{{.low = 0.0, .high = 1e6}}, kNone,

@@ -184,7 +184,7 @@ std::string wet_back_text(const Inspection& i) {
          fmt::format("                      total reflection in them {}\n",
                      i.wet_back->tir_limit_deg
                          ? fmt::format("up to {} degrees", fixed_visible(*i.wet_back->tir_limit_deg, 2))
-                         : "nowhere, or not stated");
+                         : "at no angle, or not computed");
 }
 
 nlohmann::ordered_json wet_back_json(const Inspection& i) {

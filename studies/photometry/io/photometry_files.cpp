@@ -249,7 +249,7 @@ std::string far_field_map_csv(const PhotometryResult& result) {
 std::string first_answer_table(const PhotometricFirstAnswer& answer) {
   std::string table = fmt::format(
       "preliminary readings{} at {} wavelength{}; errors are standard errors, and systematic errors of about {:.0f} % "
-      "come on top; the run goes on\n",
+      "come on top; the computation continues\n",
       answer.lacks_diffraction ? " without diffraction" : "", answer.wavelengths_nm.size(),
       answer.wavelengths_nm.size() == 1 ? "" : "s", 100.0 * kSystematicErrorOfFirstAnswer);
   table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11}\n", "alpha", "V", "H", "rotation", "mcd/lx", "error");

@@ -136,8 +136,8 @@ constexpr Words kCutoffEngineWords = {"auto", "exact", "montecarlo", "cell", "em
 constexpr Condition kOfRays[] = {is("engine", kRayEngineWords)};
 constexpr Condition kOfCutoff[] = {is("engine", kCutoffEngineWords)};
 constexpr Row kAnalysisRows[] = {
-    {"incidence_deg", Number{kIncidence}, 0.0, "For quantities that name none."},
-    {"azimuth_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0, "For quantities that name none."},
+    {"incidence_deg", Number{kIncidence}, 0.0, "For quantities that do not give their own."},
+    {"azimuth_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0, "For quantities that do not give their own."},
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
      "Turn of the part about its normal, counter-clockwise as seen from the light, for all that is asked about light."},
     {"engine", Word{kEngines}, "auto", "As `retrace rre --engine`."},
@@ -145,7 +145,7 @@ constexpr Row kAnalysisRows[] = {
      "As `retrace rre --target-error`. Needs a quantity of RRE."},
     {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Rays, as `retrace rre --samples`.", kOfRays},
     {"cutoff", Number{{.low = 0.0, .high = 1.0, .high_included = false}}, kNone,
-     "As `retrace rre --cutoff`. Rays of photometry have none.", kOfCutoff}};
+     "As for `retrace rre --cutoff`. Photometry by rays has no cut-off.", kOfCutoff}};
 
 constexpr Words kStrategies = {"two-step", "unidirectional"};
 constexpr Words kUnidirectional = {"unidirectional"};
