@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kErrorKey = "surface.dihedral_error_arcmin";
 
-/// Of those that a key of designs takes.
+/// Returns the errors of angle of the cell itself, which the key `surface.dihedral_error_arcmin` of its design gives.
 std::vector<double> own_errors(const Study& study, const PointValues& values) {
   const Candidate candidate = make_candidate(study, values);
   if (!candidate.design().elements()) return {};
@@ -29,7 +29,7 @@ std::vector<double> own_errors(const Study& study, const PointValues& values) {
   return {errors.begin(), is_prism ? errors.begin() + 1 : errors.end()};
 }
 
-/// The study with errors of its cells in place of those that they would have.
+/// Returns the study with the given errors of angle for its cells. They replace the errors that the cells would have.
 Study with_errors(const Study& study, const std::vector<double>& errors_arcmin) {
   Study changed = study;
   for (Parameter& parameter : changed.parameters) std::erase(parameter.keys, kErrorKey);
@@ -40,7 +40,8 @@ Study with_errors(const Study& study, const std::vector<double>& errors_arcmin) 
   return changed;
 }
 
-/// The goals of a design that was computed. \throw InputError if it has none
+/// Returns the goals of a computed design.
+/// \throw InputError if a goal has no value
 std::vector<double> goals_from(const Study& study, const ComposeRequest& request, const StoredPoint& point) {
   std::vector<double> goals;
   for (const std::string& goal : request.goals)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Cells of a family with errors of the angles between their facets.
+// Computes the goals of a cell with errors of the angles between its facets.
 
 #include <cstddef>
 #include <vector>
@@ -10,11 +10,15 @@
 
 namespace retrace::studies {
 
-/// How many angles between facets cells of those values have: three of a cube corner, one of a prism, 0 of all else.
+/// Returns the number of angles between facets that may have errors: three for a cube corner, one for a prism,
+/// otherwise 0.
 std::size_t angles_of(const Study& study, const PointValues& values);
 
-/// Goals of the cell with each of these errors added to its own, in minutes of arc; several are computed at a time.
-/// \pre as many errors as angles_of() \throw Interrupted; InputError if such a cell cannot be computed
+/// Returns the goals of the cell for each set of errors, in minutes of arc. The errors are added to the cell's own
+/// errors. Several sets are computed in parallel.
+/// \pre each set has angles_of() errors
+/// \throw Interrupted if the computation is cancelled
+/// \throw InputError if a cell with errors cannot be computed
 std::vector<std::vector<double>> goals_with_errors(const Study& study, const ComposeRequest& request,
                                                    const FamilyCell& cell,
                                                    const std::vector<std::vector<double>>& errors_arcmin,

@@ -52,8 +52,8 @@ std::vector<double> ErrorResponse::at(const std::vector<double>& errors) const {
   return goals;
 }
 
-/// Of a polynomial of the second degree the mean of independent errors is larger by half their variance times the sum
-/// of its curvatures.
+/// Independent random errors increase the mean of a quadratic polynomial. The increase is half the variance times the
+/// sum of the curvatures.
 ErrorResponse ErrorResponse::spread(double sigma_arcmin) const {
   ErrorResponse mean = *this;
   for (std::size_t k = 0; k < angles(); ++k)

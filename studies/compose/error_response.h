@@ -1,29 +1,30 @@
 #pragma once
 
-// How the goals of a cell respond to errors of the angles between its facets, as a polynomial of the second degree.
+// Response of a cell's goals to errors of the angles between its facets, as a polynomial of the second degree.
 
 #include <cstddef>
 #include <vector>
 
 namespace retrace::studies {
 
-/// Goals of a cell over errors of its angles, in minutes of arc: of a cube corner at its three dihedral edges, of a
-/// prism at its apex.
+/// Goals of a cell as a function of errors of its angles, in minutes of arc. A cube corner has three such angles, at
+/// its dihedral edges. A prism has one, at its apex.
 class ErrorResponse {
  public:
-  /// \param goals at those of errors_to_compute(), in its order
+  /// \param goals goals for the errors of errors_to_compute(), in the same order
   ErrorResponse(std::size_t angles, double step_arcmin, const std::vector<std::vector<double>>& goals);
 
-  /// The errors at which goals are needed: none, each angle by a step either way, and each two of them by a step.
+  /// Returns the errors for which goals are needed: no error, each angle by plus and minus one step, and each pair of
+  /// angles by one step.
   static std::vector<std::vector<double>> errors_to_compute(std::size_t angles, double step_arcmin);
 
   std::size_t angles() const { return slopes_.size(); }
-  /// Goals at these errors.
+  /// Returns the goals for given errors.
   std::vector<double> at(const std::vector<double>& errors_arcmin) const;
-  /// Change of a goal per minute of arc of one angle.
+  /// Returns the slope of a goal by an angle, per minute of arc.
   double slope(std::size_t angle, std::size_t goal) const { return slopes_[angle][goal]; }
-  /// The mean of cells each of which has errors of its own of that standard deviation besides, independent and
-  /// Gaussian.
+  /// Returns the mean response of many cells that have additional random errors. These errors are independent and
+  /// Gaussian with the given standard deviation.
   ErrorResponse spread(double sigma_arcmin) const;
 
  private:

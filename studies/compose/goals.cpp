@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kNoPrice = 1e-9;
 
-/// Ends of intervals are often reached but for rounding.
+/// Formats the value of a parameter. A value that equals an end of the interval except for rounding errors is shown as
+/// this end.
 std::string value_text(const Parameter& parameter, const ParameterValue& value) {
   const double* const number = std::get_if<double>(&value.shown);
   if (number == nullptr) return std::get<std::string>(value.shown);
@@ -44,7 +45,7 @@ bool is_price(double price) {
   return std::abs(price) > kNoPrice;
 }
 
-/// A margin is R / limit - 1.
+/// The margin of a goal is R / limit - 1. Its slope by the limit is therefore -(1 + margin) / limit.
 std::optional<double> cost_of_limit(const Quantity& quantity, const Mixture& mixture, std::size_t goal) {
   const std::optional<QuantityLimit> limit = quantity.limit();
   if (!limit) return std::nullopt;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the goals of a composition are for people: which of them to show, what zones give to them, and what they cost.
+// Presentation of the goals of a composition: which goals to show, contributions of the zones, and cost of limits.
 
 #include <cstddef>
 #include <optional>
@@ -11,29 +11,32 @@
 
 namespace retrace::studies {
 
-/// The quantity of a goal. \param goal its number in the request
+/// Returns the quantity of a goal.
+/// \param goal index of the goal in the request
 const Quantity& goal_of(const Study& study, const ComposeRequest& request, std::size_t goal);
 
-/// Whether all goals are margins to limits.
+/// Returns true if all goals are margins to limits.
 bool are_margins(const Study& study, const ComposeRequest& request);
 
-/// What a zone gives to a goal: of a margin its part of value over limit, so that all zones together give 1 + margin.
+/// Returns the contribution of a zone to a goal. For margins, it is the contribution to value / limit, so that the sum
+/// over all zones is 1 + margin.
 double given_by(const Zone& zone, std::size_t goal, bool is_margin);
 
-/// Whether a price is one, and not what rounding leaves of none.
+/// Returns true if a price is not zero within rounding errors.
 bool is_price(double price);
 
-/// What one more of the limit of a margin that binds costs of the least one. Nothing for other goals.
+/// Returns the decrease of the minimum goal per unit of a margin's limit. Returns nothing for goals that are no
+/// margins.
 std::optional<double> cost_of_limit(const Quantity& quantity, const Mixture& mixture, std::size_t goal);
 
-/// Of several readings of one point - goals whose names are alike up to the last dot - the one that is least; all
-/// others.
+/// Returns the goals to show. Of several readings of one test point, only the minimum is shown. The names of such goals
+/// are equal up to the last dot.
 std::vector<std::size_t> goals_to_show(const ComposeRequest& request, const Mixture& mixture);
 
-/// Margins in percent, as tables of photometry have them.
+/// Formats the value of a goal. Margins are in percent.
 std::string goal_value_text(double value, bool is_margin);
 
-/// The parameters of a cell.
+/// Returns the parameter values of a cell as text.
 std::string cell_text(const Study& study, const FamilyCell& cell);
 
 }  // namespace retrace::studies

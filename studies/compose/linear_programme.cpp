@@ -16,7 +16,7 @@ struct ProblemDeleter {
 };
 using Problem = std::unique_ptr<glp_prob, ProblemDeleter>;
 
-/// Which of GLPK's types of bounds they are.
+/// Returns the type of the bounds in GLPK.
 int type_of(const Bounds& bounds) {
   const bool has_least = std::isfinite(bounds.least);
   const bool has_most = std::isfinite(bounds.most);
@@ -25,7 +25,7 @@ int type_of(const Bounds& bounds) {
   return has_most ? GLP_UP : GLP_FR;
 }
 
-/// GLPK counts from 1.
+/// Returns the number of a row or column in GLPK, which counts from 1.
 int number_of(std::size_t index) {
   return static_cast<int>(index) + 1;
 }
@@ -55,7 +55,7 @@ Problem problem_of(const LinearProgramme& programme) {
   return problem;
 }
 
-/// GLPK writes to the terminal unless it is told not to.
+/// Turns off the terminal output of GLPK during the lifetime of the object.
 class Silence {
  public:
   Silence() : before_(glp_term_out(GLP_OFF)) {}
@@ -73,9 +73,10 @@ class Silence {
 
 constexpr int kCancelled = 0;
 
-/// The dual simplex method in slices of time, between which is asked whether to stop; the primal one where that finds
-/// no optimum, because it tells apart why, or where the numbers of a basis are too close to singular. \return GLPK's
-/// status
+/// Solves the problem with the dual simplex method, in time slices between which `cancel` is checked. The primal method
+/// is used if the dual method finds no optimum or its basis is almost singular. The primal method determines why there
+/// is no optimum.
+/// \return status of GLPK
 int run_simplex(glp_prob* problem, const Cancellation* cancel) {
   constexpr int kSliceMs = 200;
   glp_smcp settings;
@@ -106,8 +107,8 @@ void take_values(glp_prob* problem, const LinearProgramme& programme, LinearOpti
     optimum.prices.push_back(glp_get_row_dual(problem, number_of(k)));
 }
 
-/// Rows are let to be missed, by as little as can be: the prices of that programme are the multipliers. Empty if
-/// something holds all rows.
+/// Returns the Farkas multipliers of an infeasible programme. They are the prices of an elastic programme, in which
+/// rows may be violated and the sum of the violations is minimal. Empty if the programme is feasible.
 std::vector<double> certificate(const LinearProgramme& programme, const Cancellation* cancel) {
   LinearProgramme elastic;
   for (const LinearProgramme::Column& column : programme.columns()) elastic.add_column(column.bounds, 0.0);

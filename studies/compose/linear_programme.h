@@ -1,6 +1,6 @@
 #pragma once
 
-// Linear programmes with bounds, and what their optimum and its prices are. GLPK stays behind this file.
+// Linear programmes with bounds, their optimum and dual prices. Only this file uses GLPK.
 
 #include <cstddef>
 #include <limits>
@@ -11,17 +11,17 @@
 
 namespace retrace::studies {
 
-/// From `least` to `most`; infinite where there is no end.
+/// Interval from `least` to `most`. Missing limits are infinite.
 struct Bounds {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
 };
 
-/// Columns, the values that are sought, and rows, weighted sums of them, each within its bounds. The sum of objective
-/// times value over the columns is to be as large as it can be.
+/// Linear programme. Columns are the unknown values, rows are weighted sums of them. Both have bounds. The sum of
+/// objective times value over the columns is maximized.
 class LinearProgramme {
  public:
-  /// A column and the factor of its value in a row.
+  /// Index of a column, and the weight of its value in a row.
   using Term = std::pair<std::size_t, double>;
   struct Column {
     Bounds bounds;
@@ -32,9 +32,13 @@ class LinearProgramme {
     std::vector<Term> terms;
   };
 
-  /// \return its number \pre finite numbers but for infinite bounds, least <= most
+  /// Adds a column.
+  /// \return index of the column
+  /// \pre all numbers are finite except for infinite bounds, and least <= most
   std::size_t add_column(const Bounds& bounds, double objective);
-  /// \return its number \pre likewise; the columns are there, each at most once
+  /// Adds a row.
+  /// \return index of the row
+  /// \pre as for add_column(); the columns exist, and each occurs at most one time
   std::size_t add_row(const Bounds& bounds, std::vector<Term> terms);
 
   const std::vector<Column>& columns() const { return columns_; }
@@ -45,26 +49,28 @@ class LinearProgramme {
   std::vector<Row> rows_;
 };
 
-/// What became of a linear programme.
+/// Result of a linear programme.
 struct LinearOptimum {
   enum class Kind {
-    optimal,     ///< nothing is better
-    infeasible,  ///< nothing holds all rows and bounds
+    optimal,     ///< no feasible values are better
+    infeasible,  ///< no values satisfy all rows and bounds
     unbounded,
     interrupted
   };
   Kind kind = Kind::infeasible;
   double objective = 0.0;
-  std::vector<double> values;  ///< of the columns
-  /// Of the rows: how much larger the objective is for one more of the bound that the row touches, 0 where it touches
-  /// none. Infeasible: Farkas's multipliers, whose absolute values add to 1: each row times its multiplier, added up,
-  /// is a row that no values within the bounds of the columns hold.
+  std::vector<double> values;  ///< values of the columns
+  /// Dual prices of the rows: increase of the objective per unit of the active bound, or 0 if no bound is active. If
+  /// the programme is infeasible, these are Farkas multipliers whose absolute values add up to 1. The sum of all rows
+  /// times their multipliers is then a row that no values within the bounds of the columns satisfy.
   std::vector<double> prices;
-  std::vector<double> reduced_costs;  ///< of the columns, likewise: objective less what the rows' prices make of it
+  /// Reduced costs of the columns: objective minus the prices of the rows times the weights.
+  std::vector<double> reduced_costs;
 };
 
-/// The optimum, to some 1e-12 of the numbers in it; deterministic. \param cancel is asked some times a second
-/// \throw BudgetError if the numbers are such that it cannot be told
+/// Solves a linear programme with a relative accuracy of about 1e-12. The result is deterministic.
+/// \param cancel checked several times per second
+/// \throw BudgetError if the numbers do not allow a reliable result
 LinearOptimum solve(const LinearProgramme& programme, const Cancellation* cancel = nullptr);
 
 }  // namespace retrace::studies

@@ -9,22 +9,23 @@
 namespace retrace::studies {
 namespace {
 
-/// Shares below this are none.
+/// Fraction of the area below which a cell is not part of a mixture.
 constexpr double kNoShare = 1e-12;
-/// What is better by less, as a share of the merit's size, is as good.
+/// Minimum improvement of the merit, relative to its size, that counts.
 constexpr double kAsGood = 1e-10;
 
 double as_good(double merit) {
   return kAsGood * (1.0 + std::abs(merit));
 }
 
-/// Cells of a mixture, with the least share that each must have.
+/// Set of cells of a mixture, with the minimum fraction that each cell must have.
 struct CellSet {
   std::vector<std::size_t> cells;
   double least_share = 0.0;
 };
 
-/// Columns are the shares, and the least goal behind them; rows are the goals, the means and the whole.
+/// Returns the linear programme of a set of cells. Columns are the fractions of the cells and the minimum goal. Rows
+/// are the goals, the means and the whole area.
 LinearProgramme programme_of(const std::vector<MixedCell>& cells, const CellSet& set, const MixtureRules& rules) {
   LinearProgramme programme;
   for (const std::size_t cell : set.cells) programme.add_column({set.least_share, rules.most_share}, -cells[cell].cost);
@@ -58,7 +59,7 @@ double weighted_sum(const std::vector<double>& weights, const std::vector<double
   return std::inner_product(weights.begin(), weights.end(), values.begin(), 0.0);
 }
 
-/// Takes what the shares of a set come to.
+/// Sets the values of a mixture from the fractions of its cells.
 void add_up(const std::vector<MixedCell>& cells, const CellSet& set, const std::vector<double>& shares,
             Mixture& mixture) {
   mixture.goals.assign(cells.front().goals.size(), 0.0);
@@ -77,7 +78,7 @@ void add_up(const std::vector<MixedCell>& cells, const CellSet& set, const std::
   mixture.merit = mixture.least - cost;
 }
 
-/// The best shares of a set of cells, whatever their number.
+/// Returns the best mixture of a set of cells, without a limit on their number.
 Mixture mixture_of(const std::vector<MixedCell>& cells, const CellSet& set, const MixtureRules& rules,
                    const Cancellation* cancel) {
   const LinearOptimum optimum = solve(programme_of(cells, set, rules), cancel);
@@ -94,11 +95,12 @@ Mixture mixture_of(const std::vector<MixedCell>& cells, const CellSet& set, cons
   return mixture;
 }
 
-/// Prices as a bound: no mixture has more merit than the most that one of its cells has by them.
+/// Upper bound of the merit by dual prices. The merit of a mixture is at most the maximum of its cells' merits at these
+/// prices.
 class PriceBound {
  public:
   PriceBound(const std::vector<MixedCell>& cells, const MixtureRules& rules, const MixturePrices& prices) {
-    // What the bounds on means, each at the end that its price is for, and the whole area come to.
+    // Constant part of all merits: prices of the bounds on means, each at its active limit, and of the whole area.
     double constant = prices.share;
     for (std::size_t k = 0; k < rules.means.size(); ++k)
       if (prices.means[k] != 0.0)
@@ -110,18 +112,18 @@ class PriceBound {
   }
 
   double merit_of(std::size_t cell) const { return merits_[cell]; }
-  /// Cells, those of most merit first.
+  /// Returns the cells in descending order of merit.
   const std::vector<std::size_t>& order() const { return order_; }
-  /// How many cells have more merit than that.
+  /// Returns the number of cells whose merit is above a value.
   std::size_t count_above(double merit) const {
     const auto end = std::ranges::partition_point(order_, [&](std::size_t cell) { return merits_[cell] > merit; });
     return static_cast<std::size_t>(end - order_.begin());
   }
-  /// Whether a set may have that merit.
+  /// Returns true if a mixture of the set may have a merit above a value.
   bool lets_pass(const std::vector<std::size_t>& set, double merit) const {
     return std::ranges::any_of(set, [&](std::size_t cell) { return merits_[cell] > merit; });
   }
-  /// No mixture of the set has more.
+  /// Returns the upper bound of the merit for mixtures of the set.
   double most_of(const std::vector<std::size_t>& set) const {
     double most = -std::numeric_limits<double>::infinity();
     for (const std::size_t cell : set) most = std::max(most, merits_[cell]);
@@ -133,8 +135,9 @@ class PriceBound {
   std::vector<std::size_t> order_;
 };
 
-/// Tries sets of few cells. Whatever prices are taken, a set that beats the best has a cell that does so by them: sets
-/// are grown by such cells, by the prices that leave the fewest of them.
+/// Branch and bound over sets of few cells. At any prices, a set that is better than the best mixture contains a cell
+/// whose merit is above that of the best mixture. Sets are extended by such cells, at the prices for which there are
+/// fewest of them.
 class SetSearch {
  public:
   SetSearch(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Cancellation* cancel,
@@ -150,7 +153,7 @@ class SetSearch {
     }
   }
 
-  /// \param relaxed the best mixture without a limit on zones and without a least share
+  /// \param relaxed best mixture without a limit on zones and without a minimum fraction
   Mixture run(const Mixture& relaxed) {
     bounds_.emplace_back(cells_, rules_, relaxed.prices);
     begin_with(relaxed);
@@ -165,15 +168,16 @@ class SetSearch {
   }
 
  private:
-  static constexpr std::size_t kMostBounds = 400;  ///< that are remembered
-  static constexpr std::size_t kMostBeside = 200;  ///< cells that are tried in a place
+  static constexpr std::size_t kMostBounds = 400;  ///< maximum number of stored bounds
+  static constexpr std::size_t kMostBeside = 200;  ///< maximum number of cells that are tried as an addition to a set
 
   bool is_over() const { return sets_ > most_sets_ || is_cancelled(cancel_); }
   double to_beat() const {
     return best_.is_there() ? best_.merit + as_good(best_.merit) : -std::numeric_limits<double>::infinity();
   }
 
-  /// A good mixture to begin with keeps the search short: the largest shares of the relaxed one, fewer and fewer.
+  /// Searches for a good first mixture, which shortens the search. It is the relaxed mixture, from which the cells with
+  /// the smallest fractions are removed one by one.
   void begin_with(const Mixture& relaxed) {
     std::vector<ZoneShare> zones = relaxed.zones;
     while (zones.size() > 1) {
@@ -188,7 +192,7 @@ class SetSearch {
     }
   }
 
-  /// Puts other cells in the places of single ones for as long as that helps.
+  /// Replaces single cells by others as long as the mixture becomes better.
   void improve() {
     for (double before = -std::numeric_limits<double>::infinity(); best_.is_there() && best_.merit > before;) {
       before = best_.merit;
@@ -203,7 +207,7 @@ class SetSearch {
     }
   }
 
-  /// A set with one cell more: those that gain most by its prices, and by what is known of others.
+  /// Tries sets with one additional cell. The cells with the highest upper bounds of the merit are tried first.
   void try_beside(const std::vector<std::size_t>& set) {
     const Mixture mixture = mixture_of(cells_, {set}, rules_, cancel_);
     if (!mixture.is_there()) return;
@@ -235,7 +239,8 @@ class SetSearch {
     if (bounds_.size() < kMostBounds) bounds_.emplace_back(cells_, rules_, prices);
   }
 
-  /// A mixture that may be one of few cells with shares large enough, or that becomes one when its shares are raised.
+  /// Keeps a mixture as the best if it satisfies the rules and is better. Fractions that are too small are first raised
+  /// to the minimum.
   void take(Mixture mixture) {
     if (mixture.zones.size() > most_zones_) return;
     if (rules_.least_share > 0.0 && mixture.zones.back().share < rules_.least_share - kNoShare) {
@@ -246,8 +251,9 @@ class SetSearch {
     if (mixture.is_there() && mixture.merit > to_beat()) best_ = std::move(mixture);
   }
 
-  /// Goes through all sets that hold this one and no cell that is out, as far as they may be better than the best.
-  /// \param mixture of the set; none of an empty one
+  /// Searches all sets that contain this set and no excluded cell, unless bounds show that they cannot be better than
+  /// the best.
+  /// \param mixture best mixture of the set; without cells for an empty set
   void grow(const std::vector<std::size_t>& set, const Mixture& mixture) {
     if (set.size() >= most_zones_) return;
     const std::vector<std::size_t> next = candidates(set, mixture);
@@ -275,14 +281,15 @@ class SetSearch {
     grow(set, mixture);
   }
 
-  /// Whether a set that cannot be grown may be better than the best by all prices that are known; one that can be
-  /// grown may always.
+  /// Returns true if a set may be better than the best mixture according to all stored bounds. Sets that can still be
+  /// extended are always accepted.
   bool may_beat(const std::vector<std::size_t>& set) const {
     if (set.size() < most_zones_) return true;
     return std::ranges::all_of(bounds_, [&](const PriceBound& bound) { return bound.lets_pass(set, to_beat()); });
   }
 
-  /// Cells one of which each better set with this one has, by the prices that leave the fewest.
+  /// Returns cells such that every better set which contains this set has at least one of them. Of all stored prices,
+  /// those with the fewest such cells are used.
   std::vector<std::size_t> candidates(const std::vector<std::size_t>& set, const Mixture& mixture) const {
     const PriceBound* fewest = nullptr;
     std::size_t least = cells_.size() + 1;

@@ -12,7 +12,7 @@
 namespace retrace::studies {
 namespace {
 
-/// A goal of a part.
+/// Indices of a part and of one of its goals.
 using PartGoal = std::pair<std::size_t, std::size_t>;
 
 double value_of(const std::vector<std::vector<double>>& zones, const std::vector<double>& shares, std::size_t goal) {
@@ -32,7 +32,8 @@ std::size_t worst_goal(const std::vector<std::vector<double>>& zones, const std:
   return worst;
 }
 
-/// Columns are the shares, the value below which a part is one of the worst, and how far each part lies below it.
+/// Returns the linear programme of best_shares(). Its columns are the fractions of the area, the value below which a
+/// part is among the worst, and the shortfall of each part below this value.
 LinearProgramme yield_programme(const DrawnParts& parts, double worst_share, const Bounds& bounds,
                                 const std::set<PartGoal>& rows) {
   LinearProgramme programme;
@@ -96,7 +97,8 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
   std::vector<double> shares(zones, 1.0 / static_cast<double>(zones));
   std::set<PartGoal> rows;
   for (std::size_t part = 0; part < parts.size(); ++part) rows.emplace(part, worst_goal(parts[part], shares));
-  // Rows that the shares so far miss are added until none is: those of the other goals do not bind.
+  // Rows that the current solution violates are added until there are none. The rows of the other goals are then not
+  // active.
   for (;;) {
     const LinearOptimum optimum = solve(yield_programme(parts, worst_share, bounds, rows), cancel);
     if (optimum.kind != LinearOptimum::Kind::optimal) return std::nullopt;

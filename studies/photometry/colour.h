@@ -1,6 +1,6 @@
 #pragma once
 
-// The chromaticity of the light that a part sends back, against the colour boundaries of its standard.
+// Chromaticity of the returned light, compared with the colour boundaries of the standard.
 
 #include <optional>
 
@@ -9,14 +9,15 @@
 
 namespace retrace::studies {
 
-/// The request of one response: with the rays of a direction shared by the three. \param response x, y or z
+/// Returns the request for one response. Each of the three responses traces one third of the rays of a direction.
+/// \param response index of x, y or z
 PhotometryRequest request_of_response(const PhotometryRequest& request, std::size_t response);
 
-/// Measures the colour where the standard asks for it, or at its first test point: the tristimulus values of the
-/// returned light, each with wavelengths of its own. Nothing if it was cancelled.
-/// \param photometer of the same design and request: whether it is exact holds here
-/// \param v_deg where it is measured: one, or several of which the worst counts
-/// \pre the light is a CIE illuminant, the programme has points
+/// Measures the colour in the geometry of the standard, or at its first test point. The tristimulus values are measured
+/// separately, each with its own wavelengths. Returns nothing if it was cancelled.
+/// \param photometer photometer of the design and the request; the colour is measured with its engine
+/// \param v_deg angles V at which the colour is measured; the worst result counts
+/// \pre the light is a CIE illuminant, and the test plan has points
 std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometryRequest& request,
                                                  const Photometer& photometer, const std::vector<double>& v_deg,
                                                  const Cancellation* cancel);

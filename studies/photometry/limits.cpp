@@ -13,7 +13,7 @@
 namespace retrace::studies {
 namespace {
 
-// A lumen per square foot in lux: 1 / 0.3048^2.
+// Illuminance of one lumen per square foot in lux: 1 / 0.3048^2.
 constexpr double kLuxPerFootCandle = 1.0 / (0.3048 * 0.3048);
 
 std::string known_colour(const std::string& name) {
@@ -28,18 +28,19 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Lines without classes are for all of them.
+/// Returns true if a line applies to a class. Lines without classes apply to all classes.
 bool is_of_class(const LimitLine& line, const std::string& name) {
   return line.classes.empty() || holds(line.classes, name);
 }
 
-/// Lines without a colour are for all of them.
+/// Returns true if a line applies to a test plan. Lines without a colour apply to all colours.
 bool concerns(const LimitLine& line, const TestProgramme& programme) {
   return line.standard == programme.standard && is_of_class(line, programme.part_class) &&
          (line.colour.empty() || known_colour(line.colour) == programme.colour);
 }
 
-/// The one that was requested, or the only one. \param option that chooses
+/// Returns the requested choice, or the only one if none was requested.
+/// \param option command-line option of the choice
 std::string choice(const std::vector<std::string>& there_are, const std::optional<std::string>& asked,
                    const std::string& option, std::string_view of_what) {
   if (there_are.empty()) {
@@ -58,7 +59,7 @@ std::string choice(const std::vector<std::string>& there_are, const std::optiona
                                                 printable(of_what), in_quotes(*asked)));
 }
 
-/// What a table holds of one standard.
+/// Classes and colours of one standard in a table.
 struct Contents {
   std::vector<std::string> classes;
   std::vector<std::string> colours;
@@ -86,7 +87,8 @@ std::vector<std::string> colours_of(const LimitTable& table, const std::string& 
   return colours;
 }
 
-/// Every sign of a row is a point. \param by the line that multiplies it; null: none
+/// Adds the test points of a row, one for each combination of signs.
+/// \param by line that multiplies the limits of the row; null: none
 void add_points(const LimitRow& row, const LimitFactor* by, std::vector<TestPoint>& points) {
   const double minimum = by != nullptr ? by->factor * row.minimum : row.minimum;
   const LimitStatus status = by != nullptr ? std::max(row.status, by->status) : row.status;
@@ -101,7 +103,7 @@ bool same_geometry(const TestPoint& a, const TestPoint& b) {
   return a.observation_deg == b.observation_deg && a.v_deg == b.v_deg && a.h_deg == b.h_deg;
 }
 
-/// One colour is measured, so that its boundaries are of one geometry.
+/// Adds a boundary of the colour. All boundaries must have one geometry, because the colour is measured only once.
 void add_boundary(const LimitTable& table, const ColourBoundary& boundary, TestProgramme& programme) {
   const auto geometry = [](const ColourBoundary& b) {
     return std::tie(b.observation_deg, b.v_deg, b.v_beside_deg, b.h_deg);

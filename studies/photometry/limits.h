@@ -1,7 +1,6 @@
 #pragma once
 
-// Photometric limits as data, with their units and how well each is confirmed, and the test points of one class and
-// colour.
+// Photometric limits with their units and their degree of confirmation, and the test points for one class and colour.
 
 #include <optional>
 #include <string>
@@ -10,7 +9,7 @@
 
 namespace retrace::studies {
 
-/// In what a limit is given.
+/// Unit of a limit.
 enum class PhotometricUnit {
   mcd_per_lx,        ///< R_I
   cd_per_lx,         ///< R_I
@@ -18,70 +17,72 @@ enum class PhotometricUnit {
   cd_per_lx_per_m2,  ///< R_A
 };
 
-/// How well a limit is confirmed.
+/// Degree of confirmation of a limit.
 enum class LimitStatus {
-  confirmed,  ///< checked against the standard's text
-  read,       ///< seen in a secondary source
-  recalled    ///< not confirmed against the standard's text
+  confirmed,  ///< compared with the text of the standard
+  read,       ///< found in a secondary source
+  recalled    ///< not confirmed by any text
 };
 
 std::string_view unit_name(PhotometricUnit unit);
 std::string_view status_name(LimitStatus status);
 
-/// A limit as R_I in mcd/lx. \param area_cm2 of the part; matters to R_A alone
+/// Converts a limit to R_I in mcd/lx.
+/// \param area_cm2 area of the part; used only for limits of R_A
 double in_mcd_per_lx(double value, PhotometricUnit unit, double area_cm2);
 
-/// For what a line of a limits file holds, and where it comes from.
+/// Scope and source of a line in a limits file.
 struct LimitLine {
   std::string standard;
-  std::vector<std::string> classes;  ///< empty: all, or the standard has none
-  std::string colour;                ///< empty: all
+  std::vector<std::string> classes;  ///< empty: all classes, or the standard has no classes
+  std::string colour;                ///< empty: all colours
   LimitStatus status = LimitStatus::recalled;
-  std::string source;  ///< where the values were read; empty: not told
+  std::string source;  ///< source of the values; empty: not given
   int line = 0;
 };
 
-/// A test point of a limits file. \pre its colour is told
+/// Test point of a limits file.
+/// \pre its colour is given
 struct LimitRow : LimitLine {
   double observation_deg = 0.0;
-  std::vector<double> v_deg;           ///< one, or one of either sign
-  std::vector<double> v_beside_deg{};  ///< where it is measured instead if the face mirrors at v_deg; may be empty
+  std::vector<double> v_deg;           ///< one angle, or both signs of an angle
+  std::vector<double> v_beside_deg{};  ///< angles that replace v_deg if the face mirrors the lamp there; may be empty
   std::vector<double> h_deg;
   double minimum = 0.0;
   PhotometricUnit unit = PhotometricUnit::mcd_per_lx;
 };
 
-/// A line that gives the limits of a colour as so many times those of another.
+/// Line that defines the limits of a colour as multiples of the limits of another colour.
 struct LimitFactor : LimitLine {
   double factor = 1.0;
   std::string of_colour;
 };
 
-/// A line that says how large a part may be, or must.
+/// Line that limits the area of a part.
 struct LimitArea : LimitLine {
-  bool is_most = true;  ///< else the least
+  bool is_most = true;  ///< true: maximum; false: minimum
   double area_cm2 = 0.0;
 
   bool holds(double part_cm2) const { return is_most ? part_cm2 <= area_cm2 : part_cm2 >= area_cm2; }
-  std::string text() const;  ///< "at most 100 cm2"
+  std::string text() const;  ///< returns a text such as "at most 100 cm2"
 };
 
-/// A line that bounds the chromaticity of the returned light: of_x x + of_y y <= most.
+/// Line that limits the chromaticity of the returned light: of_x x + of_y y <= most.
 struct ColourBoundary : LimitLine {
   double observation_deg = 0.0;
   double v_deg = 0.0;
-  std::vector<double> v_beside_deg{};  ///< as of a test point
+  std::vector<double> v_beside_deg{};  ///< as for a test point
   double h_deg = 0.0;
   double of_x = 0.0, of_y = 0.0, most = 0.0;
-  std::string text;  ///< as given: "y <= 0.335"
+  std::string text;  ///< text of the limit in the file, such as "y <= 0.335"
 };
 
-/// A line that marks what the file holds of a standard as not all of it.
+/// Line that states that the file contains only a part of a standard.
 struct LimitGap : LimitLine {};
 
-/// A limits file. `clear` is another word for `white`.
+/// Content of a limits file. The colour `clear` is a synonym of `white`.
 struct LimitTable {
-  std::string source;  ///< its name
+  std::string source;  ///< name of the file
   std::vector<LimitRow> rows;
   std::vector<LimitFactor> factors;
   std::vector<LimitArea> areas;
@@ -89,32 +90,35 @@ struct LimitTable {
   std::vector<LimitGap> gaps;
 };
 
-/// A test point: one geometry and the least value there.
+/// Test point: geometry and minimum value.
 struct TestPoint {
   double observation_deg = 0.0;
   double v_deg = 0.0;
   double h_deg = 0.0;
-  double minimum = 0.0;  ///< in its unit
+  double minimum = 0.0;  ///< minimum value in the unit of the limit
   PhotometricUnit unit = PhotometricUnit::mcd_per_lx;
   LimitStatus status = LimitStatus::recalled;
-  int line = 0;                        ///< of the table
-  std::string source = {};             ///< empty: not told
-  std::vector<double> v_beside_deg{};  ///< where it is measured instead if the face mirrors at v_deg: the least counts
+  int line = 0;             ///< line of the table
+  std::string source = {};  ///< source of the value; empty: not given
+  /// Angles that replace v_deg if the face mirrors the lamp there; the minimum counts.
+  std::vector<double> v_beside_deg{};
 };
 
-/// What is asked of one class and colour.
+/// Test plan: requirements of a standard for one class and colour.
 struct TestProgramme {
   std::string standard;
-  std::string part_class;  ///< empty if the standard has none
+  std::string part_class;  ///< empty if the standard has no classes
   std::string colour;
   std::vector<TestPoint> points;
   std::vector<LimitArea> areas{};
-  std::vector<ColourBoundary> boundaries{};  ///< of one geometry; may be none
-  bool is_complete = true;                   ///< false: the table does not hold all that the standard asks
+  std::vector<ColourBoundary> boundaries{};  ///< boundaries of the colour, all for one geometry; may be empty
+  bool is_complete = true;                   ///< false: the table does not contain all requirements of the standard
 };
 
-/// Chooses from a table. \param standard as the table names it; none if the table holds one only
-/// \param part_class, colour none if there is only one \throw InputError naming the option and what there is
+/// Selects a test plan from a table.
+/// \param standard name of the standard in the table; none if the table has only one
+/// \param part_class, colour none if there is only one
+/// \throw InputError at the option, with the available names
 TestProgramme programme_of(const LimitTable& table, const std::optional<std::string>& standard,
                            const std::optional<std::string>& part_class, const std::optional<std::string>& colour);
 

@@ -5,10 +5,10 @@
 namespace retrace::studies {
 namespace {
 
-// Unit vectors that differ by less are one direction.
+// Maximum difference of two unit vectors that count as one direction.
 constexpr double kSameDirection = 1e-12;
 
-/// The signs that make one direction of the other.
+/// Returns the signs of x and y that transform one direction into the other. Returns nothing if there are none.
 std::optional<geometry::Vec2> signs_between(const geometry::Vec3& a, const geometry::Vec3& b,
                                             const std::array<bool, 2>& mirrors) {
   for (const double x : {1.0, -1.0})

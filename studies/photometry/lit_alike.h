@@ -1,7 +1,7 @@
 #pragma once
 
-// Directions of incidence that share their light: one that is asked several times, and mirror images at a part that is
-// its own mirror image. It is followed once for all of them.
+// Groups of directions of incidence that share one tracing: equal directions, and mirror images if the part is
+// mirror-symmetric.
 
 #include <array>
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace retrace::studies {
 
-/// One of several directions that share their light. In the light that is followed it looks at what lies where its own
-/// directions do with these signs of x and y.
+/// Direction of incidence that shares the tracing of another one. The signs of x and y transform its directions of view
+/// into those of the traced light.
 struct SharedDirection {
   std::size_t index = 0;
   geometry::Vec2 signs = geometry::Vec2::Ones();
@@ -22,11 +22,11 @@ struct SharedDirection {
   }
 };
 
-/// The first is that of which light is followed, and has no mirror.
+/// Group of directions that share one tracing. The first direction is traced and has no mirrored axis.
 using LitAlike = std::vector<SharedDirection>;
 
-/// Sorts directions to the source by whose light they share, in their order. \param mirrors whether the part is its own
-/// mirror image along x and along y, and the light has a polarisation that is
+/// Groups directions to the source that share one tracing. The order of the directions is kept.
+/// \param mirrors for x and y: true if the part and the polarisation of the light are mirror-symmetric along this axis
 std::vector<LitAlike> lit_alike(const std::vector<geometry::Vec3>& to_source, const std::array<bool, 2>& mirrors);
 
 }  // namespace retrace::studies

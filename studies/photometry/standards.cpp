@@ -10,7 +10,7 @@ raytrace::PhotometricApertures arcmin(double source, double receiver) {
   return {Angle::from_deg(source / 60.0), Angle::from_deg(receiver / 60.0)};
 }
 
-/// A turn in twelve steps: of a part that may be mounted any way up.
+/// Returns twelve rotations over a full circle, for parts that may be mounted in any orientation.
 std::vector<double> all_round() {
   std::vector<double> turns;
   for (int k = 0; k < 12; ++k) turns.push_back(30.0 * k);
@@ -20,7 +20,7 @@ std::vector<double> all_round() {
 }  // namespace
 
 std::span<const ShippedStandard> shipped_standards() {
-  // 50 mm and 13 x 25 mm at 30.5 m, the rectangle as the disc of its area.
+  // Apertures of 50 mm and 13 x 25 mm at 30.5 m. The rectangle is replaced by a disc of the same area.
   static const std::array<ShippedStandard, 6> all = {{
       {"r150",
        "UN R3 / R150",

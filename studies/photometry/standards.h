@@ -1,6 +1,6 @@
 #pragma once
 
-// The photometric standards whose limits are shipped, with their apertures and rotations.
+// Photometric standards whose limits are shipped, with their apertures and rotations.
 
 #include <span>
 #include <string_view>
@@ -10,22 +10,22 @@
 
 namespace retrace::studies {
 
-/// A standard whose limits are shipped.
+/// Standard whose limits are shipped.
 struct ShippedStandard {
-  std::string_view name;      ///< on the command line
-  std::string_view in_table;  ///< in data/photometry_limits.csv
+  std::string_view name;      ///< name on the command line
+  std::string_view in_table;  ///< name in data/photometry_limits.csv
   std::string_view description;
   raytrace::PhotometricApertures apertures;
-  std::vector<double> rotation_deg;  ///< at which a part is measured unless the user says otherwise
-  std::string_view conditions;       ///< where apertures and rotation come from
+  std::vector<double> rotation_deg;  ///< default rotations at which a part is measured
+  std::string_view conditions;       ///< source of the apertures and rotations
 };
 
 std::span<const ShippedStandard> shipped_standards();
 
-/// Null for a name that is none of them.
+/// Returns the standard with this name, or null if there is none.
 const ShippedStandard* find_standard(std::string_view name);
 
-/// The discs of CIE 54.2 for tests of materials and reflex reflectors: 10 minutes of arc each.
+/// Returns the apertures of CIE 54.2 for tests of materials and reflex reflectors: discs of 10 minutes of arc each.
 raytrace::PhotometricApertures default_apertures();
 
 }  // namespace retrace::studies

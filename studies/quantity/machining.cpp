@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kUmPerMm = 1e3;
 constexpr double kSecondsPerMinute = 60.0;
-/// A tool within a nanometre of the element's width fits it.
+/// Tolerance within which a tool fits the width of an element: one nanometre.
 constexpr double kFitMm = 1e-6;
 
 double facet_length_mm(const geometry::RtpElement& element) {
@@ -32,10 +32,11 @@ double allowance_mm(const MachiningProcess& process) {
   return process.finishing_cuts * process.finishing_depth_um / kUmPerMm;
 }
 
-/// There and back of `cuts` cuts whose depths add up to `depths_mm`, each with the step to the next.
+/// Returns the time of several cuts including the returns. The depths of the cuts add up to `depths_mm`; each cut
+/// includes the step to the next.
 double plunges_s(double cuts, double depths_mm, double step_mm, double feed_mm_per_min,
                  const MachiningProcess& process) {
-  // The facet that is cut stands upright and the face of the workpiece at 45 degrees to it.
+  // The facet is vertical during the cut, and the face of the workpiece is at 45 degrees to it.
   const double approach_mm = std::numbers::sqrt2 * process.clearance_um / kUmPerMm;
   const double path_mm = cuts * approach_mm + depths_mm;
   return seconds(path_mm, feed_mm_per_min) + cuts * process.dwell_s +
@@ -85,7 +86,7 @@ double seconds_per_element(const geometry::RtpElement& element, const MachiningP
   const double plough_mm = process.plough_length_um / kUmPerMm;
   const double deepest_mm = facet_length_mm(element) - allowance_mm(process);
   const double cuts = roughing_cuts(element, process);
-  // The last cut is the deepest; the first is what the others leave.
+  // The last cut is the deepest. The first cut has the remaining depth.
   const double depths_mm = cuts * deepest_mm - 0.5 * cuts * (cuts - 1.0) * depth_of_cut_mm;
   const double roughing_s =
       plunges_s(cuts, depths_mm, plough_mm + depth_of_cut_mm, process.roughing_feed_mm_per_min, process) +

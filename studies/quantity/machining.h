@@ -1,6 +1,6 @@
 #pragma once
 
-// Machining time and roughness of prisms by closed forms, quick enough to be computed at every point of a study.
+// Machining time and roughness of prisms in closed form, fast enough for every point of a study.
 
 #include <optional>
 #include <string>
@@ -11,38 +11,40 @@
 
 namespace retrace::studies {
 
-/// How prisms are cut by single-point inverted cutting. The defaults are those of the offset samples in acrylic of
-/// Milliken (2017), section 2.7.
+/// Process by which prisms are cut: single-point inverted cutting. The defaults are those of the offset samples in
+/// acrylic of Milliken (2017), section 2.7.
 struct MachiningProcess {
-  std::optional<double> tool_width_mm;  ///< without one, a tool as wide as the element
-  double clearance_um = 200.0;          ///< normal to the face of the workpiece
-  double roughing_depth_um = 15.0;      ///< of a cut
+  std::optional<double> tool_width_mm;  ///< none: the tool is as wide as the element
+  double clearance_um = 200.0;          ///< clearance normal to the face of the workpiece
+  double roughing_depth_um = 15.0;      ///< depth of a roughing cut
   double finishing_depth_um = 5.0;
-  int finishing_cuts = 2;  ///< of each facet
+  int finishing_cuts = 2;  ///< number of finishing cuts of each facet
   double roughing_feed_mm_per_min = 50.0;
   double finishing_feed_mm_per_min = 20.0;
   double traverse_feed_mm_per_min = 200.0;
   double plough_length_um = 100.0;
-  double dwell_s = 0.1;  ///< at every root
-  /// two_step, or unidirectional: then no facet is finished
+  double dwell_s = 0.1;  ///< dwell time at every root
+  /// Strategy two_step or unidirectional. With unidirectional, facets are not finished.
   fabrication::Strategy strategy = fabrication::Strategy::two_step;
-  double edge_radius_um = 0.0;  ///< of the tool's cutting edge, which the roots get
-  bool surface_as_cut = false;  ///< facets have the texture and roots the radius that cutting leaves
+  double edge_radius_um = 0.0;  ///< radius of the tool's cutting edge, which becomes the radius of the roots
+  bool surface_as_cut = false;  ///< true: facets and roots get the texture and the radius of the cutting process
 };
 
-/// Areal roughness Sa that the process leaves on facets, in nm: studies/closed_loop, predicted_texture().
+/// Returns the areal roughness Sa of the facets after cutting, in nm; see predicted_texture() in studies/closed_loop.
 double process_sa_nm(const MachiningProcess& process);
 
-/// The surface that the process leaves, as texts of --set for a design; empty unless surface_as_cut is set.
+/// Returns the surface after cutting as overrides (--set) of a design. Empty unless surface_as_cut is set.
 std::vector<std::string> surface_overrides(const MachiningProcess& process);
 
-/// Roughing cuts of a facet: its length less what is left for finishing, by the depth of a cut.
+/// Returns the number of roughing cuts of a facet: its length without the finishing allowance, divided by the depth of
+/// a cut.
 double roughing_cuts(const geometry::RtpElement& element, const MachiningProcess& process);
 
-/// Time that the tool's path takes for one element, in seconds: every roughing cut approaches and plunges at cutting
-/// feed, dwells, ploughs off its chip and goes back at traverse feed; finishing cuts plunge along both facets. An
-/// element wider than the tool takes several passes side by side. Measured on 0.451 mm: 27.7 s on the path and 29.2 s
-/// by the clock (docs/theory/sizing.md). \pre an apex angle of 90 degrees, within a few
+/// Returns the time, in seconds, of the tool path for one element. Every roughing cut approaches and plunges at cutting
+/// feed, dwells, removes its chip and returns at traverse feed. Finishing cuts plunge along both facets. An element
+/// wider than the tool takes several passes side by side. For an element of 0.451 mm, the path takes 27.7 s and the
+/// measured time is 29.2 s (docs/theory/sizing.md).
+/// \pre the apex angle is 90 degrees, within a few degrees
 double seconds_per_element(const geometry::RtpElement& element, const MachiningProcess& process);
 
 }  // namespace retrace::studies

@@ -17,7 +17,7 @@ double normal_quantile(const Distribution& d, double u) {
     low = boost::math::cdf(normal, d.range->from);
     high = boost::math::cdf(normal, d.range->to);
   }
-  // Shares of exactly 0 or 1 lie at infinity.
+  // The quantiles of exactly 0 and 1 would be infinite.
   constexpr double least = 1e-15;
   const double value = boost::math::quantile(normal, std::clamp(low + u * (high - low), least, 1.0 - least));
   return d.range ? std::clamp(value, d.range->from, d.range->to) : value;
@@ -65,7 +65,8 @@ PointValues some_values(const Study& study) {
 
 namespace {
 
-/// Nothing if the parameter has no such value. An end of an interval that was reached by rounding belongs to it.
+/// Returns the value of a parameter that is shown in this form, or nothing if there is none. An end of an interval may
+/// differ by rounding errors.
 std::optional<ParameterValue> value_of(const Parameter& parameter, const std::variant<double, std::string>& shown) {
   const auto found = std::ranges::find(parameter.values, shown, &ParameterValue::shown);
   if (found != parameter.values.end()) return *found;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Studies as data: base design, parameters with their values, intervals or distributions, and the quantities to
+// Contents of a study: base design, parameters with their values, intervals or distributions, and the quantities to
 // compute.
 
 #include <cstdint>
@@ -18,70 +18,70 @@
 
 namespace retrace::studies {
 
-/// A value of a parameter: as TOML, to be set, and as tables show it.
+/// Value of a parameter, as TOML for overrides and in the form that tables show.
 struct ParameterValue {
   std::string toml;
   std::variant<double, std::string> shown;
 };
 
-/// Values between two ends, both included.
+/// Interval that includes both ends.
 struct Interval {
   double from = 0.0;
   double to = 0.0;
-  bool logarithmic = false;  ///< equal steps are equal ratios; both ends are > 0
+  bool logarithmic = false;  ///< true: equal steps are equal ratios, and both ends are > 0
 
-  /// The value at a share 0..1 of the way.
+  /// Returns the value at a fraction (0..1) of the interval.
   double at(double share) const;
 };
 
-/// How a parameter is spread by manufacture.
+/// Distribution of a parameter in manufacture.
 struct Distribution {
   enum class Kind { normal, uniform, triangular };
   Kind kind = Kind::normal;
-  double mean = 0.0;              ///< normal; triangular: its most frequent value
-  double sigma = 0.0;             ///< normal; > 0
-  std::optional<Interval> range;  ///< uniform and triangular: required; normal: cut off there
+  double mean = 0.0;              ///< normal: mean; triangular: most frequent value
+  double sigma = 0.0;             ///< normal: standard deviation, > 0
+  std::optional<Interval> range;  ///< uniform and triangular: required; normal: limits of the distribution
 
-  /// The value below which a share u of (0, 1) lies.
+  /// Returns the quantile: the value below which the fraction u (0 to 1) of the values lies.
   double quantile(double u) const;
 };
 
-/// What a study varies: one or more keys that have the same value.
+/// Parameter that a study varies: one or more keys that have one common value.
 struct Parameter {
-  std::string name;  ///< its column: the first key, or the name it was given
+  std::string name;  ///< name of its column: the given name, or the first key
   std::vector<std::string> keys;
-  std::vector<ParameterValue> values;  ///< of a list or a range; empty if it is an interval or a distribution
+  std::vector<ParameterValue> values;  ///< values of a list or a range; empty for an interval or a distribution
   std::optional<Interval> interval;
   std::optional<Distribution> distribution;
   InputLocation location;
 
-  /// A value within the interval, as it is set.
+  /// Returns a number as the value of a parameter.
   static ParameterValue value_of(double number);
 };
 
-/// What every study file says, whatever is then done with it.
+/// Contents of a study file that all kinds of studies use.
 struct Study {
-  std::string source;  ///< file name as given
+  std::string source;  ///< name of the file as given
   std::string title;
-  std::shared_ptr<const schema::Document> document;  ///< of the study file
-  std::string design_file;                           ///< of the base design; from the working directory
-  std::map<std::string, std::string> design_texts;   ///< by file name, as read once
-  std::vector<std::string> files;                    ///< all that are read: its own, designs, what these name
-  std::vector<std::string> overrides;                ///< --set
+  std::shared_ptr<const schema::Document> document;  ///< document of the study file
+  std::string design_file;                           ///< file of the base design, from the working directory
+  std::map<std::string, std::string> design_texts;   ///< texts of the design files, by name of the file
+  std::vector<std::string> files;      ///< all files that are read: the study, designs, and files that these name
+  std::vector<std::string> overrides;  ///< texts of the option --set
   std::uint32_t seed = 1;
   std::vector<Parameter> parameters;
   Quantities quantities;
-  /// What the study is, in parts with canonical texts: two studies with equal parts have equal points.
+  /// Parts that define the study, each with a canonical text. Two studies with equal parts have equal points.
   std::vector<std::pair<std::string, std::string>> parts;
 };
 
-/// Values of the parameters of a study at one point, in their order.
+/// Values of the parameters at one point of a study, in the order of the parameters.
 using PointValues = std::vector<ParameterValue>;
 
-/// Values that every parameter of a study may have.
+/// Returns an example value of each parameter.
 PointValues some_values(const Study& study);
 
-/// The values that tables show as these; nothing if a parameter of the study does not have such a one.
+/// Returns the values that tables show as `shown`. Returns nothing if a parameter does not have such a value.
 std::optional<PointValues> values_of(const Study& study, const std::vector<std::variant<double, std::string>>& shown);
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// The accounts of rays, with their names in files: those of the ledger, and that of rays that miss the part.
+// Accounts of rays, with their names in files: the accounts of the ledger, and one for rays that miss the part.
 
 #include <array>
 #include <cstddef>

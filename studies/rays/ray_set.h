@@ -1,6 +1,6 @@
 #pragma once
 
-// Sets of rays as files hold them: what is told of all rays, and of each.
+// Contents of ray files: data of the whole set and of each ray.
 
 #include <array>
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace retrace::studies {
 
 using geometry::Vec3;
 
-/// How a set tells the wavelengths of its rays; the numbers are those of TM-25.
+/// Kind of wavelength data in a set. The numbers are those of TM-25.
 enum class RaySpectrum : std::int32_t {
   unknown = 0,
   one_wavelength = 1,
@@ -24,7 +24,7 @@ enum class RaySpectrum : std::int32_t {
   table_of_each = 4
 };
 
-/// Of what a set says of its origin, in the order of TM-25.
+/// Descriptions of a set, in the order of TM-25.
 enum class RayText : std::size_t {
   light_source,
   manufacturer,
@@ -38,44 +38,45 @@ enum class RayText : std::size_t {
 };
 inline constexpr std::size_t kRayTexts = 9;
 
-/// What is told of all rays of a set.
+/// Data of the whole set of rays.
 struct RaySetInfo {
-  std::optional<std::uint64_t> rays;  ///< none: not known before they are read
+  std::optional<std::uint64_t> rays;  ///< number of rays; none: not known before they are read
   bool has_radiant = true;            ///< radiant flux, in W
-  bool has_luminous = false;          ///< luminous flux, in lm; one of the two at least
-  bool has_tristimulus = false;       ///< X and Z beside the luminous flux
+  bool has_luminous = false;          ///< luminous flux, in lm; at least one of both fluxes is present
+  bool has_tristimulus = false;       ///< X and Z in addition to the luminous flux
   bool has_stokes = false;
   RaySpectrum spectrum = RaySpectrum::unknown;
-  double wavelength_nm = 0.0;                    ///< of RaySpectrum::one_wavelength
+  double wavelength_nm = 0.0;                    ///< wavelength of all rays for RaySpectrum::one_wavelength
   std::vector<materials::SpectralCurve> tables;  ///< relative power per nm
-  std::optional<double> radiant_w;               ///< of all rays together, as the set says
+  std::optional<double> radiant_w;               ///< flux of all rays, as given by the set
   std::optional<double> luminous_lm;
-  std::string date;                             ///< as given; empty: none
+  std::string date;                             ///< date as given; empty: none
   std::array<std::u32string, kRayTexts> texts;  ///< empty: unknown
-  std::vector<std::string> more_items;          ///< names of what else the set holds of each ray
+  std::vector<std::string> more_items;          ///< names of additional items of each ray
 
   const std::u32string& text(RayText which) const { return texts[static_cast<std::size_t>(which)]; }
   std::u32string& text(RayText which) { return texts[static_cast<std::size_t>(which)]; }
 };
 
-/// One ray of a set. What the set does not hold stays as it is here.
+/// Ray of a set. Members that the set does not contain keep these defaults.
 struct SetRay {
   Vec3 position_mm = Vec3::Zero();
-  Vec3 direction = Vec3::UnitZ();  ///< unit
+  Vec3 direction = Vec3::UnitZ();  ///< unit vector
   double radiant_w = 0.0;
   double luminous_lm = 0.0;
   double tristimulus_x = 0.0;
   double tristimulus_z = 0.0;
-  std::array<double, 3> stokes = {};  ///< S1, S2 and S3 over the power, along `axis` and direction x axis
-  Vec3 axis = Vec3::UnitX();          ///< across the direction
+  /// S1, S2 and S3 divided by the power, with respect to `axis` and direction x axis.
+  std::array<double, 3> stokes = {};
+  Vec3 axis = Vec3::UnitX();  ///< perpendicular to the direction
   double wavelength_nm = 0.0;
-  std::uint32_t table = 0;  ///< which one of the tables, from 1
+  std::uint32_t table = 0;  ///< number of the spectral table, from 1
 };
 
-/// A ray that has left a part, or missed it, with its account.
+/// Ray that has left or missed a part, with its account.
 struct AccountedRay : SetRay {
-  std::uint64_t number = 0;  ///< of the ray that it comes from, from 1
-  std::size_t account = 0;   ///< in kRayAccounts
+  std::uint64_t number = 0;  ///< number of the incident ray, from 1
+  std::size_t account = 0;   ///< index in kRayAccounts
 };
 
 }  // namespace retrace::studies

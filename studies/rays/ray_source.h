@@ -1,6 +1,6 @@
 #pragma once
 
-// Where rays come from and where they go, piece by piece, so that a set of any size takes little memory.
+// Interfaces for sources and sinks of rays. Rays are passed in portions, so that sets of any size need little memory.
 
 #include <cstddef>
 #include <span>
@@ -11,32 +11,35 @@
 
 namespace retrace::studies {
 
-/// Rays in the frame of their source, in order.
+/// Source of rays, in the frame of the source and in a fixed order.
 class RaySource {
  public:
   virtual ~RaySource() = default;
   virtual const RaySetInfo& info() const = 0;
-  /// Replaces `rays` by the next ones. \return false behind the last \throw InputError naming the place
+  /// Replaces `rays` by the next rays.
+  /// \return false if there are no more rays
+  /// \throw InputError that names the position
   virtual bool read(std::size_t most, std::vector<SetRay>& rays) = 0;
-  /// How much of it was read, 0 to 1.
+  /// Returns the fraction of the source that has been read, 0 to 1.
   virtual double share_read() const = 0;
-  /// What the user should know of it; all only behind the last ray.
+  /// Returns warnings for the user. They are complete after the last ray.
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
-/// What rays that leave hold, and what is told of all of them before the first.
+/// Data of leaving rays, which the sink receives before the first ray.
 struct RaySinkLayout {
   RaySetInfo info;
-  bool tells_wavelengths = false;  ///< each ray has one
+  bool tells_wavelengths = false;  ///< true: each ray has a wavelength
 };
 
-/// Takes rays that leave, in order.
+/// Sink that receives leaving rays in order.
 class RaySink {
  public:
   virtual ~RaySink() = default;
   virtual void begin(const RaySinkLayout& layout) = 0;
   virtual void write(std::span<const AccountedRay> rays) = 0;
-  /// Behind the last. \throw OutputError
+  /// Must be called after the last ray.
+  /// \throw OutputError if the rays cannot be written
   virtual void finish() = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What becomes of the rays of a set at a part: every ray that leaves, and the account of all power.
+// Traces a set of rays through a part: all leaving rays, and the ledger of the power.
 
 #include <cstdint>
 #include <memory>
@@ -19,42 +19,43 @@ namespace retrace::studies {
 
 struct RayRequest {
   RayPlacementRequest placement;
-  /// Both branches of an interface are followed while each has at least this share of the ray's power; below, one takes
-  /// the whole by chance. 1: one ray in, at most one out.
+  /// Minimum fraction of a ray's power for which both branches at an interface are traced. Below it, one branch is
+  /// chosen at random and gets all power. With 1, at most one ray leaves for each incident ray.
   double split = 1.0;
-  double cutoff = 1e-10;     ///< share of a ray's power below which it is followed no further
-  bool keep_missed = false;  ///< rays that miss the part are written too
-  bool stokes = false;       ///< polarisation is written even if the source has none
+  double cutoff = 1e-10;     ///< fraction of a ray's power below which it is not traced further
+  bool keep_missed = false;  ///< true: rays that miss the part are also written
+  bool stokes = false;       ///< true: polarisation is written even if the source has none
   std::uint32_t seed = 1;
 };
 
-/// Whose unit the power of the ledger has.
+/// Unit of the power in the ledger.
 enum class RayPower { radiant_w, luminous_lm };
 
 struct RayResult {
   Design design;
   RayRequest request;
-  std::string source_name;         ///< of its file; empty: none \note as what follows, for who made the source to set
-  std::optional<Emitter> emitter;  ///< in place of a file
-  std::string out_name;            ///< of the file that rays were written to; empty: none
+  /// Name of the source's file; empty: none \note set by the creator of the source, like the next two members.
+  std::string source_name;
+  std::optional<Emitter> emitter;  ///< emitter that replaces a file
+  std::string out_name;            ///< file to which rays were written; empty: none
   RaySetInfo source;
   RayPlacement placement;
   double acceptance_half_angle_deg = 0.0;
   RayPower power = RayPower::radiant_w;
   raytrace::RayLedger ledger;
-  std::uint64_t rays_out = 0;  ///< given to the sink
-  double shortest_nm = 0.0;    ///< wavelengths that were traced
+  std::uint64_t rays_out = 0;  ///< number of rays that the sink received
+  double shortest_nm = 0.0;    ///< shortest traced wavelength
   double longest_nm = 0.0;
   std::vector<std::string> warnings;
   bool complete = true;
   double elapsed_s = 0.0;
 };
 
-/// Traces the rays of a source at a design. Rays of a source that tells no wavelengths take those of the design's light
-/// by chance, in proportion to their weights; those with a spectrum take wavelengths of it.
+/// Traces the rays of a source through a design. Rays without wavelengths get random wavelengths of the design's light,
+/// in proportion to their weights. Rays with a spectrum get wavelengths of their spectrum.
 class RayStudy {
  public:
-  /// \throw InputError for balls, or a request that makes no sense
+  /// \throw InputError for balls, and for an invalid request
   RayStudy(Design design, RayRequest request);
   RayStudy(const RayStudy&) = delete;
   RayStudy& operator=(const RayStudy&) = delete;
@@ -62,11 +63,15 @@ class RayStudy {
 
   const geometry::Part& part() const;
   const Design& design() const;
-  /// An emitter as asked, for this part. Its power is in lm where the design's light is weighed by the eye.
-  /// \throw InputError for what is out of range
+  /// Returns the requested emitter for this part. Its power is in lm if the design's light is weighted by the response
+  /// of the eye.
+  /// \throw InputError for values out of range
   Emitter emitter_of(const EmitterRequest& request) const;
 
-  /// \param sink null: rays are counted alone \throw InputError of the source; BudgetError if power was lost
+  /// Traces all rays of a source.
+  /// \param sink null: rays are only counted
+  /// \throw InputError as the source
+  /// \throw BudgetError if power was lost
   RayResult run(RaySource& source, RaySink* sink, Progress* progress, const Cancellation* cancel) const;
 
  private:

@@ -13,12 +13,13 @@
 namespace retrace::studies {
 namespace {
 
-// Philox stream of wavelengths.
+// Philox stream of random wavelengths.
 constexpr std::uint32_t kWavelengthStream = 18;
-// Of single wavelengths: optics are made for each that is met.
+// Resolution of single wavelengths. Optical properties are computed for each wavelength that occurs.
 constexpr double kStepsPerNm = 10.0;
 
-/// A table of one sample is a line. \param efficiency null: by power
+/// Returns the spectrum of a table. A table with one sample is a spectral line.
+/// \param efficiency null: weights by power
 materials::Spectrum spectrum_of(const materials::SpectralCurve& table, const materials::SpectralCurve* efficiency) {
   if (table.values.size() == 1)
     return materials::line_spectrum({{table.wavelengths_nm.front(), table.values.front()}}, efficiency);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/rays: at which wavelength each ray of a source is traced.
+// Selects the wavelength at which each ray of a source is traced. Internal to studies/rays.
 
 #include <cstdint>
 #include <functional>
@@ -12,27 +12,29 @@
 
 namespace retrace::studies {
 
-/// Gives each ray its wavelength and the number of the optics at it.
+/// Assigns a wavelength to each ray, and the index of the optical properties at this wavelength.
 class RayWavelengths {
  public:
-  /// Adds optics at a wavelength to those that are traced. \return their number
+  /// Function that adds optical properties at a wavelength to the traced ones.
+  /// \return their index
   using Add = std::function<std::uint32_t(double wavelength_nm)>;
 
-  /// \param light of the design, for rays that have no wavelengths \param by_eye spectra are weighed by the eye, as
-  /// the power of rays is luminous flux
+  /// \param light light of the design, for rays without wavelengths
+  /// \param by_eye true: spectra are weighted by the response of the eye, because the power of rays is luminous flux
   RayWavelengths(const RaySetInfo& info, const std::vector<SpectralOptics>& light, bool by_eye, std::uint32_t seed,
                  Add add);
 
-  /// Sets the wavelength of a ray; that of a set of single wavelengths is rounded to 0.1 nm. \return its optics
+  /// Sets the wavelength of a ray. In sets of single wavelengths, it is rounded to 0.1 nm.
+  /// \return index of the optical properties
   std::uint32_t settle(SetRay& ray, std::uint64_t number);
-  /// Whether rays have more than one.
+  /// Returns true if rays have several wavelengths.
   bool are_several() const;
 
   double shortest_nm() const { return shortest_nm_; }
   double longest_nm() const { return longest_nm_; }
 
  private:
-  /// Wavelengths of a spectrum, and the sums of their weights.
+  /// Wavelengths of a spectrum, with the cumulative sums of their weights.
   struct Choice {
     std::vector<double> wavelengths_nm;
     std::vector<double> cumulative;
@@ -42,12 +44,12 @@ class RayWavelengths {
 
   RaySpectrum kind_;
   double one_nm_ = 0.0;
-  std::vector<Choice> choices_;  ///< by table; of the design's light: one
+  std::vector<Choice> choices_;  ///< one for each table, or one for the design's light
   std::uint32_t seed_;
   Add add_;
   std::map<double, std::uint32_t> known_;
   double last_nm_ = 0.0;
-  std::uint32_t last_ = 0;  ///< of `last_nm_`
+  std::uint32_t last_ = 0;  ///< index of the optical properties at `last_nm_`
   double shortest_nm_ = 0.0;
   double longest_nm_ = 0.0;
 };

@@ -1,12 +1,14 @@
 #pragma once
 
-// Reads what a study file asks of a composition: goals, rules for shares, prices, constraints over cells and the part.
+// Reads the request for a composition from a study file: goals, rules for areas, prices, and constraints on cells and
+// the part.
 
 #include "studies/compose/compose.h"
 
 namespace retrace::studies {
 
-/// What [compose] and [[constraint]] of a study ask. \throw InputError
+/// Reads the tables [compose] and [[constraint]] of a study.
+/// \throw InputError for invalid keys
 ComposeRequest read_compose(const Study& study);
 
 }  // namespace retrace::studies

@@ -164,7 +164,7 @@ std::string goals_text(const Study& study, const ComposeRequest& request, const 
   return text;
 }
 
-/// Prices in words.
+/// Returns the dual prices of the part as text.
 std::string prices_text(const Study& study, const ComposeRequest& request, const PartOfZones& part) {
   std::string text;
   for (std::size_t k = 0; k < request.goals.size(); ++k) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace compose`.
+// Output documents and tables of `retrace compose`.
 
 #include <string>
 
@@ -8,18 +8,17 @@
 
 namespace retrace::studies {
 
-/// The result as a `retrace.composition/1` document.
+/// Returns the result as a document of the format `retrace.composition/1`.
 std::string composition_json(const Study& study, const ComposeRequest& request, const Composition& composition,
                              double elapsed_s);
 
-/// What each zone gives to each goal, one goal a line.
+/// Returns the contribution of each zone to each goal as CSV, with one line for each goal.
 std::string composition_csv(const Study& study, const ComposeRequest& request, const Composition& composition);
 
-/// Zones, goals, prices and what is known of how good the part is, for the terminal.
+/// Returns the zones, goals, prices and the proof of optimality for the terminal.
 std::string composition_text(const Study& study, const ComposeRequest& request, const Composition& composition);
 
-/// Why there is no part, or why the part does not reach what was asked: the goals that exclude every mixture. Empty if
-/// there is one that does.
+/// Returns why there is no part, or why the part does not reach the requested minimum goal. Empty if a part reaches it.
 std::string why_not_reached(const Study& study, const ComposeRequest& request, const Composition& composition);
 
 }  // namespace retrace::studies

@@ -11,7 +11,7 @@
 namespace retrace::studies {
 namespace {
 
-/// So many of the drawn parts are better than what is told of them.
+/// Fraction of the random parts that are better than the reported minimum.
 constexpr double kMostParts = 0.95;
 
 double least_of_most(const PartYield& yield) {

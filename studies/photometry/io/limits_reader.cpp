@@ -33,7 +33,7 @@ enum Column : std::size_t {
   kMinimum,
   kUnit,
   kStatus,
-  kSource,  // may be missing
+  kSource,  // column that may be missing
   kColumns,
 };
 constexpr std::array<std::string_view, kColumns> kHeader = {
@@ -42,7 +42,7 @@ constexpr std::array<std::string_view, 7> kUnits = {"mcd/lx", "cd/lx", "cd/fc", 
                                                     "factor", "cm2",   "chromaticity"};
 constexpr std::array<std::string_view, 4> kStatuses = {"confirmed", "read", "recalled", "incomplete"};
 
-/// A number, or both signs of it.
+/// Returns the number in a text, or both signs of it for a text such as `+-10`.
 std::vector<double> signed_numbers(const CsvReader& row, Column column, std::string_view text) {
   const bool both = text.starts_with("+-");
   if (both) text.remove_prefix(2);
@@ -55,7 +55,7 @@ std::vector<double> signed_numbers(const CsvReader& row, Column column, std::str
   return {*value};
 }
 
-/// V of a test point, and where it is measured instead if the face mirrors there: `0 or +-5`.
+/// Angle V of a test point, and angles that replace it if the face mirrors the lamp there. Example: `0 or +-5`.
 struct V {
   std::vector<double> deg;
   std::vector<double> beside_deg;
@@ -79,7 +79,7 @@ std::string named(const CsvReader& row, Column column) {
   return printable(row[column]);
 }
 
-/// What rows of every kind begin with.
+/// Returns the part of a line that rows of every kind have in common.
 template <class Row>
 Row begun(const CsvReader& row) {
   Row result;
@@ -135,7 +135,7 @@ LimitArea area_of(const CsvReader& row) {
   return area;
 }
 
-/// A line in the plane of x and y: `y <= 0.335`, `z <= 0.008` or `y >= 0.146 + 0.489 x`.
+/// Reads a boundary line in the x-y plane, such as `y <= 0.335`, `z <= 0.008` or `y >= 0.146 + 0.489 x`.
 void read_boundary(const CsvReader& row, ColourBoundary& boundary) {
   const std::vector<std::string_view> words = split(row[kMinimum], ' ');
   const auto word = [&](std::size_t k) { return k < words.size() ? words[k] : std::string_view(); };
@@ -149,7 +149,7 @@ void read_boundary(const CsvReader& row, ColourBoundary& boundary) {
              fmt::format("must be x, y or z, <= or >=, and a number or a line, as in \"y >= 0.146 + 0.489 x\", "
                          "of numbers from -{0} to {0}, got {1}",
                          shortest(kMostOfColour), in_quotes(row[kMinimum])));
-  // The left side less the right one, with z = 1 - x - y, is to be <= 0, or >= 0.
+  // Moves all terms to the left side and replaces z by 1 - x - y.
   const bool is_z = word(0) == "z";
   const double of_x = (word(0) == "x" ? 1.0 : is_z ? -1.0 : 0.0) - (word(3) == "-" ? -*slope : *slope);
   const double of_y = word(0) == "y" ? 1.0 : is_z ? -1.0 : 0.0;
@@ -185,14 +185,14 @@ LimitGap gap_of(const CsvReader& row) {
   return gap;
 }
 
-/// Whether the line of column names ends in that of the source.
+/// Returns true if the last column in the line of column names is the source.
 bool names_source(std::string_view content) {
   for (const std::string_view line : split(content, '\n'))
     if (!trimmed(line).empty() && trimmed(line).front() != '#') return trimmed(line).ends_with(kHeader[kSource]);
   return false;
 }
 
-/// Gives a line of any kind its source.
+/// Sets the source of a line.
 template <class Line>
 Line with_source(Line line, const CsvReader& row, bool has_source) {
   if (has_source) line.source = printable(row[kSource], std::string::npos);

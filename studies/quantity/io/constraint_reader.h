@@ -11,15 +11,19 @@
 
 namespace retrace::studies {
 
-/// The tables [[constraint]] of a study; there may be none. \throw InputError, also for one over a part of many cells
+/// Reads the tables [[constraint]] of a study; there may be none.
+/// \throw InputError for invalid keys, and for a constraint over a part of many cells
 std::vector<Constraint> read_constraints(const Study& study);
 
-/// What a constraint of a composition is of, in the order of the words of `constraint.over`.
+/// Object of a constraint in a composition. The order is that of the words of `constraint.over`.
 enum class ConstraintOver { cell, part };
-/// Those of a composition that are over one or the other. \throw InputError
+/// Reads the constraints of a composition that apply to cells or to the part.
+/// \throw InputError for invalid keys
 std::vector<Constraint> read_constraints(const Study& study, ConstraintOver over);
 
-/// \return the name, if the study has a quantity of that name \throw InputError if it has not
+/// Checks that the study has a quantity with this name.
+/// \return `name`
+/// \throw InputError if there is no such quantity
 std::string checked_quantity(const Study& study, const std::string& name, const InputLocation& where);
 
 }  // namespace retrace::studies

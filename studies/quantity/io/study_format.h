@@ -1,15 +1,16 @@
 #pragma once
 
-// The format of study files, as the rows that readers and documentation walk.
+// Format of study files, as rows that are used by readers and for the documentation.
 
 #include "core/schema/schema.h"
 
 namespace retrace::studies {
 
-/// Of the words of `kind` of a quantity, the first that is a PlainQuantity; its others follow in their order.
+/// Index of the first word of a quantity's `kind` that is a PlainQuantity. The other plain quantities follow in their
+/// order.
 inline constexpr std::size_t kFirstPlainKind = 4;
 
-/// Keys of study files: what varies, what is asked of every design, and how it is computed and made.
+/// Returns the keys of study files: parameters, quantities, analysis and machining.
 const schema::Format& study_format();
 
 }  // namespace retrace::studies

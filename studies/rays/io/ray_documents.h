@@ -1,6 +1,6 @@
 #pragma once
 
-// The result of traced rays as a JSON document and as a table.
+// Output of traced rays as a JSON document and as a table.
 
 #include <string>
 
@@ -8,9 +8,9 @@
 
 namespace retrace::studies {
 
-/// retrace.rays/1
+/// Returns the result as JSON in the format retrace.rays/1.
 std::string rays_json(const RayResult& result);
-/// For people.
+/// Returns the result as a table for the terminal.
 std::string rays_table(const RayResult& result);
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// Files of rays by their endings: .tm25ray and .csv.
+// Opens files of rays. The ending of the name determines the format: .tm25ray or .csv.
 
 #include <filesystem>
 #include <memory>
@@ -10,13 +10,16 @@
 
 namespace retrace::studies {
 
-/// \throw InputError naming file and place, at `option` for another ending
+/// Opens a file of rays.
+/// \throw InputError that names the file and the position, or at `option` for an unknown ending
 std::unique_ptr<RaySource> open_ray_file(const std::filesystem::path& file, const std::string& option);
 
-/// The file that rays are written to appears when it is finished. \throw InputError at `option` for another ending;
-/// OutputError
+/// Creates a file of rays. The file appears when it is finished.
+/// \throw InputError at `option` for an unknown ending
+/// \throw OutputError if the file cannot be written
 std::unique_ptr<RaySink> make_ray_file(const std::filesystem::path& file, const std::string& option);
-/// Whether it could be made. \throw InputError likewise
+/// Checks that a file of rays can be created.
+/// \throw InputError and OutputError as make_ray_file()
 void check_ray_file(const std::filesystem::path& file, const std::string& option);
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/rays/io: how files of rays are opened, whatever their format.
+// Opens files of rays, for readers of all formats. Internal to studies/rays/io.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,13 +9,14 @@
 
 namespace retrace::studies {
 
-/// A stream and how many bytes it has.
+/// Stream and its length in bytes.
 struct RayInput {
   std::unique_ptr<std::istream> stream;
   std::uint64_t bytes = 0;
 };
 
-/// \throw InputError if it cannot be read; its length must be known before, so that only regular files can
+/// Opens a regular file. Other files are refused, because the length must be known.
+/// \throw InputError if the file cannot be read
 RayInput opened_ray_file(const std::filesystem::path& file);
 
 }  // namespace retrace::studies

@@ -1,7 +1,7 @@
 #pragma once
 
-// Ray files of IES TM-25-13: what is in the file, byte by byte, and the source and the sink that read and write them.
-// Layout and its readings: docs/theory/rays.md.
+// Ray files of IES TM-25-13: source and sink that read and write the binary format. Layout and interpretation:
+// docs/theory/rays.md.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,10 +15,11 @@
 
 namespace retrace::studies {
 
-/// Reads a set of rays. \throw InputError naming file and byte
+/// Reads a file of rays.
+/// \throw InputError that names the file and the byte
 class Tm25Source : public RaySource {
  public:
-  /// A regular file.
+  /// Opens a regular file.
   explicit Tm25Source(const std::filesystem::path& file);
   /// \param file name of the input, for messages
   Tm25Source(RayInput input, std::string file);
@@ -47,22 +48,22 @@ class Tm25Source : public RaySource {
   std::unique_ptr<std::istream> stream_;
   std::string file_;
   std::uint64_t bytes_ = 0;
-  std::uint64_t at_ = 0;  ///< read so far
+  std::uint64_t at_ = 0;  ///< number of bytes that have been read
   std::string buffer_;
   RaySetInfo info_;
   std::size_t record_bytes_ = 0;
   std::uint64_t rays_read_ = 0;
   bool has_wavelengths_ = false;
   bool has_tables_ = false;
-  std::uint64_t not_unit_ = 0;  ///< directions that are no unit vectors
+  std::uint64_t not_unit_ = 0;  ///< number of directions that are not unit vectors
   double radiant_w_ = 0.0;
   double luminous_lm_ = 0.0;
 };
 
-/// Writes a set of rays; each has its account as an additional item.
+/// Writes a file of rays. Each ray has its account as an additional item.
 class Tm25Sink : public RaySink {
  public:
-  /// \throw OutputError
+  /// \throw OutputError if the file cannot be written
   explicit Tm25Sink(const std::filesystem::path& file) : file_(file) {}
 
   void begin(const RaySinkLayout& layout) override;
@@ -79,7 +80,7 @@ class Tm25Sink : public RaySink {
   std::uint64_t rays_ = 0;
   double radiant_w_ = 0.0;
   double luminous_lm_ = 0.0;
-  double shortest_nm_ = 0.0;  ///< of the rays; 0: none yet
+  double shortest_nm_ = 0.0;  ///< shortest wavelength of the rays; 0: no rays yet
   double longest_nm_ = 0.0;
 };
 

@@ -16,7 +16,7 @@ using namespace tm25;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-/// Values one after the other, as they are in memory.
+/// Buffer of values in their binary representation.
 class Bytes {
  public:
   template <class Value>
@@ -27,7 +27,7 @@ class Bytes {
   }
   void add_real(double value) { add(static_cast<float>(value)); }
   void add_flag(bool value) { add(static_cast<std::int32_t>(value)); }
-  /// \param bytes that it fills, at least one character of which stays 0
+  /// \param bytes size that the text is padded to with zeros; at least one character is zero
   void add_text(std::u32string_view text, std::size_t bytes) {
     const std::size_t at = bytes_.size();
     bytes_.resize(at + bytes, '\0');
@@ -50,7 +50,7 @@ std::u32string wide(std::string_view ascii) {
   return {ascii.begin(), ascii.end()};
 }
 
-/// What the numbers of the item `account` mean.
+/// Returns the meaning of the numbers of the item `account`.
 std::u32string legend() {
   std::string text = "account:";
   for (std::size_t k = 0; k < kRayAccounts.size(); ++k)
@@ -62,7 +62,7 @@ std::u32string legend() {
 
 void Tm25Sink::begin(const RaySinkLayout& layout) {
   layout_ = layout;
-  // The format has no room for wavelengths beside luminous flux.
+  // The format allows no wavelengths together with luminous flux.
   has_wavelength_column_ = layout.tells_wavelengths && !layout.info.has_luminous;
   write_header();
 }
@@ -78,17 +78,17 @@ void Tm25Sink::write_header() {
   Bytes head;
   for (const char c : {'T', 'M', '2', '5'}) head.add(c);
   head.add(kFormatVersion);
-  head.add(std::int32_t{0});  // by simulation
-  head.add_real(kUnknown);    // the flux, and the number of rays: write_totals()
+  head.add(std::int32_t{0});  // rays are from a simulation
+  head.add_real(kUnknown);    // the flux is unknown here; write_totals() sets it and the number of rays
   head.add_real(kUnknown);
   head.add(std::uint64_t{0});
   head.add_date(info.date);
-  head.add(std::int32_t{0});  // where rays begin: unknown
+  head.add(std::int32_t{0});  // the surface on which rays begin is unknown
   head.add(static_cast<std::int32_t>(spectrum));
   head.add_real(spectrum == RaySpectrum::one_wavelength ? info.wavelength_nm : kUnknown);
   head.add_real(kUnknown);
   head.add_real(kUnknown);
-  head.add(std::int32_t{0});  // spectral tables
+  head.add(std::int32_t{0});  // number of spectral tables
   head.add(static_cast<std::int32_t>(has_wavelength_item ? 2 : 1));
   head.add(static_cast<std::int32_t>(more_bytes));
   head.fill(kReservedBytes);

@@ -17,12 +17,12 @@ namespace {
 
 using namespace tm25;
 
-// No set has more; what counts beyond that is no count.
+// Maximum numbers of tables and items. Larger numbers in a file indicate damage.
 constexpr std::int32_t kMostTables = 100'000;
 constexpr std::int32_t kMostItems = 1000;
-// Relative, of the sum of the rays' flux to what the header says.
+// Relative tolerance between the flux of all rays and the flux in the header.
 constexpr double kFluxTolerance = 0.01;
-// Of the squared length of a direction.
+// Tolerance of the squared length of a direction.
 constexpr double kUnitTolerance = 1e-4;
 
 static_assert(std::endian::native == std::endian::little, "TM-25 is little-endian, and read as it is");
@@ -34,7 +34,7 @@ Value value_at(const char* bytes) {
   return value;
 }
 
-/// UTF-32 up to its first zero.
+/// Returns the UTF-32 characters before the first zero.
 std::u32string characters(std::string_view bytes) {
   std::u32string text;
   for (std::size_t k = 0; k + 4 <= bytes.size(); k += 4) {
@@ -45,14 +45,14 @@ std::u32string characters(std::string_view bytes) {
   return text;
 }
 
-/// For messages and keys: what is not ASCII becomes a question mark.
+/// Returns a text for messages and keys, in which question marks replace characters that are not ASCII.
 std::string plain(const std::u32string& text) {
   std::string result;
   for (const char32_t c : text) result.push_back(c >= 0x20 && c < 0x7f ? static_cast<char>(c) : '?');
   return result;
 }
 
-/// Up to what is no printable character.
+/// Returns the characters before the first one that is not printable.
 std::string ascii_of(std::string_view text) {
   std::string result;
   for (const char c : text.substr(0, text.find('\0'))) {
@@ -75,7 +75,8 @@ void Tm25Source::fail(std::uint64_t byte, std::string_view text) const {
   throw InputError({file_, 0, fmt::format("byte {}", byte)}, text);
 }
 
-/// The next bytes of the file. \param what they are, for messages
+/// Returns the next bytes of the file.
+/// \param what name of these bytes, for messages
 std::string_view Tm25Source::take(std::uint64_t bytes, std::string_view what) {
   if (bytes > bytes_ - at_)
     fail(at_, fmt::format("the file is cut short: {} wants {} bytes, {} are left", what, bytes, bytes_ - at_));
@@ -105,7 +106,7 @@ bool Tm25Source::flag(std::string_view what) {
   return whole_within(what, 0, 1) == 1;
 }
 
-/// NaN: the set does not say it.
+/// Reads a flux. NaN means that the file does not give the flux.
 std::optional<double> Tm25Source::flux(std::string_view what) {
   const float value = number();
   if (std::isnan(value)) return std::nullopt;
@@ -117,13 +118,13 @@ void Tm25Source::read_header() {
   if (take(std::min<std::uint64_t>(4, bytes_), "a ray file") != "TM25")
     fail(0, "must be TM25, with which ray files of IES TM-25 begin");
   whole_within("the version of the format", kFormatVersion, kFormatVersion);
-  whole();  // how it was made
+  whole();  // skips the method by which the rays were made
   info_.luminous_lm = flux("the luminous flux");
   info_.radiant_w = flux("the radiant flux");
   info_.rays = value_at<std::uint64_t>(take(8, "the number of rays").data());
   if (*info_.rays == 0) fail(at_ - 8, "the number of rays must be at least 1, got 0");
   info_.date = ascii_of(take(kDateBytes, "the date"));
-  whole();  // on which surface the rays begin
+  whole();  // skips the surface on which the rays begin
   info_.spectrum = static_cast<RaySpectrum>(whole_within("the spectral data identifier", 0, 4));
   const float wavelength_nm = number();
   if (info_.spectrum == RaySpectrum::one_wavelength) {
@@ -200,7 +201,7 @@ void Tm25Source::read_tables(std::int32_t count) {
   if (const std::uint64_t over = (at_ - begin) % kBlockBytes; over > 0) take(kBlockBytes - over, "spectral tables");
 }
 
-/// What stands between the tables and the rays, and whether the rays are all there.
+/// Reads the data between the tables and the rays, and checks that the file contains all rays.
 void Tm25Source::find_rays(std::int32_t items, std::int32_t text_bytes) {
   for (std::int32_t k = 0; k < items; ++k)
     info_.more_items.push_back(plain(characters(take(kLabelBytes, "the name of an additional item"))));
@@ -266,7 +267,8 @@ SetRay Tm25Source::ray_at(const char* record, std::uint64_t byte) {
     ray.tristimulus_x = flux_of("a tristimulus value");
     ray.tristimulus_z = flux_of("a tristimulus value");
   }
-  if (info_.spectrum == RaySpectrum::table_of_each) {  // else each ray has a wavelength, which says more
+  // Otherwise each ray has a wavelength, which is more precise than the tables.
+  if (info_.spectrum == RaySpectrum::table_of_each) {
     const double table = next("a spectrum index");
     if (!(table >= 1.0 && table <= static_cast<double>(info_.tables.size())) || table != std::floor(table))
       fail(place() - 4, fmt::format("a spectrum index must be 1 to {}, got {}", info_.tables.size(), shortest(table)));
