@@ -13,19 +13,19 @@ using geometry::Vec2, geometry::Vec3;
 
 constexpr int kFinestLevel = 8;
 constexpr int kCoarsestLevel = 3;
-// Grid steps of the table across a leaf, at least.
+// Minimum number of grid steps of the table across a leaf.
 constexpr double kStepsPerLeaf = 4.0;
-// Directions of light across a leaf.
+// Number of directions of light across a leaf, along each side.
 constexpr int kLightsAcross = 3;
 
-/// Shirley and Chiu's map between the unit square and the unit disc.
+/// Maps the unit square to the unit disc (Shirley and Chiu).
 Vec2 disc_from_square(const Vec2& square) {
   const double a = 2.0 * square.x() - 1.0;
   const double b = 2.0 * square.y() - 1.0;
   if (a == 0.0 && b == 0.0) return Vec2::Zero();
   constexpr double kEighth = std::numbers::pi / 4.0;
   const bool is_wide = std::abs(a) > std::abs(b);
-  const double radius = is_wide ? a : b;  // with a sign, which turns it by half a turn
+  const double radius = is_wide ? a : b;  // a negative radius rotates the point by 180 degrees
   const double angle = is_wide ? kEighth * b / a : kEighth * (2.0 - a / b);
   return radius * Vec2(std::cos(angle), std::sin(angle));
 }
@@ -35,7 +35,7 @@ Vec2 square_from_disc(const Vec2& disc) {
   if (radius == 0.0) return Vec2::Constant(0.5);
   constexpr double kEighth = std::numbers::pi / 4.0;
   const bool is_wide = std::abs(disc.x()) > std::abs(disc.y());
-  // The angle from the nearest half axis, within an eighth of a turn either way.
+  // Angle from the nearest half axis, between minus and plus 45 degrees.
   const double across = is_wide ? std::atan(disc.y() / disc.x()) : std::atan(disc.x() / disc.y());
   const double along = std::copysign(radius, is_wide ? disc.x() : disc.y());
   const Vec2 ab = is_wide ? Vec2(along, along * across / kEighth) : Vec2(along * across / kEighth, along);

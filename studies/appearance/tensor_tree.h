@@ -1,6 +1,6 @@
 #pragma once
 
-// A reflection table as a tensor tree: the leaves of Radiance's BSDF files of variable resolution.
+// Reflection table as a tensor tree: the leaves of Radiance's BSDF files with variable resolution.
 
 #include <cstdint>
 #include <utility>
@@ -10,21 +10,24 @@
 
 namespace retrace::studies {
 
-/// BRDF over light and view, each a place in the unit square that Shirley and Chiu's map makes of the unit disc of a
-/// direction's x and y: of light those of -to_source, of view those of to_observer. Equal areas of the square are equal
-/// projected solid angles, pi for all of it. Leaves are hypercubes of side 2^-level; what is not among them is 0.
+/// BRDF over the directions of light and view. The x and y components of a direction are a point in the unit disc.
+/// Shirley and Chiu's map converts it to a point in the unit square. For light, the direction is -to_source; for view,
+/// it is to_observer. Equal areas of the square are equal projected solid angles; the whole square is pi. Leaves are
+/// hypercubes with the side 2^-level. The BRDF is 0 outside the listed leaves.
 struct TensorTree {
   int level = 0;
-  /// Number and value of every leaf that is not 0, rising. The number's hexadecimal digits, the first most significant,
-  /// are the branches from the root: bit k says in which half along dimension k, light's two dimensions first.
+  /// Numbers and values of all leaves that are not 0, in ascending order. The hexadecimal digits of a number are the
+  /// branches from the root, the most significant first. Bit k of a digit is the half along dimension k; the two
+  /// dimensions of light come first.
   std::vector<std::pair<std::uint64_t, double>> leaves;
 
-  /// Extent of a leaf, as a share of a unit vector at normal incidence.
+  /// Returns the width of a leaf, in components of a unit vector at normal incidence.
   double leaf_width() const;
 };
 
-/// The mean BRDF over each leaf, weighed by the eye, of light that the table holds; of other light it is 0. Leaves are
-/// as fine as 2^-8, or coarser where the table is. (P. Shirley and K. Chiu, Journal of Graphics Tools 2 (3), 45, 1997)
+/// Returns the mean BRDF of each leaf, weighted by the eye's response. It is 0 for light outside the range of the
+/// table. The side of a leaf is 2^-8, or more if the table is coarser. (P. Shirley and K. Chiu, Journal of Graphics
+/// Tools 2 (3), 45, 1997)
 TensorTree tensor_tree_of(const ReflectionTable& table);
 
 }  // namespace retrace::studies

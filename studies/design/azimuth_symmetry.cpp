@@ -13,7 +13,7 @@ bool is_unpolarised(const raytrace::Stokes& s) {
   return s.q == 0.0 && s.u == 0.0 && s.v == 0.0;
 }
 
-/// Whether the facets of an element are alike, and so are all elements.
+/// Returns true if all facets of an element are equivalent and all elements are equal.
 bool is_regular(const geometry::PartSpec& part) {
   const auto& edges = part.angle_errors.dihedral_error_arcmin;
   const auto& tilts = part.angle_errors.facet_tilt_arcmin;
@@ -24,7 +24,7 @@ bool is_regular(const geometry::PartSpec& part) {
          !part.substrate;
 }
 
-/// \param cube a whole cube corner, which three planes through its axis mirror
+/// \param cube complete cube corner, which is mirror-symmetric to three planes through its axis
 template <class Cube>
 std::optional<AzimuthSymmetry> of_cubes(const Cube& cube, double period_deg) {
   if (cube.cant.deg != 0.0) return std::nullopt;
@@ -34,14 +34,15 @@ std::optional<AzimuthSymmetry> of_cubes(const Cube& cube, double period_deg) {
 std::optional<AzimuthSymmetry> symmetry_of(const geometry::PartSpec& part) {
   const geometry::ArrayLayout& array = part.array;
   return std::visit(Overloaded{[&](const geometry::RtpElement&) {
-                                 // Turned by 90 degrees a checker is itself, one cell on.
+                                 // A checker array is mapped onto itself by a rotation by 90 degrees and a shift by one
+                                 // cell.
                                  const bool is_checker =
                                      array.arrangement == Arrangement::checker && array.x_gap_mm == array.y_gap_mm;
                                  return std::optional(AzimuthSymmetry{is_checker ? 90.0 : 180.0, 0.0});
                                },
                                [&](const geometry::HexagonalCube& cube) { return of_cubes(cube, 120.0); },
                                [&](const geometry::TriangularCube& cube) {
-                                 // Every second cell is turned by 180 degrees.
+                                 // Every second cell is rotated by 180 degrees.
                                  return of_cubes(cube, array.arrangement == Arrangement::single ? 120.0 : 60.0);
                                }},
                     part.element);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the symmetry of a design makes certain of RRE over the azimuth of the light.
+// Symmetries of RRE over the azimuth of the light, as they follow from the symmetry of a design.
 
 #include <optional>
 
@@ -8,14 +8,16 @@
 
 namespace retrace::studies {
 
-/// RRE(t, p) = RRE(t, p + period_deg), and RRE(t, mirror_deg + d) = RRE(t, mirror_deg - d).
+/// Symmetry of RRE over incidence t and azimuth p: RRE(t, p) = RRE(t, p + period_deg), and RRE(t, mirror_deg + d) =
+/// RRE(t, mirror_deg - d).
 struct AzimuthSymmetry {
   double period_deg = 360.0;
   double mirror_deg = 0.0;
 };
 
-/// Of endless arrays and single elements whose elements are alike and symmetric, in unpolarised light. None where that
-/// is not certain: borders, errors of single facets, cants, scratches.
+/// Returns the symmetry of infinite arrays and single elements in unpolarised light, if all elements are equal and
+/// symmetric. Returns nothing if the symmetry is not certain, because of borders, errors of single facets, cants or
+/// scratches.
 std::optional<AzimuthSymmetry> azimuth_symmetry(const Design& design);
 
 }  // namespace retrace::studies

@@ -1,17 +1,19 @@
 #pragma once
 
-// The part of a design of elements, with its mask and its table of facet planes applied, and one element of it.
+// Part of a design of elements, with its mask and its table of facet planes applied, and single elements of it.
 
 #include "geometry/part/part.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {
 
-/// The part of a design: the elements that its mask leaves, with the planes of their own facets if it names a table.
-/// \throw InputError as geometry::build_part(), and for a table or a mask that cannot be read or understood
+/// Returns the part of a design. It has the elements that the mask selects, and the facet planes of the table if there
+/// is one.
+/// \throw InputError as geometry::build_part(), and for an invalid table or mask
 geometry::Part part_of(const Design& design);
 
-/// One element of an array by itself, on its own piece of the plate. \pre it is a design of elements
+/// Returns a design with a single element of the array, on its own part of the plate.
+/// \pre the design consists of elements
 Design single_element_of(const Design& design);
 
 }  // namespace retrace::studies

@@ -1,14 +1,15 @@
 #pragma once
 
-// What a design's entrance face does to light, from what the design says that it is like.
+// Optical model of the state of a design's entrance face.
 
 #include "raytrace/light/optics.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {
 
-/// \param optics all but its entrance and its facets' texture \throw InputError naming the key of a roughness that no
-/// model holds for
+/// Returns the optical model of contamination and damage of the entrance face.
+/// \param optics optical properties, complete but for the entrance face and the texture of the facets
+/// \throw InputError at the key of a roughness for which no model is valid
 raytrace::EntranceCondition condition_of(const Design& design, const raytrace::Optics& optics);
 
 }  // namespace retrace::studies

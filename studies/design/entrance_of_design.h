@@ -1,6 +1,6 @@
 #pragma once
 
-// The curved entrance surface that a design names, read from its file and put over the part.
+// Curved entrance face of a design, which is read from a file and placed over the part.
 
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
@@ -8,10 +8,11 @@
 
 namespace retrace::studies {
 
-/// The curved front of a design, read from its file, in the frame of the part: the heights of the file count from
-/// z = thickness_mm, its origin lies over EntranceFile::centre_mm. It covers the part, within what the file says is
-/// turned, and lies above the highest place of the part's back. \throw InputError naming file and line \pre
-/// design.entrance
+/// Reads the curved entrance face of a design and transforms it to the part frame. Heights in the file are relative to
+/// z = thickness_mm, and the origin of the file is at EntranceFile::centre_mm. The face must cover the part within the
+/// turned region and must be above the highest point of the part's back.
+/// \throw InputError that names file and line
+/// \pre design.entrance
 geometry::Entrance entrance_of_design(const Design& design, const geometry::Part& part);
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// Haze as ASTM D1003 tells it: what leaves beyond 2.5 degrees.
+// Haze as defined by ASTM D1003: light that is scattered by more than 2.5 degrees.
 
 #include <cmath>
 
@@ -10,7 +10,8 @@ namespace retrace::studies {
 
 inline constexpr double kHazeAngleDeg = 2.5;
 
-/// Share of a Gaussian lobe round the normal, exp(-(sin t / sin spread)^2), that lies beyond that angle.
+/// Returns the fraction of a Gaussian lobe around the normal, exp(-(sin t / sin spread)^2), that is outside of the haze
+/// angle.
 inline double beyond_haze_angle(double spread_deg) {
   const double ratio = std::sin(Angle::from_deg(kHazeAngleDeg).rad()) / std::sin(Angle::from_deg(spread_deg).rad());
   return std::exp(-ratio * ratio);

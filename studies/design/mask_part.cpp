@@ -15,10 +15,10 @@ using geometry::PartSpec;
 using geometry::RtpElement;
 using geometry::Vec2;
 
-// Lengths this close (relative) to a whole number of elements are whole.
+// Relative tolerance within which lengths count as a whole number of elements.
 constexpr double kWhole = 1e-9;
 
-/// The nominal element with its lower left corner there.
+/// Returns the planes of the nominal element whose lower left corner is at `corner`.
 geometry::ElementPlanes element_at(const PartSpec& spec, const Vec2& corner, bool rotated) {
   const auto& element = std::get<RtpElement>(spec.element);
   const geometry::Cell cell = geometry::rtp_cell(element, spec.angle_errors, corner, rotated);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Makes a design ready to trace: its part, its refractive indices, and the wavelengths that stand for its light.
+// Prepares a design for tracing: its part, its refractive indices, and the wavelengths that represent its light.
 
 #include <memory>
 #include <optional>
@@ -16,52 +16,59 @@
 
 namespace retrace::studies {
 
-/// The optics at one of the wavelengths of a design's light.
+/// Optical properties at one wavelength of the design's light.
 struct SpectralOptics {
   double wavelength_nm = 0.0;
-  double weight = 1.0;  ///< share of the flux that it stands for
+  double weight = 1.0;  ///< fraction of the flux that the wavelength represents
   raytrace::Optics optics;
 };
 
-/// A design made ready to trace.
+/// Design that is prepared for tracing.
 struct OpticalModel {
   geometry::Part part;
-  /// That have another medium behind them, which `optics` know where they are some of all; null: the design has none.
+  /// Elements with another medium behind them. Null if there are none. If only some elements are wet, `optics` refers
+  /// to this object.
   std::shared_ptr<const geometry::ChosenElements> wet_elements;
-  std::optional<geometry::Entrance> entrance;  ///< in place of the plane entrance face; none: that plane
-  double wavelength_nm = 0.0;                  ///< of the light; of a spectrum, its centroid
-  raytrace::Optics optics;                     ///< at that of the wavelengths to trace which lies nearest to it
-  std::vector<SpectralOptics> spectral;        ///< at the wavelengths to trace, ascending; their weights add to 1
-  std::vector<std::string> warnings;           ///< what the user should know, such as an index outside its data
+  std::optional<geometry::Entrance> entrance;  ///< curved entrance face; none: plane entrance face
+  double wavelength_nm = 0.0;                  ///< wavelength of the light; for a spectrum, its centroid
+  raytrace::Optics optics;  ///< properties at the traced wavelength that is nearest to `wavelength_nm`
+  /// Properties at the traced wavelengths, in ascending order; the weights add up to 1.
+  std::vector<SpectralOptics> spectral;
+  std::vector<std::string> warnings;  ///< warnings for the user, for example about an extrapolated index
 };
 
-/// What a caller can trace: a plane entrance face alone, or a curved front as well.
+/// Entrance faces that a caller supports: only a plane face, or also a curved one.
 enum class Entrances { plane, any };
 
-/// Builds the part, looks up the material and resolves the spectrum of the light. \throw InputError naming file and
-/// line for an unknown material, a spectrum that cannot be read, a wavelength at which the material has no index,
-/// balls, which are no part, or a curved entrance surface unless `entrances` is any
+/// Builds the part, finds the material and selects the wavelengths of the light.
+/// \throw InputError that names file and line, for an unknown material, an invalid spectrum, a wavelength without an
+/// index, for balls (which are no part), and for a curved entrance face unless `entrances` is any
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library,
                         Entrances entrances = Entrances::plane);
 
-/// The same without the part: what can trace balls needs no more. \throw InputError likewise
+/// Returns a model without a part, for tracers of balls.
+/// \throw InputError as make_model()
 OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library);
 
-/// The optics of a design at whatever wavelength they are asked for.
+/// Optical properties of a design at any wavelength.
 class OpticsOfDesign {
  public:
-  /// Reads what does not depend on the wavelength. \param warnings what the user should know is added
-  /// \pre `design` and `library` outlive it \throw InputError as make_model()
+  /// Reads all data that do not depend on the wavelength.
+  /// \param warnings receives warnings for the user
+  /// \pre `design` and `library` exist as long as this object
+  /// \throw InputError as make_model()
   OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library, std::vector<std::string>& warnings);
   ~OpticsOfDesign();
 
-  /// Without what lies behind single elements. \throw InputError where there are no data for it
+  /// Returns the properties at a wavelength, without another medium behind single elements.
+  /// \throw InputError if there are no data for this wavelength
   raytrace::Optics at(double wavelength_nm) const;
-  /// The same of elements that have another medium behind them. \param chosen as OpticalModel::wet_elements
+  /// Returns the properties at a wavelength, with another medium behind selected elements.
+  /// \param chosen selected elements, as OpticalModel::wet_elements
   raytrace::Optics at(double wavelength_nm, const std::shared_ptr<const geometry::ChosenElements>& chosen) const;
-  /// Whether data back the index of the body there.
+  /// Returns true if the index of the body at this wavelength is within its data.
   bool is_backed_at(double wavelength_nm) const;
-  /// What the body is made of.
+  /// Returns the material of the body.
   const materials::Material& material() const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// The part of any design, built from elements or from a plate, or read from a mesh and checked.
+// Part of any design, which is built from elements or from a plate, or read from a mesh and checked.
 
 #include <string>
 #include <vector>
@@ -11,13 +11,14 @@
 
 namespace retrace::studies {
 
-/// The part that a design describes: built from its elements, or read from its mesh and checked (CGAL): a mesh must be
-/// closed and free of self-intersections. Of an open mesh with `allow_open`, openings are closed by flat pieces.
-/// \param warnings gets what the user should know of a mesh; null: not wanted
-/// \throw InputError naming file and line
+/// Returns the part of a design. It is built from the elements, or read from the mesh and checked with CGAL. A mesh
+/// must be closed and free of self-intersections. With `allow_open`, openings are closed by flat pieces.
+/// \param warnings receives warnings about a mesh; may be null
+/// \throw InputError that names file and line
 geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings);
 
-/// The mesh of a design as part_of_design() takes it, outward. \pre it is a mesh or a plate
+/// Returns the mesh of a design after the checks of part_of_design(), with normals that point outwards.
+/// \pre the design is a mesh or a plate
 geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::string>* warnings);
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// Which elements of an array are which zone's, where zones are no regions but rows, columns or masks of elements.
+// Assignment of elements to zones, for zones that are rows, columns or masks of elements and not regions.
 
 #include <functional>
 #include <string>
@@ -10,19 +10,24 @@
 
 namespace retrace::studies {
 
-/// How many rows (axis 1) or columns (axis 0) of elements an array has. A row is what has its middle at one height.
+/// Returns the number of rows (axis 1) or columns (axis 0) of an array. A row contains all elements whose centres have
+/// the same y.
 std::size_t count_of_lines(const geometry::ArrayPlan& plan, Eigen::Index axis);
 
-/// Gives each zone its cells. \pre `part.elements` has one for each zone, `part.spec` all but the cells
-/// \param dark what is dark in the mask of a zone (geometry::mask_pattern()); of a zone without one not asked
+/// Assigns the cells of the array to the zones.
+/// \pre `part.elements` has an entry for each zone, and `part.spec` is complete but for the cells
+/// \param dark function that returns the mask of a zone (geometry::mask_pattern()); it is called only for zones with a
+///        mask
 void choose_cells(ZonedPart& part, const std::function<std::vector<std::string>(std::size_t zone)>& dark);
 
-/// \param where the location of a key of the design
-/// \throw InputError for zones that do not cover the part (geometry::fault_of_zones())
+/// Checks the zones of a part.
+/// \param where function that returns the position of a key of the design
+/// \throw InputError if the zones do not cover the part correctly (geometry::fault_of_zones())
 void check_zones(const ZonedPart& part, const std::function<InputLocation(const std::string& key)>& where);
 
-/// The zones of a design, with the cells of masks. \pre design.zoned()
-/// \throw InputError for a mask that cannot be read, and elements that are of no zone or of two
+/// Returns the zones of a design, including the cells of masks.
+/// \pre design.zoned()
+/// \throw InputError for an invalid mask, and if an element belongs to no zone or to two
 geometry::ZonedSpec zones_of(const Design& design);
 
 }  // namespace retrace::studies

@@ -15,7 +15,8 @@ Rectangle extent_of(const Part& part) {
   return geometry::bounding_box(part.outline);
 }
 
-/// The corner of the whole element nearest to the origin in a finite part that leaves elements out.
+/// Returns the corner of the whole element that is nearest to the origin, for a finite part in which elements are
+/// missing.
 std::optional<Vec2> first_element_there(const Part& part, const Vec2& size) {
   std::optional<Vec2> first;
   for (const geometry::Placement& placement : part.placements) {

@@ -7,23 +7,24 @@
 
 namespace retrace::studies {
 
-/// Where the elements of an array lie, in mm of the part frame; an endless array's extent is one period.
+/// Positions of the elements of an array, in mm of the part frame. The extent of an infinite array is one period.
 struct ArrayFigures {
   geometry::Rectangle extent_mm;
-  geometry::Rectangle block_mm;                        ///< that elements fill; the rest of the extent is land
-  geometry::Vec2 count = geometry::Vec2::Ones();       ///< elements along x and y, about
-  geometry::Vec2 size_mm = geometry::Vec2::Zero();     ///< of one element in plan
-  geometry::Vec2 pitch_mm = geometry::Vec2::Zero();    ///< prisms: from one to the next; cube corners: the period
-  geometry::Vec2 element_mm = geometry::Vec2::Zero();  ///< of the element that is measured: corner, or apex of cubes
-  geometry::Vec2 root_mm = geometry::Vec2::Zero();     ///< a point of its root in plan
-  double section_y_mm = 0.0;                           ///< across its root
-  double shift_mm = 0.0;                               ///< of every second row
-  bool element_is_shifted = false;                     ///< with its row
-  double aperture_mm = 0.0;                            ///< cube corners
-  bool has_neighbours = false;                         ///< in the next column
+  geometry::Rectangle block_mm;                        ///< block of elements; the remainder of the extent is flat
+  geometry::Vec2 count = geometry::Vec2::Ones();       ///< approximate number of elements along x and y
+  geometry::Vec2 size_mm = geometry::Vec2::Zero();     ///< size of one element in plan
+  geometry::Vec2 pitch_mm = geometry::Vec2::Zero();    ///< prisms: distance between neighbours; cube corners: period
+  geometry::Vec2 element_mm = geometry::Vec2::Zero();  ///< corner (cube corners: apex) of the dimensioned element
+  geometry::Vec2 root_mm = geometry::Vec2::Zero();     ///< point on the root of this element, in plan
+  double section_y_mm = 0.0;                           ///< y of the section across this root
+  double shift_mm = 0.0;                               ///< shift of every second row
+  bool element_is_shifted = false;                     ///< true: the dimensioned element is in a shifted row
+  double aperture_mm = 0.0;                            ///< aperture of cube corners
+  bool has_neighbours = false;                         ///< true: there are elements in the next column
 };
 
-/// \param part of that design
+/// Returns the figures of an array.
+/// \param part part of the design
 ArrayFigures array_figures(const Design& design, const geometry::Part& part);
 
 }  // namespace retrace::studies

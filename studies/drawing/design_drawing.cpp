@@ -16,10 +16,11 @@ using geometry::Arrangement, geometry::Part, geometry::PartSpec, geometry::Recta
     geometry::Vec2;
 using Side = Dimension::Side;
 
-// Arrays of more elements than this along an axis have a detail.
+// Number of elements along an axis above which the drawing has a detail.
 constexpr double kFewElements = 3.2;
-// Of a section: elements, and how far the window of a detail goes beyond what is measured, in elements.
+// Size of the window of a detail, in pitches of the elements.
 constexpr double kDetailElements = 2.6;
+// Distance by which the window of a detail extends beyond the dimensioned elements, in elements.
 constexpr double kBeyond = 0.35;
 constexpr double kSmallest = 1e-9;
 
@@ -29,7 +30,7 @@ void add(std::vector<Dimension>& dimensions, Side side, const Vec2& from, const 
   dimensions.push_back({side, from, to, name, value});
 }
 
-/// Sizes of one prism, its gaps and the shift of its row.
+/// Adds the dimensions of one prism, its gaps and the shift of its row.
 void add_prism(std::vector<Dimension>& dimensions, const PartSpec& spec, const ArrayFigures& a) {
   const auto& element = std::get<RtpElement>(spec.element);
   const Vec2 corner = a.element_mm;
@@ -48,13 +49,13 @@ void add_prism(std::vector<Dimension>& dimensions, const PartSpec& spec, const A
   if (y_gap > 0.0 && a.count.y() > 1.0)
     add(dimensions, Side::left, corner, corner + Vec2(0.0, a.pitch_mm.y()), "y pitch");
   if (a.shift_mm > 0.0) {
-    // Measured at the line between its row and the next.
+    // The shift is dimensioned at the line between this row and the next.
     const Vec2 between(corner.x() - (a.element_is_shifted ? a.shift_mm : 0.0), end.y() + 0.5 * y_gap);
     dimensions.push_back({Side::above, between, between + Vec2(a.shift_mm, 0.0), "shift", a.shift_mm});
   }
 }
 
-/// Sizes of one cube corner and its distances to its neighbours.
+/// Adds the dimensions of one cube corner and its distances to its neighbours.
 void add_cube(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
   const double radius = 0.5 * a.aperture_mm;
   const Vec2 apex = a.element_mm;
@@ -82,7 +83,7 @@ void add_element(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) 
     add_cube(panel, spec, a);
 }
 
-/// Margins and lengths of a finite array, or the period of an endless one.
+/// Adds the margins and lengths of a finite array, or the period of an infinite one.
 void add_extent(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
   const Rectangle& e = a.extent_mm;
   if (spec.array.extent == geometry::Extent::infinite) {
@@ -112,7 +113,7 @@ PlanPanel panel_of(const Part& part, const Rectangle& window, const char* title)
   return panel;
 }
 
-/// What of the array the detail shows: its first elements, or those in the middle.
+/// Returns the window of the detail: the first elements of the array, or those in its centre.
 Rectangle detail_window(const PartSpec& spec, const ArrayFigures& a) {
   const Vec2 beyond = kBeyond * a.size_mm;
   Rectangle window;
@@ -150,7 +151,7 @@ void add_plan(DesignDrawing& drawing, const Part& part, const ArrayFigures& a) {
   add_extent(drawing.plan.front(), spec, a);
 }
 
-/// Between the planes of the element's facets in the section.
+/// Returns the angle between the planes of the element's facets in the section.
 AngleDimension apex_angle(const PartSpec& spec, const Vec2& root) {
   double steepest_right = 0.0;
   double steepest_left = 0.0;

@@ -14,7 +14,7 @@ namespace {
 using geometry::BoundaryMesh, geometry::FacetRole, geometry::Part, geometry::SurfacePatch, geometry::Vec2,
     geometry::Vec3;
 
-// Of a cosine: neighbours that look so nearly the same way have no edge between them.
+// Tolerance of the cosine between the normals of two neighbours. Within it, there is no edge between them.
 constexpr double kSameDirection = 1e-6;
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -24,7 +24,7 @@ Vec3 normal_of(const std::vector<Vec3>& vertices, const Triangle& t) {
   return (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]).normalized();
 }
 
-/// Edges between triangles that look different ways, and those that only one has.
+/// Returns the edges between triangles with different normals, and edges that belong to only one triangle.
 std::vector<Edge> edges_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   struct Beside {
     Vec3 normal = Vec3::Zero();
@@ -44,7 +44,7 @@ std::vector<Edge> edges_of(const std::vector<Vec3>& vertices, const std::vector<
   return edges;
 }
 
-/// Appends a convex face that is in no patch, with its outline.
+/// Appends a convex face that belongs to no patch, with its outline.
 void add_face(DesignView& view, const std::vector<Vec3>& corners, FacetRole role) {
   const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
   const auto count = static_cast<std::uint32_t>(corners.size());
@@ -72,7 +72,7 @@ void add_patch(DesignView& view, const SurfacePatch& patch, const std::vector<Ed
   }
 }
 
-/// Fewer elements of the same kind: the first ones of a large or endless array.
+/// Returns a design with fewer elements of the same kind: the first ones of a large or infinite array.
 Design piece_of(const Design& design, std::vector<std::string>& remarks) {
   Design piece = design;
   if (!design.elements() || design.mask() || design.facet_planes()) return piece;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The mesh of a design for its three-dimensional picture, cut down to a piece where the array is too large.
+// Mesh of a design for its three-dimensional picture. Large arrays are reduced to a few elements.
 
 #include <array>
 #include <cstdint>
@@ -12,24 +12,25 @@
 
 namespace retrace::studies {
 
-/// A part to be looked at.
+/// View of a part.
 struct DesignView {
   std::string title;
-  geometry::BoundaryMesh mesh;                      ///< its whole surface, not welded between pieces of the back
-  std::vector<std::array<std::uint32_t, 2>> edges;  ///< where faces of different directions meet
-  std::vector<std::string> remarks;                 ///< in what it differs from the design
+  geometry::BoundaryMesh mesh;                      ///< whole surface; patches of the back are not connected
+  std::vector<std::array<std::uint32_t, 2>> edges;  ///< edges between faces of different directions
+  std::vector<std::string> remarks;                 ///< differences from the design
 };
 
-/// The surface of a finite part, piece by piece, with its edges.
+/// Returns the surface of a finite part with its edges.
 DesignView view_of(const geometry::Part& part);
 
-/// The part of a design; of an endless array, and of one whose elements would be too small to be seen, a piece.
+/// Returns the view of a design. Of infinite arrays, and of arrays with very small elements, it shows only a few
+/// elements.
 /// \throw InputError as part_of_design()
 DesignView view_of(const Design& design);
 
-/// Elements along a side of a piece.
+/// Number of elements along a side if an array is not shown as a whole.
 inline constexpr double kPieceElements = 8.0;
-/// Most elements along a side of an array that is shown as a whole.
+/// Maximum number of elements along a side of an array that is shown as a whole.
 inline constexpr double kMostElementsAcross = 60.0;
 
 }  // namespace retrace::studies

@@ -13,11 +13,11 @@ namespace {
 using geometry::Part, geometry::PatchFacet, geometry::Placement, geometry::Polygon, geometry::Rectangle,
     geometry::SurfacePatch, geometry::Vec2, geometry::Vec3;
 
-// Faces that are steeper than this are walls, which a plan shows as lines.
+// Vertical component of the unit normal below which faces count as walls, which a plan shows as lines.
 constexpr double kLevelShare = 1e-6;
-// Of the size of an element: lengths below it are none, and lines that lie so near are one.
+// Tolerance of lengths, as a fraction of an element. Shorter lines are omitted, and closer lines are merged.
 constexpr double kSame = 1e-7;
-// Of a cosine: neighbours that look so nearly the same way are one face, such as triangles of a mesh.
+// Tolerance of the cosine between normals. Within it, neighbours are one face, for example triangles of a mesh.
 constexpr double kSameNormal = 1e-9;
 
 Rectangle box_of(const SurfacePatch& patch) {
@@ -39,7 +39,7 @@ std::vector<Rectangle> boxes_of(const Part& part) {
   return boxes;
 }
 
-/// Cuts a line off at a rectangle (Liang and Barsky 1984); none if nothing is left.
+/// Clips a line to a rectangle (Liang and Barsky 1984). Returns nothing if no part is inside.
 std::optional<PlanLine> clipped(const PlanLine& line, const Rectangle& window) {
   const Vec2 along = line.second - line.first;
   double from = 0.0;
@@ -61,7 +61,7 @@ double azimuth_deg(const Vec3& normal) {
   return deg < 0.0 ? deg + 360.0 : deg;
 }
 
-/// Collects lines, each once.
+/// Set of lines without duplicates.
 class LineSet {
  public:
   LineSet(const Rectangle& window, double same_mm) : window_(window), same_mm_(same_mm) {}
@@ -86,7 +86,7 @@ class LineSet {
   std::set<std::array<std::int64_t, 4>> known_;
 };
 
-/// Draws one cell of a patch.
+/// Adds the faces and lines of one cell of a patch.
 class CellDrawer {
  public:
   CellDrawer(const SurfacePatch& patch, const geometry::PatchCell& cell, const Vec2& offset)
@@ -103,7 +103,7 @@ class CellDrawer {
       face.outline_mm = geometry::clip(face.outline_mm, view.window_mm, tolerance_mm);
       if (!face.outline_mm.empty()) view.faces.push_back(std::move(face));
       for (std::uint32_t k = 0; k < facet.corner_count; ++k) {
-        // Land shows no lines of its own: its pieces are one plane.
+        // Flat back faces have no edges of their own, because they are all in one plane.
         if (facet.role == geometry::FacetRole::flat_back) break;
         const auto [a, b] = edge(facet, k);
         const auto beside = normals.find({b, a});
@@ -133,13 +133,13 @@ class CellDrawer {
   Vec2 offset_;
 };
 
-/// A piece of the section's lower border, from left to right.
+/// Segment of the section's lower border, from left to right.
 struct Piece {
   Vec2 left;
   Vec2 right;
 };
 
-/// What the plane at `y` cuts of a facet, heights from the facet's own plane.
+/// Returns the intersection of a facet with the plane at `y`. Heights are those of the facet's plane.
 std::optional<Piece> cut_of(const SurfacePatch& patch, const PatchFacet& facet, const Vec2& offset, double y) {
   double low = INFINITY;
   double high = -INFINITY;
@@ -168,7 +168,7 @@ Piece within(const Piece& piece, double from, double to) {
   return {piece.left.x() < from ? at(from) : piece.left, piece.right.x() > to ? at(to) : piece.right};
 }
 
-/// All that the plane cuts of the back surface between two places, from left to right.
+/// Returns the intersection of the back surface with the plane between two values of x, from left to right.
 std::vector<Piece> pieces_of(const Part& part, double y_mm, double from, double to) {
   const std::vector<Rectangle> boxes = boxes_of(part);
   std::vector<Piece> pieces;
@@ -216,7 +216,7 @@ std::size_t faces_near(const Part& part, const Rectangle& window_mm) {
 
 std::optional<SectionView> section_view(const Part& part, double y_mm, double x_from_mm, double x_to_mm) {
   const double same_mm = kSame * part.size_mm;
-  // A little off the places where facets end, so that every facet is met or not.
+  // The section is shifted a little from the borders of facets, so that each facet is either hit or missed.
   const std::vector<Piece> pieces = pieces_of(part, y_mm + 0.1 * same_mm, x_from_mm, x_to_mm);
   if (pieces.empty()) return std::nullopt;
   SectionView view{y_mm, pieces.front().left.x(), pieces.back().right.x(), {}};

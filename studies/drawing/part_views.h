@@ -13,36 +13,38 @@ namespace retrace::studies {
 
 using PlanLine = std::pair<geometry::Vec2, geometry::Vec2>;
 
-/// A face of the back surface in plan.
+/// Face of the back surface in plan.
 struct PlanFace {
   geometry::Polygon outline_mm;
   geometry::FacetRole role = geometry::FacetRole::retro_facet;
-  double azimuth_deg = 0.0;  ///< towards which it looks, out of the part; 0 to below 360
+  double azimuth_deg = 0.0;  ///< azimuth of its outward normal; 0 to below 360
 };
 
-/// What of a part's back surface lies in a window, seen from the light.
+/// Back surface of a part within a window, as seen from the light.
 struct PlanView {
   geometry::Rectangle window_mm;
   std::vector<PlanFace> faces;
-  std::vector<PlanLine> rims_mm;   ///< where elements end
-  std::vector<PlanLine> roots_mm;  ///< where faces of one cell meet
+  std::vector<PlanLine> rims_mm;   ///< borders of elements
+  std::vector<PlanLine> roots_mm;  ///< lines between faces of one cell
 };
 
-/// \pre of an infinite part the window lies within the periods that its surface covers
+/// Returns the plan of a window.
+/// \pre for an infinite part, the window is within the periods that its surface covers
 PlanView plan_view(const geometry::Part& part, const geometry::Rectangle& window_mm);
 
-/// About how many faces a plan of the window has: those of the placements that reach into it.
+/// Returns the approximate number of faces in a plan of the window: those of all placements that overlap with it.
 std::size_t faces_near(const geometry::Part& part, const geometry::Rectangle& window_mm);
 
-/// A part cut by a plane across y.
+/// Section of a part with a plane of constant y.
 struct SectionView {
   double y_mm = 0.0;
   double x_from_mm = 0.0;
   double x_to_mm = 0.0;
-  std::vector<geometry::Vec2> outline_mm;  ///< (x, z), closed; the last two corners lie on the entrance face
+  std::vector<geometry::Vec2> outline_mm;  ///< (x, z), closed; the last two corners are on the entrance face
 };
 
-/// \return none where nothing is cut, or where the back folds under itself (meshes)
+/// Returns the section of a part.
+/// \return nothing if the plane does not hit the part, or if the back has overhangs (meshes)
 std::optional<SectionView> section_view(const geometry::Part& part, double y_mm, double x_from_mm, double x_to_mm);
 
 }  // namespace retrace::studies

@@ -1,7 +1,6 @@
 #pragma once
 
-// Writes the reflection of a part as a material, for renderers and simulators, and the document of `retrace export` to
-// it.
+// Writes the reflection of a part as a material for renderers and simulators, and the document of `retrace export`.
 
 #include <optional>
 #include <string>
@@ -12,25 +11,27 @@ namespace retrace::studies {
 
 enum class AppearanceFormat { table, radiance, glsl };
 
-/// By the ending of a file's name, in small or capital letters: .json, .xml or .glsl; none for other files.
+/// Returns the format by the ending of a file's name, in lower or upper case: .json, .xml or .glsl. Returns nothing for
+/// other files.
 std::optional<AppearanceFormat> appearance_format(const std::string& file);
 
-/// A material in a format: what its files hold, and how far it is from the photometer.
+/// Material in a file format: contents of its files, and its error compared with the photometer.
 struct AppearanceText {
   std::string text;
-  std::string values;                    ///< of a table: the file beside it, CSV; empty for other formats
-  std::string what;                      ///< one line about what the format makes of the table; empty for the table
-  std::optional<AppearanceError> error;  ///< of lobes
+  std::string values;                    ///< CSV file that belongs to a table; empty for other formats
+  std::string what;                      ///< one line on how the format approximates the table; empty for the table
+  std::optional<AppearanceError> error;  ///< error of the fitted lobes
 };
 
-/// \param values_name of the file beside it
+/// Returns the material in a format.
+/// \param values_name name of the CSV file that belongs to a table
 /// \pre result.complete
 AppearanceText appearance_text(const AppearanceResult& result, AppearanceFormat format, const std::string& values_name);
 
-/// The document `retrace.export/1` of a material.
+/// Returns the document `retrace.export/1` of a material.
 std::string appearance_json(const AppearanceResult& result, const AppearanceText& text, const std::string& file);
 
-/// The figures as a table for the terminal.
+/// Returns the figures of a material as a table for the terminal.
 std::string appearance_table(const AppearanceResult& result, const AppearanceText& text);
 
 }  // namespace retrace::studies

@@ -11,7 +11,7 @@
 namespace retrace::studies {
 namespace {
 
-/// A number that GLSL takes for a float.
+/// Formats a number so that GLSL reads it as a float.
 std::string number(double value) {
   std::string text = fmt::format("{:.7g}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";

@@ -9,8 +9,8 @@
 
 namespace retrace::studies {
 
-/// Constants and `vec3 retrace_brdf(vec3 to_source, vec3 to_observer)`, in GLSL 3.30 and ES 3.00. \param remarks lines
-/// for its comment
+/// Returns constants and the function `vec3 retrace_brdf(vec3 to_source, vec3 to_observer)`, in GLSL 3.30 and ES 3.00.
+/// \param remarks lines of the comment in the file
 std::string glsl_text(const ReflectionLobes& lobes, const std::vector<std::string>& remarks);
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// A tensor tree as a BSDF file of Radiance.
+// Tensor tree as a BSDF file of Radiance.
 
 #include <string>
 
@@ -8,9 +8,10 @@
 
 namespace retrace::studies {
 
-/// XML as Radiance's programs read it: the reflection of light from the side of the normal, weighed by the eye, on the
-/// basis LBNL/Shirley-Chiu. Their normal is the part's +z, their up its +y. Radiance calls that side front and the
-/// format, after WINDOW, back. \param name one line
+/// Returns the BSDF as XML for the programs of Radiance, on the basis LBNL/Shirley-Chiu. It contains the reflection of
+/// light from the side of the normal, weighted by the eye's response. The normal in Radiance is the part's +z axis, and
+/// up is +y. Radiance calls this side front, but the file format, which comes from WINDOW, calls it back.
+/// \param name name of the material, on one line
 std::string radiance_text(const TensorTree& tree, const std::string& name);
 
 }  // namespace retrace::studies

@@ -1,12 +1,12 @@
 #pragma once
 
-// The format of design files (retrace.design/1), as the rows that readers, writers and documentation walk.
+// Format of design files (retrace.design/1), as rows that are used by readers, writers and the documentation.
 
 #include "core/schema/schema.h"
 
 namespace retrace::studies {
 
-/// The keys of design files (docs/design_file.md).
+/// Returns the keys of design files (docs/design_file.md).
 const schema::Format& design_format();
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// Designs as results quote them in JSON, and their short names for legends.
+// Designs as JSON in results, and their short names for legends.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -9,14 +9,14 @@
 
 namespace retrace::studies {
 
-/// The design as results quote it: the keys of the design file, defaults filled in, and the file it came from.
+/// Returns the design as JSON: the keys of the design file with defaults filled in, and the name of the file.
 nlohmann::ordered_json to_json(const Design& design);
 
-/// The wavelengths that stand for a spectrum: `centroid_nm` and, as lists, `wavelengths_nm`, `weights`,
+/// Returns the traced wavelengths of a spectrum: `centroid_nm`, and the lists `wavelengths_nm`, `weights` and
 /// `refractive_index`.
 nlohmann::ordered_json spectrum_json(const std::vector<SpectralOptics>& light);
 
-/// A short name for legends and tables: the title, or what kind of array it is and its size.
+/// Returns a short name for legends and tables: the title, or the kind of array and its size.
 std::string short_name(const Design& design);
 
 }  // namespace retrace::studies

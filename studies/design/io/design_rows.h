@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/design: the rows of the tables of design files, and the words and ranges that they share.
+// Rows of the tables of design files, with their common words and ranges. Internal to studies/design.
 
 #include <span>
 #include <string_view>
@@ -33,7 +33,7 @@ inline constexpr schema::Words kAxes = {"x", "y"};
 inline constexpr schema::Words kCubes = {"hexagonal_icc", "triangular_icc"};
 
 inline constexpr NumberRange kAboveZero{.low = 0.0, .low_included = false};
-/// From one nanometre to one kilometre: beyond that, differences of coordinates have too few digits.
+/// Range of sizes, from one nanometre to one kilometre. Outside of it, differences of coordinates have too few digits.
 inline constexpr NumberRange kSaneSize{.low = 1e-6, .high = 1e6};
 inline constexpr NumberRange kAzimuth{.low = -360.0, .high = 360.0};
 inline constexpr schema::Kind kSize = schema::Number{kAboveZero, kSaneSize};

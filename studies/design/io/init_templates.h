@@ -1,6 +1,6 @@
 #pragma once
 
-// Commented example files of every kind of design, for `retrace init`.
+// Commented example files for every kind of design, for `retrace init`.
 
 #include <span>
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace retrace::studies {
 
-/// The kinds of designs, in the order to list them.
+/// Returns the kinds of designs, in the order in which they are listed.
 std::span<const std::string_view> design_kinds();
 
-/// A complete, commented file to start from: of design_kinds() a design, which parse_design() reads as it is, of
-/// "round_zone_lens" a part for `retrace plane`.
-/// \throw InputError if `kind` is none of these
+/// Returns a complete, commented example file. For the kinds in design_kinds() it is a design that parse_design()
+/// accepts. For "round_zone_lens" it is a part for `retrace plane`.
+/// \throw InputError for other kinds
 std::string design_template(std::string_view kind);
 
 }  // namespace retrace::studies

@@ -33,7 +33,7 @@ std::size_t count_opaque(const Document& document, std::string_view list) {
 
 }  // namespace
 
-/// A height without the length that belongs to it says nothing.
+/// Checks that every rms height comes with its length.
 void check_lengths(const Document& document) {
   for (const auto& [height, length] : {std::pair(kRoughness, kRoughnessLength), {kWaviness, kWavinessLength}})
     if (document.number(height) > 0.0 && !(document.number(length) > 0.0))
@@ -91,7 +91,7 @@ void check_stokes(const Document& document) {
                                    shortest(given[0]), shortest(given[1]), shortest(given[2]), shortest(given[3])));
 }
 
-/// A bowl behind balls is nothing but its mirror.
+/// Checks that balls with a bowl behind them have a mirror.
 void check_ball_mirror(const Document& document) {
   constexpr std::string_view key = "element.mirror_offset_mm";
   if (!document.has(key) || document.number(key) == 0.0 || document.count(kFacetLayers) > 0) return;
@@ -139,7 +139,7 @@ void check_layers(const Document& document) {
                   fmt::format("must have at most one layer without thickness_nm, which is opaque, got {}", opaque));
 }
 
-/// One thing is said once, and nothing is said that would not count.
+/// Checks that coatings are given only one time, and together with no key that they make ineffective.
 void check_coating(const Document& document) {
   if (document.count(kFacetLayers) > 0) {
     if (document.text("body.facet_coating") != "none")

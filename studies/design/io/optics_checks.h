@@ -1,6 +1,6 @@
 #pragma once
 
-// Rules of designs that tie keys of material, texture, layers and light; those of parts are in design_rules.cpp.
+// Rules of designs between keys of material, texture, layers and light. Rules of parts are in design_rules.cpp.
 
 #include <string_view>
 
@@ -18,27 +18,29 @@ inline constexpr std::string_view kEntranceLayers = "coating.entrance";
 inline constexpr std::string_view kEntranceFace = "entrance";
 inline constexpr std::string_view kThickLayers = "entrance.layers";
 
-/// A roughness or waviness has its length. All of these: \throw InputError naming file, line and key
+/// Checks that every roughness or waviness has its length.
+/// \throw InputError that names file, line and key, like all following functions
 void check_lengths(const schema::Document& document);
-/// The model of the texture takes the heights that are given.
+/// Checks that the model of the texture uses the given heights.
 void check_heights(const schema::Document& document);
-/// A material is named.
+/// Checks that a material is given.
 void check_material(const schema::Document& document);
-/// An absorption by wavelength is a curve.
+/// Checks that an absorption by wavelength is a valid curve.
 void check_absorption(const schema::Document& document);
-/// Each line of a spectrum is named once.
+/// Checks that each line of a spectrum occurs only one time.
 void check_lines(const schema::Document& document);
-/// Stokes parameters are those of light.
+/// Checks that the Stokes parameters are physically possible.
 void check_stokes(const schema::Document& document);
-/// A bowl behind balls has a mirror.
+/// Checks that balls with a bowl behind them have a mirror.
 void check_ball_mirror(const schema::Document& document);
-/// Elements with another medium behind them are some of a finite array on a plane, and their region has a size.
+/// Checks that wet elements are in a finite array on a plane, and that their region has a size.
 void check_wet_back(const schema::Document& document);
-/// At most one layer is opaque, and none of those on the entrance face.
+/// Checks that at most one layer on the facets is opaque, and no layer on the entrance face.
 void check_layers(const schema::Document& document);
-/// Layers stand beside nothing that would not count.
+/// Checks that coatings come together with no key that they make ineffective.
 void check_coating(const schema::Document& document);
-/// What the entrance face is like is complete, and nothing that a face cannot be at once. In entrance_checks.cpp.
+/// Checks that the state of the entrance face is complete and free of contradictions. Implemented in
+/// entrance_checks.cpp.
 void check_entrance_face(const schema::Document& document);
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the shape of a design - elements with their array, or balls - from its document.
+// Reads the shape of a design, elements with their array or balls, from its document.
 
 #include "core/schema/document.h"
 #include "geometry/elements/part_spec.h"
@@ -8,17 +8,18 @@
 
 namespace retrace::studies {
 
-/// Whether the design is an array of elements: no mesh, no plate and no balls.
+/// Returns true if the design is an array of elements, and not a mesh, a plate or balls.
 bool has_elements(const schema::Document& document);
 
-/// Elements and array of such a design, without errors, edges and base.
+/// Reads the elements and the array of a design, without errors, edges and base.
 geometry::PartSpec read_array(const schema::Document& document);
 
-/// The same with all that there is. It is not checked beyond what each key allows: see design_rules().
-/// \throw InputError for a formula that is none
+/// Reads the elements and the array of a design with all errors, edges and the base. Only the limits of each key are
+/// checked; see design_rules() for further checks.
+/// \throw InputError for an invalid formula
 geometry::PartSpec read_part(const schema::Document& document);
 
-/// The balls of a design whose element.kind is "ball".
+/// Reads the balls of a design with element.kind = "ball".
 raytrace::BallLayer read_balls(const schema::Document& document);
 
 }  // namespace retrace::studies

@@ -21,16 +21,16 @@ using geometry::Polygon, geometry::Vec2, schema::Document;
 
 constexpr std::string_view kZone = "zone";
 constexpr std::array<std::string_view, 3> kRegions = {"share", "rectangles_mm", "polygon_mm"};
-/// The whole back is one patch in memory.
+/// Maximum number of elements of a part of zones. The whole back is one patch in memory.
 constexpr double kMostElements = 1e5;
 constexpr std::size_t kMostRegions = 1000;
 constexpr std::size_t kMostSetBytes = 4096;
-/// By which shares may miss their sum of 1.
+/// Maximum deviation of the sum of the zones' areas from 1.
 constexpr double kShareRounding = 1e-6;
-/// Of lengths.
+/// Relative tolerance of lengths.
 constexpr double kRounding = 1e-9;
 
-// What single zones may change; a table's name with a dot stands for all of its keys.
+// Keys that may differ between zones. A table name with a dot stands for all keys of the table.
 constexpr std::array<std::string_view, 16> kOfZones = {"element.",
                                                        "array.arrangement",
                                                        "array.partial_elements",
@@ -52,19 +52,19 @@ std::string entry_of(std::size_t zone) {
   return schema::path_of_entry(kZone, zone);
 }
 
-/// A text without what it begins and ends with of some characters.
+/// Returns a text without the given characters at its beginning and end.
 std::string stripped(std::string text, const char* of) {
   text.erase(text.find_last_not_of(of) + 1);
   return text.erase(0, text.find_first_not_of(of));
 }
 
-/// The key of a change; empty if it is none.
+/// Returns the key of a change KEY=VALUE. Empty if the text is no change.
 std::string key_of(const std::string& change) {
   const std::size_t equals = change.find('=');
   return equals == std::string::npos ? std::string() : stripped(change.substr(0, equals), " \t");
 }
 
-/// Whether a change gives elements another kind than the design has.
+/// Returns true if a change gives elements another kind than that of the design.
 bool changes_kind(const std::string& change, const Document& document) {
   return key_of(change) == "element.kind" &&
          stripped(change.substr(change.find('=') + 1), " \t\"'") != document.text("element.kind");
@@ -85,14 +85,14 @@ void check_changes(const Document& document, std::size_t zone) {
   }
 }
 
-/// The design without elements: of zones of another kind all that is not set is as by default.
+/// Returns the design without its elements. Zones with another kind of element start from the defaults.
 std::string text_without_elements(const Document& document) {
   return fmt::format("[array]\nx_length_mm = {}\ny_length_mm = {}\n[body]\nthickness_mm = {}\n",
                      shortest(document.number("array.x_length_mm")), shortest(document.number("array.y_length_mm")),
                      shortest(document.number("body.thickness_mm")));
 }
 
-/// The design as it is all over a zone.
+/// Returns the document of a zone as if it covered the whole part.
 Document document_of_zone(const Document& document, std::size_t zone) {
   const std::string key = entry_of(zone) + ".set";
   const auto changes = document.has(key) ? document.texts(key) : std::vector<std::string>();
@@ -112,7 +112,7 @@ Document document_of_zone(const Document& document, std::size_t zone) {
   }
 }
 
-/// Side by side along x, in their order.
+/// Divides the part into stripes along x, in the order of the zones.
 void lay_out_stripes(const Document& document, geometry::ZonedSpec& spec) {
   double sum = 0.0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
@@ -190,7 +190,8 @@ ElementsOfZone elements_of(const Document& document, const std::string& zone) {
   return chosen;
 }
 
-/// \return whether zones are elements of one array, in place of regions
+/// Reads zones that are elements of one array.
+/// \return false if the zones are regions
 bool read_elements(const Document& document, ZonedPart& part) {
   std::optional<std::size_t> rest;
   std::size_t by_cell = 0;
@@ -223,7 +224,7 @@ void check_lines(const Document& document, const std::string& key, const std::ve
                                      shortest(number)));
 }
 
-/// Gives zones their cells; those of masks are for part_of_design().
+/// Assigns the cells of the array to the zones. part_of_design() assigns the cells of masks.
 void read_cells(const Document& document, ZonedPart& part) {
   const geometry::ArrayPlan plan =
       geometry::plan_of_array(geometry::array_of_cells(part.spec, part.spec.zones.front()));
@@ -237,13 +238,13 @@ void read_cells(const Document& document, ZonedPart& part) {
   if (!part.has_masks()) choose_cells(part, {});
 }
 
-/// Where it stands: its regions, or all of the part.
+/// Checks that the elements of a zone fit into its regions, or into the whole part.
 void check_room(const Document& document, std::size_t number, const geometry::PartZone& zone, const Vec2& part_mm) {
   const Vec2 element = geometry::bounding_box(geometry::aperture_outline(zone.elements.element)).size();
   const std::vector<Polygon> all = {geometry::to_polygon({Vec2::Zero(), part_mm})};
   for (const Polygon& region : zone.regions.empty() ? all : zone.regions) {
     const Vec2 room = geometry::bounding_box(region).size();
-    // A turned element need not fit into the box.
+    // A rotated element need not fit into the bounding box.
     const bool is_narrow = geometry::width(region) < element.minCoeff() * (1.0 - kRounding);
     const bool is_turned = zone.rotation_deg != 0.0;
     if (is_narrow || (!is_turned && (room.array() < element.array() * (1.0 - kRounding)).any()))
@@ -253,7 +254,7 @@ void check_room(const Document& document, std::size_t number, const geometry::Pa
   }
 }
 
-/// What the whole part is like must be what zones can have.
+/// Checks that the keys of the whole part are allowed together with zones.
 void check_whole(const Document& document, const geometry::PartSpec& part) {
   const auto refuse = [&](std::string_view key, std::string_view text) {
     document.fail(key, fmt::format("{} together with [[zone]]", text));

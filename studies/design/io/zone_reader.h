@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the zones of a design from its document: regions of the part, and what their elements differ in.
+// Reads the zones of a design from its document: regions of the part, and changes of their elements.
 
 #include <string_view>
 
@@ -9,18 +9,19 @@
 
 namespace retrace::studies {
 
+/// Reads the zones of a design.
 /// \pre has_zones(document)
-/// \throw InputError for zones that do not cover the part once, regions that are no convex polygons, and changes that
-/// are none or make no array
+/// \throw InputError if zones overlap or leave parts uncovered, if regions are no convex polygons, and for invalid
+/// changes
 ZonedPart read_zones(const schema::Document& document);
 
-/// Whether the design is a part of zones.
+/// Returns true if the design is a part of zones.
 bool has_zones(const schema::Document& document);
 
-/// Whether zones may differ in a key of the design.
+/// Returns true if zones may differ in this key of the design.
 bool may_set_in_zone(std::string_view key);
 
-/// The rule of designs that they can be read, where there are any.
+/// Checks that the zones of a design, if there are any, can be read.
 void check_zones(const schema::Document& document);
 
 }  // namespace retrace::studies
