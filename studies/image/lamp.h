@@ -1,6 +1,6 @@
 #pragma once
 
-// Lamps by their luminous intensity in every direction, as photometric files tell it.
+// Lamps that are described by their luminous intensity in every direction, as in photometric files.
 
 #include <string>
 #include <vector>
@@ -9,23 +9,24 @@
 
 namespace retrace::studies {
 
-/// Luminous intensity over planes through an axis, and angles within each plane; linear between. In the lamp's frame:
-/// x to the right and y up for somebody who looks out of the lamp along its own axis, which is -z.
+/// Luminous intensity in planes through an axis and at angles within each plane, with linear interpolation. The frame
+/// of the lamp is that of a person who looks out of the lamp along its axis: x to the right, y up, and the axis is -z.
 class LuminousIntensity {
  public:
-  /// CIE 121:1996, LM-75-01. Planes of C turn about the lamp's axis: C = 0 to the right, 90 up, and gamma is measured
-  /// from the axis. Planes of A turn about the vertical: X to the right, and Y is the elevation. Planes of B turn about
-  /// the horizontal axis across: V upwards, and H to the right within them.
+  /// Types of planes (CIE 121:1996, LM-75-01). Planes of type C contain the lamp's axis: C = 0 is to the right, 90 is
+  /// up, and gamma is the angle from the axis. Planes of type A contain the vertical: X is to the right, and Y is the
+  /// elevation. Planes of type B contain the horizontal axis perpendicular to the lamp's axis: V is upwards, and H is
+  /// to the right within a plane.
   enum class Planes { c, a, b };
 
-  /// \pre planes and angles ascend, cd has a row of angles for each plane; of `c` one plane, which is all of them, or
-  /// planes from 0 to 360
+  /// \pre planes and angles ascend, and cd has a row of angles for each plane; type C has planes from 0 to 360 degrees,
+  /// or one plane that applies to all
   LuminousIntensity(Planes kind, std::vector<double> planes_deg, std::vector<double> angles_deg,
                     std::vector<double> cd);
 
-  /// In a direction, of any length above 0; 0 outside the planes and angles.
+  /// Returns the intensity in a direction of any length above 0. Returns 0 outside the planes and angles.
   double cd(const geometry::Vec3& direction) const;
-  /// The flux into all directions, in lm.
+  /// Returns the total luminous flux in lm.
   double lumens() const;
   double largest_cd() const;
 
@@ -40,19 +41,19 @@ class LuminousIntensity {
   Planes kind_;
   std::vector<double> planes_deg_;
   std::vector<double> angles_deg_;
-  std::vector<double> cd_;  ///< row by row
+  std::vector<double> cd_;  ///< intensities, row by row
 };
 
-/// A lamp as a file tells it.
+/// Lamp as described by a file.
 struct PhotometricLamp {
-  std::string name;   ///< of the file, as given
-  std::string title;  ///< that the file gives; empty if none
+  std::string name;   ///< name of the file, as given
+  std::string title;  ///< title in the file; empty if there is none
   LuminousIntensity intensity;
-  double printed_lumens = 0.0;  ///< that the file says the lamp sends out; 0: it says none
+  double printed_lumens = 0.0;  ///< luminous flux as given in the file; 0: not given
 };
 
-/// A direction in the frame of a lamp whose axis is turned down (negative: up), by the direction in the frame of what
-/// it stands on; both with x to the right, y up and -z ahead.
+/// Transforms a direction to the frame of a lamp whose axis is rotated downwards (negative: upwards). Both frames have
+/// x to the right, y up and -z ahead.
 geometry::Vec3 from_aimed(const geometry::Vec3& direction, double down_deg);
 
 }  // namespace retrace::studies

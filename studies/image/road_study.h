@@ -1,6 +1,6 @@
 #pragma once
 
-// Reflectors of a car as the driver behind it sees them at night: `retrace image` on a road.
+// Reflectors of a car as seen at night by the driver behind it. This study is behind `retrace image` on a road.
 
 #include <array>
 #include <cstdint>
@@ -15,15 +15,16 @@
 
 namespace retrace::studies {
 
-/// Two cars on a road at night: the one in front carries two reflectors on its rear, the one behind lights them.
-/// Lengths in m; x to the right and y up as its driver sees it, z from the reflectors towards him.
+/// Two cars on a road at night. The front car has two reflectors on its rear, which the headlamps of the other car
+/// illuminate. Lengths are in m. x is to the right and y up as seen by the driver, and z points from the reflectors to
+/// the driver.
 struct RoadScene {
-  double lamp_height = 0.65;   ///< of the headlamps' middles, unless the request says otherwise
-  double lamp_half_gap = 0.6;  ///< of each from the middle of the car
+  double lamp_height = 0.65;   ///< height of the headlamps' centres, unless the request changes it
+  double lamp_half_gap = 0.6;  ///< distance of each headlamp from the centre of the car
   double lamp_diameter = 0.15;
   double eye_height = 1.2;
-  double eye_right = -0.35;  ///< negative: the driver sits on the left
-  double eye_behind = 1.8;   ///< the headlamps
+  double eye_right = -0.35;  ///< negative: the driver is on the left side
+  double eye_behind = 1.8;   ///< distance of the eyes behind the headlamps
   double pupil_diameter = 0.007;
   double reflector_height = 0.6, reflector_half_gap = 0.72;
   double reflector_width = 0.12, reflector_tall = 0.025;
@@ -31,32 +32,33 @@ struct RoadScene {
 };
 
 struct RoadRequest {
-  std::vector<double> distance_m = {10.0, 30.0, 100.0};  ///< of reflectors and headlamps; 1 to 6 of 5 to 1000
-  double lamp_cd = 10'000.0;  ///< intensity of each headlamp towards the reflectors, dipped; > 0; without a lamp
-  std::optional<PhotometricLamp> lamp;  ///< what each headlamp is
-  double lamp_height_m = 0.65;          ///< of the headlamps' middles; 0.2 to 3
-  double lamp_aim_deg = 0.0;            ///< by which a lamp's axis is turned down; -45 to 45
-  std::string dye;                      ///< what the reflectors' dye is called: red, amber or another; empty: none
+  /// Distances from the headlamps to the reflectors; 1 to 6 values of 5 to 1000.
+  std::vector<double> distance_m = {10.0, 30.0, 100.0};
+  double lamp_cd = 10'000.0;  ///< intensity of each dipped headlamp towards the reflectors; > 0; not used with `lamp`
+  std::optional<PhotometricLamp> lamp;  ///< photometric data of each headlamp
+  double lamp_height_m = 0.65;          ///< height of the headlamps' centres; 0.2 to 3
+  double lamp_aim_deg = 0.0;            ///< angle by which a lamp's axis is rotated downwards; -45 to 45
+  std::string dye;                      ///< name of the reflectors' dye: red, amber or another; empty: none
   materials::SpectralCurve dye_absorption_per_mm;
-  std::size_t columns = 480;  ///< of each view
+  std::size_t columns = 480;  ///< pixels of each view
   std::size_t rows = 330;
   double field_deg = 13.0;  ///< width of each view; 1 to 90
 };
 
-/// One reflector, in the light of both headlamps.
+/// Reflector that is illuminated by both headlamps.
 struct RoadReflector {
-  double observation_deg[2] = {0.0, 0.0};  ///< of the left and the right headlamp
+  double observation_deg[2] = {0.0, 0.0};  ///< for the left and the right headlamp
   double r_a[2] = {0.0, 0.0};              ///< cd/(lx m^2)
-  double illuminance_lx[2] = {0.0, 0.0};   ///< across the beam
-  double luminance = 0.0;                  ///< cd/m^2, towards the eye
+  double illuminance_lx[2] = {0.0, 0.0};   ///< perpendicular to the light
+  double luminance = 0.0;                  ///< cd/m^2, in the direction of the eye
 };
 
-/// What the driver sees from one distance.
+/// View of the driver from one distance.
 struct RoadView {
   double distance_m = 0.0;
   std::array<RoadReflector, 2> reflectors;  ///< left, right
   std::vector<double> luminance;            ///< cd/m^2, row by row from above
-  std::vector<double> coloured;             ///< that part of it which comes from the reflectors
+  std::vector<double> coloured;             ///< part of the luminance that comes from the reflectors
 };
 
 struct RoadResult {
@@ -70,10 +72,10 @@ struct RoadResult {
   bool complete = true;
 };
 
-/// A checked request, ready to run.
+/// Study of a checked request, ready to run.
 class RoadStudy {
  public:
-  /// \throw InputError for numbers out of range and all that photometry refuses
+  /// \throw InputError for numbers out of range, and for everything that photometry refuses
   RoadStudy(Design design, RoadRequest request, std::uint32_t seed = 1);
 
   RoadResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
@@ -84,7 +86,8 @@ class RoadStudy {
   std::uint32_t seed_;
 };
 
-/// The luminances alone. \param views with their reflectors measured
+/// Computes the luminances of a view.
+/// \param view view whose reflectors have been measured
 void draw_road(const RoadScene& scene, const RoadRequest& request, RoadView& view);
 
 }  // namespace retrace::studies

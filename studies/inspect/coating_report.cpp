@@ -5,7 +5,7 @@
 namespace retrace::studies {
 namespace {
 
-/// \param at_wavelength what the face does to light at normal incidence
+/// \param at_wavelength function that returns the coefficients of the face at normal incidence
 template <class Face>
 CoatingReport report_of(const std::vector<CoatingLayer>& layers, const materials::LayerStack& stack,
                         const OpticalModel& model, const Face& at_wavelength) {

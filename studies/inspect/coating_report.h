@@ -1,6 +1,6 @@
 #pragma once
 
-// What the layers on the faces of a part do to light at normal incidence.
+// Optical effect of the coatings on the faces of a part at normal incidence.
 
 #include <optional>
 #include <vector>
@@ -10,17 +10,18 @@
 
 namespace retrace::studies {
 
-/// The layers of one face, and the shares of unpolarised power at normal incidence, as means over the light: of facets
-/// for light inside the body (of balls for what their mirror meets), of the entrance face for light from the air.
+/// Coating of one face, with fractions of unpolarised power at normal incidence, averaged over the light. The light
+/// hits facets from inside the body and the entrance face from the air. For balls, it is the light that hits their
+/// mirror.
 struct CoatingReport {
   std::vector<CoatingLayer> layers;
-  materials::LayerStack stack;  ///< the same at the wavelength of those to trace which lies nearest to the light's
+  materials::LayerStack stack;  ///< layers at the traced wavelength that is nearest to that of the light
   double reflectance = 0.0;
   double transmittance = 0.0;
   double absorptance = 0.0;
 };
 
-/// Of the layers that `[coating]` gives; nothing of a face without, or of facets that are plainly aluminised.
+/// Coatings of the table [coating]. Empty for faces without a coating, and for facets that are only aluminised.
 struct CoatingReports {
   std::optional<CoatingReport> facets;
   std::optional<CoatingReport> entrance;

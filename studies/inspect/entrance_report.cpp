@@ -13,7 +13,7 @@ using geometry::Vec2, geometry::Vec3;
 
 constexpr int kPoints = 400;
 
-/// By rays from above, which serves surfaces and meshes alike.
+/// Returns the profile of the face along an axis. It is measured by rays from above, for surfaces as well as meshes.
 EntranceReport::Profile profile_along(Eigen::Index axis, const raytrace::EntranceFace& face, const geometry::Part& part,
                                       const Vec2& centre) {
   const geometry::Rectangle box = geometry::bounding_box(part.outline);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Figures of a curved entrance surface for `retrace inspect`: heights, profiles, steepest slope.
+// Figures of a curved entrance face for `retrace inspect`: heights, profiles, maximum slope.
 
 #include <vector>
 
@@ -9,11 +9,11 @@
 
 namespace retrace::studies {
 
-/// What a curved entrance surface is like.
+/// Figures of a curved entrance face.
 struct EntranceReport {
-  geometry::EntranceRange range;  ///< heights in the part's frame
-  double steepest_deg = 0.0;      ///< sampled
-  /// Heights along x and along y, through the middle of the part; NaN beyond its outline.
+  geometry::EntranceRange range;  ///< heights in the part frame
+  double steepest_deg = 0.0;      ///< maximum slope of sampled points
+  /// Heights along x and along y, through the centre of the part. NaN outside the outline.
   struct Profile {
     std::vector<double> place_mm;
     std::vector<double> height_mm;
@@ -22,7 +22,8 @@ struct EntranceReport {
   Profile along_y;
 };
 
-/// \pre the entrance surface covers the part (entrance_of_design())
+/// Returns the figures of a curved entrance face.
+/// \pre the entrance face covers the part (entrance_of_design())
 EntranceReport report_entrance(const geometry::Entrance& entrance, const geometry::Part& part);
 
 }  // namespace retrace::studies

@@ -9,8 +9,8 @@
 namespace retrace::studies {
 namespace {
 
-/// Mean reflectance of unpolarised light that falls on the face from the air by Lambert's law, by Simpson's rule over
-/// the cosine.
+/// Returns the mean reflectance for unpolarised light from the air whose directions follow Lambert's law. It is
+/// integrated over the cosine by Simpson's rule.
 double diffuse_reflectance(const raytrace::Optics& optics) {
   constexpr int kSteps = 2000;
   double sum = 0.0;
@@ -23,8 +23,8 @@ double diffuse_reflectance(const raytrace::Optics& optics) {
   return sum / (3.0 * kSteps);
 }
 
-/// Of dust and the face under it: what dust sends back at once, and what passes it twice, with all reflections between
-/// the two.
+/// Returns the reflectance of dust and the face under it. It includes direct reflection by the dust, and light that
+/// passes the dust two times, with all reflections between dust and face.
 double dust_reflectance(const raytrace::Optics& optics) {
   const raytrace::Dust& dust = optics.entrance.dust;
   const double back = dust.albedo * (1.0 - dust.forward_share);
@@ -33,7 +33,7 @@ double dust_reflectance(const raytrace::Optics& optics) {
   return dust.coverage * (back + forward * forward * face / (1.0 - back * face));
 }
 
-/// Of the clean face, without what its roughness scatters.
+/// Returns the transmittance of the clean face, without light that its roughness scatters.
 double specular_transmittance(const raytrace::Optics& optics, const materials::FresnelCoefficients& f) {
   if (!optics.entrance.is_rough()) return std::norm(f.t_s);
   const raytrace::Optics facet = entrance_as_facet(optics);

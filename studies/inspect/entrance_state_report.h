@@ -1,6 +1,7 @@
 #pragma once
 
-// What a soiled, layered or rough entrance face does to light along its normal: closed forms (docs/theory/entrance.md).
+// Optical effect of a contaminated, coated or rough entrance face at normal incidence, in closed form
+// (docs/theory/entrance.md).
 
 #include <optional>
 
@@ -8,18 +9,18 @@
 
 namespace retrace::studies {
 
-/// At normal incidence from the air, as means over the light.
+/// Figures for light from the air at normal incidence, averaged over the light.
 struct EntranceStateReport {
-  double clean_share = 1.0;             ///< of the area: under no drop, dust or scratch
-  double reflectance = 0.0;             ///< of the clean face with its layers and film
-  double transmittance = 0.0;           ///< the same
-  double absorptance = 0.0;             ///< the same
-  double specular_transmittance = 0.0;  ///< of the light on the whole face: what goes on as if the face were plane
-  double haze_share = 0.0;              ///< of the light of one passage that haze throws off, however little
-  double dust_cd_per_lx_m2 = 0.0;       ///< R_A along the normal of dust and the face under it
+  double clean_share = 1.0;             ///< fraction of the area without drops, dust or scratches
+  double reflectance = 0.0;             ///< reflectance of the clean face with its layers and film
+  double transmittance = 0.0;           ///< transmittance of the clean face with its layers and film
+  double absorptance = 0.0;             ///< absorptance of the clean face with its layers and film
+  double specular_transmittance = 0.0;  ///< fraction of all light that is transmitted as by a plane face
+  double haze_share = 0.0;              ///< fraction of the light that haze deflects in one passage, by any angle
+  double dust_cd_per_lx_m2 = 0.0;       ///< R_A of dust and the face under it, along the normal
 };
 
-/// Nothing for a clean face.
+/// Returns the figures of an entrance face, or nothing for a clean face.
 std::optional<EntranceStateReport> report_entrance_state(const Design& design, const OpticalModel& model);
 
 }  // namespace retrace::studies

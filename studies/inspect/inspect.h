@@ -1,6 +1,6 @@
 #pragma once
 
-// What a design is like before it is traced: sizes, areas, counts, angles, and where total reflection ends. The study
+// Properties of a design before tracing: sizes, areas, counts, angles, and limits of total reflection. This study is
 // behind `retrace inspect`.
 
 #include <cstdint>
@@ -21,67 +21,69 @@
 
 namespace retrace::studies {
 
-/// What a layer of balls, or a single one, is to light along its axis: closed forms (docs/theory/beads.md).
+/// Figures of a layer of balls, or of a single ball, for light along its axis, in closed form (docs/theory/beads.md).
 struct BallFigures {
-  double packing_share = 0.0;             ///< of the plan that balls cover
-  double paraxial_error = 0.0;            ///< return error over height near the axis, rad; 0: parallel
-  std::optional<double> focal_offset_mm;  ///< mirror offset for which that is 0; none if there is none
-  double largest_return_error_deg = 0.0;  ///< over the whole aperture: spherical aberration
-  double share_within_acceptance = 0.0;   ///< of the aperture, narrowest cone; geometry alone, no Fresnel
+  double packing_share = 0.0;             ///< fraction of the plan that balls cover
+  double paraxial_error = 0.0;            ///< return error divided by height near the axis, in rad; 0: parallel
+  std::optional<double> focal_offset_mm;  ///< mirror offset for which the paraxial error is 0; none if there is none
+  double largest_return_error_deg = 0.0;  ///< maximum over the whole aperture: spherical aberration
+  /// Fraction of the aperture within the narrowest cone; by geometry only, without Fresnel losses.
+  double share_within_acceptance = 0.0;
   double mirror_half_angle_deg = 0.0;
 };
 
-/// What a base is like under its elements.
+/// Figures of a base under the elements.
 struct SubstrateReport {
   geometry::SubstrateMeasures measures;
-  double element_mm = 0.0;     ///< circle round an element, which the least radius is to exceed
-  geometry::InnerWalls walls;  ///< what stands open between neighbours, seen along the base's normal at its middle
+  double element_mm = 0.0;     ///< circle around an element, which the minimum radius must exceed
+  geometry::InnerWalls walls;  ///< walls between neighbours, seen along the normal at the centre of the base
 };
 
-/// Elements that have another medium behind them.
+/// Elements with another medium behind them.
 struct WetReport {
-  std::int64_t elements = 0;  ///< whole and partial ones that have
+  std::int64_t elements = 0;  ///< number of these elements, including partial ones
   std::int64_t of_all = 0;
-  /// As Inspection::tir_limit_deg, of these elements.
+  /// Limit as Inspection::tir_limit_deg, for these elements.
   std::optional<double> tir_limit_deg;
 };
 
-/// What a design is, before any light is traced. Areas and counts of an infinite array are those of one period.
+/// Properties of a design before tracing. Areas and counts of an infinite array are those of one period.
 struct Inspection {
   Design design;
   std::int64_t elements_full = 0;
   std::int64_t elements_partial = 0;
   double element_depth_mm = 0.0;
-  double facet_area_mm2 = 0.0;  ///< of all retro facets, partial elements included
+  double facet_area_mm2 = 0.0;  ///< area of all retro facets, including partial elements
   double entrance_area_mm2 = 0.0;
   double thickness_mm = 0.0;
-  double full_element_share = 0.0;    ///< of the entrance area
-  double wavelength_nm = 0.0;         ///< of the light; of a spectrum, its centroid
-  double refractive_index = 1.0;      ///< of a spectrum: its mean
-  std::vector<SpectralOptics> light;  ///< the wavelengths that stand for a spectrum, or the one there is
-  /// Largest incidence up to which the retroreflected light is totally reflected at every facet: across the roof edge
-  /// for an RTP, at every azimuth for cube corners. None if there is no total reflection even at normal incidence, or
-  /// none is needed: facets are mirrors or have an opaque layer. Of a spectrum, that of the wavelength with the least
-  /// index.
+  double full_element_share = 0.0;    ///< fraction of the entrance area
+  double wavelength_nm = 0.0;         ///< wavelength of the light; for a spectrum, its centroid
+  double refractive_index = 1.0;      ///< refractive index; for a spectrum, its mean
+  std::vector<SpectralOptics> light;  ///< traced wavelengths of a spectrum, or the only wavelength
+  /// Maximum incidence up to which every facet reflects the retroreflected light totally: across the roof edge for
+  /// prisms, at every azimuth for cube corners. For a spectrum, it is that of the wavelength with the smallest index.
+  /// None if there is no total reflection even at normal incidence. Also none if facets are mirrors or have an opaque
+  /// layer.
   std::optional<double> tir_limit_deg;
-  /// From where light meets a facet most squarely, so that its total reflection ends first; 0 to below 360, the least
-  /// of equal ones, of an unturned element. None where none is needed.
+  /// Azimuth of the light for which total reflection ends at the smallest incidence; 0 to below 360. It is the smallest
+  /// of equivalent azimuths and applies to elements that are not rotated. None if total reflection is not needed.
   std::optional<double> tir_limit_azimuth_deg;
-  std::optional<SubstrateReport>
-      substrate;  ///< of elements that stand on one; there are no limits of total reflection then
-  std::optional<EntranceReport> entrance;  ///< of a part with one; limits of total reflection are those of light that
-                                           ///< enters through a plane
+  /// Base under the elements. If there is one, limits of total reflection are not computed.
+  std::optional<SubstrateReport> substrate;
+  /// Curved entrance face. Limits of total reflection are nevertheless those of light that enters through a plane.
+  std::optional<EntranceReport> entrance;
   std::optional<WetReport> wet_back;
-  std::optional<ZonesReport> zones;  ///< of a part of zones
-  std::optional<FormReport> form;    ///< of facets that have one
+  std::optional<ZonesReport> zones;  ///< zones of a part of zones
+  std::optional<FormReport> form;    ///< form of facets that have one
   CoatingReports coating;
-  std::optional<EntranceStateReport> entrance_state;  ///< of a face that is not clean
-  double dead_zone_share = 0.0;                       ///< of an element's plan that rounded and chamfered edges take
-  std::optional<BallFigures> balls;  ///< kind = "ball": then only these, the light, and counts and areas mean something
-  std::string boundary;              ///< what the check of the boundary found
+  std::optional<EntranceStateReport> entrance_state;  ///< state of a face that is not clean
+  double dead_zone_share = 0.0;      ///< fraction of an element's plan that rounded and chamfered edges occupy
+  std::optional<BallFigures> balls;  ///< for kind = "ball"; then only this, the light, counts and areas are valid
+  std::string boundary;              ///< result of the boundary check
   std::vector<std::string> warnings;
 };
 
+/// Returns the properties of a design.
 /// \throw InputError as make_model()
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library);
 

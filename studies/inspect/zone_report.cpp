@@ -12,11 +12,12 @@ namespace {
 
 using geometry::Vec2;
 
-/// Places of the entrance face from which light is followed, from one direction.
+/// Number of points of the entrance face at which rays start, for each direction.
 constexpr int kPlaces = 4096;
 constexpr double kIncidences[] = {0.0, 20.0};
 constexpr int kAzimuths = 4;
-/// What comes back: errors of angle may be larger than the acceptance cone.
+/// Maximum angle to the direction of the source at which light counts as returned. Errors of angle may be larger than
+/// the acceptance cone.
 constexpr double kBackDeg = 5.0;
 
 class Wanderer {
@@ -30,7 +31,7 @@ class Wanderer {
     optics_.facet_scatter = surface_models::Smooth{};
   }
 
-  /// Of light of one direction that meets the back in a zone first and comes back.
+  /// Sums over the returned light from one direction that first hits the back in a certain zone.
   struct Way {
     double power = 0.0;
     double power_times_mm = 0.0;
@@ -46,14 +47,14 @@ class Wanderer {
   }
 
  private:
-  /// A place of the plate: the k-th point of a sequence that covers it evenly (Roberts 2018, of the plastic number).
+  /// Returns the k-th point of a low-discrepancy sequence on the plate (Roberts 2018, with the plastic number).
   Vec2 place(int k) const {
     constexpr double plastic = 1.32471795724474602596;
     const auto part = [&](double step) { return std::fmod(0.5 + (k + 1) * step, 1.0); };
     return Vec2(part(1.0 / plastic), part(1.0 / (plastic * plastic))).cwiseProduct(size_mm_);
   }
 
-  /// Of the zone whose cells have a facet.
+  /// Returns the zone whose cells contain a facet.
   std::size_t zone_of(std::uint32_t facet) const {
     const std::vector<geometry::PatchCell>& cells = model_.part.patches.front().cells;
     const auto after = std::ranges::upper_bound(cells, facet, {}, &geometry::PatchCell::first_facet);
@@ -94,7 +95,7 @@ ZonesReport report_zones(const Design& design, const OpticalModel& model) {
   const Wanderer wanderer(design, model);
   ZonesReport report;
   for (const geometry::ZoneElements& zone : model.part.zones) report.zones.push_back({zone, std::nullopt});
-  if (design.entrance) return report;  // paths are those behind a plane
+  if (design.entrance) return report;  // the paths are computed only behind a plane entrance face
   for (const double incidence_deg : kIncidences) {
     double power = 0.0;
     double changed = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Zones of a part: what stands in each, and how much of the light meets more than one, so that their sum is not the
-// part.
+// Zones of a part: their elements, and the fraction of light that hits several zones. Because of this light, a part is
+// not exactly the sum of its zones.
 
 #include <optional>
 #include <vector>
@@ -12,19 +12,19 @@
 
 namespace retrace::studies {
 
-/// A zone of a part.
+/// Figures of a zone of a part.
 struct ZoneReport {
   geometry::ZoneElements elements;
-  /// Mean distance in plan between the first and the last place where light that comes back meets the back of the part,
-  /// of light that enters along the normal and meets this zone first; none if none comes back, and behind a curved
-  /// front.
+  /// Mean distance, in plan, between the first and the last point at which returned light hits the back of the part. It
+  /// refers to light that enters along the normal and hits this zone first. None if no light returns, and for a curved
+  /// entrance face.
   std::optional<double> wander_mm;
 };
 
-/// Light from one incidence, of all azimuths.
+/// Light at one incidence, averaged over azimuths.
 struct ZoneCrossing {
   double incidence_deg = 0.0;
-  double share = 0.0;  ///< of the light that comes back, whose first and last place lie in different zones
+  double share = 0.0;  ///< fraction of the returned light whose first and last point are in different zones
 };
 
 struct ZonesReport {
@@ -32,8 +32,10 @@ struct ZonesReport {
   std::vector<ZoneCrossing> crossings;
 };
 
-/// By single paths, the stronger branch at every interface, from a grid of places of the entrance face: to a few parts
-/// in a hundred of what is told. Rough facets are taken as smooth ones. \pre design.zoned()
+/// Computes the figures of the zones with single rays from a grid of points on the entrance face. At every interface,
+/// only the stronger branch is traced. The figures are accurate to a few percent of their values. Rough facets are
+/// treated as smooth.
+/// \pre design.zoned()
 ZonesReport report_zones(const Design& design, const OpticalModel& model);
 
 }  // namespace retrace::studies

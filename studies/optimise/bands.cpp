@@ -13,21 +13,21 @@
 namespace retrace::studies {
 namespace {
 
-/// The value of a key in a design, of a list its first; nothing for a key without one.
+/// Returns the value of a key in a design; for a list, its first value. Returns nothing for a key without a value.
 std::optional<double> nominal_of(const std::string& key, const Design& design) {
   const schema::Value value = design.document->value(key);
   if (const auto* const numbers = std::get_if<std::vector<double>>(&value)) return numbers->front();
   return design.document->number_if(key);
 }
 
-/// A first step that loses little, by the unit in the key's name.
+/// Returns a first step with a small loss, which depends on the unit in the key's name.
 double first_step(const std::string& key, double nominal) {
   if (key.ends_with("_arcmin") || key.ends_with("_um") || key.ends_with("_nm")) return 0.01;
   if (key.ends_with("_deg")) return 1e-4;
   return 1e-6 * std::max(1.0, std::abs(nominal));
 }
 
-/// Tells the quantity of a design whose key is off.
+/// Computes the quantity of a design in which one key deviates from its value.
 class OffDesign {
  public:
   OffDesign(const Study& study, const OptimiseRequest& request, const Variant& best, const std::string& key,
@@ -51,7 +51,7 @@ class OffDesign {
     return nominal_of(key_, make_candidate(study_, values_).design());
   }
 
-  /// Nothing where there is no such design. Larger is better.
+  /// Returns the quantity with a sign so that larger is better. Returns nothing if there is no such design.
   std::optional<double> at(double value) const {
     Study study = study_;
     PointValues values = values_;
@@ -78,7 +78,7 @@ class OffDesign {
   std::optional<std::size_t> parameter_;
 };
 
-/// The change towards one side at which the loss is reached; nothing if the designs end first.
+/// Returns the change in one direction at which the loss is reached. Returns nothing if designs become invalid before.
 std::optional<double> band_to(const OffDesign& off, double nominal, double direction, double step, double loss) {
   constexpr int most_doublings = 40;
   constexpr int bisections = 30;

@@ -1,12 +1,12 @@
 #pragma once
 
-// Internal to studies/optimise: tolerance bands of single keys about the best design.
+// Tolerance bands of single keys around the best design. Internal to studies/optimise.
 
 #include "studies/optimise/optimise.h"
 
 namespace retrace::studies {
 
-/// How far a key of a design may be off before the first quantity of the objective has lost `band_loss` of its value.
+/// Returns the range of a key within which the first quantity of the objective loses at most `band_loss` of its value.
 ToleranceBand tolerance_band(const Study& study, const OptimiseRequest& request, const Variant& best,
                              const std::string& key, const Cancellation* cancel);
 

@@ -1,24 +1,24 @@
 #pragma once
 
-// Refines a candidate by local optimisation. NLopt stays behind this file.
+// Refines a design by local optimization. Only this file uses NLopt.
 
 #include "studies/optimise/evaluator.h"
 
 namespace retrace::studies {
 
-/// How far a refinement without slopes goes.
+/// Limits of a refinement without slopes.
 struct RefineLimits {
   int most_looks = 60;
-  double first_step = 0.02;  ///< as a share of each interval
+  double first_step = 0.02;  ///< as a fraction of each interval
 };
 
-/// Moves the continuous values of a feasible design to a better one within bounds and constraints: by exact slopes of
-/// the objective where it has them (SLSQP), else without any (COBYLA). What it looks at is seen by the evaluator.
-/// \return whether slopes served
+/// Improves the continuous values of a feasible design within bounds and constraints. It uses exact slopes of the
+/// objective if they are available (SLSQP), otherwise no slopes (COBYLA). The evaluator stores all evaluated designs.
+/// \return true if slopes were used
 bool refine(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Variant& from,
             const RefineLimits& limits = {});
 
-/// Share 0..1 of a value's way through its interval.
+/// Returns the position of a value in its interval as a fraction from 0 to 1.
 double share_of(const Interval& interval, double value);
 
 }  // namespace retrace::studies

@@ -10,7 +10,8 @@
 namespace retrace::studies {
 namespace {
 
-/// \throw InputError for a lathe without spindle_start in a dialect that has no words for the spindle
+/// Checks that a lathe has spindle_start texts if the dialect has no words for the spindle.
+/// \throw InputError if it has none
 void check_spindle(const fabrication::PlanedPart& part, const std::string& dialect) {
   if (!part.lathe || !fabrication::has_own_texts(fabrication::dialect_of(dialect, {}, {}))) return;
   if (part.lathe->spindle_start.empty())
@@ -23,7 +24,7 @@ void check_spindle(const fabrication::PlanedPart& part, const std::string& diale
 PlaningResult plane(const std::string& part_file, const std::string& dialect) {
   using namespace fabrication;
   PlaningResult result;
-  const std::string ending(ending_of(dialect));  // says at once that there is no such dialect
+  const std::string ending(ending_of(dialect));  // refuses unknown dialects before anything is planned
   result.part = read_planed_part(part_file);
   check_spindle(result.part, dialect);
   result.dialect = dialect;

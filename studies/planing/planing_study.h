@@ -1,7 +1,7 @@
 #pragma once
 
-// The studies behind `retrace plane` and `retrace verify` of planed parts: plans a flat lens, writes its programs, and
-// judges the text of programs.
+// Studies behind `retrace plane` and `retrace verify` for planed parts. They plan a flat lens, write its programs, and
+// check the text of programs.
 
 #include <string>
 #include <vector>
@@ -11,31 +11,36 @@
 
 namespace retrace::studies {
 
-/// A planed or turned part: its programs, as text, and what that text was found to do.
+/// Planed or turned part: its programs as text, and the results of checking that text.
 struct PlaningResult {
   fabrication::PlanedPart part;
   std::string dialect;
   fabrication::PlaningPlan plan;
-  std::vector<fabrication::PlaningText> programs;  ///< file names and texts
+  std::vector<fabrication::PlaningText> programs;  ///< names and texts of the files
   fabrication::PlaningCheck check;
   std::vector<std::string> warnings;
 };
 
-/// \param part_file \param dialect of fabrication::dialects() \throw InputError
+/// Plans a part and writes its programs.
+/// \param part_file file of the part
+/// \param dialect dialect of fabrication::dialects()
+/// \throw InputError for an invalid file or dialect
 PlaningResult plane(const std::string& part_file, const std::string& dialect);
 
-/// Programs from files, and what they were found to do.
+/// Programs from files, and the results of checking them.
 struct PlaningVerification {
   fabrication::PlanedPart part;
-  std::vector<fabrication::NcProgram> programs;  ///< as they were read
+  std::vector<fabrication::NcProgram> programs;  ///< programs as they were read
   fabrication::PlaningCheck check;
 
   bool passes() const { return check.passes(); }
   std::vector<std::string> part_warnings() const { return {}; }
 };
 
-/// \param programs files, in the order in which they run \param dialect of all of them, or "auto"
-/// \throw InputError for a file that cannot be read or understood, with its line
+/// Checks programs for a part.
+/// \param programs files in the order in which they run
+/// \param dialect dialect of all programs, or "auto"
+/// \throw InputError that names the line, for a file that cannot be read or is invalid
 PlaningVerification verify_planing(const std::string& part_file, const std::vector<std::string>& programs,
                                    const std::string& dialect);
 

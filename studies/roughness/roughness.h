@@ -1,7 +1,7 @@
 #pragma once
 
-// Retroreflective efficiency of a design over the roughness and waviness of its facets. The study behind `retrace
-// roughness`.
+// Retroreflective efficiency of a design as a function of the roughness and waviness of its facets. This study is
+// behind `retrace roughness`.
 
 #include <cstdint>
 #include <memory>
@@ -16,27 +16,28 @@
 
 namespace retrace::studies {
 
-/// Measured facets of one process, or one facet, by their means.
+/// Mean values of the measured facets of one process, or values of a single facet.
 struct FacetGroup {
-  std::string table;  ///< file that holds them
-  int line = 0;       ///< of the first
+  std::string table;  ///< name of the file
+  int line = 0;       ///< line of the first facet
   std::string name;
-  bool is_process = false;  ///< else it is one facet
+  bool is_process = false;  ///< true: a process; false: a single facet
   std::size_t facets = 0;
-  double roughness_sa_nm = 0.0;  ///< mean Sa below the cut-off of the measurement
-  double waviness_sa_nm = 0.0;   ///< mean Sa above it
+  double roughness_sa_nm = 0.0;  ///< mean Sa below the cut-off wavelength of the measurement
+  double waviness_sa_nm = 0.0;   ///< mean Sa above the cut-off wavelength of the measurement
 };
 
-/// What is asked: RRE of one design against the roughness of its facets.
+/// Request for the RRE of one design as a function of the roughness of its facets.
 struct RoughnessRequest {
-  std::vector<double> sa_nm;                  ///< of the curves, each >= 0
-  std::vector<double> correlation_length_um;  ///< one curve each, > 0; the first is that of the measured facets
-  double waviness_length_um = 200.0;          ///< period of the measured facets' waviness, > 0
+  std::vector<double> sa_nm;  ///< roughness values of the curves, each >= 0
+  /// One curve for each value, > 0; the first also applies to measured facets.
+  std::vector<double> correlation_length_um;
+  double waviness_length_um = 200.0;  ///< waviness period of the measured facets, > 0
   std::vector<FacetGroup> measured;
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  std::optional<std::uint64_t> rays;  ///< per point; else until target_error is reached
-  double target_error = 1e-3;         ///< standard error of RRE as a fraction
+  std::optional<std::uint64_t> rays;  ///< number of rays per point; none: until target_error is reached
+  double target_error = 1e-3;         ///< maximum standard error of RRE, as a fraction
   std::uint32_t seed = 1;
 };
 
@@ -44,7 +45,7 @@ struct RoughnessPoint {
   double roughness_sa_nm = 0.0;
   double waviness_sa_nm = 0.0;
   double correlation_length_um = 0.0;
-  std::optional<std::size_t> measured;  ///< which of the request's groups; a point of a curve otherwise
+  std::optional<std::size_t> measured;  ///< index of the measured group in the request; none: point of a curve
   double rre = 0.0;
   double std_error = 0.0;
 };
@@ -52,7 +53,7 @@ struct RoughnessPoint {
 struct RoughnessResult {
   Design design;
   RoughnessRequest request;
-  double smooth_rre = 0.0;  ///< of smooth facets, by the exact engine where it is cheap
+  double smooth_rre = 0.0;  ///< RRE of smooth facets, by the exact engine if this is fast
   double smooth_std_error = 0.0;
   std::vector<RoughnessPoint> points;  ///< curves in the order of the request, then the measured facets
   std::uint64_t rays = 0;
@@ -61,22 +62,25 @@ struct RoughnessResult {
   bool complete = true;
 };
 
-/// Gaussian heights of this Sa have this rms height.
+/// Returns the rms height of a Gaussian height distribution with the given Sa.
 double gaussian_sq_nm(double sa_nm);
 
-/// A checked request, ready to run.
+/// Study of a checked request, ready to run.
 class RoughnessStudy {
  public:
-  /// \throw InputError for a design with a texture of its own or several acceptance angles, for numbers out of range
-  /// and for facets that no model of scatter holds for
+  /// \throw InputError for a design with its own texture or several acceptance angles, for numbers out of range, and
+  /// for facets for which no scatter model is valid
   RoughnessStudy(Design design, RoughnessRequest request);
   ~RoughnessStudy();
 
-  /// \param share has the points traced by several processes, each with an equal study; none: by this one
+  /// Computes all points.
+  /// \param share function that distributes the points among several processes with equal studies; none: this process
+  ///        traces all
   /// \throw BudgetError if power was lost
   RoughnessResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                       const ShareTasks& share = {}) const;
-  /// A point that is traced, as a task of its number. \throw BudgetError likewise
+  /// Traces a point as a task with its number.
+  /// \throw BudgetError if power was lost
   std::optional<std::string> compute_shared(std::uint64_t number, const Cancellation* cancel) const;
 
  private:

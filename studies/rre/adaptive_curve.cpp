@@ -9,14 +9,16 @@
 namespace retrace::studies {
 namespace {
 
-/// More kinks than these, such as those of every wavelength at many azimuths, are left to be found.
+/// Maximum number of known kinks. If there are more, such as those of many wavelengths at many azimuths, none of them
+/// is used, and the search must find the kinks.
 constexpr std::size_t kMostKinks = 64;
 
 double rounded(double value, double scale) {
   return std::round(value * scale) / scale + 0.0;  // -0 is 0
 }
 
-/// A number of few decimals within a twentieth of the gap from its middle.
+/// Returns a number with few decimals near the centre of an interval. It differs from the centre by at most a twentieth
+/// of the interval.
 double middle_of(double low, double high) {
   const double middle = 0.5 * (low + high);
   for (double scale = 1.0; scale < 1e9; scale *= 10.0)
@@ -35,7 +37,7 @@ std::vector<CurveSpan> merged(std::vector<CurveSpan> spans) {
   return apart;
 }
 
-/// Adds places until none are too far apart.
+/// Adds points until no gap is too wide.
 void fill(double low, double high, std::set<double>& places) {
   if (high - low <= AdaptiveCurve::kWidestGapDeg) return;
   const double middle = middle_of(low, high);
@@ -44,7 +46,7 @@ void fill(double low, double high, std::set<double>& places) {
   fill(middle, high, places);
 }
 
-/// To a millionth of a degree, each once.
+/// Returns the kinks rounded to 1e-6 degrees, without duplicates.
 std::vector<double> without_repeats(const std::vector<double>& kinks) {
   std::set<double> places;
   for (const double place : kinks) places.insert(rounded(place, 1e6));

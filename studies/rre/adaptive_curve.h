@@ -1,6 +1,6 @@
 #pragma once
 
-// Chooses the angles at which a curve of RRE is computed, denser where it bends or has kinks.
+// Selects the angles at which a curve of RRE is computed. They are denser at curved sections and kinks.
 
 #include <cstddef>
 #include <map>
@@ -8,62 +8,66 @@
 
 namespace retrace::studies {
 
-/// A value of a curve, with the standard error that sampling left in it.
+/// Value of a curve, with its standard error of sampling.
 struct CurveValue {
   double value = 0.0, std_error = 0.0;
 };
 
-/// A piece of the axis over which a curve is wanted.
+/// Interval over which a curve is computed.
 struct CurveSpan {
   double low = 0.0, high = 0.0;
 };
 
-/// Chooses the places at which to find curves, in degrees, until straight lines between neighbours follow all of them.
+/// Selects the points at which curves are computed, in degrees, until linear interpolation between neighbours is
+/// accurate for all curves.
 ///
-/// It begins with the ends of the spans, 0, known kinks, and so many between that none are wider apart than
-/// kWidestGapDeg. Then the middle between neighbours is looked at. One kink between them lies at most twice as far from
-/// the straight line as the middle does, so that half the tolerance is allowed there, and twice the standard error of
-/// the difference besides. Where it is farther off both halves are looked at in the same way, and once more where it is
-/// not: a middle may lie on the line by chance. Gaps below kNarrowestGapDeg are not halved: slopes are infinite where
-/// total reflection ends. Places are numbers of few decimals.
+/// The search begins with the ends of the spans, 0, known kinks, and further points such that no gap is wider than
+/// kWidestGapDeg. Then it adds the centre of each gap. A kink in a gap causes at most twice the error that is found at
+/// the centre. Therefore, the allowed error at the centre is half the tolerance, plus twice the standard error of the
+/// difference.
+/// If the error is larger, both halves of the gap are checked in the same manner. If it is smaller, both halves are
+/// checked one more time, because the centre may be accurate by chance. Gaps below kNarrowestGapDeg are not divided,
+/// because slopes are infinite where total reflection ends. Points are numbers with few decimals.
 class AdaptiveCurve {
  public:
   static constexpr double kWidestGapDeg = 2.5;
   static constexpr double kNarrowestGapDeg = 0.01;
-  static constexpr std::size_t kMostPlaces = 513;  ///< in a span
+  static constexpr std::size_t kMostPlaces = 513;  ///< maximum number of points in a span
 
-  /// \param kinks where they are known; those outside the spans do not matter
-  /// \param fixed places that are looked at in any case, inside the spans or not
+  /// \param kinks known kinks; those outside the spans are ignored
+  /// \param fixed points that are computed in any case, even outside the spans
   /// \pre low < high
   AdaptiveCurve(std::vector<CurveSpan> spans, const std::vector<double>& kinks, const std::vector<double>& fixed,
                 double tolerance);
 
-  /// The places to look at next, ascending; empty if the curves are known. \pre those of the last call are added
+  /// Returns the next points to compute, in ascending order. Empty if the curves are accurate.
+  /// \pre values for all points of the last call were added
   std::vector<double> next();
-  /// Adds the value of one more curve at a place. \pre curves come in the same order at all places
+  /// Adds the value of a further curve at a point.
+  /// \pre the order of the curves is the same at all points
   void add(double place, CurveValue value) { values_[place].push_back(value); }
 
-  /// How far the worst straight line may miss when kMostPlaces ended the search; 0 if they did not.
+  /// Returns the maximum error of linear interpolation if the search ended at kMostPlaces. Otherwise returns 0.
   double worst_left() const { return 2.0 * worst_left_; }
 
  private:
-  /// Between two places next to each other.
+  /// Gap between two neighbouring points.
   struct Gap {
     double low = 0.0, high = 0.0;
-    double miss = 0.0;                 ///< of the middle of the gap that it was cut from
-    bool is_half_of_straight = false;  ///< that middle lay on the line
+    double miss = 0.0;                 ///< error at the centre of the gap from which this gap was divided
+    bool is_half_of_straight = false;  ///< true: this error was small enough
   };
 
   void begin(const CurveSpan& span, const std::vector<double>& kinks);
   double miss_of(const Gap& gap) const;
-  /// Looks at the middles of these, as far as kMostPlaces allow the worst.
+  /// Adds the centres of gaps. If kMostPlaces does not allow all, those with the largest errors are added.
   void look_at(std::vector<Gap> gaps);
 
   double tolerance_ = 0.0;
   std::size_t most_places_ = 0;
   double worst_left_ = 0.0;
-  std::map<double, std::vector<CurveValue>> values_;  ///< by place; empty where none was added yet
-  std::vector<Gap> gaps_;                             ///< whose middles are looked at
+  std::map<double, std::vector<CurveValue>> values_;  ///< values by point; empty if none was added yet
+  std::vector<Gap> gaps_;                             ///< gaps whose centres are being computed
   bool has_begun_ = false;
 };
 

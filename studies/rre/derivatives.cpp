@@ -17,7 +17,7 @@ namespace {
 
 using geometry::PartSpec, geometry::RtpElement, raytrace::Account;
 
-/// Rounding of the exact engine, beside what it truncates.
+/// Rounding error of the exact engine, in addition to truncation.
 constexpr double kRounding = 1e-12;
 constexpr double kArcminPerDeg = 60.0;
 
@@ -27,13 +27,13 @@ double size_of(const geometry::Element& element) {
   return std::get<geometry::TriangularCube>(element).aperture_mm;
 }
 
-/// Of the three dihedral errors of a cube corner.
+/// Returns the mean of the three dihedral errors of a cube corner.
 double mean_dihedral_error_deg(const PartSpec& spec) {
   const auto& errors = spec.angle_errors.dihedral_error_arcmin;
   return (errors[0] + errors[1] + errors[2]) / (3.0 * kArcminPerDeg);
 }
 
-/// What the keys of a parameter are where it has that value, in their order.
+/// Returns the values of the keys that represent a parameter, in the order of the keys.
 std::vector<schema::Value> values_at(const Design& design, RreParameter parameter, double value) {
   const PartSpec& spec = design.part();
   if (parameter == RreParameter::dihedral_error_deg) {
@@ -55,18 +55,19 @@ double value_of(const TracedDirection& at, RreParameter parameter) {
   return value_of(at.design, parameter);
 }
 
-/// What one trace tells.
+/// Result of one trace.
 struct Traced {
-  std::vector<double> rre;  ///< by cone
+  std::vector<double> rre;  ///< by acceptance cone
   double truncated = 0.0;
-  double noise = 0.0;  ///< of all these, from one trace to the next
+  double noise = 0.0;  ///< uncertainty of all values between similar traces
 
   Sample rre_sample(std::size_t cone) const { return {rre[cone], noise}; }
   Sample truncated_sample() const { return {truncated, noise}; }
 };
 
-/// At a fixed cut-off few beams at a time cross it, and each takes less than it along. Where the cut-off is sought for
-/// every trace all that is truncated may come and go.
+/// Returns the result of a trace with its noise. With a fixed cut-off, few beams cross the cut-off between similar
+/// traces, and each has less power than the cut-off. If the cut-off is determined in every trace, all truncated power
+/// may vary.
 Traced summary_of(const raytrace::BeamResult& traced, const raytrace::BeamPolicy& policy) {
   constexpr double kBeamsAtATime = 10.0;
   Traced summary;
@@ -77,15 +78,16 @@ Traced summary_of(const raytrace::BeamResult& traced, const raytrace::BeamPolicy
   return summary;
 }
 
-/// First steps span what RRE is mostly smooth over, and more where much is cut off: noise counts by the step. The
-/// tableau copes where it is not smooth.
+/// Returns the range and the first step of the differences. RRE is mostly smooth over this step. The step is larger if
+/// much power is truncated, because noise is divided by the step. The extrapolation tableau handles cases that are not
+/// smooth.
 DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
-  constexpr double kOpen = 1e-9;  // of an end that is not part of the range
+  constexpr double kOpen = 1e-9;  // distance from an end that does not belong to the range
   constexpr double kLoud = 1e-9;
   const double wider = std::clamp(std::cbrt(summary_of(at.traced, at.policy).noise / kLoud), 1.0, 4.0);
   const double relative_step = 0.01 * wider;
   const double value = value_of(at, parameter);
-  // An error of an angle turns light away by some three times as much: out of a narrow cone soon.
+  // An error of angle deflects light by about three times this angle, so that light soon leaves a narrow cone.
   const double angle_step = std::min(0.05 * wider, 0.1 * at.design.detector.acceptance_half_angle_deg.front());
   switch (parameter) {
     case RreParameter::size_mm: return {relative_step * value, kOpen * value};
@@ -98,7 +100,7 @@ DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
   return {};
 }
 
-/// Full and partial elements of that size; nothing if there is no room for one, or no such design.
+/// Returns the numbers of full and partial elements for this element size. Returns nothing if there is no valid design.
 std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design& design, double size_mm) {
   try {
     const geometry::Part part = geometry::build_part(with(design, RreParameter::size_mm, size_mm).part());
@@ -108,8 +110,8 @@ std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design
   }
 }
 
-/// Shortens the first step until the array holds the same elements at both its ends. False if there is no such step:
-/// RRE jumps here.
+/// Shortens the first step until the array has the same elements at both ends. Returns false if there is no such step,
+/// because RRE is discontinuous here.
 bool keep_elements(const Design& design, double size_mm, DifferenceRange& range) {
   constexpr int kHalvings = 10;
   const auto here = count_elements(design, size_mm);
@@ -119,8 +121,8 @@ bool keep_elements(const Design& design, double size_mm, DifferenceRange& range)
   return false;
 }
 
-/// The point's own, but for a budget in proportion to its beams: next to the normal of a part there may be a million
-/// times as many, and they are not to be followed dozens of times.
+/// Returns the policy of the point with a limit on beams in proportion to the point's beams. Near normal incidence,
+/// there may be a million times as many beams, which would have to be traced dozens of times.
 raytrace::BeamPolicy policy_nearby(const TracedDirection& at) {
   constexpr std::uint64_t kLeast = 200'000;
   constexpr std::uint64_t kTimes = 20;
@@ -131,7 +133,7 @@ raytrace::BeamPolicy policy_nearby(const TracedDirection& at) {
 
 struct Cancelled {};
 
-/// What is traced, as a function of one parameter. It is kept, as all cones come from one trace.
+/// Traced result as a function of one parameter. Results are kept, because one trace yields the values of all cones.
 class TraceByParameter {
  public:
   TraceByParameter(const TracedDirection& at, RreParameter parameter, const Cancellation* cancel)
@@ -139,7 +141,9 @@ class TraceByParameter {
     known_[value_of(at, parameter)] = summary_of(at.traced, at.policy);
   }
 
-  /// \throw BudgetError if too many beams are needed \throw InputError if there is no such part \throw Cancelled
+  /// \throw BudgetError if too many beams are needed
+  /// \throw InputError if there is no such part
+  /// \throw Cancelled if the computation was cancelled
   const Traced& operator()(double value) {
     auto known = known_.find(value);
     if (known == known_.end()) known = known_.emplace(value, summary_of(trace(value), at_.policy)).first;
@@ -180,11 +184,11 @@ class TraceByParameter {
 
 std::string why_not(const Derivative& derivative) {
   if (derivative.converged()) return {};
-  constexpr double kShows = 0.2;  // noise makes differences of its own besides
+  constexpr double kShows = 0.2;  // noise also increases the error of the differences
   return derivative.noise > kShows * derivative.error ? "what is cut off hides it" : "RRE has a kink or a jump here";
 }
 
-/// By cone.
+/// Returns the derivatives by one parameter, for each acceptance cone.
 std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDirection& at,
                                           const Cancellation* cancel) {
   const std::size_t cones = at.design.detector.acceptance_half_angle_deg.size();
@@ -198,7 +202,7 @@ std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDi
   TraceByParameter trace(at, parameter, cancel);
   std::vector<RreDerivative> derivatives;
   try {
-    // What a fixed cut-off leaves out changes as well, and all of it may be missing in RRE.
+    // Truncated power varies with the parameter, too. RRE may lack all of it.
     const double truncation =
         at.policy.cutoff
             ? std::abs(differentiate([&](double x) { return trace(x).truncated_sample(); }, value, range).value)

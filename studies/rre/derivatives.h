@@ -1,6 +1,6 @@
 #pragma once
 
-// Derivatives of RRE by the parameters of a design, from the exact engine.
+// Derivatives of RRE by parameters of a design, computed with the exact engine.
 
 #include <optional>
 #include <string>
@@ -15,46 +15,50 @@
 
 namespace retrace::studies {
 
-/// By what RRE is differentiated. The size is that of an element as a whole: base and width of a prism in proportion,
-/// or the aperture of a cube corner; gaps, margins and the lengths of the array stay. Prisms have an apex angle; for
-/// cube corners the dihedral errors of all edges change by the same.
+/// Parameters by which RRE is differentiated. The size is that of the whole element: base and width of a prism in
+/// proportion, or the aperture of a cube corner. Gaps, margins and the lengths of the array do not change. Prisms have
+/// an apex angle. For cube corners, the dihedral errors of all edges change by the same amount.
 enum class RreParameter { size_mm, apex_angle_deg, dihedral_error_deg, refractive_index, thickness_mm, incidence_deg };
 
-/// The key in files, with its unit.
+/// Returns the key of a parameter in files, with its unit.
 std::string_view parameter_name(RreParameter parameter);
 
-/// Those that a design has.
+/// Returns the parameters that apply to a design.
 std::vector<RreParameter> parameters_of(const Design& design);
 
-/// The keys of a design that are that parameter together; none of the incidence.
+/// Returns the keys of a design that together represent a parameter. Empty for the incidence.
 std::vector<std::string> keys_of(RreParameter parameter, const Design& design);
 
-/// What it is in a design. \pre the design has it, and has a value of its own: not its material's index
+/// Returns the value of a parameter in a design.
+/// \pre the parameter applies to the design and has a value of its own, unlike the index of a material
 double value_of(const Design& design, RreParameter parameter);
 
-/// The design where it has another value. \pre likewise \throw InputError if there is no such design
+/// Returns the design with another value of a parameter.
+/// \pre as for value_of()
+/// \throw InputError if there is no such design
 Design with(const Design& design, RreParameter parameter, double value);
 
-/// The change of RRE with one parameter, per unit of its name.
+/// Derivative of RRE by one parameter, in the unit of the parameter's name.
 struct RreDerivative {
   RreParameter parameter = RreParameter::incidence_deg;
   Derivative derivative;
-  std::string left_out;  ///< why there is none; empty if there is
+  std::string left_out;  ///< reason why there is no derivative; empty if there is one
 };
 
-/// One direction of a design, as it was traced.
+/// Traced direction of a design.
 struct TracedDirection {
   const Design& design;
   const OpticalModel& model;
-  const raytrace::BeamTracer& tracer;  ///< of model.part
+  const raytrace::BeamTracer& tracer;  ///< tracer of model.part
   raytrace::Illumination illumination;
-  raytrace::BeamPolicy policy;         ///< that every evaluation follows, within a budget of 20 times the point's beams
-  const raytrace::BeamResult& traced;  ///< with the design's acceptance cones
+  raytrace::BeamPolicy policy;         ///< policy of every evaluation, with a limit of 20 times the point's beams
+  const raytrace::BeamResult& traced;  ///< traced with the design's acceptance cones
 };
 
-/// Derivatives of RRE by cone, each in the order of parameters_of(). What the tracer cuts off counts as noise. A
-/// derivative is left out, with a reason, where RRE has a kink or a jump, noise hides it, or it would take far more
-/// beams. Several parameters at a time; the result does not depend on the threads. Nothing if it was cancelled.
+/// Computes the derivatives of RRE for each acceptance cone, in the order of parameters_of(). Truncated power counts as
+/// noise. A derivative is omitted with a reason if RRE has a kink or a discontinuity, if noise hides the derivative, or
+/// if it needs too many beams. Several parameters are computed in parallel; the result does not depend on the threads.
+/// Returns nothing if the computation was cancelled.
 std::optional<std::vector<std::vector<RreDerivative>>> rre_derivatives(const TracedDirection& at,
                                                                        const Cancellation* cancel);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The discrete directions in which light leaves a part, gathered from the beams of the exact engine.
+// Discrete directions in which light leaves a part, collected from the beams of the exact engine.
 
 #include <cstdint>
 #include <vector>
@@ -10,25 +10,26 @@
 
 namespace retrace::studies {
 
-/// All light that leaves the entrance face in one direction.
+/// Light that leaves the entrance face in one direction.
 struct FarFieldSpot {
-  Angle deviation;                ///< from the direction back to the source
-  Angle orientation;              ///< of the deviation: from the first axis of raytrace::source_axis() to the second
-  raytrace::Stokes stokes;        ///< along the axes of the spot's own direction
-  std::uint32_t least_depth = 0;  ///< interfaces inside, of the shortest path; 0: reflected by the face itself
+  Angle deviation;  ///< angle to the direction back to the source
+  /// Orientation of the deviation, from the first axis of raytrace::source_axis() towards the second.
+  Angle orientation;
+  raytrace::Stokes stokes;        ///< Stokes parameters with respect to the axes of the spot's direction
+  std::uint32_t least_depth = 0;  ///< interfaces on the shortest path inside; 0: reflected by the face itself
 };
 
-/// The directions in which light leaves the entrance face, for one direction of incidence.
+/// Directions in which light leaves the entrance face, for one direction of incidence.
 struct FarField {
   static constexpr double kLeastPower = 1e-9;
   static constexpr double kOneDirection_rad = 1e-9;
 
-  std::vector<FarFieldSpot> spots;  ///< of kLeastPower or more, by falling power
-  double other_power = 0.0;         ///< of all other spots
+  std::vector<FarFieldSpot> spots;  ///< spots with at least kLeastPower, in descending order of power
+  double other_power = 0.0;         ///< power of all other spots
   double total_power = 0.0;
 };
 
-/// Makes a far field of the returned beams of one direction.
+/// Builds the far field from the returned beams of one direction.
 class FarFieldBuilder {
  public:
   explicit FarFieldBuilder(const raytrace::Illumination& illumination);
@@ -45,7 +46,7 @@ class FarFieldBuilder {
 
   FarFieldSpot seen_from_source(const Spot& spot) const;
 
-  std::vector<Spot> spots_;  ///< the first is the direction to the source, lit or not
+  std::vector<Spot> spots_;  ///< the first spot is the direction to the source, even without light
   raytrace::PointLookup<std::size_t> places_;
 };
 

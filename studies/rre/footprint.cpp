@@ -11,20 +11,20 @@ namespace {
 
 using geometry::Polygon, geometry::Vec2;
 
-// Neighbours whose efficiencies differ by less are one region.
+// Difference of efficiencies below which neighbouring polygons are merged into one region.
 constexpr double kEqualEfficiency = 1e-9;
-// Corners nearer than this share of an element are one.
+// Distance below which corners are merged, as a fraction of an element.
 constexpr double kMergeShare = 1e-11;
-// Facets steeper than this are walls, seen as lines.
+// Vertical component of the normal below which facets count as walls, which are seen as lines.
 constexpr double kWall = 1e-6;
 
-/// To a millionth of a nanometre: what is beyond is rounding.
+/// Rounds coordinates to 1e-12 mm, which removes rounding errors.
 Vec2 rounded(const Vec2& p) {
   constexpr double kSteps = 1e12;
   return {std::round(p.x() * kSteps) / kSteps + 0.0, std::round(p.y() * kSteps) / kSteps + 0.0};
 }
 
-/// Starts at the lowest corner, the leftmost of them.
+/// Returns the outline, starting at the lowest corner, or the leftmost of several.
 Polygon outline_of(const raytrace::FlatPolygon& polygon) {
   Polygon outline;
   for (const Vec2& p : polygon) outline.push_back(rounded(p));
@@ -73,8 +73,8 @@ void FootprintBuilder::add(const raytrace::ReturnedBeam& beam) {
   }
 }
 
-/// Where light entered, at one of several places: what lies beyond the period of an endless part comes in again from
-/// its other side.
+/// Inserts a region in which light enters. For an infinite part, regions beyond the period are shifted back by one
+/// period.
 void FootprintBuilder::insert(const raytrace::FlatPolygon& entered, double efficiency) {
   if (!period_mm_) {
     overlay_.insert(entered, efficiency);
@@ -106,7 +106,7 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// The edges of an element that are not walls, with how many facets meet there.
+/// Returns the edges of an element that are not walls, and the number of facets at each edge.
 std::map<Edge, int> edges_of(const geometry::SurfacePatch& patch, const geometry::PatchCell& cell) {
   std::map<Edge, int> edges;
   for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The active regions of the entrance face, gathered from the beams of the exact engine.
+// Active regions of the entrance face, collected from the beams of the exact engine.
 
 #include <array>
 #include <optional>
@@ -12,30 +12,30 @@
 
 namespace retrace::studies {
 
-/// A convex region of the entrance face that sends light back.
+/// Convex region of the entrance face that returns light.
 struct ActiveRegion {
   geometry::Polygon outline_mm;  ///< in the part frame
-  double efficiency = 0.0;       ///< returned power over the power that fell on the region
+  double efficiency = 0.0;       ///< returned power divided by the incident power of the region
 };
 
-/// Which regions of the entrance face send light back into the widest acceptance cone, for one direction. The
-/// reflection of the face itself is not counted, nor are paths that bring back less than kLeastEfficiency.
+/// Regions of the entrance face that return light into the widest acceptance cone, for one direction. Reflection by the
+/// face itself, and paths with an efficiency below kLeastEfficiency, are not included.
 struct Footprint {
   static constexpr double kLeastEfficiency = 1e-3;
 
-  std::vector<ActiveRegion> regions;  ///< disjoint, from bottom to top and left to right
-  double entrance_area_mm2 = 0.0;     ///< infinite parts: of one period
+  std::vector<ActiveRegion> regions;  ///< disjoint, ordered from bottom to top and from left to right
+  double entrance_area_mm2 = 0.0;     ///< for infinite parts: area of one period
   double active_area_mm2 = 0.0;
 
   double active_share() const { return active_area_mm2 / entrance_area_mm2; }
-  /// What the regions contribute to RRE.
+  /// Returns the contribution of the regions to RRE.
   double rre_shown() const;
 };
 
-/// Makes a footprint of the returned beams of one direction.
+/// Builds the footprint from the returned beams of one direction.
 class FootprintBuilder {
  public:
-  /// \param cones how many acceptance cones the beams are sorted by
+  /// \param cones number of acceptance cones into which beams are sorted
   FootprintBuilder(const geometry::Part& part, std::size_t cones);
 
   void add(const raytrace::ReturnedBeam& beam);
@@ -51,15 +51,15 @@ class FootprintBuilder {
   raytrace::Overlay overlay_;
 };
 
-/// The entrance face and the elements behind it, seen along the part's normal.
+/// Entrance face and the elements behind it, as seen along the normal of the part.
 struct EntranceFace {
   using Line = std::array<geometry::Vec2, 2>;
 
-  geometry::Polygon outline_mm;  ///< infinite parts: the central period
+  geometry::Polygon outline_mm;  ///< for infinite parts: central period
   bool is_periodic = false;
-  // Edges of the elements; those of an infinite part that reach into the central period.
+  // Edges of the elements. For infinite parts: edges that reach into the central period.
   std::vector<Line> rims_mm;
-  std::vector<Line> roots_mm;  ///< between facets of one element
+  std::vector<Line> roots_mm;  ///< edges between facets of one element
 };
 
 EntranceFace entrance_face_of(const geometry::Part& part);

@@ -36,7 +36,7 @@ std::vector<Direction> directions_of(const std::vector<OpticalModel>& models, co
   return directions;
 }
 
-/// Makes points of a direction whose wavelengths are all traced.
+/// Makes the points of a direction if all its wavelengths have been traced.
 void finish(Direction& direction, const Design& design, const OpticalModel& model) {
   const auto& spectral = direction.spectral;
   if (std::any_of(spectral.begin(), spectral.end(), [](const auto& cones) { return cones.empty(); })) return;
@@ -54,8 +54,9 @@ void finish(Direction& direction, const Design& design, const OpticalModel& mode
   }
 }
 
-/// Where the total reflection of elements on a plane begins and ends, at all azimuths and wavelengths that are asked
-/// for, and where what the entrance face reflects, which turns twice as fast as the part, leaves an acceptance cone.
+/// Returns the known kinks of RRE over incidence. Total reflection begins or ends there, at any of the requested
+/// azimuths and wavelengths. At half of an acceptance angle, the mirror reflection of the entrance face leaves the
+/// acceptance cone, because it rotates twice as fast as the part.
 std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                              const RreRequest& request) {
   std::vector<double> kinks;
@@ -79,7 +80,7 @@ std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vect
   return kinks;
 }
 
-/// Tells another how far rounds of unknown number have come: each takes half of what is left.
+/// Reports the progress of an unknown number of rounds. Each round counts as half of the remainder.
 class RoundProgress : public Progress {
  public:
   explicit RoundProgress(Progress* whole) : whole_(whole) {}
@@ -93,7 +94,7 @@ class RoundProgress : public Progress {
   double begin_ = 0.0;
 };
 
-/// Traces and makes points.
+/// Traces directions and makes their points.
 void trace_points(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                   DirectionTracing& tracing, std::vector<Direction>& directions, Progress* progress) {
   tracing.trace(directions, progress);
@@ -109,7 +110,7 @@ void add_values(const std::vector<Direction>& directions, AdaptiveCurve& curve) 
     for (const RrePoint& point : direction.points) curve.add(point.incidence_deg, {point.rre, point.std_error});
 }
 
-/// By design, azimuth as listed, and ascending incidence.
+/// Sorts directions by design, azimuth in the order of the request, and ascending incidence.
 void put_in_order(std::vector<Direction>& directions, const std::vector<double>& azimuth_deg) {
   const auto place = [&](const Direction& direction) {
     const RrePoint& at = direction.at;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to studies/rre: all directions of a request, those that it leaves to be chosen as well.
+// Traces all directions of a request, including automatically chosen incidences. Internal to studies/rre.
 
 #include <optional>
 #include <string>
@@ -14,10 +14,12 @@ namespace retrace::studies {
 struct TracedRequest {
   std::vector<Direction> directions;  ///< in the order of the result
   bool complete = true;
-  std::string warning;  ///< if chosen directions do not do what was asked
+  std::string warning;  ///< set if automatically chosen incidences do not reach the requested accuracy
 };
 
-/// \param only one of the designs; none: all \pre all, where incidences are to be chosen
+/// Traces a request.
+/// \param only index of one of the designs; none: all designs
+/// \pre all designs are traced if incidences are chosen automatically
 /// \throw BudgetError as DirectionTracing::trace()
 TracedRequest trace_request(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                             const RreRequest& request, std::optional<std::size_t> only, Progress* progress,

@@ -8,14 +8,15 @@
 
 namespace retrace::studies {
 
-/// One point traced at one wavelength, and its share of the flux.
+/// Point at one wavelength, and the fraction of the flux that it represents.
 struct SpectralPoint {
   double weight = 0.0;
   RrePoint point;
 };
 
-/// The point of the whole spectrum: means of RRE, ledger and Stokes parameters, the standard error of the mean of
-/// independent estimates, all beams, the longest path. What is said of the direction is that of `at`.
+/// Returns the point of the whole spectrum. RRE, ledger and Stokes parameters are means. The standard error is that of
+/// the mean of independent estimates. Beams are added up, and the depth is the maximum. Data of the direction are those
+/// of `at`.
 RrePoint spectral_mean(const RrePoint& at, const std::vector<SpectralPoint>& points);
 
 }  // namespace retrace::studies

@@ -1,7 +1,6 @@
 #pragma once
 
-// Internal to studies/rre: tracing the directions of a request, each by the engine that was requested or that is
-// faster.
+// Traces the directions of a request, each with the requested engine or the faster engine. Internal to studies/rre.
 
 #include <memory>
 #include <optional>
@@ -12,37 +11,39 @@
 
 namespace retrace::studies {
 
-/// One direction of one design, and what was found there.
+/// Direction of one design, with its results.
 struct Direction {
   RrePoint at;
-  std::vector<std::vector<RrePoint>> spectral;  ///< by wavelength and cone; those not traced yet are empty
+  std::vector<std::vector<RrePoint>> spectral;  ///< by wavelength and cone; empty if not traced yet
   std::vector<std::uint64_t> rays;              ///< by wavelength
-  std::vector<char> missed_target;              ///< by wavelength: not bool, as threads write beside each other
-  std::vector<RrePoint> points;                 ///< one a cone; empty until all wavelengths are traced
+  std::vector<char> missed_target;  ///< by wavelength; char instead of bool, because threads write concurrently
+  std::vector<RrePoint> points;     ///< one for each cone; empty until all wavelengths are traced
   std::optional<Footprint> footprint;
   std::optional<FarField> far_field;
 };
 
-/// Whether beams may be followed: not where rays or plain sampling are requested ...
+/// Returns true if the request allows beam tracing. It does not if it gives a number of rays or plain sampling.
 bool may_follow_beams(const RreRequest& request);
-/// ... nor where they are bent or scattered without a specular share, backs differ, the front is curved, or the part is
-/// of balls.
+/// Returns true if beams can be traced for the request and the design. They cannot if facets bend beams, if all light
+/// is scattered, if backs differ, if the entrance face is curved, and for balls.
 bool may_follow_beams(const Design& design, const OpticalModel& model, const RreRequest& request);
-/// What only the exact engine can tell must not depend on how much work that is.
+/// Returns true if the request needs the exact engine, whatever the amount of work. This is so if results are requested
+/// that only this engine can compute.
 bool must_be_exact(const RreRequest& request);
 
 class DesignTracing;
 
-/// Traces directions of a request, in one go or several. What a design needs is made when it is first traced, and kept
-/// if more directions may follow.
+/// Traces directions of a request, in one or several calls. Data of a design are prepared when it is first traced, and
+/// kept if further directions may follow.
 class DirectionTracing {
  public:
   DirectionTracing(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                    const RreRequest& request, const Cancellation* cancel);
   ~DirectionTracing();
 
-  /// Traces these at all wavelengths; those that a cancellation cut off stay empty.
-  /// \pre directions of one design stand together \throw BudgetError if power was lost, or too many beams are needed
+  /// Traces directions at all wavelengths. Directions that were cancelled remain empty.
+  /// \pre all directions of a design are contiguous
+  /// \throw BudgetError if power was lost, or if too many beams are needed
   void trace(std::vector<Direction>& directions, Progress* progress);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// Light paths in words, for people who look at them.
+// Describes light paths in words.
 
 #include <string>
 
@@ -8,10 +8,10 @@
 
 namespace retrace::studies {
 
-/// What happens at an interface, a sentence.
+/// Returns a sentence about what happens at an interface.
 std::string words_of(const raytrace::PathStep& step);
 
-/// What becomes of the light of a path: "comes back after 2 total reflections".
+/// Returns a description of the end of a path, such as "comes back after 2 total reflections".
 std::string fate_of(const raytrace::LightPath& path);
 
 }  // namespace retrace::studies

@@ -13,9 +13,9 @@
 namespace retrace::studies {
 namespace {
 
-constexpr int kGrid = 24;                     // entry points along an element
-constexpr std::size_t kPathsEach = 3;         // from one direction
-constexpr std::size_t kMostTriangles = 4000;  // of a mesh that is shown
+constexpr int kGrid = 24;                     // number of entry points along an element
+constexpr std::size_t kPathsEach = 3;         // number of paths for each direction
+constexpr std::size_t kMostTriangles = 4000;  // maximum number of triangles of a mesh that is shown
 
 geometry::Rectangle element_box(const geometry::Element& element) {
   return geometry::bounding_box(geometry::aperture_outline(element));
@@ -23,11 +23,11 @@ geometry::Rectangle element_box(const geometry::Element& element) {
 
 struct FewElements {
   Design design;
-  std::vector<std::string> remarks;  ///< what was changed
-  bool is_cut = false;               ///< out of a larger array
+  std::vector<std::string> remarks;  ///< changes of the design
+  bool is_cut = false;               ///< true: the elements are part of a larger array
 };
 
-/// \param elements along a side of an array, at most
+/// \param elements maximum number of elements along a side of an array
 FewElements few_elements(const Design& design, double elements) {
   FewElements few{design, {}};
   auto& [small, remarks, is_cut] = few;
@@ -68,7 +68,7 @@ FewElements few_elements(const Design& design, double elements) {
   return few;
 }
 
-/// Edges between triangles that do not lie in one plane.
+/// Returns the edges between triangles that are not in one plane.
 std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   if (!geometry::is_closed_manifold(mesh)) return edges;
@@ -88,7 +88,7 @@ std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMe
   return edges;
 }
 
-/// The part's own boundary; of a mesh, what was read.
+/// Returns the boundary of the part. For a mesh, returns the mesh as it was read.
 geometry::BoundaryMesh boundary_of_part(const geometry::Part& part) {
   if (!part.patches[part.placements[0].patch].border_rim.empty()) return geometry::closed_boundary(part);
   const geometry::SurfacePatch& patch = part.patches[0];
@@ -96,7 +96,7 @@ geometry::BoundaryMesh boundary_of_part(const geometry::Part& part) {
   mesh.vertices = patch.vertices;
   mesh.triangles = patch.triangles;
   for (const std::uint32_t facet : patch.triangle_facet) mesh.roles.push_back(patch.facets[facet].role);
-  // The entrance face alone closes the picture; sides are left open.
+  // Only the entrance face is added; the sides remain open.
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const geometry::Vec2& p : part.outline) mesh.vertices.emplace_back(p.x(), p.y(), part.thickness_mm);
   for (std::uint32_t k = 1; k + 1 < part.outline.size(); ++k) {
@@ -106,7 +106,7 @@ geometry::BoundaryMesh boundary_of_part(const geometry::Part& part) {
   return mesh;
 }
 
-/// Tells paths apart by what happens to them.
+/// Sequence of events that distinguishes kinds of paths.
 using Story = std::vector<std::pair<raytrace::PathEvent, geometry::FacetRole>>;
 
 Story story_of(const raytrace::LightPath& path) {
@@ -158,7 +158,7 @@ geometry::Vec2 Piece::like_place(const geometry::Vec2& at_mm) const {
 geometry::Vec2 Piece::entry_of(const SceneLight& light, const geometry::Vec2& at_mm) const {
   const raytrace::LightSetup setup(model_.part, centre_mm_, model_.optics, illumination_of(light), {cone_deg_});
   const geometry::Vec3& direction = setup.entry.direction;
-  const geometry::Vec2 drift = direction.head<2>() / -direction.z();  // per depth
+  const geometry::Vec2 drift = direction.head<2>() / -direction.z();  // horizontal distance per depth
   return like_place(at_mm + whole_thickness_mm_ * drift) - model_.part.thickness_mm * drift;
 }
 
@@ -174,7 +174,7 @@ std::vector<ScenePath> Piece::stories(const SceneLight& light) const {
   std::map<Story, std::vector<raytrace::LightPath>> stories;
   for (int j = 0; j < kGrid; ++j)
     for (int i = 0; i < kGrid; ++i) {
-      // Off the lines of symmetry, where light would meet edges.
+      // Points on lines of symmetry are avoided, because light would hit edges there.
       const geometry::Vec2 at((i + 0.43) / kGrid - 0.5, (j + 0.47) / kGrid - 0.5);
       raytrace::LightPath path = this->path(light, centre_mm_ + at.cwiseProduct(window));
       stories[story_of(path)].push_back(std::move(path));

@@ -1,6 +1,6 @@
 #pragma once
 
-// A piece of a design that is small enough to be looked at, and light paths through it.
+// Small number of elements of a design for display, and light paths through them.
 
 #include <array>
 #include <optional>
@@ -14,13 +14,13 @@
 
 namespace retrace::studies {
 
-/// Where the light comes from.
+/// Direction of the light.
 struct SceneLight {
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
 };
 
-/// A path and what share of the light that falls on one element goes such a way.
+/// Light path, and the fraction of the light on one element that takes such a path.
 struct ScenePath {
   raytrace::LightPath path;
   double incidence_deg = 0.0;
@@ -28,38 +28,42 @@ struct ScenePath {
   double share = 0.0;
 };
 
-/// Elements along a side of a still picture ...
+/// Number of elements along a side of a still picture.
 inline constexpr double kSceneElements = 4.0;
-/// ... and of a view that follows any light: askew through the plate it does not leave the piece before it meets them.
+/// Number of elements along a side of an interactive view. It is greater, so that oblique light does not leave the
+/// plate before it hits the elements.
 inline constexpr double kLiveElements = 6.0;
 
-/// A few elements of a design, on a plate no thicker than they are wide. Rough facets are shown smooth.
+/// A few elements of a design, on a plate that is not thicker than they are wide. Rough facets are shown as smooth.
 class Piece {
  public:
-  /// \param elements along a side of an array, at most \throw InputError as make_model()
+  /// \param elements maximum number of elements along a side of an array
+  /// \throw InputError as make_model()
   Piece(const Design& design, const materials::MaterialLibrary& library, double elements);
   Piece(const Piece&) = delete;
   Piece& operator=(const Piece&) = delete;
 
   const OpticalModel& model() const { return model_; }
   const geometry::BoundaryMesh& mesh() const { return mesh_; }
-  /// Where faces meet.
+  /// Returns the edges between faces.
   const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
-  /// In what it differs from the design.
+  /// Returns the differences from the design.
   const std::vector<std::string>& remarks() const { return remarks_; }
   const geometry::Vec2& centre_mm() const { return centre_mm_; }
 
-  /// Of a place of the whole part on z = 0: the like place of the piece, of several the one nearest to its middle.
+  /// Returns the position in the piece that corresponds to a position of the whole part on z = 0. Of several positions,
+  /// it is the nearest to the centre.
   geometry::Vec2 like_place(const geometry::Vec2& at_mm) const;
-  /// Where light enters the piece that meets its elements as light that enters the whole part at `at_mm` does.
+  /// Returns the entry point for which light hits the elements of the piece as light that enters the whole part at
+  /// `at_mm` hits its elements.
   geometry::Vec2 entry_of(const SceneLight& light, const geometry::Vec2& at_mm) const;
-  /// The way of light that enters there.
+  /// Returns the path of light that enters at a point.
   raytrace::LightPath path(const SceneLight& light, const geometry::Vec2& entry_mm) const;
-  /// Up to three kinds of path of light that falls on an element in the middle, the most frequent ones first.
+  /// Returns up to three kinds of paths of light that hits an element in the centre, the most frequent first.
   std::vector<ScenePath> stories(const SceneLight& light) const;
 
  private:
-  /// How a piece of an array lies on the lattice of the whole.
+  /// Position of the piece on the lattice of the whole array.
   struct Lattice {
     geometry::Vec2 from_whole_mm = geometry::Vec2::Zero();
     geometry::Vec2 period_mm = geometry::Vec2::Zero();
@@ -73,7 +77,7 @@ class Piece {
   geometry::BoundaryMesh mesh_;
   std::vector<std::array<std::uint32_t, 2>> edges_;
   geometry::Vec2 centre_mm_ = geometry::Vec2::Zero();
-  std::optional<Lattice> lattice_;  ///< none: the piece is the whole, or places have no like ones
+  std::optional<Lattice> lattice_;  ///< none: the piece is the whole part, or positions do not repeat
   std::optional<raytrace::ExactSurface> surface_;
 };
 

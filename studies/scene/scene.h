@@ -1,6 +1,6 @@
 #pragma once
 
-// A part with paths of light through it, to be shown in three dimensions on the page of `retrace report`.
+// Part with light paths for the three-dimensional view on the page of `retrace report`.
 
 #include <array>
 #include <nlohmann/json_fwd.hpp>
@@ -11,19 +11,21 @@
 
 namespace retrace::studies {
 
-/// A design to look at.
+/// Design for display.
 struct DesignScene {
   geometry::BoundaryMesh mesh;
-  std::vector<std::array<std::uint32_t, 2>> edges;  ///< where faces meet
+  std::vector<std::array<std::uint32_t, 2>> edges;  ///< edges between faces
   std::vector<ScenePath> paths;
-  std::vector<std::string> remarks;  ///< in what it differs from the design
+  std::vector<std::string> remarks;  ///< differences from the design
 };
 
-/// A still picture of a Piece, with up to three kinds of path from each direction. \throw InputError as make_model()
+/// Returns a still picture of a Piece, with up to three kinds of paths for each direction.
+/// \throw InputError as make_model()
 DesignScene make_scene(const Design& design, const std::vector<SceneLight>& lights);
 
-/// The design that a result quotes (to_json()), as far as it matters to a picture: texture, spectrum and polarisation
-/// are left out. \throw InputError if it is none
+/// Returns the design from the JSON of a result (to_json()) for a picture. Texture, spectrum and polarisation are left
+/// out.
+/// \throw InputError if the JSON is no design
 Design design_of_json(const nlohmann::ordered_json& json);
 
 }  // namespace retrace::studies

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kKinds = {"element", "array", "mould"};
 
-/// About how many elements a finite array has, before any is built.
+/// Estimates the number of elements of a finite array before it is built.
 double estimated_elements(const geometry::PartSpec& spec) {
   if (spec.array.arrangement == geometry::Arrangement::single) return 1.0;
   const double cell_mm2 = geometry::area(geometry::aperture_outline(spec.element));
@@ -84,7 +84,7 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
   return part;
 }
 
-/// What was read, mended where it had to be.
+/// Returns the mesh of the design as a solid, with its repairs.
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
     check_taken(solid.design, {.what = fmt::format("--what {}", name_of(solid.what)), .wet_backs = true});

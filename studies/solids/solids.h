@@ -1,6 +1,6 @@
 #pragma once
 
-// Elements, parts and moulds as closed solids that CAD and other programs read. The study behind `retrace export`.
+// Elements, parts and moulds as closed solids for CAD and other programs. This study is behind `retrace export`.
 
 #include <cstdint>
 #include <optional>
@@ -12,30 +12,31 @@
 
 namespace retrace::studies {
 
-/// Which solid of a design.
+/// Kind of solid that is made of a design.
 enum class SolidKind {
-  element,  ///< one element on its plate, as `arrangement = "single"` has it
-  array,    ///< the part
-  mould     ///< the block behind the part's back surface that the part is moulded in
+  element,  ///< one element on its plate, as with `arrangement = "single"`
+  array,    ///< whole part
+  mould     ///< block behind the back surface, in which the part is moulded
 };
 
+/// Reads a kind of solid.
 /// \throw InputError unless `word` is "element", "array" or "mould"
 SolidKind read_solid_kind(const std::string& word);
 std::string name_of(SolidKind kind);
 
-/// Most elements of a solid that is written: its boundary is one mesh in memory.
+/// Maximum number of elements of a solid. Its boundary is one mesh in memory.
 inline constexpr std::int64_t kMostSolidElements = 200'000;
 
 struct SolidRequest {
   SolidKind what = SolidKind::array;
-  std::optional<double> block_mm;  ///< of a mould, below its deepest point, > 0; none: as thick as the plate
+  std::optional<double> block_mm;  ///< thickness of a mould below its deepest point, > 0; none: thickness of the plate
 };
 
-/// A closed boundary and its figures.
+/// Closed boundary and its figures.
 struct Solid {
   Design design;
   SolidKind what = SolidKind::array;
-  double block_mm = 0.0;  ///< moulds only
+  double block_mm = 0.0;  ///< only for moulds
   geometry::BoundaryMesh mesh;
   std::int64_t elements_full = 0;
   std::int64_t elements_partial = 0;
@@ -43,14 +44,14 @@ struct Solid {
   double area_mm2 = 0.0;
   geometry::Vec3 lower_mm = geometry::Vec3::Zero();
   geometry::Vec3 upper_mm = geometry::Vec3::Zero();
-  bool is_manifold = true;  ///< it touches itself along no edge
+  bool is_manifold = true;  ///< true: the solid does not touch itself along an edge
   std::vector<std::string> warnings;
 };
 
-/// Builds the boundary of a solid of a design. Facets are plane and smooth: texture and everything else that
-/// `[surface]` says but for angles and edges is left out.
-/// \throw InputError for an infinite array (an element of it is allowed), a mask that cannot be read, more than
-/// kMostSolidElements, or a block that is not thicker than 0
+/// Builds the boundary of a solid. Facets are plane and smooth. Of the table [surface], only errors of angle and edges
+/// are used.
+/// \throw InputError for an infinite array (a single element is allowed), a mask that cannot be read, more than
+/// kMostSolidElements elements, and a block without thickness
 Solid make_solid(const Design& design, const SolidRequest& request);
 
 }  // namespace retrace::studies

@@ -1,23 +1,24 @@
 #pragma once
 
-// Tells which of several processes that share a store are still alive, by file locks.
+// Determines by file locks which of several processes that share a store are still alive.
 
 #include <cstdint>
 #include <filesystem>
 
 namespace retrace::studies {
 
-/// Which processes live, told by the locks that each holds on one byte of a common file: the system lets go of them
-/// when a process ends, however it ends.
+/// Locks that show which processes are alive. Each process locks one byte of a common file. The system releases the
+/// lock when the process ends for any reason.
 class ProcessLocks {
  public:
-  /// Takes the first free byte. \throw OutputError if the file cannot be made or locked
+  /// Locks the first free byte.
+  /// \throw OutputError if the file cannot be created or locked
   explicit ProcessLocks(const std::filesystem::path& file);
   ~ProcessLocks();
   ProcessLocks(const ProcessLocks&) = delete;
   ProcessLocks& operator=(const ProcessLocks&) = delete;
 
-  /// The byte of this process. That of a process that died may be taken by another.
+  /// Returns the byte of this process. Another process may later lock the byte of a dead process.
   std::int64_t own() const { return own_; }
   bool is_alive(std::int64_t owner) const;
 

@@ -5,7 +5,8 @@
 namespace retrace::studies {
 
 std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life) {
-  // Global, because the parts that OpenMPI loads by itself name no library that they need.
+  // The module is loaded with global symbols, because the components that OpenMPI loads do not name the libraries that
+  // they need.
   static constexpr Module module{.name = "retrace_mpi",
                                  .function = "retrace_mpi_mailbox",
                                  .lack = "ranks of mpirun or srun cannot work together",

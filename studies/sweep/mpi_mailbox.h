@@ -1,6 +1,7 @@
 #pragma once
 
-// Internal to studies/sweep: messages between the ranks of an MPI job. MPI itself is in a module, mpi_module.cpp.
+// Messages between the ranks of an MPI job. MPI itself is used only in a module, mpi_module.cpp. Internal to
+// studies/sweep.
 
 #include <chrono>
 #include <memory>
@@ -9,48 +10,52 @@
 
 namespace retrace::studies {
 
-/// What one rank told another.
+/// Message from one rank to another.
 struct Letter {
-  int rank = 0;  ///< that wrote it
+  int rank = 0;  ///< sender
   int tag = 0;
   std::string bytes;
 };
 
-/// Letters between the ranks of a job. All of MPI happens on a thread of its own, which also tells the others that this
-/// rank is at work: whatever becomes of a rank, and whatever MPI makes of its end, no call
-/// here waits for MPI without a limit. One thread reads; any thread may post.
+/// Messages between the ranks of a job. A separate thread makes all MPI calls and also sends signs of life. No function
+/// of this class waits for MPI without a limit, even if another rank dies or MPI does not end. One thread reads; any
+/// thread may post.
 class MpiMailbox {
  public:
-  /// Without close(): leaves MPI as it is.
+  /// Does not finalize MPI unless close() was called.
   virtual ~MpiMailbox() = default;
 
-  /// Waits for MPI, which starts when the mailbox is made. \return whether it has
+  /// Waits for the start of MPI, which begins when the mailbox is made.
+  /// \return true if MPI has started
   virtual bool wait_for_start(std::chrono::milliseconds patience) = 0;
 
-  /// \pre MPI has started, here and below
+  /// \pre MPI has started, for this and all following functions
   virtual int rank() const = 0;
   virtual int size() const = 0;
 
-  /// Sends a letter without waiting for it to go. \param tag > 0
+  /// Sends a message without waiting for its transfer.
+  /// \param tag must be > 0
   virtual void post(int to, int tag, std::string bytes) = 0;
-  /// The next letter, if one comes in time.
+  /// Returns the next message, or nothing if none arrives in time.
   virtual std::optional<Letter> take(std::chrono::microseconds patience) = 0;
-  /// For how long nothing, not even a sign of life, has come from a rank.
+  /// Returns the time since the last message or sign of life of a rank.
   virtual std::chrono::duration<double> silence(int rank) const = 0;
-  /// Counts all silences from now on: when this process itself has been away.
+  /// Restarts the measurement of all silences, after this process itself was suspended.
   virtual void forgive_silence() = 0;
-  /// Nothing more is told to a rank that was given up; what is on its way to it is not waited for.
+  /// Stops sending to a rank that was given up. Its pending messages are not awaited.
   virtual void forget(int rank) = 0;
 
-  /// Waits until what was posted has gone. \return whether it has
+  /// Waits until all posted messages have been sent.
+  /// \return true if they have been sent in time
   virtual bool flush(std::chrono::milliseconds patience) = 0;
-  /// Ends MPI together with all other ranks. \return whether that came off in time; if not, MPI is left as it is and
-  /// the process is to end with _exit()
+  /// Finalizes MPI together with all other ranks.
+  /// \return true if this succeeded in time; otherwise, MPI is not finalized and the process must end with _exit()
   virtual bool close(std::chrono::milliseconds patience) = 0;
 };
 
-/// Starts MPI. \param sign_of_life how often the other ranks are told that this one is at work: rank 0 tells all, the
-/// others tell rank 0 \throw OutputError if the module with MPI cannot be loaded
+/// Starts MPI.
+/// \param sign_of_life interval of signs of life: rank 0 sends them to all ranks, the other ranks send them to rank 0
+/// \throw OutputError if the module with MPI cannot be loaded
 std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life);
 
 }  // namespace retrace::studies

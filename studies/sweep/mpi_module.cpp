@@ -1,4 +1,4 @@
-// The module that is loaded where mpirun or srun launched the program. The one place that names MPI.
+// Module that is loaded if mpirun or srun launched the program. Only this file uses MPI.
 
 #include <mpi.h>
 
@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::microseconds kPoll{100};
 constexpr int kSignOfLife = 0;
 
-/// A message on its way; its bytes stay where they are until MPI is done with them.
+/// Message that is being transferred. Its bytes must not move until MPI has finished.
 struct Transfer {
   MPI_Request request = MPI_REQUEST_NULL;
   int rank = 0;
@@ -36,11 +36,11 @@ bool is_done(Transfer& transfer) {
   return done != 0;
 }
 
-/// What the mailbox and the thread that speaks with MPI share.
+/// State that the mailbox shares with the thread that calls MPI.
 struct MailboxState {
   std::chrono::milliseconds sign_of_life{500};
 
-  // Shared, under the mutex.
+  // Shared members, protected by the mutex.
   mutable std::mutex mutex;
   std::condition_variable changed;
   bool started = false;
@@ -49,16 +49,16 @@ struct MailboxState {
   bool ended = false;
   int rank = 0;
   int size = 1;
-  std::deque<Letter> posted;  ///< with the rank that each is for
+  std::deque<Letter> posted;  ///< `rank` is the receiver
   std::deque<Letter> arrived;
-  bool sending = false;  ///< letters are on their way
+  bool sending = false;  ///< true: messages are being sent
   std::set<int> forgotten;
   std::vector<Clock::time_point> heard;
 
-  // The thread's own. Lists, as MPI holds addresses of what is in them.
+  // Members that only the thread uses. They are lists because MPI stores addresses of their elements.
   std::list<Transfer> outgoing;
   std::list<Transfer> incoming;
-  std::list<Transfer> given_up;  ///< may be written to as long as the process lives
+  std::list<Transfer> given_up;  ///< MPI may write to these as long as the process lives
   Clock::time_point told_last;
 
   void run();
@@ -75,7 +75,7 @@ struct MailboxState {
 void MailboxState::start() {
   int provided = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-  // A rank that dies must not take this one along.
+  // The death of another rank must not end this rank.
   MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
   int own_rank = 0;
   int ranks = 1;
@@ -112,7 +112,8 @@ bool MailboxState::send_posted() {
   return !letters.empty();
 }
 
-/// Takes what has come; a long message may need several calls. \return whether anything had come
+/// Receives messages that have arrived. A long message may need several calls.
+/// \return true if any data had arrived
 bool MailboxState::receive() {
   for (;;) {
     int is_there = 0;
@@ -126,7 +127,7 @@ bool MailboxState::receive() {
     MPI_Irecv(transfer.bytes.data(), bytes, MPI_BYTE, transfer.rank, transfer.tag, MPI_COMM_WORLD, &transfer.request);
   }
   bool any = false;
-  std::set<int> unfinished;  // letters of a rank arrive in their order
+  std::set<int> unfinished;  // messages of a rank arrive in their order
   for (auto transfer = incoming.begin(); transfer != incoming.end();) {
     if (unfinished.contains(transfer->rank) || !is_done(*transfer)) {
       unfinished.insert(transfer->rank);
@@ -200,7 +201,7 @@ class Mailbox final : public MpiMailbox {
  public:
   explicit Mailbox(std::chrono::milliseconds sign_of_life) : state_(std::make_shared<MailboxState>()) {
     state_->sign_of_life = sign_of_life;
-    // Detached: a thread that MPI keeps for ever cannot be joined.
+    // The thread is detached, because it could not be joined if MPI blocked it forever.
     std::thread([state = state_] { state->run(); }).detach();
   }
 
@@ -263,7 +264,7 @@ class Mailbox final : public MpiMailbox {
   }
 
  private:
-  std::shared_ptr<MailboxState> state_;  ///< shared with the thread, which may outlive this
+  std::shared_ptr<MailboxState> state_;  ///< shared with the thread, which may live longer than this object
 };
 
 }  // namespace

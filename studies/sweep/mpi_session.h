@@ -1,7 +1,7 @@
 #pragma once
 
-// One work on several machines under MPI: rank 0 deals out tasks, such as the points of a sweep, the others compute
-// them.
+// Distributes one computation over several machines with MPI. Rank 0 deals out tasks, such as the points of a sweep,
+// and the other ranks compute them.
 
 #include <memory>
 #include <string>
@@ -12,38 +12,43 @@
 
 namespace retrace::studies {
 
-/// One work on several machines: rank 0 holds its ledger and deals tasks out, the others ask for some whenever they
-/// have none. Nothing of MPI is touched unless the process was launched by mpirun or srun. Ranks that fall silent are
-/// given up, and their tasks dealt to others; a rank that hears nothing of rank 0 ends. No wait is without a limit.
+/// Computation on several machines. Rank 0 has the ledger and deals out tasks; the other ranks request tasks when they
+/// have none. MPI is used only if mpirun or srun launched the process. Silent ranks are given up, and their tasks are
+/// dealt to others. A rank that receives nothing from rank 0 ends. All waiting times are limited.
 class MpiSession {
  public:
-  /// Whether mpirun or srun launched this process with MPI.
+  /// Returns true if mpirun or srun launched this process with MPI.
   static bool is_launched();
-  /// Initialises MPI. \pre is_launched(); once in a process \throw OutputError if the module with MPI cannot be loaded;
-  /// InputError for a limit of silence (RETRACE_MPI_SILENCE_S) out of range; BudgetError if MPI does not start
+  /// Initializes MPI.
+  /// \pre is_launched(); called at most one time in a process
+  /// \throw OutputError if the module with MPI cannot be loaded
+  /// \throw InputError if the limit of silence (RETRACE_MPI_SILENCE_S) is out of range
+  /// \throw BudgetError if MPI does not start
   MpiSession();
-  /// As end().
+  /// Calls end().
   ~MpiSession();
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
 
   int rank() const;
 
-  /// Rank 0: deals tasks out and computes some itself, `slots` at a time. \pre called once \return whether all are
-  /// finished \throw Error of the ledger, or of a task that it computed itself
+  /// Rank 0: deals out tasks and computes some itself, `slots` at a time.
+  /// \pre called at most one time
+  /// \return true if all tasks are finished
+  /// \throw Error of the ledger, or of a task that rank 0 computed
   bool deal(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots, const Cancellation* cancel);
-  /// What rank 0 learnt about the others that a user should know.
+  /// Returns remarks of rank 0 on the other ranks, for the user.
   std::vector<std::string> remarks() const;
 
-  /// The other ranks: compute what they are dealt, `slots` tasks at a time, until there is no more. \throw Error of a
-  /// task, after which leave() is to be called
+  /// Other ranks: compute the tasks that rank 0 deals out, `slots` at a time, until there are no more.
+  /// \throw Error of a task; leave() must then be called
   void serve(const ComputeTask& compute, std::size_t slots, const Cancellation* cancel);
-  /// The other ranks: tells rank 0 that this one cannot serve, and why.
+  /// Other ranks: tells rank 0 that this rank cannot continue, and why.
   void leave(const std::string& why);
 
-  /// Rank 0: lets the others go, once its results are written: what launched the job may end all ranks as soon as one
-  /// has left out of order. The others: wait until they are let go. \return whether MPI was ended in order; if not, as
-  /// with ranks that are gone, the process is to end with _exit()
+  /// Rank 0: allows the other ranks to end, after its results are written. Before, the launcher might end all ranks as
+  /// soon as one ends with an error. Other ranks: wait for this permission.
+  /// \return true if MPI was finalized; otherwise, for example if ranks were lost, the process must end with _exit()
   bool end();
 
  private:

@@ -9,7 +9,7 @@
 namespace retrace::studies {
 namespace {
 
-/// Streams of random numbers that nothing else of retrace draws from.
+/// Streams of random numbers that are used only here.
 constexpr std::uint32_t kScramble = 0x53776501U;
 constexpr std::uint32_t kShuffle = 0x53776502U;
 constexpr std::uint32_t kJitter = 0x53776503U;
@@ -23,8 +23,8 @@ std::uint32_t reversed(std::uint32_t v) {
   return ((v & 0x55555555U) << 1) | ((v >> 1) & 0x55555555U);
 }
 
-/// Every bit is flipped by a hash of the bits above it: a nested uniform scramble (Burley, J. Comp. Graphics Techniques
-/// 9, 2020, whose constants these are).
+/// Applies a nested uniform scramble: every bit is flipped by a hash of the bits above it. The constants are those of
+/// Burley, J. Comp. Graphics Techniques 9, 2020.
 std::uint32_t scrambled(std::uint32_t digits, std::uint32_t key) {
   std::uint32_t v = reversed(digits);
   v ^= v * 0x3d20adeaU;
@@ -35,7 +35,7 @@ std::uint32_t scrambled(std::uint32_t digits, std::uint32_t key) {
   return reversed(v);
 }
 
-/// The middle of one of 2^32 equal parts: never 0 and never 1, where quantiles are infinite.
+/// Returns the centre of one of 2^32 equal intervals. It is never 0 or 1, where quantiles may be infinite.
 double middle(std::uint32_t word) {
   return (static_cast<double>(word) + 0.5) * 0x1p-32;
 }
@@ -69,7 +69,7 @@ std::vector<double> UnitSamples::at(std::uint64_t point) const {
 std::vector<double> UnitSamples::sobol(std::uint64_t point) const {
   std::vector<double> coordinates(dimensions_);
   boost::random::sobol engine(dimensions_);
-  // The engine leaves out the sequence's first point, the origin.
+  // The Sobol engine omits the first point of the sequence, the origin.
   if (point > 0) engine.discard((point - 1) * dimensions_);
   for (std::size_t axis = 0; axis < dimensions_; ++axis) {
     const auto digits = point > 0 ? static_cast<std::uint32_t>(engine() >> 32) : 0U;

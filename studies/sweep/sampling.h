@@ -1,6 +1,6 @@
 #pragma once
 
-// Sample points of the unit cube for parameter studies: Sobol, Latin hypercube, plain Monte Carlo.
+// Sample points of the unit cube for parameter studies: Sobol, Latin hypercube, and Monte Carlo.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,20 +8,21 @@
 
 namespace retrace::studies {
 
-/// Points of the unit cube, each told by its number alone, so that any process may compute any of them.
+/// Points of the unit cube. The number of a point determines its coordinates, so that any process can compute any
+/// point.
 class UnitSamples {
  public:
   enum class Kind {
-    sobol,            ///< Owen-scrambled by hashes (Laine and Karras 2011): best with a power of two
-    latin_hypercube,  ///< one point in each of `count` equal parts of every axis (McKay et al. 1979)
-    monte_carlo       ///< each by itself
+    sobol,            ///< Owen-scrambled by hashes (Laine and Karras 2011); best with a power of two
+    latin_hypercube,  ///< one point in each of `count` equal intervals of every axis (McKay et al. 1979)
+    monte_carlo       ///< independent random points
   };
   /// \pre 1 <= dimensions <= most_dimensions, 1 <= count <= 2^31
   UnitSamples(Kind kind, std::size_t dimensions, std::uint64_t count, std::uint32_t seed);
 
   static constexpr std::size_t most_dimensions = 1000;
 
-  /// The coordinates of a point, each in (0, 1).
+  /// Returns the coordinates of a point, each in (0, 1).
   std::vector<double> at(std::uint64_t point) const;
 
  private:
@@ -33,7 +34,7 @@ class UnitSamples {
   std::size_t dimensions_;
   std::uint64_t count_;
   std::uint32_t seed_;
-  std::vector<std::vector<std::uint32_t>> permutations_;  ///< by axis; Latin hypercube
+  std::vector<std::vector<std::uint32_t>> permutations_;  ///< by axis; for the Latin hypercube
 };
 
 }  // namespace retrace::studies

@@ -11,21 +11,22 @@
 namespace retrace::studies {
 namespace {
 
-/// A stream of random numbers that nothing else of retrace draws from.
+/// Stream of random numbers that is used only here.
 constexpr std::uint32_t kResample = 0x53776510U;
 constexpr std::size_t kResamples = 1000;
-/// Rows beyond that are resampled in groups.
+/// Maximum number of groups of rows for resampling. If there are more rows, several rows form a group.
 constexpr std::size_t kMostGroups = 500;
 
-/// Sums over rows from which the indices follow. Values are counted from their overall mean, so that nothing cancels.
+/// Sums over rows from which the indices are computed. Values are relative to their overall mean, so that there is no
+/// cancellation.
 struct Sums {
   double rows = 0.0;
-  double values = 0.0;   ///< of a and b
-  double squares = 0.0;  ///< likewise
+  double values = 0.0;   ///< sum of a and b
+  double squares = 0.0;  ///< sum of the squares of a and b
   double b = 0.0;
-  std::vector<double> changes;          ///< mixed - a, by parameter
-  std::vector<double> products;         ///< b (mixed - a)
-  std::vector<double> squared_changes;  ///< (mixed - a)^2
+  std::vector<double> changes;          ///< sums of mixed - a, by parameter
+  std::vector<double> products;         ///< sums of b (mixed - a)
+  std::vector<double> squared_changes;  ///< sums of (mixed - a)^2
 
   explicit Sums(std::size_t parameters) : changes(parameters), products(parameters), squared_changes(parameters) {}
 
@@ -68,7 +69,7 @@ double centre_of(const std::vector<SaltelliRow>& rows) {
   return sum / (2.0 * static_cast<double>(rows.size()));
 }
 
-/// Sums of groups of neighbouring rows.
+/// Returns the sums of groups of neighbouring rows.
 std::vector<Sums> grouped(const std::vector<SaltelliRow>& rows, double centre) {
   const std::size_t groups = std::min(rows.size(), kMostGroups);
   std::vector<Sums> sums(groups, Sums(rows.front().mixed.size()));

@@ -42,7 +42,7 @@ Sweep tolerance_sweep(Study study, const ToleranceRequest& request) {
 
 namespace {
 
-/// Finished points by number; null where there is none.
+/// Finished points by number. Null for points that are not finished.
 class Finished {
  public:
   Finished(const Sweep& sweep, const ToleranceRequest& request, const std::vector<StoredPoint>& points)
@@ -60,7 +60,7 @@ class Finished {
   const StoredPoint* at(std::uint64_t row, std::uint64_t place) const {
     return points_[1 + row * points_of_row_ + place];
   }
-  /// Parts as they are made: those of A, and of B if there are such.
+  /// Returns the parts as they are manufactured: points A, and points B if there are any.
   std::vector<const StoredPoint*> parts() const {
     std::vector<const StoredPoint*> parts;
     for (std::uint64_t place = 0; place < std::min<std::uint64_t>(2, points_of_row_); ++place)
@@ -81,7 +81,7 @@ std::optional<double> value_of(const StoredPoint* point, std::size_t quantity) {
   return point->outputs.at(quantity).value;
 }
 
-/// Nothing if one of the row's points has no value.
+/// Returns the values of a row, or nothing if one of its points has no value.
 std::optional<SaltelliRow> row_of(const Finished& finished, std::uint64_t row, std::size_t quantity) {
   const auto a = value_of(finished.at(row, 0), quantity);
   const auto b = value_of(finished.at(row, 1), quantity);
@@ -130,7 +130,7 @@ QuantityTolerance tolerance_of(const Sweep& sweep, const Finished& finished, con
   return result;
 }
 
-/// What has no value holds no limit.
+/// Returns true if a part satisfies a limit. A missing value violates every limit.
 bool holds(const Sweep& sweep, const StoredPoint& part, const Constraint& limit) {
   for (std::size_t k = 0; k < sweep.study().quantities.size(); ++k)
     if (sweep.study().quantities[k]->name() == limit.quantity) return limit.violation(value_of(&part, k)) <= 0.0;

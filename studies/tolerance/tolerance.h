@@ -1,7 +1,7 @@
 #pragma once
 
-// Spread and yield of quantities when parameters vary as manufacture lets them, and which parameters cause it. The
-// study behind `retrace tolerance`.
+// Spread and yield of quantities when parameters vary in manufacture, and the contribution of each parameter. This
+// study is behind `retrace tolerance`.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,18 +15,18 @@
 
 namespace retrace::studies {
 
-/// What is asked of a tolerance study.
+/// Request for a tolerance study.
 struct ToleranceRequest {
-  std::uint64_t samples = 256;  ///< rows: with indices 2 parts each, and as many more points as there are parameters
+  std::uint64_t samples = 256;  ///< number of rows; with indices, a row has 2 parts and one more point per parameter
   UnitSamples::Kind sampling = UnitSamples::Kind::sobol;
   bool indices = true;
-  double confidence = 0.95;             ///< of all intervals
-  std::optional<double> least_yield;    ///< below it the answer is no
-  std::vector<Constraint> constraints;  ///< that a good part holds
+  double confidence = 0.95;             ///< confidence of all intervals
+  std::optional<double> least_yield;    ///< minimum yield; below it, the study fails
+  std::vector<Constraint> constraints;  ///< limits that a good part must satisfy
 };
 
-/// The points of a tolerance study: the nominal part, all parameters at their medians, then row by row the parts A, and
-/// with indices B and A with one parameter after the other from B.
+/// Points of a tolerance study. The first is the nominal part with all parameters at their medians. Each row follows
+/// with part A. With indices, it also has part B, and A with one parameter at a time replaced by that of B.
 class TolerancePlan final : public PointPlan {
  public:
   /// \pre every parameter has a distribution
@@ -45,41 +45,43 @@ class TolerancePlan final : public PointPlan {
   UnitSamples samples_;
 };
 
-/// A study with the points of its plan.
+/// Returns a sweep over the points of the plan.
 Sweep tolerance_sweep(Study study, const ToleranceRequest& request);
 
-/// How one quantity comes out over the parts that are made.
+/// Spread of one quantity over the parts.
 struct QuantityTolerance {
   std::string quantity;
   std::optional<double> nominal;
-  std::size_t parts = 0;    ///< that have a value
-  std::size_t without = 0;  ///< that could not be computed, or have none
+  std::size_t parts = 0;    ///< number of parts with a value
+  std::size_t without = 0;  ///< number of parts that could not be computed or have no value
   std::optional<Spread> spread;
-  std::vector<std::pair<double, double>> percentiles;  ///< share, value
+  std::vector<std::pair<double, double>> percentiles;  ///< fraction and value
   std::vector<SobolIndex> indices;  ///< by parameter; empty if they were not requested or do not exist
-  std::size_t rows = 0;             ///< that they rest on
-  /// Root mean square of the standard errors of the values over their deviation: what of the spread is noise.
+  std::size_t rows = 0;             ///< number of rows from which the indices were computed
+  /// Root mean square of the values' standard errors, divided by their standard deviation. It shows how much of the
+  /// spread is noise.
   std::optional<double> noise;
-  std::vector<double> values;  ///< ascending
+  std::vector<double> values;  ///< in ascending order
 };
 
-/// The share of parts that hold a limit.
+/// Fraction of the parts that satisfy a limit.
 struct LimitYield {
-  std::string text;  ///< of the limit
+  std::string text;  ///< text of the limit
   Estimate yield;
 };
 
 struct ToleranceResult {
   std::vector<QuantityTolerance> quantities;
-  std::optional<Estimate> yield;  ///< of parts that hold all limits; none without limits
+  std::optional<Estimate> yield;  ///< fraction of parts that satisfy all limits; none without limits
   std::vector<LimitYield> limits;
-  std::size_t parts = 0;   ///< that were made
-  std::size_t failed = 0;  ///< of those that could not be computed: no good parts
+  std::size_t parts = 0;   ///< number of manufactured parts
+  std::size_t failed = 0;  ///< number of parts that could not be computed; they count as bad
   std::vector<std::string> warnings;
-  bool is_enough = true;  ///< false: the yield is below the least that was requested
+  bool is_enough = true;  ///< false: the yield is below the requested minimum
 };
 
-/// \param points of `sweep`, which tolerance_sweep() made for this request; may be incomplete
+/// Computes the result of a tolerance study.
+/// \param points points of `sweep`, which tolerance_sweep() has made for this request; may be incomplete
 ToleranceResult analyse(const Sweep& sweep, const ToleranceRequest& request, const std::vector<StoredPoint>& points);
 
 }  // namespace retrace::studies

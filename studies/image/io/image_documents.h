@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace image`.
+// Output documents and tables of `retrace image`.
 
 #include <string>
 
@@ -10,12 +10,13 @@
 
 namespace retrace::studies {
 
-/// The JSON documents `retrace.image/1` of the kinds of picture: all but the pixels.
+/// The following functions return documents of the format `retrace.image/1` for each kind of picture, without the
+/// pixels.
 std::string detector_json(const DetectorResult& result);
 std::string camera_json(const CameraResult& result);
 std::string road_json(const RoadResult& result);
 
-/// For the terminal.
+/// The following functions return tables for the terminal.
 std::string detector_table(const DetectorResult& result);
 std::string camera_table(const CameraResult& result);
 std::string road_table(const RoadResult& result);

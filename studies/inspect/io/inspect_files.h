@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace inspect`.
+// Output documents and tables of `retrace inspect`.
 
 #include <string>
 
@@ -8,10 +8,10 @@
 
 namespace retrace::studies {
 
-/// The inspection as a `retrace.inspect/1` document.
+/// Returns the properties as a document of the format `retrace.inspect/1`.
 std::string inspect_json(const Inspection& inspection);
 
-/// The same as lines for a terminal.
+/// Returns the properties as lines for the terminal.
 std::string inspect_text(const Inspection& inspection);
 
 }  // namespace retrace::studies

@@ -14,7 +14,7 @@ namespace {
 
 using schema::Document;
 
-/// A quantity, or weights by name.
+/// Reads the objective: a quantity, or weights of several quantities.
 Objective read_objective(const Document& document, const Study& study) {
   const bool most = document.has("optimize.maximize");
   const std::string key = most ? "optimize.maximize" : "optimize.minimize";

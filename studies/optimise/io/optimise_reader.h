@@ -1,12 +1,13 @@
 #pragma once
 
-// Reads what a study file asks of an optimisation: objective, constraints, Pareto front, tolerance bands.
+// Reads the request for an optimization from a study file: objective, constraints, Pareto front, tolerance bands.
 
 #include "studies/optimise/optimise.h"
 
 namespace retrace::studies {
 
-/// What [optimize] and [[constraint]] of a study ask. \throw InputError
+/// Reads the tables [optimize] and [[constraint]] of a study.
+/// \throw InputError for invalid keys
 OptimiseRequest read_optimise(const Study& study);
 
 }  // namespace retrace::studies

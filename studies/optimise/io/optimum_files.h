@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace optimize`.
+// Output documents and tables of `retrace optimize`.
 
 #include <string>
 
@@ -8,13 +8,13 @@
 
 namespace retrace::studies {
 
-/// The result as a `retrace.optimum/1` document.
+/// Returns the result as a document of the format `retrace.optimum/1`.
 std::string optimum_json(const Study& study, const OptimiseRequest& request, const Optimum& optimum, double elapsed_s);
 
-/// The front, one design a line.
+/// Returns the Pareto front as CSV, with one line for each design.
 std::string front_csv(const Study& study, const Optimum& optimum);
 
-/// The chosen design, what it was chosen from and its tolerance bands, for the terminal.
+/// Returns the chosen design, its alternatives and its tolerance bands for the terminal.
 std::string optimum_text(const Study& study, const OptimiseRequest& request, const Optimum& optimum);
 
 }  // namespace retrace::studies

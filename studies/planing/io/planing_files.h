@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace plane`, and of `retrace verify` of planed parts.
+// Output documents and tables of `retrace plane`, and of `retrace verify` for planed parts.
 
 #include <string>
 
@@ -8,13 +8,13 @@
 
 namespace retrace::studies {
 
-/// The document `retrace.planing/1` (docs/commands.md).
+/// Returns the document `retrace.planing/1` (docs/commands.md).
 std::string planing_json(const PlaningResult& result);
-/// x_mm,design_mm,left_mm of a milled profile.
+/// Returns the profile of a milled part as CSV with the columns x_mm, design_mm and left_mm.
 std::string planing_csv(const PlaningResult& result);
 std::string planing_table(const PlaningResult& result);
 
-/// The document `retrace.verification/1` of a planed part (docs/commands.md).
+/// Returns the document `retrace.verification/1` of a planed part (docs/commands.md).
 std::string verification_json(const PlaningVerification& run, double elapsed_s);
 std::string verification_table(const PlaningVerification& run);
 

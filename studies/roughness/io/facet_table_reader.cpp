@@ -16,7 +16,7 @@ constexpr std::size_t kMostFacets = 10000;
 constexpr std::size_t kMostBytes = std::size_t{1} << 20;
 constexpr NumberRange kSaNm{.low = 0.0, .high = 1e5};
 
-/// Which column holds what.
+/// Indices of the columns of a table.
 struct Columns {
   std::size_t roughness = 0;
   std::optional<std::size_t> waviness, process, facet;
@@ -29,7 +29,7 @@ Columns columns_of(const CsvReader& table) {
   return {roughness ? *roughness : *sa, table.find("waviness_sa_nm"), table.find("process"), table.find("facet")};
 }
 
-/// The group that the row goes to.
+/// Returns the group of a row. It is created if it does not exist yet.
 FacetGroup& group_of(const CsvReader& row, const Columns& columns, std::vector<FacetGroup>& groups,
                      const std::string& table) {
   FacetGroup group;
@@ -56,7 +56,7 @@ std::vector<FacetGroup> parse_facet_table(std::string_view content, const std::s
     if (table.rows() > kMostFacets) table.fail(fmt::format("at most {} facets are allowed", kMostFacets));
     FacetGroup& group = group_of(table, columns, groups, name);
     ++group.facets;
-    // Means are kept as they grow: sums of finite numbers stay finite.
+    // Running means are used instead of sums, so that no sum overflows.
     const auto mean = [&](double& kept, double next) { kept += (next - kept) / static_cast<double>(group.facets); };
     mean(group.roughness_sa_nm, table.number(columns.roughness, kSaNm));
     if (columns.waviness) mean(group.waviness_sa_nm, table.number(*columns.waviness, kSaNm));

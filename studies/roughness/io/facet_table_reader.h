@@ -11,14 +11,15 @@
 
 namespace retrace::studies {
 
-/// Reads a table of measured facets: CSV with lines of comment (#), a line of column names and one line a facet.
-/// Columns: `roughness_sa_nm` (or `sa_nm`), `waviness_sa_nm` (0 where it is missing), `process`, `facet`. Others are
-/// passed over. The facets of one process make one group, in the order of the file; without that column each facet is
-/// one.
-/// \throw InputError naming file, line and column, what is allowed and what was given
+/// Reads a table of measured facets. It is a CSV file with comment lines (#), a line of column names and one line for
+/// each facet.
+/// The columns are `roughness_sa_nm` (or `sa_nm`), `waviness_sa_nm` (0 if missing), `process` and `facet`. Other
+/// columns are ignored. The facets of one process form a group, in the order of the file. Without the column `process`,
+/// each facet is a group.
+/// \throw InputError that contains file, line and column, the allowed values and the given value
 std::vector<FacetGroup> read_facet_table(const std::filesystem::path& file);
 
-/// The same for the content of a table called `name`.
+/// Reads the content of a table with the name `name`.
 std::vector<FacetGroup> parse_facet_table(std::string_view content, const std::string& name);
 
 }  // namespace retrace::studies

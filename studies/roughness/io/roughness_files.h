@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace roughness`.
+// Output documents and tables of `retrace roughness`.
 
 #include <string>
 
@@ -8,13 +8,13 @@
 
 namespace retrace::studies {
 
-/// The result as JSON, schema retrace.roughness/1.
+/// Returns the result as JSON with the schema retrace.roughness/1.
 std::string roughness_json(const RoughnessResult& result);
 
-/// One line a point: those of the curves, then the measured facets.
+/// Returns the points as CSV: first those of the curves, then the measured facets.
 std::string roughness_csv(const RoughnessResult& result);
 
-/// For people at a terminal.
+/// Returns the result as a table for the terminal.
 std::string roughness_table(const RoughnessResult& result);
 
 }  // namespace retrace::studies

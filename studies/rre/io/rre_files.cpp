@@ -49,7 +49,7 @@ Json by_wavelength_json(const std::vector<SpectralRre>& points) {
   return json;
 }
 
-/// The design as it was read, and the wavelengths that stood for its spectrum.
+/// Returns the design as JSON, with the wavelengths that represent its spectrum.
 Json design_json(const RreResult& result, std::size_t d) {
   Json json = to_json(result.designs[d]);
   if (result.designs[d].light.spectrum()) json["spectrum"] = spectrum_json(result.light[d]);
@@ -154,7 +154,7 @@ std::string derivative_table(const RreResult& result) {
 
 namespace {
 
-/// Closed: the first corner comes again at the end.
+/// Returns a closed ring, in which the last point is the same as the first.
 Json ring_of(const geometry::Polygon& outline) {
   Json ring = Json::array();
   for (std::size_t k = 0; k <= outline.size(); ++k) {
@@ -201,7 +201,7 @@ namespace {
 
 using Fields = std::array<std::pair<std::string_view, double>, 6>;
 
-/// The names or the values of all of them.
+/// Returns the names or the values of all fields.
 template <std::size_t part>
 std::vector<std::tuple_element_t<part, Fields::value_type>> parts_of(const Fields& fields) {
   std::vector<std::tuple_element_t<part, Fields::value_type>> parts;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace rre`: RRE, derivatives, footprints, far fields.
+// Output documents and tables of `retrace rre`: RRE, derivatives, footprints, far fields.
 
 #include <string>
 
@@ -8,27 +8,29 @@
 
 namespace retrace::studies {
 
-/// The result as a `retrace.rre/1` document.
+/// Returns the result as a document of the format `retrace.rre/1`.
 std::string rre_json(const RreResult& result);
 
-/// One line a point; the header holds the keys of the JSON.
+/// Returns the points as CSV. The header contains the keys of the JSON document.
 std::string rre_csv(const RreResult& result);
 
-/// A table for a terminal: RRE and its standard error in percent.
+/// Returns a table for the terminal with RRE and its standard error in percent.
 std::string rre_table(const RreResult& result);
 
-/// A table for a terminal: the change of RRE, as a fraction, per unit of each parameter. Empty if none was requested.
+/// Returns a table for the terminal with the derivatives of RRE, as a fraction, per unit of each parameter. Empty if
+/// none were requested.
 std::string derivative_table(const RreResult& result);
 
-/// The active regions of every direction as a `retrace.footprint/1` document, a GeoJSON feature collection in mm.
+/// Returns the active regions of every direction as a document of the format `retrace.footprint/1`. It is a GeoJSON
+/// feature collection in mm.
 /// \pre a footprint was requested
 std::string footprint_json(const RreResult& result);
 
-/// The directions in which light leaves the entrance face as a `retrace.far_field/1` document.
+/// Returns the directions in which light leaves the entrance face as a document of the format `retrace.far_field/1`.
 /// \pre a far field was requested
 std::string far_field_json(const RreResult& result);
 
-/// One line a spot; the header holds the keys of the JSON.
+/// Returns the spots of the far fields as CSV. The header contains the keys of the JSON document.
 std::string far_field_csv(const RreResult& result);
 
 }  // namespace retrace::studies

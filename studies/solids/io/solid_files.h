@@ -10,18 +10,20 @@ namespace retrace::studies {
 
 enum class SolidFormat { stl, obj, gltf, step };
 
-/// By the ending of a file's name: .stl, .obj, .glb, .step or .stp, in small or capital letters. \throw InputError
-/// otherwise
+/// Returns the format by the ending of a file's name, in lower or upper case: .stl, .obj, .glb, .step or .stp.
+/// \throw InputError for other endings
 SolidFormat solid_format(const std::string& file);
 
-/// The content of a file of that format. \throw InputError if STEP cannot hold the solid: it touches itself along
-/// edges, or an edge is too short; if it is too large for glTF; or for a material that glTF is to tell the index of
+/// Returns the content of a file in a format.
+/// \throw InputError if the solid touches itself along edges or has too short edges (STEP), if it is too large (glTF),
+/// and for a material without an index (glTF)
 std::string solid_text(const Solid& solid, SolidFormat format);
 
-/// The document `retrace.export/1`. \param file empty if none is written
+/// Returns the document `retrace.export/1`.
+/// \param file name of the written file; empty if there is none
 std::string solid_json(const Solid& solid, const std::string& file);
 
-/// The figures as a table for the terminal.
+/// Returns the figures of a solid as a table for the terminal.
 std::string solid_table(const Solid& solid);
 
 }  // namespace retrace::studies

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Rows of the terminal's table; files have all.
+/// Maximum number of rows in the table for the terminal. Files contain all rows.
 constexpr std::size_t kMostRows = 200;
 
 Json value_json(const StoredValue& value) {

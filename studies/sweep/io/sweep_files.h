@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace sweep`.
+// Output documents and tables of `retrace sweep`.
 
 #include <string>
 
@@ -8,13 +8,13 @@
 
 namespace retrace::studies {
 
-/// The result as a `retrace.sweep/1` document.
+/// Returns the result as a document of the format `retrace.sweep/1`.
 std::string sweep_json(const SweepResult& result);
 
-/// One line a point, inputs and quantities; the same for every run of a sweep.
+/// Returns the inputs and quantities of the points as CSV. The text is the same for every run of a sweep.
 std::string sweep_csv(const SweepResult& result);
 
-/// The points as a table for the terminal.
+/// Returns the points as a table for the terminal.
 std::string sweep_table(const SweepResult& result);
 
 }  // namespace retrace::studies

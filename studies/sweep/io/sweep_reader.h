@@ -1,12 +1,13 @@
 #pragma once
 
-// Reads what a study file says of its sweep: grid or sample.
+// Reads the sweep of a study file: a grid or a sample.
 
 #include "studies/sweep/sweep.h"
 
 namespace retrace::studies {
 
-/// The sweep that a study describes in [sweep]; without that table, its grid. \throw InputError
+/// Reads the table [sweep] of a study. Without this table, the sweep is a grid.
+/// \throw InputError for invalid keys
 Sweep read_sweep(Study study);
 
 }  // namespace retrace::studies

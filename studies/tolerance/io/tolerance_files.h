@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace tolerance`.
+// Output documents and tables of `retrace tolerance`.
 
 #include <string>
 
@@ -8,10 +8,11 @@
 
 namespace retrace::studies {
 
-/// The result as a `retrace.tolerance/1` document. \param swept what the points came to, with warnings
+/// Returns the result as a document of the format `retrace.tolerance/1`.
+/// \param swept computed points, with their warnings
 std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& request, const ToleranceResult& result);
 
-/// Spreads, yields and main contributors, for the terminal.
+/// Returns the spreads, yields and main contributors for the terminal.
 std::string tolerance_text(const Study& study, const ToleranceRequest& request, const ToleranceResult& result);
 
 }  // namespace retrace::studies

@@ -1,13 +1,14 @@
 #pragma once
 
-// Reads what a study file asks of a tolerance analysis.
+// Reads the request for a tolerance analysis from a study file.
 
 #include "studies/tolerance/tolerance.h"
 
 namespace retrace::studies {
 
-/// What [tolerance] and [[constraint]] of a study ask; without that table, the defaults. Parameters must have
-/// distributions. \throw InputError
+/// Reads the tables [tolerance] and [[constraint]] of a study. Without [tolerance], defaults apply. Parameters must
+/// have distributions.
+/// \throw InputError for invalid keys
 ToleranceRequest read_tolerance(const Study& study);
 
 }  // namespace retrace::studies
