@@ -200,7 +200,7 @@ class Fit {
   }
 
   const ReflectionTable& table_;
-  std::array<ArrayXXd, 3> power_;  ///< by grid point and direction of light
+  std::array<ArrayXXd, 3> power_;  ///< indexed by grid point and direction of light
   ArrayXXd luminous_;
   std::vector<Lobe> lobes_;
   ArrayXXd of_light_;  ///< power of lobes, by direction of light and lobe

@@ -29,7 +29,7 @@ class ErrorResponse {
 
  private:
   std::vector<double> nominal_;
-  std::vector<std::vector<double>> slopes_;                   ///< by angle
+  std::vector<std::vector<double>> slopes_;                   ///< indexed by angle
   std::vector<std::vector<std::vector<double>>> curvatures_;  ///< second derivatives, by two angles
 };
 

@@ -60,7 +60,7 @@ constexpr double kLeastBeamsOfCell = 10.0;
       memory_budget_text()));
 }
 
-/// Memory that a far field needs while its beams are collected. A beam that stands for several equal elements is
+/// Memory that a far field needs while its beams are collected. A beam that represents several equal elements is
 /// counted once for each element.
 class FarFieldMemory {
  public:
@@ -231,7 +231,7 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
 /// Sets Piece::missing_per_sr to the sum of three estimates:
 /// (1) Truncated light is assumed to return with the angular distribution of the other returned light.
 /// (2) The intensity that truncated beams would add is extrapolated from a coarse trace with a higher cut-off power.
-/// The middle wavelength stands for all wavelengths. This estimate is omitted if weak beams are resampled, because
+/// The middle wavelength represents all wavelengths. This estimate is omitted if weak beams are resampled, because
 /// hardly any light is then truncated.
 /// (3) Scattered light of unknown direction is assumed to have the angular distribution of the other scattered light.
 void Photometer::estimate_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,

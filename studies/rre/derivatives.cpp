@@ -57,7 +57,7 @@ double value_of(const TracedDirection& at, RreParameter parameter) {
 
 /// Result of one trace.
 struct Traced {
-  std::vector<double> rre;  ///< by acceptance cone
+  std::vector<double> rre;  ///< indexed by acceptance cone
   double truncated = 0.0;
   double noise = 0.0;  ///< uncertainty of all values between similar traces
 

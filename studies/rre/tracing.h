@@ -14,9 +14,9 @@ namespace retrace::studies {
 /// Direction of one design, with its results.
 struct Direction {
   RrePoint at;
-  std::vector<std::vector<RrePoint>> spectral;  ///< by wavelength and cone; empty if not traced yet
-  std::vector<std::uint64_t> rays;              ///< by wavelength
-  std::vector<char> missed_target;  ///< by wavelength; char instead of bool, because threads write concurrently
+  std::vector<std::vector<RrePoint>> spectral;  ///< indexed by wavelength and cone; empty if not traced yet
+  std::vector<std::uint64_t> rays;              ///< indexed by wavelength
+  std::vector<char> missed_target;  ///< indexed by wavelength; char instead of bool, because threads write concurrently
   std::vector<RrePoint> points;     ///< one for each cone; empty until all wavelengths are traced
   std::optional<Footprint> footprint;
   std::optional<FarField> far_field;
@@ -51,7 +51,7 @@ class DirectionTracing {
   const std::vector<OpticalModel>& models_;
   const RreRequest& request_;
   const Cancellation* cancel_;
-  std::vector<std::unique_ptr<DesignTracing>> tracings_;  ///< by design
+  std::vector<std::unique_ptr<DesignTracing>> tracings_;  ///< indexed by design
 };
 
 }  // namespace retrace::studies

@@ -34,7 +34,7 @@ class UnitSamples {
   std::size_t dimensions_;
   std::uint64_t count_;
   std::uint32_t seed_;
-  std::vector<std::vector<std::uint32_t>> permutations_;  ///< by axis; for the Latin hypercube
+  std::vector<std::vector<std::uint32_t>> permutations_;  ///< indexed by axis; for the Latin hypercube
 };
 
 }  // namespace retrace::studies

@@ -56,7 +56,7 @@ struct QuantityTolerance {
   std::size_t without = 0;  ///< number of parts that could not be computed or have no value
   std::optional<Spread> spread;
   std::vector<std::pair<double, double>> percentiles;  ///< fraction and value
-  std::vector<SobolIndex> indices;  ///< by parameter; empty if they were not requested or do not exist
+  std::vector<SobolIndex> indices;  ///< indexed by parameter; empty if they were not requested or do not exist
   std::size_t rows = 0;             ///< number of rows from which the indices were computed
   /// Root mean square of the values' standard errors, divided by their standard deviation. It shows how much of the
   /// spread is noise.
