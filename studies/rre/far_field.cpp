@@ -44,7 +44,7 @@ FarFieldSpot FarFieldBuilder::seen_from_source(const Spot& spot) const {
   const Vec3 first = raytrace::source_axis(to_source);
   const Vec3 second = to_source.cross(first);
   const double turn = std::atan2(spot.direction.dot(second), spot.direction.dot(first));
-  // Angles near -180 degrees are set to 180 degrees, so that rounding errors do not change the sign.
+  // Angles within rounding errors of -180 degrees are shifted by 360 degrees, so that their sign is always positive.
   seen.orientation = Angle::from_rad(turn < 1e-9 - std::numbers::pi ? turn + 2.0 * std::numbers::pi : turn);
   return seen;
 }
