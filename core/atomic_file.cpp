@@ -31,8 +31,8 @@ std::string reason(int error_number) {
 /// Number of random bytes in the name of a temporary file.
 constexpr std::size_t kRandomBytes = 8;
 
-/// Returns the beginning of the names of all temporary files of a target. It is followed by kRandomBytes random bytes
-/// in hexadecimal and by kTemporarySuffix.
+/// Returns the prefix of the names of temporary files for the output file `target`. A complete name consists of this
+/// prefix, kRandomBytes random bytes in hexadecimal, and kTemporarySuffix.
 std::string temporary_prefix(const fs::path& target) {
   return "." + target.filename().string() + ".";
 }
@@ -45,8 +45,8 @@ bool is_temporary_name(const std::string& name, const std::string& prefix) {
          std::ranges::all_of(std::string_view(name).substr(prefix.size(), 2 * kRandomBytes), is_hex);
 }
 
-/// Removes a temporary file unless a process is still writing it. The writer holds a lock on its file, and the system
-/// releases the lock when the process ends.
+/// Removes a temporary file unless a process is still writing it. The writing process holds a lock (flock) on the
+/// file. The operating system releases this lock when the process ends.
 void remove_if_abandoned(const fs::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -56,7 +56,8 @@ void remove_if_abandoned(const fs::path& file) {
   ::close(descriptor);
 }
 
-/// Removes the temporary files of a target that killed processes have left.
+/// Removes temporary files that were left in the folder of `target` by processes that were killed while they wrote
+/// `target`.
 void remove_abandoned(const fs::path& target) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const std::string prefix = temporary_prefix(target);
@@ -65,17 +66,19 @@ void remove_abandoned(const fs::path& target) {
     if (is_temporary_name(entry->path().filename().string(), prefix)) remove_if_abandoned(entry->path());
 }
 
-/// Name of a temporary file, stored where a signal handler can read it at any time.
+/// Name of a temporary file in an array of fixed size. A signal handler can read it without locks and without
+/// allocation.
 struct TemporaryName {
-  std::atomic<bool> is_taken{false};  ///< an object uses this entry
-  std::atomic<bool> is_set{false};    ///< `name` is complete
+  std::atomic<bool> is_taken{false};  ///< true if a KnownName object uses this entry
+  std::atomic<bool> is_set{false};    ///< true if `name` is complete
   std::array<char, 4096> name{};
 };
-/// Files beyond this number are left if a signal handler ends the process. The next run removes them.
+/// Maximum number of temporary files that a signal handler can remove when it ends the process. If more files are open
+/// at that time, the others remain until a later run writes the same output files.
 constexpr std::size_t kMaxTemporaryNames = 16;
 std::array<TemporaryName, kMaxTemporaryNames> temporary_names;
 
-/// Keeps the name of a temporary file in `temporary_names`.
+/// Registers the name of a temporary file in `temporary_names`, until clear() is called or the object is destroyed.
 class KnownName {
  public:
   KnownName() = default;
@@ -103,11 +106,12 @@ class KnownName {
   }
 
  private:
-  TemporaryName* entry_ = nullptr;  ///< null: no name is kept
+  TemporaryName* entry_ = nullptr;  ///< entry in `temporary_names`; null: no name is registered
 };
 
-/// Owns a file under a temporary name until it is moved into place; otherwise removes it. The name is random and the
-/// file is new. Files that others have put into the folder are therefore never opened.
+/// A new file with a random temporary name. move_to() renames it to its final name. If move_to() is not called, the
+/// destructor removes the file. Existing files are never opened, because other users may have placed files or links in
+/// the folder.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target) {
@@ -116,8 +120,8 @@ class TemporaryFile {
     const bool is_replacement = ::stat(target.c_str(), &before) == 0;
     const mode_t mode = is_replacement ? before.st_mode & 0777 : 0666;
     make(target, mode);
-    // The umask limits the mode of a new file; a replaced file keeps its mode. A file system without modes does no
-    // harm.
+    // The umask limits the mode of a new file. If the file replaces an existing file, it gets the mode of that file. A
+    // failure of fchmod is ignored because some file systems do not store modes.
     if (is_replacement) static_cast<void>(::fchmod(descriptor_, mode));
   }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -139,7 +143,8 @@ class TemporaryFile {
 
   void move_to(const fs::path& target) {
     if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target);
-    // The lock is held until the file has its name, so that no other process removes it as abandoned.
+    // The file is renamed before it is closed, because closing releases the lock. Without the lock, another process
+    // could remove the temporary file as abandoned.
     if (::rename(name_.c_str(), target.c_str()) != 0) fail(target);
     known_name_.clear();
     name_.clear();
@@ -151,7 +156,7 @@ class TemporaryFile {
     throw OutputError(fmt::format("{}: cannot be written: {}", target.string(), reason(errno)));
   }
 
-  /// Opens and locks a new file. If another process has removed the file before it was locked, makes another one.
+  /// Creates and locks a new file. If another process removes the file before it is locked, creates another one.
   void make(const fs::path& target, mode_t mode) {
     constexpr int kMaxAttempts = 100;
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
@@ -160,7 +165,8 @@ class TemporaryFile {
       if (descriptor_ < 0 && errno == EEXIST) continue;
       if (descriptor_ < 0) fail(target);
       known_name_.set(name_);
-      // Some network file systems have no locks. Abandoned files are not removed there.
+      // A failure of flock is ignored because some network file systems do not support locks. On these file systems,
+      // abandoned files are never removed.
       static_cast<void>(::flock(descriptor_, LOCK_EX));
       struct stat made = {};
       if (::fstat(descriptor_, &made) == 0 && made.st_nlink > 0) return;
@@ -183,13 +189,14 @@ class TemporaryFile {
     ::close(std::exchange(descriptor_, -1));
   }
 
-  fs::path name_;  ///< empty after the file has been moved into place
+  fs::path name_;  ///< temporary name; empty after move_to()
   KnownName known_name_;
   int descriptor_ = -1;
 };
 
-/// Returns the target of a symbolic link, and any other path unchanged. The target is written instead of the link.
-/// \throw OutputError if the link points to itself
+/// Returns the target of a symbolic link, so that the target is replaced and the link is kept. Returns any other path
+/// unchanged.
+/// \throw OutputError if the target cannot be determined, for example because links form a cycle
 fs::path followed(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;
@@ -207,7 +214,9 @@ fs::path followed(const fs::path& path) {
   throw InputError(InputLocation{name, 0, ""}, fmt::format("must have at most {} bytes, got more", most_bytes));
 }
 
-/// Everything from a stream that may never end; no more is read than shows that it is too long.
+/// Reads a stream to its end. Stops after `most_bytes` + 1 bytes, because the stream may be infinite.
+/// \param name name of the stream in messages
+/// \throw InputError if the stream has more than `most_bytes` bytes or cannot be read
 std::string read_all(std::istream& stream, const std::string& name, std::size_t most_bytes) {
   constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
   std::string text;
@@ -232,7 +241,7 @@ void remove_temporary_files() noexcept {
 void write_file_atomically(const fs::path& path, std::string_view content) {
   std::error_code ignored;
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    // A device such as /dev/null or a pipe has no "before" to keep: write through it.
+    // Devices such as /dev/null and pipes cannot be replaced by another file. They are written directly.
     if (fs::is_directory(path, ignored)) throw OutputError(path.string() + ": cannot be written: it is a folder");
     std::ofstream stream(path, std::ios::binary);
     stream << content << std::flush;
@@ -245,7 +254,7 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
   file.move_to(target);
 }
 
-/// Pieces are gathered, as many are small.
+/// Implementation of GrowingFile. Collects appended bytes in a buffer, because many of them are short.
 class GrowingFile::Hidden {
  public:
   explicit Hidden(fs::path target) : target_(std::move(target)), file_(target_) {}

@@ -1,6 +1,6 @@
 #pragma once
 
-// Files as a whole: outputs that appear completely or not at all, and inputs that are read up to a limit on their size.
+// Writes output files atomically: a file appears complete or not at all. Reads input files up to a maximum size.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,25 +11,29 @@
 
 namespace retrace {
 
-/// Replaces `path` by a file that holds `content`, as a whole or not at all: it is written beside it under another name
-/// and moved into place. \throw OutputError naming the path and the reason; `path` is then as it was.
+/// Replaces `path` by a file with the given content. The content is written to a temporary file in the same folder,
+/// which is then renamed.
+/// \throw OutputError with the path and the reason; `path` is then unchanged
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// A file of any length that is written piece by piece, and appears under its name when it is finished.
+/// Output file of any length that is written in parts. It appears under its name when finish() is called.
 class GrowingFile {
  public:
-  /// \throw OutputError if it cannot be written; what has the name already must be a regular file
+  /// \throw OutputError if the file cannot be written, or if `path` exists and is not a regular file
   explicit GrowingFile(const std::filesystem::path& path);
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
-  /// Nothing is left of a file that is not finished.
+  /// Removes the file unless finish() was called.
   ~GrowingFile();
 
   /// \throw OutputError
   void append(std::string_view bytes);
-  /// Writes again what stands from `offset` on. \pre it has been written \throw OutputError
+  /// Overwrites bytes from position `offset` on.
+  /// \pre bytes at these positions were already appended
+  /// \throw OutputError
   void overwrite(std::uint64_t offset, std::string_view bytes);
-  /// Replaces what was there under its name. \throw OutputError
+  /// Completes the file and moves it to its name, where it replaces an existing file.
+  /// \throw OutputError
   void finish();
 
  private:
@@ -37,25 +41,30 @@ class GrowingFile {
   std::unique_ptr<Hidden> hidden_;
 };
 
-/// Makes `folder` and its parents where they are missing. \throw OutputError if that cannot be done or if it is no
-/// folder that can be written to.
+/// Creates `folder` and its parents if they do not exist.
+/// \throw OutputError if `folder` cannot be created, is not a folder, or is not writable
 void make_output_folder(const std::filesystem::path& folder);
 
-/// Most bytes that files of a kind may have, so that one without end, such as /dev/zero, is refused.
-inline constexpr std::size_t kMostTextBytes = std::size_t{64} << 20;  ///< jobs, machines, parts, tables
-inline constexpr std::size_t kMostDataBytes = std::size_t{1} << 30;   ///< meshes, height maps, NC programs, pictures
+/// Maximum size of input files in bytes. Infinite files, such as /dev/zero, are thus refused.
+inline constexpr std::size_t kMostTextBytes = std::size_t{64} << 20;  ///< for jobs, machines, parts and tables
+inline constexpr std::size_t kMostDataBytes = std::size_t{1} << 30;  ///< for meshes, height maps, NC programs, pictures
 
-/// The whole content of a file. \throw InputError if it cannot be opened or read or is longer; folders are refused.
+/// Returns the content of a file.
+/// \throw InputError if the file cannot be read, is a folder, or has more than `most_bytes` bytes
 std::string read_file(const std::filesystem::path& path, std::size_t most_bytes = kMostTextBytes);
 
-/// What is left of standard input. \throw InputError as read_file()
+/// Returns the content of standard input from the current position on.
+/// \throw InputError if standard input cannot be read or has more than `most_bytes` bytes
 std::string read_standard_input(std::size_t most_bytes);
 
-/// Before a library reads a file by itself. What is not there is left to the library. \throw InputError if it is no
-/// regular file or is longer
+/// Checks the size of a file before another library reads the file. Accepts a file that does not exist, because that
+/// library reports it.
+/// \throw InputError if the file is not a regular file or has more than `most_bytes` bytes
 void require_short_file(const std::filesystem::path& path, std::size_t most_bytes);
 
-/// \throw InputError if the text of a file is longer
+/// Checks the size of a text that was read from a file.
+/// \param name name of the file in messages
+/// \throw InputError if the text has more than `most_bytes` bytes
 void require_short_text(std::string_view text, const std::string& name, std::size_t most_bytes);
 
 }  // namespace retrace

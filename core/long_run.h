@@ -1,38 +1,41 @@
 #pragma once
 
-// Estimates the remaining time of work from its progress, and decides when the user should be informed that the work
-// will take long.
+// Estimates the remaining time of a computation from its progress. Decides when the user should be informed that the
+// computation will take long.
 
 #include <optional>
 #include <string>
 
 namespace retrace {
 
-/// Remaining time of work, extrapolated from its progress. The caller measures the time, so the class needs no clock.
+/// Remaining time of a computation, extrapolated linearly from its progress. The caller measures the elapsed time.
 class LongRun {
  public:
-  /// Elapsed time in seconds from which on the remaining time is estimated.
+  /// Minimum time in seconds from the start of the current part until notice_s() may inform the user.
   static constexpr double kFirstEstimateS = 1.0;
-  /// Remaining time in seconds above which work takes long.
+  /// Remaining time in seconds above which notice_s() informs the user.
   static constexpr double kLongS = 60.0;
 
   /// Returns the estimated remaining time in seconds, or nothing before any progress. Work that was finished before the
   /// first call, for example by an earlier run, does not count as progress.
-  /// \param share fraction of the work that is finished, 0 to 1 \param elapsed_s time since the work began
+  /// \param share fraction of the work that is finished, 0 to 1
+  /// \param elapsed_s time since the start of the work, in seconds
   std::optional<double> remaining_s(double share, double elapsed_s);
 
-  /// Returns the estimated remaining time in seconds if the user should now be informed of it, and nothing otherwise.
-  /// It is returned at most one time in the life of this object.
-  /// \param share, elapsed_s as those of remaining_s()
+  /// Returns the estimated remaining time in seconds if the user should now be informed of it. Otherwise returns
+  /// nothing. The user is informed at most one time: after that, every call returns nothing.
+  /// \param share fraction of the work that is finished, 0 to 1
+  /// \param elapsed_s time since the start of the work, in seconds
   std::optional<double> notice_s(double share, double elapsed_s);
 
-  /// Starts a new part of the work, to which later fractions refer.
-  /// \param share finished fraction of the part \param elapsed_s time since the work began
+  /// Starts a new part of the work. In later calls, `share` is the finished fraction of this part only.
+  /// \param share fraction of the part that is already finished
+  /// \param elapsed_s time since the start of the work, in seconds
   void begin_part(double share, double elapsed_s);
 
  private:
   std::optional<double> first_share_;
-  double begun_s_ = 0.0;  ///< elapsed time at which the current part began
+  double begun_s_ = 0.0;  ///< elapsed time at the start of the current part, in seconds
   bool is_noticed_ = false;
 };
 

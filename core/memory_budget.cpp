@@ -8,11 +8,11 @@ namespace {
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 
 std::atomic<std::uint64_t> budget_bytes{kGiB};
-/// Minimum change, in bytes, of a trace's memory that is added to `shared_bytes`. Smaller changes are collected first
-/// because all threads write to that sum.
+/// Minimum change of the memory of a trace, in bytes, that is added to `shared_bytes`. Smaller changes are accumulated
+/// first, because frequent writes to this common counter would slow down all threads.
 constexpr std::uint64_t kReportedStep = std::uint64_t{1} << 20;
 
-/// Total memory, in bytes, of all traces within a SharedMemoryScope.
+/// Total memory, in bytes, of the beams of all traces that currently run within a SharedMemoryScope.
 std::atomic<std::uint64_t> shared_bytes{0};
 thread_local bool is_in_shared_scope = false;
 
@@ -69,7 +69,7 @@ void BeamMemory::require_shared() {
   if (!is_shared_) return;
   const std::uint64_t now = bytes_.load(std::memory_order_relaxed);
   if (now > reported_bytes_ + kReportedStep || now + kReportedStep < reported_bytes_) {
-    shared_bytes.fetch_add(now - reported_bytes_);  // a decrease wraps modulo 2^64
+    shared_bytes.fetch_add(now - reported_bytes_);  // unsigned arithmetic: a negative difference is added modulo 2^64
     reported_bytes_ = now;
   }
   if (reported_bytes_ > 0 && shared_bytes.load(std::memory_order_relaxed) > beam_memory_bytes())

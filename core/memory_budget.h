@@ -1,7 +1,6 @@
 #pragma once
 
-// Memory budget for beams and for the search structures that find the elements which a beam meets. All threads of the
-// process share this budget.
+// Memory budget of the process for beams and for the search structures that find the elements which a beam meets.
 
 #include <atomic>
 #include <cstdint>
@@ -12,31 +11,35 @@
 
 namespace retrace {
 
-/// Error: the budget of memory or of beams is exhausted. The same work may succeed with a larger budget.
+/// Error that is thrown if the memory budget or the maximum number of beams is exceeded. The same computation may
+/// succeed with a larger budget.
 class TraceBudgetError : public BudgetError {
  public:
   using BudgetError::BudgetError;
 };
 
-/// Memory budget in bytes. The default is 1 GiB.
+/// Returns the memory budget in bytes. The default is 1 GiB.
 std::uint64_t memory_budget_bytes();
+/// Sets the memory budget.
 /// \pre bytes > 0
 void set_memory_budget_bytes(std::uint64_t bytes);
 
-/// Maximum memory, in bytes, of the search structures for the elements of one part: half of the budget.
+/// Returns the maximum memory, in bytes, of the search structures for the elements of one part. It is half of the
+/// budget.
 std::uint64_t element_memory_bytes();
-/// Maximum memory, in bytes, of the beams of one trace: a quarter of the budget. Traces that run in parallel may
-/// together use another quarter, see for_each_within_memory().
+/// Returns a quarter of the budget in bytes. It is the maximum memory of the beams of one trace. It is also the maximum
+/// total memory of all traces that run in parallel, see for_each_within_memory().
 std::uint64_t beam_memory_bytes();
 
-/// Returns the size of the budget and the name of the option that changes it, for messages.
+/// Returns a text for messages with the size of the budget and the option that changes it, such as "the memory budget
+/// of 1 GiB (--memory-gib)".
 std::string memory_budget_text();
 
-/// Exception: the traces that run in parallel exceed their common memory limit, but this trace does not exceed its own.
+/// Exception that is thrown if traces that run in parallel together exceed their common memory limit. The trace that
+/// throws it need not exceed its own limit and can be repeated alone.
 struct SharedMemoryShort {};
 
-/// While an object exists, traces of the current thread count towards the memory limit that is common to all parallel
-/// traces.
+/// Scope in which traces of the current thread are subject to the common memory limit of parallel traces.
 class SharedMemoryScope {
  public:
   SharedMemoryScope();
@@ -60,18 +63,19 @@ class BeamMemory {
   void remove(std::uint64_t bytes);
   /// Returns true if this trace exceeds beam_memory_bytes().
   bool is_exceeded() const;
-  /// Checks the common memory limit of parallel traces. Does nothing outside of a SharedMemoryScope.
+  /// Checks the common memory limit of parallel traces. Does nothing if this object was created outside of a
+  /// SharedMemoryScope.
   /// \throw SharedMemoryShort if the beams of all traces within a SharedMemoryScope exceed beam_memory_bytes()
   void require_shared();
 
  private:
   bool is_shared_;
   std::atomic<std::uint64_t> bytes_{0};
-  std::uint64_t reported_bytes_ = 0;  ///< part of `bytes_` that is already included in the total of all threads
+  std::uint64_t reported_bytes_ = 0;  ///< value of `bytes_` that is included in the total of all parallel traces
 };
 
-/// Returns the mutex for traces that run outside of any SharedMemoryScope, in parallel with traces inside of such
-/// scopes. The mutex ensures that at most one such trace runs at a time.
+/// Returns the mutex that a trace must lock if it runs outside of a SharedMemoryScope while other traces run in
+/// parallel. At most one such trace runs at a time, so its memory is limited to beam_memory_bytes() as well.
 std::mutex& lone_trace_mutex();
 
 }  // namespace retrace

@@ -19,7 +19,8 @@ std::string escaped(char c) {
   return fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
 }
 
-/// Letters to insert, remove, replace or swap with their neighbour (optimal string alignment).
+/// Returns the optimal string alignment distance of two words. It is the minimum number of insertions, deletions,
+/// replacements and swaps of adjacent letters that turn `a` into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::vector<std::size_t> above;
@@ -46,7 +47,7 @@ std::size_t printable_length(std::string_view text) {
       length == 1 ? byte(0) < 0x20 || byte(0) == 0x7f : length == 2 && byte(0) == 0xc2 && byte(1) < 0xa0;
   const bool is_line_separator =
       length == 3 && byte(0) == 0xe2 && byte(1) == 0x80 && (byte(2) == 0xa8 || byte(2) == 0xa9);
-  // U+FFFE and U+FFFF, which no XML document may contain.
+  // True for U+FFFE and U+FFFF. They are not allowed in XML documents.
   const bool is_noncharacter = length == 3 && byte(0) == 0xef && byte(1) == 0xbf && byte(2) >= 0xbe;
   return is_control || is_line_separator || is_noncharacter ? 0 : length;
 }
@@ -88,7 +89,7 @@ std::string alternatives(std::span<const std::string_view> names) {
 }
 
 std::string_view closest(std::string_view given, std::span<const std::string_view> names) {
-  constexpr std::size_t longest = 64;  // no key is longer; keeps the comparison short whatever the input
+  constexpr std::size_t longest = 64;  // all known names are shorter; limits the time for long inputs
   if (given.empty() || given.size() > longest) return {};
   std::size_t best = std::max<std::size_t>(1, given.size() / 3) + 1;
   std::string_view found;

@@ -1,16 +1,16 @@
 #pragma once
 
-// Reads files that are named by a key, an option or a column of a table. Error messages begin with the position at
-// which the file is named.
+// Reads files whose names are given by a key, an option or a table. Error messages begin with the position (file, line,
+// key) at which the name is given.
 
 #include "core/error.h"
 
 namespace retrace {
 
-/// Calls `read`, which reads a file that is named by a key.
-/// \param key position at which the file is named
+/// Calls the function `read`, which reads a file, and adds a position to its error messages.
+/// \param key position at which the name of the file is given
 /// \return the return value of `read`
-/// \throw InputError if `read` throws one; its message is preceded by the position of the key
+/// \throw InputError if `read` throws an InputError; the message begins with the position `key`
 template <class Read>
 auto read_named(const InputLocation& key, const Read& read) {
   try {

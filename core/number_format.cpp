@@ -11,13 +11,14 @@
 namespace retrace {
 namespace {
 
-/// A number as d.ddd times 10 to the exponent.
+/// A decimal number d.ddd * 10^exponent.
 struct Decimal {
-  std::string digits;  ///< as few as tell the number from its neighbours
+  std::string digits;  ///< shortest digits that determine the double; no decimal point, no trailing zeros
   int exponent = 0;
 };
 
-/// \param text of a number other than 0, with as few digits as it takes, such as 0.001, 1234.5 or 1e-07
+/// Splits the text of a number into digits and exponent.
+/// \param text shortest text of a number > 0, such as 0.001, 1234.5 or 1e-07
 Decimal decimal_of(std::string_view text) {
   const std::size_t e = text.find('e');
   const std::string_view mantissa = text.substr(0, e);
@@ -39,16 +40,18 @@ std::string with_exponent(const Decimal& d) {
 
 std::string without_exponent(const Decimal& d, double magnitude) {
   if (d.exponent < 0) return "0." + std::string(static_cast<std::size_t>(-d.exponent - 1), '0') + d.digits;
-  // All digits of a whole number, not zeros in place of those that are not needed to tell it.
+  // Integers are printed with all their digits. `d.digits` may have fewer, because the last digits of a large integer
+  // need not be given to determine the double.
   if (d.exponent + 1 >= static_cast<int>(d.digits.size())) return fmt::format("{:.0f}", magnitude);
   std::string text = d.digits;
   return text.insert(static_cast<std::size_t>(d.exponent) + 1, ".");
 }
 
-/// \param magnitude finite and above 0
+/// Returns the shortest text of a positive number.
+/// \param magnitude finite and > 0
 std::string shortest_of(double magnitude) {
   std::string text = fmt::format("{}", magnitude);
-  // No exponent would make these shorter.
+  // True if an exponent cannot make the text shorter.
   const bool is_plain =
       text.find('e') == std::string::npos && (text.find('.') != std::string::npos || text.size() <= 5);
   if (is_plain && magnitude >= 1e-3) return text;

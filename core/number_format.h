@@ -1,21 +1,22 @@
 #pragma once
 
-// Numbers as text, independent of the locale: the shortest text that reads back equal, or a fixed number of digits.
+// Converts numbers to text with the shortest exact text or a fixed number of digits. The decimal separator is always a
+// point, independent of the locale.
 
 #include <string>
 
 namespace retrace {
 
-/// The shortest decimal text that reads back as exactly `value`, with a decimal point whatever the locale; no exponent
-/// unless it is shorter. `value` must be finite.
+/// Returns the shortest decimal text that reads back as exactly `value`. An exponent is used only if it makes the text
+/// shorter. Infinity and NaN are returned as "inf" and "nan".
 std::string shortest(double value);
 
-/// `value` with `digits` digits after the decimal point, whatever the locale. A result that rounds to zero has no sign.
+/// Returns `value` with `digits` digits after the decimal point. A result that rounds to zero has no sign.
 std::string fixed(double value, int digits);
 
 /// Returns fixed(value, digits) if this text shows at least two significant digits of `value`. Otherwise returns
-/// `value` with up to three significant digits, for example 0.004 instead of 0.00. A `value` with a magnitude below
-/// 1e-6 counts as a rounding error of 0; for such a `value`, fixed(value, digits) is returned.
+/// `value` with up to three significant digits, for example 0.004 instead of 0.00. Magnitudes below 1e-6 are regarded
+/// as rounding errors of 0, for which fixed(value, digits) is returned.
 std::string fixed_visible(double value, int digits);
 
 /// Returns `value` rounded to `digits` digits after the decimal point, without zeros at its end. More digits are used

@@ -1,19 +1,18 @@
 #pragma once
 
-// Interfaces between long work and its caller: a request to stop, and reports of the share that is done.
+// Interfaces between a long computation and its caller: a request to stop, and reports of the finished fraction.
 
 #include <atomic>
 
-#include "api.h"  // of this folder: these headers are installed with the library
+#include "api.h"  // without a folder, because these headers are installed together with the library
 
 namespace retrace {
 
-/// A request to stop, which work checks at regular intervals. It may be set from a signal handler.
+/// Request to stop a computation. The computation checks it at regular intervals. A signal handler may set it.
 class Cancellation {
  public:
   Cancellation() = default;
-  /// \param whole request to stop a larger piece of work that includes this one; null: there is none. It must outlive
-  ///        this object.
+  /// \param whole request to stop a larger computation that includes this one, or null; it must outlive this object
   explicit Cancellation(const Cancellation* whole) : whole_(whole) {}
   void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
   bool requested() const noexcept {
@@ -25,13 +24,13 @@ class Cancellation {
   std::atomic<bool> requested_{false};
 };
 
-/// Returns true if the work is requested to stop.
-/// \param cancel null: the work cannot be stopped
+/// Returns true if the computation is requested to stop.
+/// \param cancel request to stop, or null if the computation cannot be stopped
 inline bool is_cancelled(const Cancellation* cancel) {
   return cancel != nullptr && cancel->requested();
 }
 
-/// Receives reports of progress. Only one thread calls it at a time.
+/// Receiver of progress reports. Only one thread calls it at a time.
 class RETRACE_API Progress {
  public:
   virtual ~Progress() = default;

@@ -12,8 +12,8 @@ namespace {
 constexpr double kStep_deg = 15.0;
 constexpr std::int64_t kStepsOfTurn = 24;
 constexpr std::int64_t kStepsOfQuarter = 6;
-// Maximum relative deviation |angle - m| / |angle| with which an angle counts as m, the nearest multiple of 15 degrees.
-// The rounding errors of a conversion to radians and back are smaller.
+// Maximum relative deviation |angle - m| / |angle| from the nearest multiple m of 15 degrees at which an angle is
+// regarded as equal to m. The rounding errors of a conversion to radians and back are smaller.
 constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 // Sines of 0, 15, ... 90 degrees. The sine of 15 degrees is (sqrt(6) - sqrt(2)) / 4, and the sine of 75 degrees is
@@ -36,8 +36,8 @@ double sine_of(std::int64_t step) {
 SinCos sin_cos(Angle angle) {
   const double steps = std::remainder(angle.deg(), 360.0) / kStep_deg;
   const double nearest = std::round(steps);
-  // The condition is negated because the comparison is false for infinite angles and NaN. These angles are thus also
-  // left to the standard library.
+  // The condition is written as !(a <= b) because a <= b is false for infinite angles and NaN. The standard library
+  // then handles these angles as well.
   if (!(std::abs(steps - nearest) * kStep_deg <= kRounding * std::abs(angle.deg())))
     return {std::sin(angle.rad()), std::cos(angle.rad())};
   const std::int64_t step = (static_cast<std::int64_t>(nearest) + kStepsOfTurn) % kStepsOfTurn;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Sines and cosines of angles, from which directions and rotations are computed.
+// Sine and cosine that are exact at multiples of 15 degrees, for computing directions and rotations.
 
 #include "core/angle.h"
 
@@ -12,9 +12,8 @@ struct SinCos {
 };
 
 /// Returns the sine and the cosine of an angle. At multiples of 15 degrees, both are the doubles nearest to the exact
-/// values. A direction along a coordinate axis therefore has components of exactly 0 along the other axes. An angle
-/// counts as a multiple of 15 degrees if it differs from this multiple by at most the rounding error of a conversion
-/// between degrees and radians.
+/// values. For example, the sine of 180 degrees is exactly 0, whereas std::sin returns 1.2e-16. An angle is regarded as
+/// a multiple of 15 degrees if it differs from it only by the rounding errors of a conversion to radians and back.
 SinCos sin_cos(Angle angle);
 
 /// Returns the sine and the cosine of an angle in degrees.

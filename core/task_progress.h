@@ -1,6 +1,6 @@
 #pragma once
 
-// Progress of work that consists of several parts or of several tasks that run in parallel.
+// Combines the progress of parts, repeated attempts or parallel tasks into the progress of the whole computation.
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,11 @@
 
 namespace retrace {
 
-/// Reports the progress of one part of the work as progress of the whole work. The start and the end of the part
-/// correspond to the fractions `from` and `to` of the whole work.
+/// Reports the progress of one part of a computation as progress of the whole computation. The progress 0 to 1 of the
+/// part is mapped linearly to `from` to `to`.
 class PartOfProgress : public Progress {
  public:
-  /// \param whole receives the reports; null: nothing is reported
+  /// \param whole receiver of the progress of the whole computation; null: nothing is reported
   PartOfProgress(Progress* whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
   void at(double share) override {
     if (whole_ != nullptr) whole_->at(std::lerp(from_, to_, share));
@@ -26,11 +26,11 @@ class PartOfProgress : public Progress {
   double from_, to_;
 };
 
-/// Progress of work that may be abandoned and started again with another method. The progress of the new attempt is
-/// mapped to the fraction that the earlier attempt left unfinished, so that reported values do not decrease.
+/// Progress of a computation that may be aborted and started again with another method. The progress 0 to 1 of the new
+/// attempt is mapped to the range from the last reported value to 1, so that reported values do not decrease.
 class AttemptProgress : public Progress {
  public:
-  /// \param whole receives the reports; null: nothing is reported
+  /// \param whole receiver of the reported values; null: nothing is reported
   explicit AttemptProgress(Progress* whole) : whole_(whole) {}
   void at(double share) override {
     reported_ = std::lerp(begin_, 1.0, share);
@@ -44,15 +44,15 @@ class AttemptProgress : public Progress {
   double reported_ = 0.0;  ///< last reported value
 };
 
-/// Progress of several tasks of equal weight. The mean of their progress is reported as progress of the whole work.
-/// Tasks may run in parallel. Reported values do not decrease, even if a task is repeated.
+/// Progress of several tasks of equal weight, which may run in parallel. The mean of the progress of all tasks is
+/// reported. Reported values do not decrease, even if a task is repeated.
 class TaskProgress {
  public:
-  /// \param whole receives the reports; null: nothing is reported
+  /// \param whole receiver of the mean progress; null: nothing is reported
   /// \param count number of tasks, > 0
   TaskProgress(Progress* whole, std::size_t count) : whole_(whole), count_(static_cast<double>(count)) {}
 
-  /// Progress of one task. If the object is destroyed before finish(), the task is regarded as not started.
+  /// Progress of one task. If the object is destroyed without a call of finish(), the task counts as not started.
   class Task : public Progress {
    public:
     explicit Task(TaskProgress& all) : all_(all) {}
@@ -79,8 +79,9 @@ class TaskProgress {
   };
 
  private:
-  /// \param running change of the sum of the progress of unfinished tasks
-  /// \param finished number of tasks that have just finished
+  /// Updates the sums and reports the mean progress if it has increased.
+  /// \param running amount by which the total progress of unfinished tasks changes
+  /// \param finished number of tasks that have finished since the last call
   void change(double running, double finished) {
     const std::lock_guard lock(mutex_);
     finished_ += finished;
@@ -94,7 +95,7 @@ class TaskProgress {
   Progress* whole_;
   double count_;
   double finished_ = 0.0;
-  double running_ = 0.0;   ///< sum of the progress of unfinished tasks
+  double running_ = 0.0;   ///< total progress of unfinished tasks, each from 0 to 1
   double reported_ = 0.0;  ///< last reported value
   std::mutex mutex_;
 };

@@ -1,7 +1,7 @@
 #pragma once
 
-// Small operations on text: trimming, splitting, lower case, numbers independent of the locale, endings of file names,
-// texts in XML and HTML, and the length of UTF-8 characters.
+// Text functions: trim, split, convert to lower case, parse numbers independent of the locale, get file extensions,
+// escape text for XML and HTML, and determine the length of UTF-8 characters.
 
 #include <cstddef>
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace retrace {
 
-/// `text` without blanks, tabs and carriage returns at its ends.
+/// Returns `text` without leading and trailing spaces, tabs and carriage returns.
 std::string_view trimmed(std::string_view text);
 
 /// Returns `text` without the UTF-8 byte order mark that some programs write at the beginning of a file.
@@ -21,22 +21,24 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// Returns `text` with the letters A to Z in lower case. Other characters are unchanged.
 std::string lower_case(std::string_view text);
 
-/// What stands between separators, trimmed; at least one part.
+/// Splits `text` at each separator and trims the parts. The result has at least one part, which may be empty.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
-/// What stands between blanks, tabs and ends of lines.
+/// Returns the words of `text`, which are separated by spaces, tabs and line ends.
 std::vector<std::string_view> words_in(std::string_view text);
 
-/// The finite number that `text` is, with a decimal point whatever the locale; none if it is anything else.
+/// Parses the whole `text` as a finite number with a decimal point, independent of the locale. Returns nothing if
+/// `text` is not such a number.
 std::optional<double> number_in(std::string_view text);
 
-/// The ending of a file's name in small letters, with its dot; empty if it has none.
+/// Returns the extension of a file name in lower case, including the dot. Returns an empty text if there is none.
 std::string ending_of(const std::filesystem::path& file);
 
 /// Returns `text` for use in an XML or HTML document. The characters & < > " ' are replaced by character references.
 std::string markup_text(std::string_view text);
 
-/// Bytes of the UTF-8 character that `text` begins with; 0 if they are none (overlong and surrogate forms included).
+/// Returns the length in bytes of the first UTF-8 character of `text`. Returns 0 if the text begins with invalid UTF-8,
+/// including overlong encodings and surrogates.
 /// \pre text is not empty
 std::size_t utf8_length(std::string_view text);
 

@@ -109,16 +109,16 @@ class TomlTable {
 inline constexpr std::size_t kShortTomlBytes = 16384;
 inline constexpr std::size_t kMostDesignBytes = std::size_t{1} << 20;  ///< designs and studies
 
-/// Returns the key that an override of the form `KEY=` unsets. Returns nothing for an override of another form.
+/// Returns the key if the override has the form `KEY=`, which removes the key. Otherwise returns nothing.
 std::optional<std::string_view> unset_key(std::string_view override_text);
 
 /// Parses the text of a TOML file and applies overrides to it.
 /// \param source_name name of the file in messages
-/// \param most_bytes maximum length of the text
-/// \param overrides texts that add or replace a value (KEY=VALUE) or remove a key (KEY=); a message about an override
-/// quotes its text instead of the name of the file
-/// \throw InputError for text that is not TOML, that is longer than `most_bytes`, or whose keys nest too deeply, and
-/// for an override that is neither KEY=VALUE nor KEY=
+/// \param most_bytes maximum length of the text in bytes
+/// \param overrides texts of the form KEY=VALUE, which set a key, or KEY=, which remove a key. Messages about an
+/// override quote the override instead of the name of the file.
+/// \throw InputError if the text is not TOML, is longer than `most_bytes`, or has keys that nest too deeply, or if an
+/// override is neither KEY=VALUE nor KEY=
 TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes = kMostTextBytes,
                      std::span<const std::string> overrides = {});
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Parallel loop over traces that share a limited memory.
+// Parallel loop over traces whose total memory is limited.
 
 #include <cstddef>
 #include <functional>
@@ -11,9 +11,9 @@
 
 namespace retrace {
 
-/// Calls work(0), ..., work(count - 1) in parallel, like for_each_in_parallel(). If the parallel calls exceed their
-/// common memory limit, the call that detects this is aborted and repeated under its own limit. Only one repetition
-/// runs at a time. The results do not depend on the number of threads.
+/// Calls work(0), ..., work(count - 1) in parallel, like for_each_in_parallel(). If the parallel calls together exceed
+/// their common memory limit, the call that detects this is aborted and repeated outside of the common limit. Only one
+/// repeated call runs at a time. The results do not depend on the number of threads.
 /// \pre `work` can be called again after it has thrown SharedMemoryShort
 inline void for_each_within_memory(std::size_t count, const std::function<void(std::size_t)>& work) {
   const auto fits_beside_others = [&work](std::size_t k) {

@@ -86,12 +86,13 @@ class Document {
   /// The first of the conditions that does not hold; null if all do.
   const Condition* refused_by(When when, std::string_view around) const;
 
-  /// Stores that a key, a table or an entry of a list was given.
+  /// Records that the input contains a key, a table or an entry of a list.
+  /// \param path path of the key, table or entry, such as "element.base_mm"
   /// \param value value of the key; empty for a table or an entry of a list
-  /// \param source 0 if the file gave the key, otherwise the number of the override that gave it, counted from 1
+  /// \param place file and line of the key
+  /// \param source 0 if the key comes from the file; otherwise the number, from 1, of the override that sets it
   void set(const std::string& path, Value value, InputLocation place = {}, std::size_t source = 0);
-  /// Returns the number of the override that gave a key, counted from 1. Returns 0 if the file gave the key, or if the
-  /// key was not given.
+  /// Returns the number, from 1, of the override that sets a key. Returns 0 if the file sets the key or if it is absent.
   std::size_t source_of(std::string_view path) const;
   /// Takes a key back. \pre it was given
   void drop(std::string_view path) { given_.erase(given_.find(path)); }

@@ -370,7 +370,8 @@ void add_keys(const Table& table, const std::string& path, std::vector<std::stri
   }
 }
 
-/// Returns true if an override can name the key or table. Keys of tables in a list cannot be named.
+/// Returns true if the format has this key or table and an override can address it. Overrides cannot address keys of
+/// tables in a list.
 bool has_key_or_table(const Table& root, std::string_view path) {
   const auto [around, name] = split_path(path);
   const Table* const table = table_at(root, around);
@@ -381,8 +382,8 @@ bool has_key_or_table(const Table& root, std::string_view path) {
   return table_at(*table, name) != nullptr || std::ranges::count(table->rows, name, &Row::key) > 0;
 }
 
-/// Checks that every key that the overrides unset is a key of the format. The key may be absent from the file.
-/// \throw InputError for the first override that names an unknown key
+/// Checks overrides of the form KEY=, which remove a key. KEY must be a key of the format, but need not be in the file.
+/// \throw InputError for the first override with an unknown key
 void check_unset_keys(const Format& format, std::span<const std::string> overrides) {
   for (const std::string& each : overrides)
     if (const auto key = unset_key(each); key && !has_key_or_table(format.root, *key))
@@ -462,8 +463,8 @@ void check(const Table& table, const void* object, const Refuse& refuse) {
 
 namespace {
 
-/// Returns the warning that `key` has no effect because `winner` takes precedence. Returns an empty text if the user
-/// needs no warning.
+/// Returns the warning that `key` has no effect because the key `winner` takes precedence over it. Returns an empty
+/// text if `key` is absent, has its default value, or was replaced on purpose.
 /// \param winner path of the key that takes precedence
 /// \param key path of the key that has no effect
 std::string superseded_text(const Precedence& rule, const Document& document, const std::string& winner,
@@ -471,8 +472,8 @@ std::string superseded_text(const Precedence& rule, const Document& document, co
   const Row* const row = document.row(key);
   if (row == nullptr || !document.has(key) || document.value(key) == default_value(*row)) return {};
   const std::size_t winner_source = document.source_of(winner), source = document.source_of(key);
-  // If the file gives `key` and an override gives `winner`, the user intends to replace `key` and needs no warning. For
-  // rules with Precedence::is_refinement, a warning is needed only if an override gives `key` after `winner` was given.
+  // If `key` is in the file and an override sets `winner`, the user intends to replace `key` and needs no warning. For
+  // rules with Precedence::is_refinement, a warning is needed only if an override sets `key` later than `winner`.
   if (rule.is_refinement ? source <= winner_source : source == 0 && winner_source > 0) return {};
   const InputLocation where = document.where(winner);
   const std::string place = where.line > 0 ? fmt::format(" (line {})", where.line) : std::string();

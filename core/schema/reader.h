@@ -14,26 +14,27 @@
 
 namespace retrace::schema {
 
-/// Reads a document of the format and checks it: each key must be known, have a value of its type, and be meaningful
-/// together with the other keys.
-/// \param source_name name of the file in messages; relative file names in the document are relative to its folder
-/// \param most_bytes maximum length of the text
-/// \param overrides texts of the form KEY=VALUE, which override a key, or KEY=, which unset a key
-/// \throw InputError with file, line and key for the first value that the format does not allow, and for text that is
-/// not TOML or is longer than `most_bytes`
+/// Reads a document and checks it against the format. Every key must be known, must have an allowed value, and must be
+/// meaningful together with the other keys.
+/// \param source_name name of the file in messages; file names in the document are relative to the folder of this file
+/// \param most_bytes maximum length of the text in bytes
+/// \param overrides texts of the form KEY=VALUE, which set a key, or KEY=, which remove a key
+/// \throw InputError with file, line and key if a value is not allowed; also if the text is not TOML or is longer than
+/// `most_bytes`
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
                        std::size_t most_bytes = kMostTextBytes, std::span<const std::string> overrides = {});
 
-/// A document that was read, with further overrides, so that all that is checked holds of it too. \throw InputError
+/// Reads the text of a document again, with further overrides, and checks the result like read_document().
+/// \throw InputError
 Document with(const Format& format, const Document& document, std::span<const std::string> overrides);
 
-/// What can be read of a text that may be no document of the format: its names and texts up to what is wrong,
-/// unchecked. It knows the files that it names.
+/// Reads the names and texts of a document that may be invalid, without checks. Returns the part that can be read. The
+/// result is used to find the files that the document refers to.
 Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
                          std::size_t most_bytes, std::span<const std::string> overrides);
 
-/// Returns a warning for each key that has no effect because another key takes precedence. A key whose value is its
-/// default causes no warning.
+/// Returns a warning for each key that has no effect because another key takes precedence over it. Keys with their
+/// default value cause no warning.
 std::vector<std::string> superseded_keys(const Document& document);
 
 /// Reads a document into an object, which is that of the format's root.

@@ -174,15 +174,16 @@ struct Check {
   /// \param object that of the table; of formats that are read as documents alone: the document
   void (*check)(const void* object, const Refuse& refuse);
 };
-/// A rule by which one key takes precedence over other keys, which then have no effect. The key that takes precedence
-/// is called the winner. For each key without effect that the file gives, a warning names this key and the winner.
+/// Rule that one key, called the winner, takes precedence over other keys, which then have no effect. If the input
+/// gives such a key without effect, a warning names this key and the winner.
 struct Precedence {
   Condition winner;                        ///< condition on the winner under which the rule applies
   std::span<const std::string_view> keys;  ///< keys without effect if `winner` holds; paths relative to the table
-  std::string_view effect;                 ///< text after "has no effect", such as "on the refractive index"
+  std::string_view effect;                 ///< text after "has no effect" in warnings: "on the refractive index"
   std::string_view meaning;                ///< the rule in one sentence, for the documentation
-  /// True if files normally give both the winner and the keys of `keys`. Such files cause no warning. A warning is
-  /// given only if an override (`--set`) sets one of `keys` after the file or an earlier override has set the winner.
+  /// True if it is normal that a file contains both the winner and some of `keys`. Such a file causes no warning. A
+  /// warning is given only if an override (`--set`) sets one of `keys` and the winner is set by the file or by an
+  /// earlier override.
   bool is_refinement = false;
 };
 using Rule = std::variant<OneOf, Check, Precedence>;
