@@ -1,7 +1,7 @@
 #pragma once
 
-// A command as data: name, manual text, formats that it reads and writes, and its options. The command line, --help,
-// the manual page and shell completion are all made from these entries.
+// Describes commands as data: name, manual text, file formats and options. The command line parser, --help, the manual
+// page and shell completion are generated from these descriptions.
 
 #include <cstdint>
 #include <functional>
@@ -18,87 +18,94 @@
 
 namespace retrace::app {
 
-/// Options that every command has.
+/// Options that all commands have.
 struct CommonOptions {
-  std::string json;  ///< file for the JSON document; "-" is standard output; empty: none
-  std::string out;   ///< output folder; empty: none
+  std::string json;  ///< file for the JSON document; "-": standard output; empty: no document is written
+  std::string out;   ///< output folder, or output file of some commands; empty: no files are written
   std::optional<std::uint32_t> threads;
-  std::optional<double> memory_gib;  ///< memory budget for beams and elements in GiB; empty: 1
+  std::optional<double> memory_gib;  ///< memory budget of beams and elements in GiB; empty: 1 GiB
   std::uint32_t seed = 1;
-  std::vector<std::string> overrides;  ///< --set key=value
+  std::vector<std::string> overrides;  ///< texts KEY=VALUE of --set
   bool quiet = false;
 };
 
-/// Words, in the order to list them.
+/// List of words, in the order in which they are shown.
 using Words = std::vector<std::string>;
 
-/// A condition on another option of the command line.
+/// Condition on one option of the command line.
 struct Condition {
   enum class Kind { given, absent, value };
 
-  /// Kind of the condition: the option is given, is absent, or has one of `values`, given or by default.
+  /// Kind of the condition: `option` is on the command line (given), is not on it (absent), or has one of `values`
+  /// (value). For the last kind, the default of the option counts as well.
   Kind kind = Kind::given;
   std::string option;
   Words values = {};
 };
-/// A requirement of an option. At least one of its conditions must hold, otherwise the option has no effect and is
-/// refused.
+/// Requirement of an option: a list of conditions on other options, of which at least one must hold. If none holds, the
+/// option has no effect, and the command ends with an error.
 using Need = std::vector<Condition>;
 
-/// Returns the requirement that at least one of the options is given.
+/// Returns the requirement that at least one of `options` is given.
 Need any_given(const Words& options);
-/// Returns the requirement that the option is absent.
+/// Returns the requirement that `option` is not given.
 Need absent(const std::string& option);
-/// Returns a requirement as text, such as "--camera or --road", "no --lamp" or "--engine auto or exact".
+/// Returns a requirement as text for help and messages, such as "--camera or --road", "no --lamp" or "--engine auto or
+/// exact".
 std::string text_of(const Need& need);
 
-/// What an argument is beside its name, its help and its place.
+/// Properties of an argument that restrict its value and its combination with other options.
 struct Traits {
-  std::function<Words()> words = {};            ///< that it may be, for completion; what ends with "=" goes on
-  std::optional<std::string> files = {};        ///< ending of files that it may be; "": any file; "/": folders
-  std::uint64_t least = 0;                      ///< of a whole number
-  std::uint64_t most = std::uint64_t{1} << 36;  ///< of a whole number
-  bool required = false;                        ///< of an option; what has a place is, unless it is a std::optional
-  std::string excludes = {};                    ///< the option that it cannot go with
-  std::vector<Need> needs = {};                 ///< requirements that must all be met for the option to have an effect
+  /// Function that returns possible values for shell completion. A word that ends with "=" is continued by the user.
+  std::function<Words()> words = {};
+  /// Extension of allowed files. "": any file; "/": folders; none: the value is not a file.
+  std::optional<std::string> files = {};
+  std::uint64_t least = 0;                      ///< minimum of a whole number
+  std::uint64_t most = std::uint64_t{1} << 36;  ///< maximum of a whole number
+  bool required = false;         ///< true if an option must be given; positional arguments are required by their type
+  std::string excludes = {};     ///< name of an option that cannot be given together with this option
+  std::vector<Need> needs = {};  ///< requirements, which must all be met
 };
 
-/// Traits of what is one of a set of words. \param files ending of files that it may be as well; none: it is no file
+/// Returns the traits of an argument that is one of a set of words.
+/// \param files extension of files that are allowed as well; none: files are not allowed
 Traits one_of(std::function<Words()> words, std::optional<std::string> files = {});
 Traits one_of(Words words, std::optional<std::string> files = {});
-/// Traits of a file with that ending; "": any; "/": a folder.
+/// Returns the traits of an argument that is a file.
+/// \param ending extension of the file; "": any file; "/": a folder
 Traits files(const std::string& ending);
-/// Traits of a whole number.
+/// Returns the traits of a whole number from `least` to `most`.
 Traits whole(std::uint64_t least, std::uint64_t most = Traits().most);
-/// Traits of what cannot go with another option.
+/// Returns the traits of an option that cannot be given together with `option`.
 Traits not_with(const std::string& option);
 
-/// An argument or option: what the command line, --help, the manual and completion know of it.
+/// Argument or option of a command.
 struct Argument {
-  /// Where it goes. What is there before is the default that help shows, unless it is empty or the option required.
-  /// `std::monostate` is what is answered in place of running a command.
+  /// Variable that receives the value. Its initial value is the default, which help shows unless it is empty or the
+  /// option is required. `std::monostate` is for --help and --version, which print a text and run no command.
   using Target = std::variant<std::monostate, bool*, std::string*, std::optional<std::string>*, Words*, double*,
                               std::optional<double>*, std::uint32_t*, std::optional<std::uint32_t>*, std::uint64_t*,
                               std::optional<std::uint64_t>*>;
 
-  std::string name;  ///< as help shows it, with what stands for its value: "DESIGN", "--quiet", "-o,--out DIR"
+  std::string name;  ///< name as shown by help, with a placeholder for the value: "DESIGN", "--quiet", "-o,--out DIR"
   std::string help;
   Target target;
   Traits traits = {};
 };
 
-/// The names of an option, such as "-o" and "--out"; none of what has a place.
+/// Returns the names of an option, such as "-o" and "--out". Returns an empty list for a positional argument.
 Words option_names(const Argument& argument);
-/// What stands for the value, such as "DIR"; empty of what takes none.
+/// Returns the placeholder for the value of an argument, such as "DIR". Returns an empty text for an option without a
+/// value.
 std::string value_word(const Argument& argument);
-/// The value that is there before the command line is read, as text; empty: none that is to be shown.
+/// Returns the default value of an argument as text. Returns an empty text if help does not show a default.
 std::string default_of(const Argument& argument);
-/// Whether it may be given more than once.
+/// Returns true if the argument may be given several times.
 bool may_be_repeated(const Argument& argument);
-/// Of what has a place: whether it can be left out.
+/// Returns true if a positional argument may be omitted.
 bool may_be_missing(const Argument& argument);
 
-/// A command that is about to be read: its arguments, and what runs it when they have their values.
+/// Arguments of a command, and the function that runs the command after the arguments have received their values.
 struct Invocation {
   std::vector<Argument> arguments;
   std::function<ExitCode(const CommonOptions&)> run;
@@ -107,15 +114,17 @@ struct Invocation {
 /// A command of the program.
 struct Command {
   std::string name;
-  std::string summary;           ///< a clause for lists of commands
-  std::string manual = {};       ///< paragraphs with an empty line between; what stands in `backticks` is set in bold
-  Words reads = {};              ///< formats of the files it reads that have a name and number, or what they are
-  Words writes = {};             ///< formats of the documents it writes, that of --json first
-  std::string refuses_set = {};  ///< why --set is refused; empty: it is taken
+  std::string summary;           ///< short description for lists of commands
+  std::string manual = {};       ///< paragraphs, separated by empty lines; text in `backticks` is printed in bold
+  Words reads = {};              ///< formats of the input files, such as "retrace.design/1", or their descriptions
+  Words writes = {};             ///< formats of the output documents; the format of --json comes first
+  std::string refuses_set = {};  ///< reason why the command does not allow --set; empty: --set is allowed
   std::function<Invocation()> begin = {};
 };
 
-/// Command::begin of a command with options of its own. \param run returns the exit code or throws retrace::Error
+/// Returns the function Command::begin of a command that has its own options.
+/// \param arguments function that returns the arguments, which store their values in its parameter
+/// \param run function that runs the command and returns the exit code or throws retrace::Error
 template <class Options>
 std::function<Invocation()> begins(std::vector<Argument> (*arguments)(Options&),
                                    ExitCode (*run)(const Options&, const CommonOptions&)) {
@@ -126,15 +135,15 @@ std::function<Invocation()> begins(std::vector<Argument> (*arguments)(Options&),
   };
 }
 
-/// Of a closed set of words that the code has.
+/// Returns a function that returns the words of a constant list.
 inline std::function<Words()> words_of(std::span<const std::string_view> set) {
   return [set] { return Words(set.begin(), set.end()); };
 }
 
-/// How a command is called: "retrace rre DESIGN... [options]".
+/// Returns the usage line of a command, such as "retrace rre DESIGN... [options]".
 std::string synopsis(const Command& command);
 
-/// The options of every command.
+/// Returns the options that all commands have.
 std::vector<Argument> common_arguments(CommonOptions& common);
 
 }  // namespace retrace::app

@@ -21,7 +21,8 @@ namespace {
 
 const std::string kVersionText = std::string("retrace ") + kVersion;
 
-/// Whole numbers in decimal: CLI11 alone would read 010 as eight.
+/// Returns a check for decimal whole numbers from `low` to `high`. Leading zeros are refused, because CLI11 would read
+/// 010 as an octal number.
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
   const auto check = [low, high](const std::string& text) -> std::string {
     std::uint64_t value = 0;
@@ -43,12 +44,12 @@ CLI::Validator real_number() {
   return {check, "", "REAL"};
 }
 
-/// An empty name is what an unset variable of the shell leaves: better refused than taken for no name.
+/// Returns a check that refuses empty file names. They usually come from an unset shell variable.
 CLI::Validator not_empty() {
   return {[](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "", "NAME"};
 }
 
-/// What is checked of a value before it is taken.
+/// Adds the check of the value to an option, depending on the type of the value.
 template <class Value>
 void add_check(CLI::Option& option, const Traits& traits) {
   if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>)
@@ -60,7 +61,7 @@ void add_check(CLI::Option& option, const Traits& traits) {
     option.check(not_empty());
 }
 
-/// Returns the help of an argument with the conditions for it to have an effect.
+/// Returns the help text of an argument, followed by the options that it requires.
 std::string help_of(const Argument& argument) {
   Words needs;
   for (const Need& need : argument.traits.needs) needs.push_back(text_of(need));
@@ -99,17 +100,18 @@ void add(CLI::App& app, const std::vector<Argument>& arguments) {
   }
 }
 
-/// The options of a command line and their values.
+/// Values of the options after the command line has been parsed.
 class GivenOptions {
  public:
-  /// \param command the part of the command line parser that belongs to the command
-  /// \param arguments arguments of the command
+  /// \param command parser of the command; options of all commands belong to its parent
+  /// \param arguments arguments of the command, without the options of all commands
   GivenOptions(const CLI::App& command, const std::vector<Argument>& arguments)
       : command_(command), arguments_(arguments) {}
 
   bool is_given(const std::string& name) const { return option(name).count() > 0; }
 
-  /// Returns the given value of an option or its default; an empty text if it has neither.
+  /// Returns the value of an option on the command line, or else its default. Returns an empty text if there is no
+  /// default.
   std::string value(const std::string& name) const {
     if (is_given(name)) return option(name).results().back();
     for (const Argument& argument : arguments_)
@@ -136,8 +138,10 @@ class GivenOptions {
   const std::vector<Argument>& arguments_;
 };
 
-/// Refuses options that have no effect with the other options of the command line. A value that the command does not
-/// have, such as an unknown engine, is left to the command. \throw InputError
+/// Checks the requirements of all options that are given. If a requirement refers to the value of another option and
+/// that value is unknown, such as a misspelled engine, the requirement is skipped. The command reports the unknown
+/// value itself.
+/// \throw InputError if a requirement is not met, because the option would have no effect
 void check_needs(const GivenOptions& options, const std::vector<Argument>& arguments) {
   const auto has_unknown_value = [&](const Condition& condition) {
     if (condition.kind != Condition::Kind::value) return false;
@@ -162,7 +166,7 @@ void check_needs(const GivenOptions& options, const std::vector<Argument>& argum
   }
 }
 
-/// "a, b and c".
+/// Returns the names of the commands as "a, b and c".
 std::string in_words(std::span<const Command> all) {
   std::string text;
   for (std::size_t k = 0; k < all.size(); ++k)
@@ -170,7 +174,9 @@ std::string in_words(std::span<const Command> all) {
   return text;
 }
 
-/// The message if a command or one of its arguments is missing: where a word was not recognised, it names that word.
+/// Returns the message if a command or one of its arguments is missing. If the command line contains an unknown option
+/// or command, the message names it.
+/// \param otherwise message if the command line contains no unknown word
 std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::vector<std::string> unknown = app.remaining(true);
   for (const std::string& word : unknown)
@@ -180,14 +186,14 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
          ": there are " + in_words(commands());
 }
 
-/// Returns an error message of CLI11 on one line. Long words are shortened.
+/// Returns an error message of CLI11 as one line, in which long words are cut.
 std::string one_line(const std::string& text) {
   std::string line;
   for (const std::string_view word : words_in(text)) line += (line.empty() ? "" : " ") + printable(word);
   return line;
 }
 
-/// Sets the memory budget to the value of --memory-gib if it is given.
+/// Sets the memory budget of the process if --memory-gib is given.
 /// \throw InputError if the value is out of range
 void set_memory_budget(const CommonOptions& common) {
   constexpr double kLeastGiB = 0.01, kMostGiB = 65536.0;
@@ -198,7 +204,9 @@ void set_memory_budget(const CommonOptions& common) {
   set_memory_budget_bytes(static_cast<std::uint64_t>(*common.memory_gib * 0x1p30));
 }
 
-/// Whether there is something to run; else what was requested is printed. \throw InputError
+/// Parses the command line. Prints the help or the version if it is requested.
+/// \return true if a command is to be run
+/// \throw InputError
 bool parse(CLI::App& app, int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);

@@ -21,11 +21,11 @@ void FirstAnswer::begin(double remaining_s) try {
     try {
       const std::string lines = compute_(remaining_s, &cancel_);
       if (!cancel_.requested()) bar_.write_lines(lines);
-    } catch (...) {  // NOLINT(bugprone-empty-catch): there is no first answer then
+    } catch (...) {  // NOLINT(bugprone-empty-catch): preliminary results are omitted
     }
   });
 } catch (const std::system_error&) {
-  // If the system cannot start another thread, preliminary results are omitted.
+  // The system cannot start another thread. Preliminary results are omitted.
 }
 
 }  // namespace retrace::app

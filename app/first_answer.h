@@ -1,6 +1,6 @@
 #pragma once
 
-// Preliminary results, computed in parallel with a long computation.
+// Computes preliminary results in parallel with a long computation.
 
 #include <functional>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace retrace::app {
 
-/// Computes preliminary results in a thread of its own and writes them to standard error. The thread starts when the
+/// Computes preliminary results in a separate thread and writes them to standard error. The thread starts after the
 /// progress bar has reported that the main computation will take long. It stops when the main computation is
 /// interrupted or this object is destroyed. If the preliminary computation fails, nothing is written.
 class FirstAnswer {
@@ -25,7 +25,7 @@ class FirstAnswer {
   /// \param bar progress bar of the main computation; it must outlive this object
   /// \param cancel request to stop the main computation
   FirstAnswer(ProgressBar& bar, const Cancellation* cancel, Compute compute);
-  /// Stops the computation and waits for its end.
+  /// Stops the preliminary computation and waits for its thread.
   ~FirstAnswer();
   FirstAnswer(const FirstAnswer&) = delete;
   FirstAnswer& operator=(const FirstAnswer&) = delete;

@@ -17,7 +17,8 @@ namespace {
 Cancellation cancellation_asked;
 std::atomic<bool> is_orderly{false};
 
-// The time that work has to stop in order, and the clock of it, which sends SIGALRM.
+// Time from the first interrupt within which the work must stop. After this time, a timer sends SIGALRM, which ends the
+// process.
 constexpr itimerspec kPatience{{0, 0}, {0, 900'000'000}};
 constexpr itimerspec kNever{{0, 0}, {0, 0}};
 timer_t deadline;
@@ -27,7 +28,8 @@ void set_deadline(const itimerspec& when) {
   if (has_deadline) ::timer_settime(deadline, 0, &when, nullptr);
 }
 
-/// Text of the line on standard error if the process ends at once. On a terminal, it replaces the progress bar.
+/// Line that is written to standard error if the process ends without results. On a terminal, it replaces the progress
+/// bar.
 std::string_view last_line;
 
 extern "C" void end_now(int) {
@@ -37,8 +39,8 @@ extern "C" void end_now(int) {
 }
 
 extern "C" void on_interrupt(int) {
-  // Work outside of an OrderlyInterrupt, such as waiting for standard input, ends at once; so does any at the second
-  // interrupt.
+  // The process ends immediately if no OrderlyInterrupt exists, for example while it waits for standard input. The
+  // second interrupt always ends it immediately.
   if (!is_orderly.load() || cancellation_asked.requested()) end_now(0);
   cancellation_asked.request();
   set_deadline(kPatience);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Handles Ctrl-C, SIGTERM and SIGHUP. Long work stops in order and keeps its finished results. Other work ends
-// immediately.
+// Handles Ctrl-C, SIGTERM and SIGHUP. Long computations stop and write their finished results. Otherwise the process
+// ends immediately.
 
 #include <functional>
 #include <optional>
@@ -12,12 +12,12 @@
 
 namespace retrace::app {
 
-/// Installs handlers for the interrupts SIGINT, SIGTERM and SIGHUP, which end the program with exit code 130. If SIGHUP
-/// was ignored before, as it is under nohup, it remains ignored.
+/// Installs handlers for the interrupts SIGINT, SIGTERM and SIGHUP. An interrupt ends the program with exit code 130.
+/// If the program was started with SIGHUP ignored, for example by nohup, SIGHUP remains ignored.
 void install_interrupt_handlers();
 
-/// Handles interrupts while an object exists. The first interrupt requests the work to stop, so that finished results
-/// are written. The second interrupt ends the program immediately.
+/// While an object of this class exists, the first interrupt only requests the computation to stop, so that finished
+/// results are written. The second interrupt ends the program immediately.
 class OrderlyInterrupt {
  public:
   OrderlyInterrupt();
@@ -25,12 +25,15 @@ class OrderlyInterrupt {
   OrderlyInterrupt(const OrderlyInterrupt&) = delete;
   OrderlyInterrupt& operator=(const OrderlyInterrupt&) = delete;
 
-  /// Runs work that checks regularly whether to stop. If the work has not stopped one second after the interrupt, the
-  /// program ends and nothing is written. If it has stopped in time, its results are written, however long that takes.
-  /// \param threads number of threads; empty or 0: as many as there are cores
+  /// Runs a computation that regularly checks whether it is requested to stop. If it does not stop within one second
+  /// after the interrupt, the program ends and writes no results. Writing the results afterwards has no time limit.
+  /// \param threads number of threads; empty or 0: number of cores
+  /// \param work computation; its parameter is the request to stop
   void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;
-  /// Does the same as the overload above and also shows a progress bar.
-  /// \param text text of the progress bar
+  /// Runs a computation like the overload above and shows a progress bar.
+  /// \param common options of the command, from which the number of threads and --quiet are used
+  /// \param text texts of the progress bar
+  /// \param work computation; its parameters are the progress bar and the request to stop
   void run(const CommonOptions& common, const RunText& text,
            const std::function<void(Progress*, const Cancellation*)>& work) const;
 };

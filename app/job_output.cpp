@@ -49,7 +49,7 @@ std::string name_from(const fs::path& folder, const fs::path& file) {
   const fs::path base = folder.empty() ? fs::path(".") : folder;
   const fs::path direct =
       fs::absolute(file).lexically_normal().lexically_relative(fs::absolute(base / "").lexically_normal());
-  // Where a folder is a link, what lies above it is not what its name says.
+  // The lexical path is correct only if it leads to the file. If a folder is a symbolic link, ".." leads elsewhere.
   if (!direct.empty() && fs::equivalent(base / direct, file, error)) return direct.string();
   const fs::path followed = fs::relative(file, base, error);
   return error || followed.empty() ? fs::absolute(file).string() : followed.string();

@@ -13,27 +13,29 @@
 
 namespace retrace::app {
 
-/// How a job is made, for every command that makes one.
+/// Options of all commands that make a fabrication job.
 struct MakingOptions {
   studies::JobRequest request;
   std::optional<double> tool_width_mm;
 };
 
-/// Their declaration. \param needs the option that they cannot go without; empty: none, and the width of the tool is
-/// required
+/// Returns the arguments that set MakingOptions.
+/// \param needs option that each of them requires, such as "--job"; empty: none, and --tool-width-mm is required
 std::vector<Argument> making_arguments(MakingOptions& options, const std::string& needs);
 
-/// What the options say of how a job is made.
+/// Returns the request for a fabrication job that the options describe.
 studies::JobRequest job_request(const MakingOptions& options, double tool_width_mm);
 
-/// Files that making a job reads beside the design. Names without an ending are shipped ones, not files.
+/// Returns the files that are read in addition to the design: machine and process. Names without an extension refer to
+/// shipped machines and processes and are not files.
 std::vector<std::string> files_of_making(const MakingOptions& options);
 
-/// How a job that is to lie in a folder names a file. \param folder empty: the working directory
+/// Returns the path of a file relative to the folder of a job.
+/// \param folder folder of the job; empty: the working directory
 std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file);
 
-/// The text of a job that is to lie at a place: its design and its machine's file are named as seen from there.
-/// \param file empty: the job is printed, and names its design by the file's name alone
+/// Returns the text of a job file. The paths of the design and of the machine file are made relative to the job file.
+/// \param file job file; empty: the job is printed, and the design is given by its file name without a folder
 std::string job_text_at(studies::MadeJob& made, const std::filesystem::path& file);
 
 }  // namespace retrace::app

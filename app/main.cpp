@@ -28,8 +28,9 @@ int fail(ExitCode code, const std::string& text) {
   return static_cast<int>(code);
 }
 
-/// Ends the program when an allocation fails. It does not unwind the stack: destructors, and functions that must not
-/// throw, may need memory as well, and libraries may hold locks. Every finished point of a study is in its store.
+/// Ends the program when an allocation fails. No exception is thrown, because destructors and noexcept functions may
+/// need memory as well and libraries may hold locks. Finished points of a study are not lost, because they are already
+/// in its store.
 [[noreturn]] void end_without_memory() {
   constexpr std::string_view text =
       "retrace: out of memory; the finished points of a study are kept, and --resume goes on from there\n";
@@ -37,7 +38,8 @@ int fail(ExitCode code, const std::string& text) {
   ::_exit(static_cast<int>(ExitCode::failed));
 }
 
-/// Ends the program with an error message. C++ would abort it when an exception leaves a function that must not throw.
+/// Terminate handler. Ends the program with the message of the current exception, for example if an exception leaves a
+/// noexcept function.
 [[noreturn]] void end_on_exception() {
   try {
     if (std::current_exception()) std::rethrow_exception(std::current_exception());
@@ -50,7 +52,8 @@ int fail(ExitCode code, const std::string& text) {
   std::abort();
 }
 
-/// With standard error closed, the next file that is opened would get its number, and our warnings with it.
+/// Opens /dev/null as standard error if standard error is closed. The next file that is opened would otherwise get the
+/// descriptor of standard error, and warnings would be written to that file.
 void keep_standard_error_apart() {
   if (::fcntl(STDERR_FILENO, F_GETFD) != -1 || errno != EBADF) return;
   const int nowhere = ::open("/dev/null", O_WRONLY);
@@ -64,14 +67,14 @@ void keep_standard_error_apart() {
 int main(int argc, char** argv) {
   keep_standard_error_apart();
   app::install_interrupt_handlers();
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an output that cannot be written
+  std::signal(SIGPIPE, SIG_IGN);  // writing to a closed pipe then fails with an error message
   std::set_new_handler(end_without_memory);
   std::set_terminate(end_on_exception);
   try {
     return static_cast<int>(run(argc, argv));
   } catch (const Error& error) {
     return fail(error.exit_code(), error.what());
-  } catch (const std::bad_alloc&) {  // of a library that does not allocate with new
+  } catch (const std::bad_alloc&) {  // thrown by libraries that do not allocate memory with new
     end_without_memory();
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(ExitCode::failed, error.path1().string() + ": " + error.code().message());

@@ -56,7 +56,7 @@ class ListReader {
       fail(fmt::format("the step of a range must lead from start towards stop, got {}", in_quotes(item)));
     if (steps > static_cast<double>(kMostValues))
       fail(fmt::format("a range may have at most {} values, got {}", kMostValues, in_quotes(item)));
-    // The stop belongs to the range although start + i * step may miss it by rounding.
+    // The range includes `stop`, even if rounding errors make start + i * step differ from it slightly.
     const auto last = static_cast<long>(std::floor(steps + 1e-9 * std::max(1.0, steps)));
     for (long i = 0; i <= last; ++i) {
       const double value = start + static_cast<double>(i) * step;

@@ -8,9 +8,11 @@
 
 namespace retrace::app {
 
-/// Reads a LIST: `a,b,c` mixed with `start:stop:step`, stop included; values are start + i * step, duplicates are
-/// dropped. \param option name for messages \throw InputError for an empty list, text that is no finite number, a range
-/// that runs the wrong way, or more than 100,000 values
+/// Reads a list of numbers `a,b,c` and ranges `start:stop:step`. The values of a range are start + i * step and include
+/// stop. Duplicates are removed.
+/// \param option name of the option, for messages
+/// \throw InputError if the list is empty, has more than 100,000 values, or contains text that is not a finite number;
+/// also if the step of a range leads away from its stop
 std::vector<double> read_number_list(std::string_view text, const std::string& option);
 
 struct NumberRange {
@@ -18,13 +20,14 @@ struct NumberRange {
   double high = 0.0;
 };
 
-/// A LIST in which `start:stop:auto` leaves numbers to be chosen.
+/// List of numbers that may contain ranges `start:stop:auto`, in which the program chooses the points.
 struct CurveList {
   std::vector<double> values;
-  std::vector<NumberRange> chosen;  ///< low < high
+  std::vector<NumberRange> chosen;  ///< ranges `start:stop:auto`, with low < high
 };
 
-/// \throw InputError as read_number_list(), and for a range that is empty or runs down
+/// Reads a list like read_number_list(), in which ranges `start:stop:auto` are also allowed.
+/// \throw InputError like read_number_list(); also if start >= stop in a range `start:stop:auto`
 CurveList read_curve_list(std::string_view text, const std::string& option);
 
 }  // namespace retrace::app

@@ -15,7 +15,7 @@ namespace retrace::app {
 namespace fs = std::filesystem;
 namespace {
 
-/// Whether both name one file, which need not exist yet. Hard links to one are the same.
+/// Returns true if both paths lead to the same file, which need not exist. Hard links to the same file count as equal.
 bool is_same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
@@ -36,14 +36,17 @@ void refuse_input(const std::string& option, const fs::path& output, const std::
                        printable(output.string()) + " is a file that is read; it would be overwritten");
 }
 
-/// Refuses a file of an option that is an output of another one.
+/// Refuses an output file of the option `own` that is also an output file of another option.
+/// \throw InputError
 void refuse_second(const std::string& own, const fs::path& file, const std::string& option, const fs::path& output) {
   if (own != option && !file.empty() && is_same_file(file, output))
     throw InputError({"", 0, own},
                      printable(file.string()) + " is a file that " + option + " writes; give another name");
 }
 
-/// Refuses a document that cannot be written, unless it goes to the folder that is to be made.
+/// Checks that the JSON document can be written. A file in the output folder is not checked, because this folder may
+/// still have to be created.
+/// \throw OutputError
 void check_can_write(const std::string& json, const std::string& out) {
   std::error_code error;
   const fs::path folder = fs::absolute(json).parent_path();
@@ -171,7 +174,7 @@ ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohma
 
 void say(std::string_view text) {
   std::string line(text);
-  // An error is one line, whatever a file is called.
+  // File names may contain line feeds. A message must be one line.
   std::replace(line.begin(), line.end(), '\n', ' ');
   line = printable(line, std::string::npos) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Everything that commands print or write: checks of the output files before the work, the files themselves after it,
-// and lines on standard error.
+// Output of commands: checks of the output files before the computation, writing of these files after it, and lines on
+// standard error.
 
 #include <filesystem>
 #include <functional>
@@ -17,52 +17,61 @@
 
 namespace retrace::app {
 
-/// Writes to standard output. \throw OutputError if that fails
+/// Writes a text to standard output.
+/// \throw OutputError if the text cannot be written
 void print(std::string_view text);
 
-/// Returns a line of output which says that a file was written.
+/// Returns the line "wrote FILE", which is printed after a file was written.
 std::string wrote_line(const std::filesystem::path& file);
 
-/// The files that designs come from, with those that they name.
+/// Returns the files of the designs and all files that the designs refer to.
 std::vector<std::string> files_read(const std::vector<studies::Design>& designs);
 
-/// The same options of a command whose --out is no folder.
+/// Returns the options without --out, for commands in which --out is a file instead of a folder.
 CommonOptions without_folder(CommonOptions options);
 
-/// How work ended.
+/// State of a command at its end, from which the exit code and the last message follow.
 struct Ending {
-  bool complete = true;  ///< else it was interrupted
+  bool complete = true;  ///< false if the command was interrupted
+  /// Text after "interrupted; " in the message about an interrupt.
   std::string interrupted = "what is finished is in the result";
-  bool is_yes = true;  ///< the answer to what was asked
+  bool is_yes = true;  ///< false if the result is negative, such as a missed limit: exit code 1
 };
 
-/// The files of a result, each named once: before the work they are checked, after it they are made and written.
+/// Output files of a command. They are registered and checked before the computation, and written after it.
 class ResultFiles {
  public:
   using Content = std::function<std::string()>;
 
   /// \param inputs every file that the command reads
-  /// \param document file in the output folder that holds the same as --json; empty: none
+  /// \param document name of the file in the output folder with the same content as --json; empty: none
   ResultFiles(CommonOptions options, std::vector<std::string> inputs, const std::string& document = {});
 
-  /// A file in the output folder. What makes its content is called by write(); an empty content leaves the file out.
+  /// Adds a file in the output folder.
+  /// \param content function that returns the content of the file; write() calls it. A file with an empty content is
+  /// not written.
   void add(const std::string& name, Content content);
-  /// The drawing of a plot in the output folder, as NAME.svg and NAME.png. \param plot makes the plot
+  /// Adds a drawing in the output folder, as NAME.svg and NAME.png.
+  /// \param plot function that returns the plot
   template <class Plot>
   void add_drawing(const std::string& name, Plot plot);
-  /// A file in the output folder that something else writes. \return its path; empty without such a folder
+  /// Adds a file in the output folder that is checked here but written elsewhere.
+  /// \return path of the file; empty if there is no output folder
   std::filesystem::path reserve(const std::string& name);
-  /// A file that an option names; none if that is empty.
+  /// Adds the file that an option names. Does nothing if `file` is empty.
   void add_named(const std::string& option, const std::filesystem::path& file, Content content);
 
-  /// Refuses outputs that would replace a file that is read, by whatever path or link, or each other. \throw InputError
+  /// Checks that no output file is also an input file or another output file. Files are compared after links are
+  /// resolved.
+  /// \throw InputError
   void check() const;
-  /// The same, and refuses outputs that cannot be written; makes the output folder. To be called before anything is
-  /// written. \throw InputError, OutputError
+  /// Calls check(), checks that the output files can be written, and creates the output folder. Call it before anything
+  /// is written.
+  /// \throw InputError, OutputError
   void prepare() const;
-  /// Writes the JSON document and the other files to the paths that the options give. Then prints `text` and the names
-  /// of the written files to standard output, unless `--quiet` or `--json -` is given; control characters are printed
-  /// as escapes. Finally prints the warnings, and a message if the work was interrupted, to standard error.
+  /// Writes the JSON document and the other files. Then prints `text` and the names of the written files to standard
+  /// output, unless `--quiet` or `--json -` is given. Control characters are printed as escapes. Finally prints the
+  /// warnings to standard error, and a message if the command was interrupted.
   /// \return the exit code
   /// \throw OutputError if a file or standard output cannot be written
   ExitCode write(std::string_view json, std::string_view text, const std::vector<std::string>& warnings = {},
@@ -74,12 +83,12 @@ class ResultFiles {
   struct File {
     std::string option;
     std::filesystem::path path;
-    Content content;  ///< none: written by something else, or the document
+    Content content;  ///< function that returns the content; empty: the file is written elsewhere
   };
 
   CommonOptions options_;
   std::vector<std::string> inputs_;
-  std::filesystem::path document_;  ///< empty: none
+  std::filesystem::path document_;  ///< JSON document in the output folder; empty: none
   std::vector<File> files_;
 };
 
@@ -94,9 +103,9 @@ void ResultFiles::add_drawing(const std::string& name, Plot plot) {
   add(name + ".png", [once] { return render_png(once()); });
 }
 
-/// Output of a command whose result is a text, such as a job file or a page. The text is written to the file that --out
-/// names. Without --out it is printed unchanged to standard output, even if --quiet is given; with `--json -` it is not
-/// printed.
+/// Output of a command whose result is a text, such as a job file or a page. The text is written to the file of --out.
+/// Without --out, the text is printed unchanged to standard output, even if --quiet is given. With `--json -`, the text
+/// is not printed.
 class TextFiles {
  public:
   /// Checks the output files in the same way as ResultFiles::prepare().
@@ -116,15 +125,16 @@ class TextFiles {
   ResultFiles files_;
 };
 
-/// Writes a text that is the result itself. \param content of the document of --json, to which the text is added
+/// Writes a result that is a text.
+/// \param content other keys of the JSON document; the key `text` is added
 /// \throw InputError, OutputError
 ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohmann::ordered_json content,
                     const std::string& text);
 
-/// One line on standard error, free of control characters. A closed standard error is no failure.
+/// Writes one line to standard error. Control characters are printed as escapes. Errors of writing are ignored.
 void say(std::string_view text);
 
-/// Warnings on standard error, one line each, unless `--quiet`.
+/// Writes warnings to standard error, one line each. Does nothing if --quiet is given.
 void print_warnings(const CommonOptions& options, const std::vector<std::string>& warnings);
 
 }  // namespace retrace::app

@@ -17,7 +17,7 @@
 namespace retrace::app {
 namespace {
 
-/// The bar with points a second and failures behind it.
+/// Progress bar that also shows the number of points per second and the number of failed points.
 class PointsBar : public studies::SweepObserver {
  public:
   PointsBar(RunText text, const CommonOptions& common) : bar_(std::move(text), common) {}
@@ -44,7 +44,7 @@ class PointsBar : public studies::SweepObserver {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Points none of which could be computed answer nothing.
+/// Returns `code`, or ExitCode::answer_is_no with a message if the computation of every point failed.
 ExitCode exit_code_of(const std::vector<studies::StoredPoint>& points, ExitCode code) {
   const auto failed = [](const studies::StoredPoint& point) { return point.failed; };
   if (points.empty() || !std::all_of(points.begin(), points.end(), failed)) return code;
@@ -52,7 +52,8 @@ ExitCode exit_code_of(const std::vector<studies::StoredPoint>& points, ExitCode 
   return ExitCode::answer_is_no;
 }
 
-/// \param session null without MPI
+/// Computes the missing points and writes the results.
+/// \param session MPI session; null if the program does not run under MPI
 ExitCode compute(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command,
                  studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();

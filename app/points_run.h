@@ -1,7 +1,7 @@
 #pragma once
 
-// The common course of `retrace sweep` and `retrace tolerance`: compute the points of a study that its store lacks,
-// alone or under MPI, then write the result.
+// Common implementation of `retrace sweep` and `retrace tolerance`. Computes the points of a study that are not yet in
+// its store, optionally under MPI, and writes the result.
 
 #include <functional>
 #include <optional>
@@ -14,22 +14,25 @@
 
 namespace retrace::app {
 
-/// A command that computes a known list of points and keeps them in a store.
+/// Description of a command that computes a list of points and saves them in a store (an SQLite file).
 struct PointsCommand {
   std::string doing;              ///< activity that the progress bar shows, such as "sweeping"
-  std::string fewer_points = {};  ///< advice that reduces the number of points, such as "give fewer values"
+  std::string fewer_points = {};  ///< advice to the user how to reduce the number of points: "give fewer values"
   std::string store;              ///< name of the store file in the output folder
   /// Function that reads and checks the study. Under MPI, every rank calls it.
   std::function<studies::Sweep()> read;
-  std::string document;  ///< JSON in the output folder
-  /// Names further files there, beside the store. \param result is there when they are made
+  std::string document;  ///< name of the JSON document in the output folder
+  /// Function that adds further output files.
+  /// \param result result of the computation; it has a value when the contents of the files are requested
   std::function<void(ResultFiles& files, const std::optional<studies::SweepResult>& result)> add_files;
-  /// Writes what came out, which may be incomplete, and adds its warnings. \return the exit code of a complete run
+  /// Function that writes the result, which may be incomplete, and adds warnings to it.
+  /// \return exit code of a complete run
   std::function<ExitCode(studies::SweepResult& result, const ResultFiles& files)> write;
 };
 
-/// Computes what the store lacks - by itself, or as one rank of a job under MPI, with a progress bar - and has it
-/// written. \throw Error
+/// Computes the points that are not in the store and writes the result. Runs as a single process or as one rank of an
+/// MPI job, and shows a progress bar.
+/// \throw Error
 ExitCode run_points(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command);
 
 }  // namespace retrace::app

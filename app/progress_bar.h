@@ -1,6 +1,6 @@
 #pragma once
 
-// Progress of long work on standard error: a bar on the terminal, and one line if the work will take long.
+// Shows the progress of a computation on standard error: a bar on a terminal, and one line if it will take long.
 
 #include <chrono>
 #include <functional>
@@ -13,16 +13,17 @@
 
 namespace retrace::app {
 
-/// Texts that a progress bar shows.
+/// Texts of a progress bar.
 struct RunText {
   std::string doing;  ///< activity, such as "tracing"
-  /// Changes of options that make the run shorter, such as "give a smaller --samples (now 1000000000)".
+  /// Advice for a shorter run, such as "give a smaller --samples (now 1000000000)".
   Words to_shorten = {};
 };
 
-/// A progress bar on standard error. On a terminal, it shows the finished fraction and the remaining time. If the run
-/// will take long (LongRun), a notice with the estimated duration and advice for a shorter run is written one time,
-/// also if standard error is not a terminal. With --quiet, nothing is written. Several threads may use one bar.
+/// Progress bar on standard error. On a terminal, it shows the finished fraction and the remaining time. If the run
+/// will take long (see LongRun), it writes one notice with the estimated duration and advice for a shorter run. The
+/// notice is also written if standard error is not a terminal. With --quiet, nothing is written. The class is
+/// thread-safe.
 class ProgressBar : public Progress {
  public:
   ProgressBar(RunText text, const CommonOptions& common);
@@ -31,30 +32,31 @@ class ProgressBar : public Progress {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void at(double share) override;
-  /// Shows the finished fraction, followed by a remark.
+  /// Shows the finished fraction, followed by the text `remark`.
   void at(double share, const std::string& remark);
-  /// Shows progress of work of unknown length.
-  /// \param done text about the work that is finished
+  /// Shows the progress of a computation of unknown length, for which the fraction is unknown.
+  /// \param done text about the finished work, such as "65 designs looked at"
   void count(const std::string& done);
-  /// Begins a group of tasks within work of unknown length.
-  /// \param share fraction of the group that an earlier run has finished
+  /// Starts a group of tasks within a computation of unknown length. The length of the group is known.
+  /// \param share fraction of the group that was finished in an earlier run
   void begin_group(double share);
-  /// Reports the finished fraction of the group, from which the notice estimates the duration.
-  /// \param group description of the group, such as "65 designs"
+  /// Reports the finished fraction of the group. The notice about a long run is based on this fraction.
+  /// \param group description of the group for the notice, such as "computing 65 of the designs to look at"
   void at_group(double share, const std::string& group);
 
-  /// Sets a function that is called after the notice about a long run. The function must not use the bar.
-  /// \param action receives the estimated remaining time in seconds; empty: no function is called
+  /// Sets a function that is called after the notice about a long run. The function must not use the bar, because the
+  /// mutex of the bar is locked during the call.
+  /// \param action function with the estimated remaining time in seconds as its parameter; empty: none
   void after_notice(std::function<void(double)> action);
-  /// Writes lines to standard error. The bar is removed and appears again at its next update. Control characters are
-  /// escaped.
+  /// Writes lines to standard error. Removes the bar first; the next update draws it again. Control characters are
+  /// printed as escapes.
   void write_lines(const std::string& lines);
 
  private:
   double elapsed_s() const;
   bool is_time_to_draw(bool is_end);
-  /// Writes the notice about a long run when it is due.
-  /// \param work description of the work that takes long
+  /// Writes the notice about a long run if LongRun::notice_s() requests it.
+  /// \param work description of the computation that takes long, such as "this run"
   /// \pre mutex_ is locked
   void notice(double share, const std::string& work);
   void clear();

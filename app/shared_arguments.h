@@ -1,7 +1,7 @@
 #pragma once
 
-// Arguments that several commands have, each with one name and one help text: design, job and part files, engine, dye,
-// and how a study treats an existing store.
+// Arguments that several commands share: design, job and part files, engine, dye, and the options of studies for an
+// existing store.
 
 #include <optional>
 #include <span>
@@ -15,51 +15,53 @@
 
 namespace retrace::app {
 
-/// DESIGN, a design file.
+/// Returns the argument DESIGN, a design file.
 Argument design_argument(std::string& design);
-/// JOB, a job file.
+/// Returns the argument JOB, a fabrication job file.
 Argument job_argument(std::string& job, const std::string& help = "job file");
-/// PART, the file of a turned or planed part.
+/// Returns the argument PART, the file of a turned or planed part.
 Argument part_argument(std::string& part);
-/// --dialect of the programs that are written.
+/// Returns the option --dialect, the dialect of NC programs.
 Argument dialect_argument(std::string& dialect);
-/// Traits of a machine: the name of a shipped one, or a file.
+/// Returns the traits of a machine, which is given by the name of a shipped machine or by a file.
 Traits machine_traits();
-/// --engine of commands whose engines are auto, exact, montecarlo and embree.
+/// Returns the option --engine of commands that have the engines auto, exact, montecarlo and embree.
 Argument engine_argument(std::string& engine, const std::string& help);
 /// Returns the requirement that --engine is one of `engines`.
 Need engine_need(std::span<const studies::Engine> engines);
-/// --dye: none, a shipped dye, or a file.
+/// Returns the option --dye, which is "none", the name of a shipped dye, or a file.
 template <class Name>
 Argument dye_argument(Name& dye, const std::string& help) {
   return {"--dye NAME|FILE", help, &dye, one_of(Words{"none", "red", "amber"}, ".csv")};
 }
 
-/// Names of the engines of `retrace rre`, or of those that pictures and photometry have as well.
+/// Returns names of engines.
+/// \param of_rre true: all engines of `retrace rre`; false: only the engines of pictures and photometry
 Words engine_words(bool of_rre);
 
-/// How height maps are read, where their files do not say it.
+/// Options for reading height maps. They give information that the files may lack.
 struct MapOptions {
-  std::optional<std::string> pixel_um;  ///< one number, or two with a comma between
+  std::optional<std::string> pixel_um;  ///< spacing of the points: one number, or two numbers separated by a comma
   std::optional<std::string> height_unit;
   std::optional<std::string> lateral_unit;
   std::optional<std::size_t> channel;
 };
 std::vector<Argument> map_arguments(MapOptions& options);
-/// What they say. \throw InputError naming --pixel-um
+/// Returns the settings for reading a height map.
+/// \throw InputError if --pixel-um is not one or two positive numbers
 surface_models::HeightMapOptions reading_of(const MapOptions& options);
 
-/// Of commands that keep their points in a store.
+/// Options of commands that save their points in a store (an SQLite file).
 struct StudyOptions {
   std::string study;
   bool resume = false;
   bool overwrite = false;
 };
 
-/// STUDY and what is done with a store that is there.
+/// Returns the argument STUDY and the options --resume and --overwrite.
 std::vector<Argument> study_arguments(StudyOptions& options);
 
-/// What is done with a store that is there.
+/// Returns the action if the store exists already: resume it, overwrite it, or refuse to run.
 studies::IfExists if_exists_of(const StudyOptions& options);
 
 }  // namespace retrace::app

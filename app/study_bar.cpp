@@ -16,7 +16,7 @@ bool has_tracing(const studies::Study& study, std::string_view kind) {
                              [&](const auto& quantity) { return quantity->tracing().starts_with(kind); });
 }
 
-/// Returns changes of the analysis settings that make one point shorter.
+/// Returns advice on the keys of [analysis] that shorten the computation of one point.
 Words to_shorten_point(const studies::Study& study) {
   const schema::Document& document = *study.document;
   const bool has_rre = has_tracing(study, "rre");

@@ -1,6 +1,6 @@
 #pragma once
 
-// Progress bar of searches for designs, and advice on shorter studies.
+// Progress bar for searches of the best design, and advice for shorter studies.
 
 #include <cstdint>
 #include <string>
@@ -11,17 +11,17 @@
 
 namespace retrace::app {
 
-/// Returns changes that make a study shorter, such as "give a smaller analysis.samples (now 1000000000)".
-/// \param fewer_points change that reduces the number of points, such as "give fewer values"; empty: there is none
+/// Returns advice for a shorter study, such as "give a smaller analysis.samples (now 1000000000)".
+/// \param fewer_points additional advice how to reduce the number of points, such as "give fewer values"; empty: none
 Words to_shorten_study(const studies::Study& study, const std::string& fewer_points);
 
-/// Progress bar of a search, which evaluates an unknown number of designs.
+/// Progress bar of a search that evaluates an unknown number of designs.
 class SearchBar : public studies::OptimiseObserver, public studies::SweepObserver {
  public:
   /// \param of plural noun for the counted items, such as "designs"
   SearchBar(RunText text, std::string of, const CommonOptions& common);
 
-  /// Reports the progress of the first group of designs, which several processes compute together.
+  /// Reports the progress of the first group of designs if several MPI processes compute it together.
   void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) override;
   void at_share(double share) override;
   void at(std::size_t evaluated) override;

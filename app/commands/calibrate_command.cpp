@@ -19,7 +19,7 @@ namespace {
 
 struct CalibrateOptions {
   std::optional<std::string> measurements;
-  std::string times;  ///< machine whose programs' times the table has; empty: it has measurements of parts
+  std::string times;  ///< machine on which programs were timed; empty: the table contains measurements of parts
   std::string dialect = "rs274ngc";
 };
 
@@ -32,7 +32,7 @@ std::vector<Argument> arguments(CalibrateOptions& options) {
                                 "settle; without a table: write programs to be timed",
                                 &options.times, machine_traits()}};
   all.push_back(dialect_argument(options.dialect));
-  // The dialect only matters for programs whose times are predicted. A table of times names its programs itself.
+  // Programs are only written if --times is given without a table. A table of times refers to existing program files.
   all.back().traits.needs = {any_given({"--times"}), absent("MEASUREMENTS")};
   return all;
 }
@@ -46,7 +46,7 @@ std::vector<std::string> inputs_of(const CalibrateOptions& options, const studie
   return inputs;
 }
 
-/// Programs that are to be timed, and the table of their times.
+/// Writes NC programs that are to be timed on the machine, and a table for their times.
 ExitCode write_time_programs(const CalibrateOptions& options, const CommonOptions& common,
                              const fabrication::Machine& machine) {
   if (common.out.empty())
@@ -64,7 +64,8 @@ ExitCode write_time_programs(const CalibrateOptions& options, const CommonOption
                      "Programs to be timed, which cut nothing; times.csv takes their times\n");
 }
 
-/// How axes speed up and settle, from times of programs.
+/// Estimates the acceleration and settling of the axes from measured times of programs. Without a table of times,
+/// writes the programs to be timed.
 ExitCode calibrate_times(const CalibrateOptions& options, const CommonOptions& common) {
   const fabrication::Machine machine = fabrication::load_machine(options.times, {"", 0, "--times"});
   if (!options.measurements) return write_time_programs(options, common, machine);

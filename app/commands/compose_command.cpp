@@ -27,7 +27,7 @@
 namespace retrace::app {
 namespace {
 
-/// The design of a zone's cells; empty where the part has fewer.
+/// Returns the design of the cells of a zone, or an empty text if the part has fewer zones.
 std::string zone_design(const studies::Study& study, const std::vector<studies::Zone>& zones, std::size_t zone) {
   return zone < zones.size() ? studies::zone_design_text(study, zones, zone) : "";
 }
@@ -36,7 +36,7 @@ struct ComposeOptions : StudyOptions {
   std::string design;
   std::string layout = "stripes";
   bool for_worst = false;
-  std::string job;  ///< job file to write of the whole part; empty: none
+  std::string job;  ///< fabrication job file of the whole part that is to be written; empty: no job is written
   MakingOptions making;
   std::optional<double> x_length_mm;
   std::optional<double> y_length_mm;
@@ -66,7 +66,8 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
   return all;
 }
 
-/// What can be told of the job before the search. \throw InputError
+/// Checks the options of the fabrication job before the search, because a search may take long.
+/// \throw InputError
 void check_job_of(const ComposeOptions& options) {
   if (options.job.empty()) return;
   if (!options.making.tool_width_mm) throw InputError({"", 0, "--tool-width-mm"}, "is required with --job");
@@ -85,14 +86,15 @@ studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
   return request;
 }
 
-/// The part with its zones, as far as it was asked for.
+/// Output files that describe the whole part with its zones.
 struct WholePart {
-  std::string design;
-  std::optional<studies::MadeJob> job;
-  bool is_complete = true;
+  std::string design;                   ///< text of the design file; empty: not requested
+  std::optional<studies::MadeJob> job;  ///< fabrication job; empty: not requested
+  bool is_complete = true;              ///< false if a requested file cannot be made
 };
 
-/// \param warnings is told why one of them cannot be written: what was found is not lost for that
+/// Returns the design and the fabrication job of the whole part, if they are requested.
+/// \param warnings receives the reason if one of them cannot be made; the other results are still written
 WholePart whole_part_of(const ComposeOptions& options, const studies::Study& study,
                         const std::vector<studies::Zone>& zones, const studies::ZonedDesignRequest& zoned,
                         std::vector<std::string>& warnings) {
@@ -112,7 +114,8 @@ WholePart whole_part_of(const ComposeOptions& options, const studies::Study& stu
   return whole;
 }
 
-/// \param session null without MPI
+/// Searches for the best composition and writes the results.
+/// \param session MPI session; null if the program does not run under MPI
 ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);

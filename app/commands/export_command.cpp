@@ -19,7 +19,7 @@ const studies::AppearanceRequest kUsual;
 
 struct ExportOptions {
   std::string design;
-  std::optional<std::string> file;  ///< the same as --out
+  std::optional<std::string> file;  ///< output file, which can also be given by --out
   std::string what = "array";
   std::optional<double> block_mm;
   std::optional<double> entrance_deg, window_deg, error, source_arcmin, receiver_arcmin;
@@ -54,7 +54,7 @@ std::vector<Argument> arguments(ExportOptions& options) {
        &options.most_directions}};
 }
 
-/// Refuses options of the other kind of file.
+/// Refuses options of solids if a material is written, and options of materials if a solid is written.
 void check_options(const ExportOptions& options, bool is_material) {
   const auto refuse = [&](const char* option, bool is_given) {
     if (is_given)
@@ -82,7 +82,8 @@ studies::AppearanceRequest appearance_request(const ExportOptions& options) {
   return request;
 }
 
-/// A table has its values beside it.
+/// Computes the reflection of a design as a material and writes it. The format `table` consists of two files: the
+/// values are in a CSV file in the same folder.
 ExitCode run_material(const ExportOptions& options, const CommonOptions& common, const std::string& file,
                       studies::AppearanceFormat format) {
   const studies::Design design = studies::read_design(options.design, common.overrides);
@@ -94,7 +95,8 @@ ExitCode run_material(const ExportOptions& options, const CommonOptions& common,
   files.add_named("--out", file, [&] { return text.text; });
   if (format == studies::AppearanceFormat::table) files.add_named("--out", values, [&] { return text.values; });
   files.prepare();
-  // Only while it lasts: what comes after has nothing to stop in order for.
+  // The interrupt handler exists only during the computation. Later interrupts end the program immediately, because
+  // there is nothing to finish.
   const RunText running{
       "material", {fmt::format("give a larger --error (now {:g})", request.error), "give fewer --most-directions"}};
   OrderlyInterrupt().run(common, running, [&](Progress* bar, const Cancellation* cancel) {
@@ -109,7 +111,8 @@ ExitCode run_material(const ExportOptions& options, const CommonOptions& common,
                      result.warnings);
 }
 
-/// The file to write: DESIGN FILE and -o FILE are the same.
+/// Returns the output file, which is given either by the argument FILE or by --out.
+/// \throw InputError if both are given
 std::string output_file(const ExportOptions& options, const CommonOptions& common) {
   if (options.file && !common.out.empty())
     throw InputError({"", 0, "--out"}, "FILE was given already, as " + *options.file);

@@ -50,7 +50,8 @@ bool has_stage(const studies::FabricationResult& result, bool roughing) {
   return false;
 }
 
-/// Drawings that the sheet for the set-up shows, each in a file of its own within it: their parts have names.
+/// Returns the drawings for the set-up sheet. Each is a separate SVG document, because the element ids of different
+/// drawings may be equal.
 std::vector<report::PageFigure> drawings_of(const studies::FabricationResult& result) {
   std::vector<report::PageFigure> figures;
   const auto add = [&](const std::string& caption, const std::string& svg) {
@@ -74,7 +75,7 @@ ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
   request.options.stop_every = options.stop_every;
   request.options.split_hours = options.split_hours;
   const studies::FabricationResult result = studies::fabricate(request);
-  // Light is traced for who reads it.
+  // The effect of errors on the light is traced only if the sheet is written to a file or to JSON.
   const studies::SetupSheet sheet = studies::setup_sheet(result, !common.out.empty() || !common.json.empty());
 
   std::vector<std::string> inputs = {options.job};

@@ -29,21 +29,21 @@
 namespace retrace::app {
 namespace {
 
-// Between two previews of a camera picture that takes long.
+// Minimum time between two previews of an unfinished camera picture.
 constexpr std::chrono::seconds kPreview{10};
-// By each rank under MPI: a pass is for all threads.
+// Number of passes that each MPI rank computes at a time. One pass uses all threads of the rank.
 constexpr std::size_t kPassesAtATime = 1;
-// Written by previews too.
+// Name of the camera picture. Previews are written to the same file.
 constexpr const char* kCameraPng = "camera.png";
 
-/// Options of `retrace image`. Exactly one of the kinds of picture is given.
+/// Options of `retrace image`. Exactly one of `detector`, `camera` and `road` must be true.
 struct ImageOptions {
   std::string design;
   bool detector = false;
   bool camera = false;
   bool road = false;
 
-  // What of the requests is an option as it is.
+  // Requests for each kind of picture. Many options set a member of these directly.
   studies::DetectorRequest detected;
   studies::CameraRequest photographed;
   studies::RoadRequest driven;
@@ -144,7 +144,8 @@ std::vector<Argument> arguments(ImageOptions& options) {
        &options.lamp_aim_deg,
        {.needs = {any_given({"--lamp"})}}}};
   for (std::vector<Argument> some : {detector_arguments(options), camera_arguments(options), road_arguments(options)}) {
-    // The first option selects the kind of picture. The other options require it.
+    // The first option of each list (--detector, --camera, --road) selects the kind of picture. All other options of
+    // the list require it.
     for (std::size_t k = 1; k < some.size(); ++k) {
       std::vector<Need>& needs = some[k].traits.needs;
       needs.insert(needs.begin(), any_given({some.front().name}));
@@ -154,7 +155,10 @@ std::vector<Argument> arguments(ImageOptions& options) {
   return all;
 }
 
-/// Numbers with `separator` between. \throw InputError naming the option if there are not `count` of them
+/// Parses a list of numbers.
+/// \param count required number of numbers
+/// \param form description of the expected text, for messages
+/// \throw InputError with the name of the option if `text` is not a list of `count` numbers
 std::vector<double> numbers_of(const std::string& text, char separator, std::size_t count, const std::string& option,
                                const std::string& form) {
   std::vector<double> numbers;
@@ -164,7 +168,9 @@ std::vector<double> numbers_of(const std::string& text, char separator, std::siz
   return numbers;
 }
 
-/// Likewise of numbers of pixels.
+/// Parses `count` numbers of pixels, separated by "x".
+/// \param form description of the expected text, for messages
+/// \throw InputError if a number is not a non-negative integer
 std::vector<std::size_t> pixels_of(const std::string& text, std::size_t count, const std::string& form) {
   std::vector<std::size_t> pixels;
   for (const double n : numbers_of(text, 'x', count, "--pixels", form)) {
@@ -212,13 +218,13 @@ studies::CameraRequest camera_request(const ImageOptions& options, const CommonO
   return request;
 }
 
-/// Before any work is done for pictures that could not be written; after what is cheaper to check, as what writes them
-/// takes half a second to load.
+/// Checks that pictures can be written, before any of them is computed. Call this function after cheaper checks,
+/// because loading the library that writes pictures takes half a second.
 void check_can_draw(const CommonOptions& common) {
   if (!common.out.empty()) picture_files();
 }
 
-/// Returns changes of options that make a run with --detector shorter.
+/// Returns advice for a shorter run with --detector: options to change, with their current values.
 Words what_shortens_detector(const ImageOptions& options) {
   const bool may_be_exact = options.engine == "exact" || options.engine == "auto";
   Words advice;
@@ -229,7 +235,7 @@ Words what_shortens_detector(const ImageOptions& options) {
   return advice;
 }
 
-/// Returns changes of options that make a run with --camera shorter.
+/// Returns advice for a shorter run with --camera: options to change, with their current values.
 Words what_shortens_camera(const ImageOptions& options) {
   const studies::CameraRequest& request = options.photographed;
   return {request.passes ? fmt::format("give fewer --passes (now {})", *request.passes)
@@ -261,7 +267,7 @@ std::string camera_png(const raytrace::CameraImage& image) {
   return report::png_file(image.columns, image.rows, report::tone_mapped_pixels(image.luminance));
 }
 
-/// Writes the picture as it is, now and then.
+/// Writes a preview of the unfinished camera picture to the output folder, at most every kPreview.
 class Preview {
  public:
   explicit Preview(const CommonOptions& common) : out_(common.out) {}
@@ -278,7 +284,8 @@ class Preview {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// \param session null without MPI
+/// Computes the camera picture and writes the results.
+/// \param session MPI session; null if the program does not run under MPI
 ExitCode photograph(const ImageOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   studies::Design design = studies::read_design(options.design, common.overrides);
   studies::CameraResult result;

@@ -17,8 +17,8 @@ namespace {
 
 struct JobOptions : MakingOptions {
   std::string design;
-  std::string reachable;  ///< design file of what a chisel makes of cube corners; empty: none
-  std::string test_cuts;  ///< folder of jobs that tell how the machine is set up; empty: none
+  std::string reachable;  ///< output file for the design that a chisel can cut of cube corners; empty: not written
+  std::string test_cuts;  ///< output folder for jobs of test cuts, which calibrate the machine; empty: not written
 };
 
 std::vector<Argument> arguments(JobOptions& options) {
@@ -34,14 +34,15 @@ std::vector<Argument> arguments(JobOptions& options) {
   return all;
 }
 
-/// Every file that is read.
+/// Returns all files that the command reads.
 std::vector<std::string> inputs_of(const JobOptions& options, const studies::Design& design) {
   std::vector<std::string> inputs = files_read({design});
   for (const std::string& file : files_of_making(options)) inputs.push_back(file);
   return inputs;
 }
 
-/// What a chisel makes of cube corners: a design and the table of its planes, part.toml and part_facets.csv.
+/// Writes the design that a chisel can cut of cube corners. It consists of the design file, such as part.toml, and the
+/// table of its facet planes, such as part_facets.csv.
 ExitCode write_reachable(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
   if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --reachable");
   const fs::path file = options.reachable;
@@ -55,7 +56,7 @@ ExitCode write_reachable(const JobOptions& options, const CommonOptions& common,
   return files.write(studies::reach_json(part, request), studies::reach_table(part));
 }
 
-/// Jobs of test cuts, and measurements.csv to be filled in.
+/// Writes jobs of test cuts, and measurements.csv, in which the user enters the measured values.
 ExitCode write_test_cuts(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
   if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --test-cuts");
   const fs::path folder = options.test_cuts;

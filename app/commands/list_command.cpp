@@ -21,12 +21,13 @@
 namespace retrace::app {
 namespace {
 
-// The sodium d line of tables, and the default wavelength of a design.
+// Wavelength of the helium d line in nm, at which tables give refractive indices. It is also the default wavelength of
+// a design.
 constexpr double kShownWavelengthNm = 587.56;
 
 using Json = nlohmann::ordered_json;
 
-/// Writes a list as the document of that name.
+/// Writes a list as text and as the JSON document `retrace.WHAT/1`.
 ExitCode write_list(const CommonOptions& common, const std::string& what, Json json, const std::string& text) {
   const ResultFiles files(common, {}, what + ".json");
   files.prepare();
@@ -92,7 +93,8 @@ Json absorption_json(const materials::Material& m) {
                     m.absorption_per_mm);
 }
 
-/// dn/dT beside the air around at the temperature of the data, by the difference of a degree to each side.
+/// Returns dn/dT per kelvin of the index relative to air, at the temperature of the material data. It is computed by a
+/// central difference of +-1 degree.
 double growth_per_k(const materials::Material& m, const materials::Material& air) {
   const auto n = [&](double temperature_c) {
     return materials::index_relative_to_air(m, air, kShownWavelengthNm, temperature_c);
@@ -141,7 +143,7 @@ ExitCode list_materials(const CommonOptions& common) {
   return write_list(common, "materials", std::move(json), text);
 }
 
-/// What the shipped table holds of a standard: its classes and colours.
+/// Returns a standard as JSON, with its classes and colours from the table of limits.
 Json standard_json(const studies::ShippedStandard& standard, const studies::LimitTable& table) {
   std::vector<std::string> classes;
   std::vector<std::string> colours;
@@ -184,7 +186,7 @@ ExitCode list_standards(const CommonOptions& common) {
   return write_list(common, "standards", std::move(json), text);
 }
 
-/// What there is to list, and what lists it.
+/// Names of the lists, and the functions that write them.
 constexpr std::array<std::pair<std::string_view, ExitCode (*)(const CommonOptions&)>, 4> kLists = {
     {{"materials", list_materials},
      {"machines", list_machines},

@@ -141,7 +141,7 @@ std::string manual_page() {
   return text + kTail;
 }
 
-/// Conditions of which one must hold.
+/// Returns a requirement as a JSON list of conditions, at least one of which must hold.
 nlohmann::ordered_json json_of(const Need& need) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const Condition& condition : need) {

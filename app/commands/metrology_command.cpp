@@ -14,7 +14,7 @@ namespace {
 struct MetrologyOptions {
   std::string form = "plane";
   MapOptions map;
-  studies::MetrologyRequest request;  ///< what is not among the above
+  studies::MetrologyRequest request;  ///< all other options
 };
 
 Words forms() {

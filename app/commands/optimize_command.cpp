@@ -21,7 +21,7 @@ namespace retrace::app {
 namespace {
 
 struct OptimizeOptions : StudyOptions {
-  std::string job;  ///< job file to write of the chosen design; empty: none
+  std::string job;  ///< fabrication job file of the chosen design that is to be written; empty: no job is written
   MakingOptions making;
 };
 
@@ -32,7 +32,8 @@ std::vector<Argument> arguments(OptimizeOptions& options) {
   return all;
 }
 
-/// The job of the chosen design; the tool is that of the command line, or that of the study at that design.
+/// Returns the fabrication job of the chosen design. The tool width comes from --tool-width-mm, or else from the key
+/// machining.tool_width_mm of the study.
 studies::MadeJob job_of(const OptimizeOptions& options, const studies::Study& study, const studies::Variant& best) {
   const studies::Candidate candidate = studies::make_candidate(study, best.values);
   const std::optional<double> width_mm =
@@ -50,7 +51,8 @@ std::vector<std::string> inputs_of(const OptimizeOptions& options, const studies
   return files;
 }
 
-/// What would otherwise be found wrong only after the search.
+/// Checks the options of the fabrication job before the search, because a search may take long.
+/// \throw InputError
 void check_making_of(const OptimizeOptions& options, const studies::Study& study) {
   if (options.job.empty()) return;
   const studies::JobRequest request = job_request(options.making, options.making.tool_width_mm.value_or(1.0));
@@ -58,7 +60,8 @@ void check_making_of(const OptimizeOptions& options, const studies::Study& study
   studies::check_element(studies::make_candidate(study, some_values(study)).design(), request);
 }
 
-/// \param session null without MPI
+/// Searches for the best design and writes the results.
+/// \param session MPI session; null if the program does not run under MPI
 ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);

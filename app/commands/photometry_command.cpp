@@ -47,7 +47,8 @@ Words standards() {
   return words;
 }
 
-/// What the shipped limits know, each once. \param of classes or colours of a row
+/// Returns words that occur in the shipped table of limits, sorted and without duplicates.
+/// \param of function that returns the words of a row, such as its classes
 template <class Of>
 Words in_limits(const Of& of) {
   std::set<std::string> words;
@@ -101,7 +102,8 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
       {"--no-advice", "do not look for what to change if a point fails", &options.no_advice}};
 }
 
-/// \param request with what the standard asks
+/// Returns a request in which options of the command line replace settings of the standard.
+/// \param request settings of the standard
 studies::PhotometryRequest with_options(studies::PhotometryRequest request, const PhotometryOptions& options,
                                         const CommonOptions& common) {
   request.area_cm2 = options.area_cm2;
@@ -122,7 +124,7 @@ studies::PhotometryRequest with_options(studies::PhotometryRequest request, cons
   return request;
 }
 
-/// \param result what is there when they are made
+/// Adds the output files. \param result result that exists when the files are written
 void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
   files.add("photometry.csv", [&] { return studies::photometry_csv(result); });
   files.add("far_field.csv", [&] { return studies::far_field_map_csv(result); });
@@ -130,7 +132,8 @@ void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
   files.add_drawing("r_a", [&] { return report::observation_plot(result); });
 }
 
-/// Returns changes of options that make the run shorter.
+/// Returns advice for a shorter run: options to change, with their current values.
+/// \param has_rotations true if several rotations of the part are measured
 Words what_shortens_photometry(const PhotometryOptions& options, const studies::PhotometryStudy& study,
                                bool has_rotations) {
   Words advice;
@@ -143,10 +146,12 @@ Words what_shortens_photometry(const PhotometryOptions& options, const studies::
   return advice;
 }
 
-/// Returns the table of preliminary readings, or an empty text if it was cancelled. It is ready after some seconds.
+/// Computes preliminary readings, which takes some seconds, and returns them as a table. Returns an empty text if the
+/// computation is cancelled.
+/// \param remaining_s estimated remaining time of the main computation, in seconds
 std::string first_answer_of(const studies::PhotometryStudy& study, double remaining_s, const Cancellation* cancel) {
-  // Tracing time of the preliminary readings, in s, if nothing else runs. It about doubles next to the main
-  // measurement.
+  // Intended tracing time of the preliminary readings in seconds. It is about twice as long while the main computation
+  // runs in parallel.
   constexpr double first_answer_s = 3.0;
   const auto answer = study.first_answer(first_answer_s / remaining_s, cancel);
   return answer ? studies::first_answer_table(*answer) : std::string();

@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 
 struct ReportOptions {
   std::string folder;
-  std::string title;  ///< empty: that of the design
-  Words read;         ///< files and folders outside the result folder that may be read
+  std::string title;  ///< title of the page; empty: title of the design
+  Words read;         ///< files and folders outside the result folder that the command may read
 };
 
 std::vector<Argument> arguments(ReportOptions& options) {
@@ -33,15 +33,16 @@ std::vector<Argument> arguments(ReportOptions& options) {
 
 constexpr const char* kPageName = "report.html";
 
-/// report.html in the folder of results or in the folder of --out; or the file of --out.
+/// Returns the output file. It is the file of --out, or report.html in the folder of --out or in the result folder.
 fs::path page_file(const ReportOptions& options, const CommonOptions& common) {
   if (common.out.empty()) return fs::path(options.folder) / kPageName;
   const fs::path out = common.out;
   return out.extension() == ".html" || out.extension() == ".htm" ? out : out / kPageName;
 }
 
-/// Refuses to follow a link in place of the page. Whoever made the results may have put it there, and only the user
-/// may choose a file outside of the folder. \throw OutputError if `file` is a symbolic link
+/// Checks that the output file in the result folder is not a symbolic link. A result folder from an untrusted source
+/// could otherwise make the command overwrite any file of the user.
+/// \throw OutputError if `file` is a symbolic link
 void check_is_no_link(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_symlink(file, ignored))

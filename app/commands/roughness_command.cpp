@@ -24,8 +24,8 @@ struct RoughnessOptions {
   std::string design;
   std::string sa = "0,2,5,10,15,20,30,40,50,75,100,150,200";
   std::string correlation_length_um = "5,20,50";
-  std::vector<std::string> facets;    ///< tables; none: the shipped ones
-  studies::RoughnessRequest request;  ///< what is not among the above
+  std::vector<std::string> facets;    ///< tables of measured facets; empty: the shipped tables
+  studies::RoughnessRequest request;  ///< all other options
 };
 
 std::vector<Argument> arguments(RoughnessOptions& options) {
@@ -42,7 +42,7 @@ std::vector<Argument> arguments(RoughnessOptions& options) {
            not_with("--samples")}};
 }
 
-/// Those of the command line, else the shipped ones.
+/// Returns the tables of measured facets from the command line, or the shipped tables if none are given.
 std::vector<std::filesystem::path> tables_of(const RoughnessOptions& options) {
   if (options.facets.empty())
     return {data_directory() / "facet_quality_2017.csv", data_directory() / "rtp_facets_2017.csv"};
@@ -63,7 +63,8 @@ studies::RoughnessRequest request_of(const RoughnessOptions& options, const Comm
   return request;
 }
 
-/// \param session null without MPI
+/// Computes all points and writes the results.
+/// \param session MPI session; null if the program does not run under MPI
 ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, studies::MpiSession* session) {
   const studies::Design design = studies::read_design(options.design, common.overrides);
   const std::vector<std::filesystem::path> tables = tables_of(options);

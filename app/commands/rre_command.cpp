@@ -22,7 +22,7 @@ struct RreOptions {
   std::string azimuth = "0";
   std::string engine = "auto";
   std::string sampling = "stratified";
-  studies::RreRequest request;  ///< what is not among the above
+  studies::RreRequest request;  ///< all other options
 };
 
 std::vector<Argument> arguments(RreOptions& options) {
@@ -31,7 +31,8 @@ std::vector<Argument> arguments(RreOptions& options) {
   const Need of_beams = engine_need(studies::kExactEngines);
   Traits samples = whole(1), sampling = one_of(Words{"stratified", "plain"}), target = not_with("--samples");
   samples.needs = sampling.needs = {of_rays};
-  // If a cut-off is given, the exact engine does not use a target error.
+  // The exact engine uses either the cut-off or the target error. Therefore --target-error requires an engine that
+  // always has a target error, or the absence of --cutoff.
   Need cutoff_or_target = engine_need(studies::kTargetEngines);
   cutoff_or_target.push_back(absent("--cutoff").front());
   target.needs = {cutoff_or_target};
@@ -85,14 +86,14 @@ std::vector<studies::Design> designs_of(const RreOptions& options, const CommonO
   return designs;
 }
 
-/// Says so if not every footprint is drawn.
+/// Adds a warning if the drawing of the footprints does not show all directions.
 void warn_of_panels(studies::RreResult& result) {
   if (result.faces.empty() || result.returned.size() <= report::kMostFootprintPanels) return;
   result.warnings.push_back(fmt::format("footprint.svg and footprint.png show the first {} of {} directions",
                                         report::kMostFootprintPanels, result.returned.size()));
 }
 
-/// \param result what is there when they are made
+/// Adds the output files. \param result result that exists when the files are written
 void add_files(ResultFiles& files, const studies::RreRequest& asked, const studies::RreResult& result) {
   files.add("rre.csv", [&] { return studies::rre_csv(result); });
   files.add_drawing("rre", [&] { return report::rre_plot(result); });
@@ -106,7 +107,7 @@ void add_files(ResultFiles& files, const studies::RreRequest& asked, const studi
   }
 }
 
-/// Returns changes of options that make the run shorter.
+/// Returns advice for a shorter run: options to change, with their current values.
 Words what_shortens_rre(const studies::RreRequest& request) {
   Words advice;
   if (request.rays) {

@@ -92,7 +92,7 @@ class Document {
   /// \param place file and line of the key
   /// \param source 0 if the key comes from the file; otherwise the number, from 1, of the override that sets it
   void set(const std::string& path, Value value, InputLocation place = {}, std::size_t source = 0);
-  /// Returns the number, from 1, of the override that sets a key. Returns 0 if the file sets the key or if it is absent.
+  /// Returns the number, from 1, of the override that sets a key. Returns 0 if the file sets the key or nothing does.
   std::size_t source_of(std::string_view path) const;
   /// Takes a key back. \pre it was given
   void drop(std::string_view path) { given_.erase(given_.find(path)); }
