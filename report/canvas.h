@@ -41,8 +41,8 @@ enum class Align { left, centre, right };
 enum class Ellipsis { end, middle };
 enum class Marker { circle, square, triangle, diamond, inverted_triangle };
 
-/// Returns `text` as one line of valid UTF-8. Invalid sequences are replaced by U+FFFD. Control characters and
-/// noncharacters are replaced by spaces.
+/// Returns `text` as one line of valid UTF-8. Invalid byte sequences are replaced by U+FFFD. Control characters and
+/// noncharacters (U+FFFE, U+FFFF) are replaced by spaces.
 std::string printable(std::string_view text);
 
 /// A drawing of fixed size in units of 1/96 inch, y down, kept in memory. \throw OutputError from any member if cairo

@@ -1,6 +1,6 @@
 #pragma once
 
-// Designs: arrays of retroreflectors as design files tell them (docs/design_file.md).
+// Designs: arrays of retroreflectors that are described by design files (docs/design_file.md).
 
 #include <filesystem>
 #include <memory>
@@ -12,35 +12,40 @@
 
 namespace retrace {
 
-/// A design, read and checked, with its defaults filled in. Copies share what they hold; nothing changes it.
+/// A design that has been read and checked, with default values for missing keys. The object is immutable, and copies
+/// share their data.
 class RETRACE_API Design {
  public:
-  /// Reads a design file (retrace.design/1); "-" is standard input.
-  /// \param overrides `key=value` texts that take precedence over the file, such as `element.base_mm=0.4`; `key=`
-  /// unsets a key
-  /// \throw InputError naming file, line and key
+  /// Reads a design file (format retrace.design/1).
+  /// \param file path of the file; "-" is standard input
+  /// \param overrides texts `key=value`, which replace values of the file, such as `element.base_mm=0.4`, or `key=`,
+  /// which remove a key
+  /// \throw InputError with file, line and key
   static Design load(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
-  /// The same of the text of a design file. \param source stands for the file in messages; files that the text names
-  /// are sought from its folder
+  /// Reads a design from the text of a design file.
+  /// \param source path of the file in messages; file names in the text are relative to the folder of this path
+  /// \param overrides texts as in load()
+  /// \throw InputError with source, line and key
   static Design parse(std::string_view text, const std::string& source, const std::vector<std::string>& overrides = {});
   /// Returns a copy of the design with some keys changed.
   /// \param overrides texts as in load()
-  /// \throw InputError that names the file, line and key, or the override
+  /// \throw InputError with the file, line and key, or with the override
   Design with(const std::vector<std::string>& overrides) const;
 
-  std::string title() const;   ///< empty if it has none
-  std::string source() const;  ///< its file, or what stands for it
-  std::string text() const;    ///< of its file, as it was read
-  /// What it was read with, so that parse(text(), source(), overrides()) is this design again.
+  std::string title() const;   ///< title of the design; empty if there is none
+  std::string source() const;  ///< path of the design file, or the `source` that parse() was called with
+  std::string text() const;    ///< text of the design file, without overrides
+  /// Returns all overrides. parse(text(), source(), overrides()) gives the same design.
   std::vector<std::string> overrides() const;
-  /// Its keys as results quote them, as JSON.
+  /// Returns the keys of the design as JSON, as in result documents.
   std::string json() const;
-  /// Every file that it names, from the working directory.
+  /// Returns the paths of all files that the design refers to, relative to the working directory.
   std::vector<std::filesystem::path> files() const;
   /// Returns a warning for each key that has no effect because another key takes precedence over it.
   std::vector<std::string> warnings() const;
 
   struct Content;
+  /// Wraps a design that was already read. Used inside the library only.
   /// \throw InputError if `content` is null
   explicit Design(std::shared_ptr<const Content> content);
   const Content& content() const { return *content_; }

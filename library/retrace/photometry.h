@@ -1,6 +1,6 @@
 #pragma once
 
-// Coefficients of retroreflection at the test points of a standard, and the verdict.
+// Computes coefficients of retroreflection at the test points of a standard, and a verdict.
 
 #include <cstdint>
 #include <optional>
@@ -13,32 +13,34 @@
 
 namespace retrace {
 
-/// What is asked, as the options of `retrace photometry` (docs/commands.md). What is not given is as the standard asks.
+/// Settings of a photometric test. They correspond to the options of `retrace photometry` (docs/commands.md). For empty
+/// settings, the values of the standard are used.
 struct PhotometryRequest {
-  std::string standard = {};                   ///< such as r150, or a limits file
-  std::optional<std::string> part_class = {};  ///< needed where the standard has several
-  std::optional<std::string> colour = {};      ///< likewise
-  double area_cm2 = 0.0;                       ///< of the part, > 0; the design shows its make
-  std::optional<std::vector<double>> rotation_deg = {};
-  std::optional<std::string> dye = {};         ///< none, red, amber or a file
-  std::optional<double> source_arcmin = {};    ///< diameter of the source
-  std::optional<double> receiver_arcmin = {};  ///< of the receiver
-  double window_deg = 2.0;                     ///< half angle of the far field that is computed
-  std::string light = "a";                     ///< a, d65: a CIE illuminant as the eye sees it; design: the design's
-  std::string engine = "auto";                 ///< auto, exact, montecarlo or embree
-  std::optional<double> cutoff = {};           ///< least power that is followed, as a share of what falls on an element
-  std::optional<std::uint64_t> samples = {};   ///< number of rays per direction of the Monte Carlo engine; empty: 2^20
+  std::string standard = {};                   ///< name of a standard, such as "r150", or a limits file
+  std::optional<std::string> part_class = {};  ///< class of the part; required if the standard has several classes
+  std::optional<std::string> colour = {};      ///< colour of the part; required if the standard has several colours
+  double area_cm2 = 0.0;                       ///< area of the part, > 0; the design may show a smaller area
+  std::optional<std::vector<double>> rotation_deg = {};  ///< rotations of the part about its normal
+  std::optional<std::string> dye = {};                   ///< none, red, amber or a file
+  std::optional<double> source_arcmin = {};              ///< angular diameter of the source
+  std::optional<double> receiver_arcmin = {};            ///< angular diameter of the receiver
+  double window_deg = 2.0;                               ///< half angle of the far field that is computed
+  std::string light = "a";      ///< a or d65: CIE illuminant, weighted by the eye; design: light of the design
+  std::string engine = "auto";  ///< auto, exact, montecarlo or embree
+  /// Minimum power of a beam that is followed exactly, as a fraction of the power that falls on one element.
+  std::optional<double> cutoff = {};
+  std::optional<std::uint64_t> samples = {};  ///< number of rays per direction if rays are traced; empty: 2^20
   std::uint32_t seed = 1;
   bool diffraction = true;
-  bool window_power = false;  ///< power in the far field's window and outside of it, as a check
-  bool advice = true;         ///< what to change if a point fails
-  bool pictures = false;      ///< the drawings of the result
+  bool window_power = false;  ///< true: compute the power inside and outside of the far field's window, as a check
+  bool advice = true;         ///< true: search for a change of the design that passes if a point fails
+  bool pictures = false;      ///< true: make the drawings of the result
 };
 
 struct PhotometricPoint {
   double observation_deg = 0.0;
   double v_deg = 0.0, h_deg = 0.0;
-  double rotation_deg = 0.0;    ///< at which the value is least
+  double rotation_deg = 0.0;    ///< rotation of the part at which the value is smallest
   double r_i_mcd_per_lx = 0.0;  ///< coefficient of luminous intensity (CIL)
   double r_a = 0.0;             ///< cd/(lx m^2)
   double std_error_mcd_per_lx = 0.0;
@@ -49,17 +51,18 @@ struct PhotometricPoint {
 struct PhotometryResult {
   std::vector<PhotometricPoint> points;
   std::string verdict;
-  bool passes = false;  ///< every point and the area, and the colour is none that fails
+  bool passes = false;  ///< true if all points and the area pass and the colour does not fail
   std::vector<std::string> warnings;
   bool complete = true;
-  std::string json;     ///< document retrace.photometry/1
-  std::string csv;      ///< one line a point
-  std::string table;    ///< for people
-  Drawing far_field;    ///< R_A round the direction back to the source; none unless pictures were asked for
-  Drawing observation;  ///< R_A over the observation angle, likewise
+  std::string json;     ///< JSON document retrace.photometry/1
+  std::string csv;      ///< table with one line for each point
+  std::string table;    ///< summary as text
+  Drawing far_field;    ///< R_A around the direction to the source; empty unless PhotometryRequest::pictures is true
+  Drawing observation;  ///< R_A over the observation angle; empty unless PhotometryRequest::pictures is true
 };
 
-/// \throw InputError, BudgetError if power was lost
+/// Computes the coefficients at all test points and compares them with the limits of the standard.
+/// \throw InputError; BudgetError if the ray tracer lost power
 RETRACE_API PhotometryResult photometry(const Design& design, const PhotometryRequest& request,
                                         const Running& running = {});
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// One page of several results.
+// Makes one HTML page of several results.
 
 #include <string>
 #include <vector>
@@ -9,22 +9,23 @@
 
 namespace retrace {
 
-/// What a page is made from: a document, or the drawing of one.
+/// Input of a page: a result document or a drawing.
 struct ReportPart {
-  std::string file;  ///< name of a file that it might be in, by whose ending it is told: .json, .svg or .png
-  std::string text;
+  std::string file;  ///< file name, whose extension gives the type of the content: .json, .svg or .png
+  std::string text;  ///< content of the file
 };
 
 struct ReportPage {
-  std::string html;  ///< a file that needs no other and no network
+  std::string html;  ///< self-contained HTML file, which needs no other file and no network
   std::vector<std::string> warnings;
 };
 
 /// Returns an HTML page of results.
-/// \param title title of the page; if it is empty, the title of the design is used
-/// \param readable files and folders that may be read for the page, such as the mesh of a design; nothing else is read
-/// \throw InputError if there are no documents, if one is not a document of retrace, or if a file of `readable` is
-/// missing
+/// \param parts result documents and drawings
+/// \param title title of the page; empty: title of the design
+/// \param readable files and folders that the function may read, such as the mesh of a design. It reads no other files.
+/// \throw InputError if `parts` contains no result document, if a document is not valid JSON, or if a file or folder of
+/// `readable` does not exist
 RETRACE_API ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& title = {},
                                    const std::vector<std::string>& readable = {});
 

@@ -13,8 +13,8 @@ namespace {
 
 using namespace document;
 
-/// Returns the text by which two designs are compared. It contains all keys of the design except the name of its file
-/// and the computed spectrum.
+/// Returns a text that is equal for equal designs. It contains all keys of the design, except the name of the file and
+/// the computed spectrum.
 std::string content_of(Json design) {
   design.erase("source");
   design.erase("spectrum");

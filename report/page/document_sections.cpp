@@ -42,7 +42,7 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if (table.columns[c] == "verdict") {
       for (auto& row : table.rows) row[c].style = verdict_style(row[c].text);
-      // Failing rows come first.
+      // Sorts the rows: failed points first, then undetermined points.
       const auto rank = [&](const auto& row) { return row[c].style == "bad" ? 0 : row[c].style == "open" ? 1 : 2; };
       std::ranges::stable_sort(table.rows, {}, rank);
     }

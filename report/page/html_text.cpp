@@ -8,8 +8,8 @@
 namespace retrace::report {
 namespace {
 
-/// Content-Security-Policy of all pages. Scripts, styles and the worker must be part of the page. Nothing is loaded
-/// from a network.
+/// Content-Security-Policy of all pages. It allows only scripts, styles and workers that are part of the page, and no
+/// requests to a network.
 constexpr std::string_view kPolicy =
     "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src "
     "'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'";

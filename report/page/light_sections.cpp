@@ -1,4 +1,4 @@
-// Efficiency, footprint and far field: curves, and drawings of their own.
+// Sections of the page on efficiency, footprint and far field, with their charts and drawings.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace retrace::report::document {
 
 namespace {
 
-/// Curves over the incidence, one for each design, azimuth and acceptance angle; the azimuth where that varies alone.
+/// Returns the chart of the efficiency over the angle of incidence, with one curve for each design, azimuth and
+/// acceptance angle. If only the azimuth varies, the chart is over the azimuth.
 PageChart rre_chart(const ResultDocument& document, const DesignNames& names) {
   const Json& points = list(document.json, "points");
   const auto several = [&](const char* key) {
@@ -45,7 +46,8 @@ PageChart rre_chart(const ResultDocument& document, const DesignNames& names) {
   return chart;
 }
 
-/// Points with their accounts side by side, in percent of the incident power.
+/// Returns a table with one row for each point. Its columns are the accounts of the ledger, in percent of the incident
+/// power.
 PageTable ledger_table(const ResultDocument& document, const DesignNames& names) {
   const Json& points = list(document.json, "points");
   PageTable table;
@@ -92,7 +94,7 @@ PageSection rre_section(const ResultDocument& document, const ResultFolder& fold
 namespace {
 
 constexpr std::size_t kMostPanels = 6;
-constexpr std::size_t kMostRegions = 1500;  // of one panel
+constexpr std::size_t kMostRegions = 1500;  // per panel
 constexpr std::size_t kMostSpots = 600;
 
 struct Extent {
@@ -111,7 +113,7 @@ struct Extent {
   double size() const { return std::max(high_x - low_x, high_y - low_y); }
 };
 
-/// The corners of a GeoJSON polygon's outline.
+/// Returns the vertices of the outer ring of a GeoJSON polygon.
 std::vector<std::array<double, 2>> ring_of(const Json& feature) {
   std::vector<std::array<double, 2>> ring;
   const Json& rings = list(member(feature, "geometry"), "coordinates");
@@ -129,13 +131,13 @@ bool is_of(const Json& feature, const Json& region) {
   return true;
 }
 
-/// Returns the text with which a caption begins: the name of the design if the folder has several designs, otherwise
-/// nothing.
+/// Returns the beginning of a caption. It is the name of the design if the folder has several designs; otherwise it is
+/// empty.
 std::string prefix_of(const DesignNames& names, const ResultDocument& document, double design) {
   return names.are_several() ? names.of(document, design) + ". " : std::string();
 }
 
-/// A scale bar of 1, 2 or 5 times a power of ten, about a quarter as long as the drawing is wide.
+/// Returns the SVG of a scale bar. Its length is 1, 2 or 5 times a power of ten and at most a quarter of the width.
 std::string scale_bar(const Extent& extent) {
   const double about = 0.25 * (extent.high_x - extent.low_x);
   const double decade = std::pow(10.0, std::floor(std::log10(about)));
@@ -150,14 +152,14 @@ std::string scale_bar(const Extent& extent) {
       4.0 * unit, length);
 }
 
-/// Entries of a list to draw: spread over all, from the least incidence to the greatest.
+/// Returns at most kMostPanels entries of a list, evenly selected after sorting by the magnitude of the incidence.
 std::vector<const Json*> spread(const Json& entries) {
   std::vector<const Json*> all;
   for (const Json& entry : entries) all.push_back(&entry);
   const auto less = [](const Json* a, const Json* b) {
     return std::abs(number(*a, "incidence_deg")) < std::abs(number(*b, "incidence_deg"));
   };
-  // Not finite angles would leave the order without a sense.
+  // Entries with NaN or infinite angles are removed, because they cannot be sorted.
   std::erase_if(all, [](const Json* entry) { return !std::isfinite(number(*entry, "incidence_deg")); });
   std::stable_sort(all.begin(), all.end(), less);
   if (all.size() <= kMostPanels) return all;
@@ -166,8 +168,11 @@ std::vector<const Json*> spread(const Json& entries) {
   return chosen;
 }
 
-/// Returns the smallest rectangle that contains all active regions of a design. If `design` gives the size of the
-/// entrance face, the rectangle also contains this face. The y axis of the rectangle points down, as in the drawing.
+/// Returns the bounding box of all active regions of a design in drawing coordinates (y down). If `design` gives the
+/// size of the entrance face, the bounding box also contains this face.
+/// \param json footprint document
+/// \param number_of_design index of the design in the result
+/// \param design JSON object of the design, or null if it is unknown
 Extent face_extent(const Json& json, double number_of_design, const Json* design) {
   Extent extent;
   for (const Json& feature : list(json, "features"))
@@ -187,8 +192,11 @@ Extent face_extent(const Json& json, double number_of_design, const Json* design
   return extent.empty() ? Extent{0.0, 0.0, 1.0, 1.0} : extent;
 }
 
-/// Draws the active regions for one direction of the light. Regions that return more light are darker. The y axis of
-/// the drawing points down.
+/// Draws the active regions of the entrance face for one direction of the light. Regions that return more light are
+/// darker.
+/// \param json footprint document
+/// \param region entry of the list `regions`, which gives the design and the direction
+/// \param extent bounding box of the drawing (y down)
 /// \param of_design beginning of the caption, see prefix_of()
 PageFigure footprint_panel(const Json& json, const Json& region, const Extent& extent, const std::string& of_design) {
   std::string shapes;
@@ -247,8 +255,9 @@ PageSection footprint_section(const ResultDocument& document, const ResultFolder
 
 namespace {
 
-/// Draws the directions of returned light as spots, relative to the direction to the source in the centre. The area of
-/// a spot is proportional to its power.
+/// Draws the directions of returned light as spots. The centre of the drawing is the direction to the source. The area
+/// of a spot is proportional to its power.
+/// \param direction entry of the list `directions` of a far-field document
 /// \param of_design beginning of the caption, see prefix_of()
 PageFigure far_field_panel(const Json& direction, const std::string& of_design) {
   const Json& spots = list(direction, "spots");

@@ -15,10 +15,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kSchema = "retrace.";
-/// Largest picture that goes into a page.
+/// Maximum size of a picture in a page. Larger pictures are omitted.
 constexpr std::uintmax_t kLargestPictureBytes = std::uintmax_t{4} << 20;
 
-/// Files of the folder and of the folders in it, sorted by name. \throw InputError if it cannot be read
+/// Returns the files in a folder and in its direct subfolders, sorted by name.
+/// \throw InputError if the folder cannot be read
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -34,7 +35,8 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-/// "rre" of "retrace.rre/1"; empty for documents of others.
+/// Returns the kind of a result document, such as "rre" if its schema is "retrace.rre/1". Returns an empty text for
+/// documents of other programs.
 std::string kind_of(const nlohmann::ordered_json& json) {
   if (!json.is_object() || !json.contains("schema") || !json["schema"].is_string()) return {};
   const auto schema = json["schema"].get<std::string>();
@@ -42,7 +44,10 @@ std::string kind_of(const nlohmann::ordered_json& json) {
   return schema.substr(kSchema.size(), schema.find('/') - kSchema.size());
 }
 
-/// \param file for messages
+/// Parses a JSON text and adds it to the documents if it is a result of retrace.
+/// \param file path of the file in messages
+/// \param name name of the document on the page
+/// \throw InputError if the text is not valid JSON but contains "retrace."
 void add_document(ResultFolder& result, const fs::path& file, const std::string& name, const std::string& text) {
   ResultDocument document;
   try {
@@ -59,14 +64,15 @@ void add_document(ResultFolder& result, const fs::path& file, const std::string&
   result.documents.push_back(std::move(document));
 }
 
-/// Returns the path without symbolic links. The file need not exist. Returns an empty path on failure.
+/// Returns the absolute path with all symbolic links resolved. The file need not exist. Returns an empty path on
+/// failure.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   const fs::path found = fs::weakly_canonical(fs::absolute(path, error), error);
   return error ? fs::path() : found;
 }
 
-/// The media type of a picture; empty of what is none.
+/// Returns the media type of a picture with the given file extension, or an empty text if it is not a picture.
 std::string media_type_of(const std::string& ending) {
   return ending == ".svg" ? "image/svg+xml" : ending == ".png" ? "image/png" : "";
 }

@@ -21,8 +21,9 @@ std::array<double, 3> numbers(const geometry::Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-/// Checks that the page may read every file that a design names. Result documents may come from untrusted sources.
-/// \throw InputError at the first key that names a file which the page may not read
+/// Checks that all files to which a design refers may be read, see may_read(). The check is needed because result
+/// documents may come from untrusted sources.
+/// \throw InputError for the first key whose file may not be read
 void check_files(const studies::Design& design, const ResultFolder& folder) {
   for (const std::string& key : design.document->keys_of_files())
     if (const std::filesystem::path file = design.document->file(key); !may_read(folder, file))
@@ -92,7 +93,7 @@ void add_live(Page& page, const ResultFolder& folder) {
     section.has_live = true;
     page.live = LiveStart{toml, "design.toml"};
     page.sections.push_back(std::move(section));
-  } catch (const Error&) {  // a result of another version, or of a design with files
+  } catch (const Error&) {  // the section is omitted for results of other versions and designs that refer to files
   }
 }
 

@@ -39,7 +39,7 @@ const std::vector<std::pair<std::string, MakeSection>>& makers() {
   return all;
 }
 
-/// Pictures beside a document of that kind that show what the page does not draw itself.
+/// Returns the names of the picture files that belong to a document and that the page includes, without extension.
 std::vector<std::string> pictures_of(const std::string& kind) {
   if (kind == "photometry") return {"far_field", "r_a"};
   if (kind == "fabrication") return {"roughing", "finishing", "arrangement"};
@@ -80,7 +80,9 @@ void add_pictures(PageSection& section, const ResultDocument& document, const Re
             {caption_of(wanted), "", picture.media_type, picture.bytes, caption_of(wanted) + ", a drawing"});
 }
 
-/// Appends the efficiencies of one design of a document to `facts`.
+/// Appends the efficiency of one design at normal incidence and its greatest efficiency to `facts`.
+/// \param design index of the design
+/// \param whose end of the names of the facts, see Subjects
 void add_efficiencies(const Json& points, double design, const std::string& whose, std::vector<PageFact>& facts) {
   const Json* best = nullptr;
   const Json* normal = nullptr;
@@ -95,8 +97,8 @@ void add_efficiencies(const Json& points, double design, const std::string& whos
                      percent(number(*best, "rre")), ""});
 }
 
-/// Creates the endings of the names of cards. If the page has several designs or several jobs, the name of a card ends
-/// with the name of its design or job.
+/// Determines the ends of the names of the facts in the summary. If the folder has several designs or several jobs, the
+/// name of a fact ends with the name of its design or job, such as "Machining time: job.toml".
 class Subjects {
  public:
   explicit Subjects(const ResultFolder& folder) : names_(folder) {
@@ -113,7 +115,8 @@ class Subjects {
   }
 
  private:
-  /// Returns the file name of the job or part that a document about machining refers to; empty for other documents.
+  /// Returns the file name of the job or part to which a document on machining refers. Returns an empty text for other
+  /// documents.
   static std::string job_of(const ResultDocument& document) {
     for (const char* key : {"job", "part"})
       if (const std::string file = text(document.json, key); !file.empty())
@@ -203,7 +206,7 @@ PageSection provenance_section(const ResultFolder& folder) {
   return section;
 }
 
-/// Sections of one kind from several folders say which is which.
+/// Makes the titles of sections unique by adding the names of their files, and sets the ids of the sections.
 void name_apart(std::vector<PageSection>& sections, const std::vector<std::string>& files) {
   std::map<std::string, int> titles;
   for (const PageSection& section : sections) ++titles[section.title];

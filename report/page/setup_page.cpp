@@ -46,7 +46,8 @@ std::string tilt_word(const FabricationResult& result) {
   return std::string(1, result.machine.tilt_letter());
 }
 
-/// How far a unit of a quantity moves facets at most, in words.
+/// Returns a text with the maximum geometric errors that are caused by an error of one unit of a quantity.
+/// \param key key of the quantity, such as "tool_z_um"
 std::string cost(const SetupSheet& sheet, std::string_view key) {
   for (const Sensitivity& row : sheet.sensitivities.rows)
     if (row.quantity->key == key)

@@ -37,7 +37,8 @@ std::pair<double, double> section_of(const fabrication::Job& job) {
   return {up_mm, up_mm};
 }
 
-/// Outline of an element that is cut, in plan.
+/// Returns the outline of an element in plan.
+/// \param centre center of the element in the drawing
 Polygon outline_of(const fabrication::Job& job, const fabrication::CutElement& cut, const Vec2& centre) {
   const geometry::Element element = fabrication::blank_element(job, cut.zone);
   if (const auto* const prism = std::get_if<geometry::RtpElement>(&element)) {
@@ -45,7 +46,8 @@ Polygon outline_of(const fabrication::Job& job, const fabrication::CutElement& c
         cut.rotated ? 0.5 * Vec2(prism->width_mm, prism->base_mm) : 0.5 * Vec2(prism->base_mm, prism->width_mm);
     return rectangle(centre - half, centre + half);
   }
-  // On a base elements are drawn as they stand on its sheet.
+  // In a job with zones, the outline is rotated about z like the element. Elements on a curved substrate are drawn
+  // without their tilt, as on the unrolled sheet.
   const Eigen::Matrix2d turn =
       job.zones.empty() ? Eigen::Matrix2d::Identity() : Eigen::Matrix2d(cut.turn.topLeftCorner<2, 2>());
   Polygon outline = geometry::element_cell(element).outline;

@@ -1,9 +1,9 @@
-"""Prints what the last build of every file took, by target and by unit, as tables of Markdown.
+"""Prints the compile and link times of the last build, by target and by translation unit, as Markdown tables.
 
     tools/build_costs [BUILD]
 
-BUILD is a build folder of CMake and Ninja, by default build/release. Times are clock times of compilers and linkers as
-.ninja_log records them, so that other work on the machine is in them.
+BUILD is a build folder of CMake with Ninja, by default build/release. Times are wall-clock times of compilers and
+linkers from .ninja_log. Other work on the machine makes them longer.
 """
 
 import pathlib
@@ -19,7 +19,10 @@ def give_up(message):
 
 
 def seconds_of(log):
-    """Returns the seconds that the last build of every output took, by output."""
+    """Returns a dictionary from output files to the time in seconds of their last build.
+
+    \param log path of .ninja_log
+    """
     seconds = {}
     try:
         for line in log.read_text(encoding="utf-8").splitlines():
@@ -32,7 +35,10 @@ def seconds_of(log):
 
 
 def sources_of(build, unit):
-    """Returns the sources of a unit. A unity build compiles several sources as one unit."""
+    """Returns the source files of a unit of a unity build, in which several source files are compiled as one unit.
+
+    Returns an empty list if the unit is a single source file.
+    """
     text = build / unit.removesuffix(".o")
     return re.findall(r'^#include "(.*)"', text.read_text(encoding="utf-8"), re.MULTILINE) if text.exists() else []
 

@@ -1,10 +1,10 @@
-"""Rewrites tests/costs.json from the times that tools/test records.
+"""Updates tests/costs.json with the run times of test suites, which tools/test has recorded.
 
     tools/test_costs [RECORD.xml]
 
-RECORD.xml is a JUnit file of ctest, by default build/release/test_times.xml. Suites that took 5 s or more are listed
-with their time in seconds. A suite that failed keeps its cost. A suite that the record lacks is removed, so use the
-record of a complete run: tools/test without arguments.
+RECORD.xml is a JUnit file of ctest, by default build/release/test_times.xml. Suites that took 5 s or more are written
+to costs.json with their time in seconds. A suite that failed keeps its earlier entry. A suite that is not in RECORD.xml
+is removed. Therefore, use the record of a complete run: tools/test without arguments.
 """
 
 import json
@@ -15,7 +15,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 COSTS = ROOT / "tests/costs.json"
 MIN_SECONDS = 5.0
-# A record with fewer suites is taken to be that of an incomplete run.
+# Minimum number of suites in the record of a complete run. Records with fewer suites are refused.
 MIN_SUITES = 300
 
 
@@ -35,7 +35,11 @@ def cases_of(record):
 
 
 def costs_of(cases, before):
-    """Returns the costs of the suites. \\param before costs of the previous table, kept for suites that failed"""
+    """Returns a dictionary from suites to their run times in seconds.
+
+    \\param cases test cases as returned by cases_of()
+    \\param before previous content of costs.json, whose entries are kept for suites that failed
+    """
     costs = {}
     for name, status, seconds in cases:
         if status == "run" and seconds >= MIN_SECONDS:
