@@ -120,7 +120,7 @@ std::vector<Argument> common_arguments(CommonOptions& common) {
            "write the result's files to folder DIR; with init, job, export and validate, DIR is the file to write",
            &common.out, files("/")},
           {"--threads N", "number of threads [all cores that the process may use]", &common.threads, whole(1, 4096)},
-          {"--memory-gib G", "memory in GiB that beams and elements may take before the work ends with 3 [1]",
+          {"--memory-gib G", "memory budget of beams and elements in GiB; see Memory in docs/commands.md [1]",
            &common.memory_gib},
           {"--seed S", "seed of the random numbers", &common.seed, whole(0, std::numeric_limits<std::uint32_t>::max())},
           {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4; KEY= unsets the key",

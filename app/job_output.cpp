@@ -16,16 +16,17 @@ std::vector<Argument> making_arguments(MakingOptions& options, const std::string
   std::vector<Argument> all = {
       {"--machine MACHINE", "ideal, paper, thesis, ideal-dmc or a file", &options.request.machine, machine_traits()},
       {"--tool-width-mm W",
-       "width of the tool's edge, 0.1 to 2; of dmc 0.01 to 10",
+       "width of the cutting edge, 0.1 to 2; with the strategy dmc 0.01 to 10",
        &options.tool_width_mm,
        {.required = needs.empty()}},
       {"--strategy STRATEGY", "unidirectional, bidirectional or two-step; dmc for cube corners",
        &options.request.strategy, one_of(words_of(fabrication::kStrategyWords))},
       {"--process PROCESS", "depths, feeds and dwells: a shipped process or a file", &options.request.process,
        one_of(processes, ".toml")},
-      {"--workpiece KIND", "mould, or direct: the optic itself is cut", &options.request.workpiece,
+      {"--workpiece KIND", "mould, or direct if the optic itself is cut", &options.request.workpiece,
        one_of(words_of(fabrication::kWorkpieceWords))},
-      {"--shrinkage-percent S", "by which the mould is larger than the part", &options.request.shrinkage_percent}};
+      {"--shrinkage-percent S", "shrinkage of the part, by which the mould is larger",
+       &options.request.shrinkage_percent}};
   if (!needs.empty())
     for (Argument& argument : all) argument.traits.needs = {any_given({needs})};
   return all;

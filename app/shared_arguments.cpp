@@ -71,11 +71,11 @@ Words engine_words(bool of_rre) {
 std::vector<Argument> study_arguments(StudyOptions& options) {
   return {{"STUDY", "study file; - is standard input", &options.study, files(".toml")},
           {"--resume",
-           "go on with the store that is in the output folder",
+           "continue with the store in the output folder: finished points are not computed again",
            &options.resume,
            {.needs = {any_given({"--out"})}}},
           {"--overwrite",
-           "replace the store that is in the output folder",
+           "replace the store in the output folder and compute all points again",
            &options.overwrite,
            {.excludes = "--resume", .needs = {any_given({"--out"})}}}};
 }
@@ -87,11 +87,11 @@ studies::IfExists if_exists_of(const StudyOptions& options) {
 
 std::vector<Argument> map_arguments(MapOptions& options) {
   const Words units = {"m", "mm", "um", "nm", "pm"};
-  return {{"--pixel-um P", "spacing of the points, or PX,PY [what the file says]", &options.pixel_um},
-          {"--height-unit UNIT", "of the heights: m, mm, um, nm or pm [what the file says]", &options.height_unit,
+  return {{"--pixel-um P", "spacing of the points, or PX,PY [as in the file]", &options.pixel_um},
+          {"--height-unit UNIT", "unit of the heights: m, mm, um, nm or pm [as in the file]", &options.height_unit,
            one_of(units)},
-          {"--lateral-unit UNIT", "of lengths without a unit, likewise [what the file says]", &options.lateral_unit,
-           one_of(units)},
+          {"--lateral-unit UNIT", "unit of lateral lengths without a unit: m, mm, um, nm or pm [as in the file]",
+           &options.lateral_unit, one_of(units)},
           {"--channel N", "channel of a GWY file [the first]", &options.channel, whole(0, 999999)}};
 }
 

@@ -24,13 +24,12 @@ struct CalibrateOptions {
 };
 
 std::vector<Argument> arguments(CalibrateOptions& options) {
-  std::vector<Argument> all = {{"MEASUREMENTS", "table of what was measured of parts that the machine cut",
-                                &options.measurements, files(".csv")},
-                               {"--times MACHINE",
-                                "the table is of how long programs took on that machine (a shipped one or a file), for "
-                                "how its axes speed up and "
-                                "settle; without a table: write programs to be timed",
-                                &options.times, machine_traits()}};
+  std::vector<Argument> all = {
+      {"MEASUREMENTS", "table with measurements of parts that the machine cut", &options.measurements, files(".csv")},
+      {"--times MACHINE",
+       "MEASUREMENTS has run times of programs on this machine (name or file), from which acceleration and settling "
+       "of its axes are estimated. Without MEASUREMENTS: write programs to be timed",
+       &options.times, machine_traits()}};
   all.push_back(dialect_argument(options.dialect));
   // Programs are only written if --times is given without a table. A table of times refers to existing program files.
   all.back().traits.needs = {any_given({"--times"}), absent("MEASUREMENTS")};

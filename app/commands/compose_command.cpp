@@ -46,21 +46,23 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
   std::vector<Argument> all = study_arguments(options);
   all.push_back(
       {"--design FILE", "write the design of the whole part, with its zones", &options.design, files(".toml")});
-  all.push_back({"--layout WORD", "how its zones lie: stripes, blocks or rows", &options.layout,
+  all.push_back({"--layout WORD", "arrangement of the zones in --design: stripes, blocks or rows", &options.layout,
                  one_of(words_of(studies::kZoneLayouts))});
   all.back().traits.needs = {any_given({"--design"})};
-  all.push_back({"--for-worst",
-                 "write the zones that are best for the worst parts, as worst_share of the study asks",
-                 &options.for_worst,
-                 {.needs = {any_given({"--out", "--design"})}}});
+  all.push_back(
+      {"--for-worst",
+       "write the zones that are best for the worst parts, whose fraction is compose.worst_share of the study",
+       &options.for_worst,
+       {.needs = {any_given({"--out", "--design"})}}});
   for (const auto& [name, help, length] :
-       {std::tuple{"--x-length-mm L", "of that part, with the other one [those of the study's design]",
+       {std::tuple{"--x-length-mm L", "x length of the part in --design, with --y-length-mm [as in the study's design]",
                    &options.x_length_mm},
-        {"--y-length-mm L", "likewise", &options.y_length_mm}}) {
+        {"--y-length-mm L", "y length of the part in --design, with --x-length-mm [as in the study's design]",
+         &options.y_length_mm}}) {
     all.push_back({name, help, length});
     all.back().traits.needs = {any_given({"--design"})};
   }
-  all.push_back({"--job FILE", "write the fabrication job of that part", &options.job, files(".toml")});
+  all.push_back({"--job FILE", "write the fabrication job of the part in --design", &options.job, files(".toml")});
   all.back().traits.needs = {any_given({"--design"})};
   for (Argument& argument : making_arguments(options.making, "--job")) all.push_back(std::move(argument));
   return all;
@@ -81,7 +83,7 @@ studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
   request.layout = studies::read_zone_layout(options.layout);
   if (options.x_length_mm.has_value() != options.y_length_mm.has_value())
     throw InputError({"", 0, options.x_length_mm ? "--y-length-mm" : "--x-length-mm"},
-                     "missing beside the other length");
+                     "is required together with the other length");
   if (options.x_length_mm) request.size_mm = {*options.x_length_mm, *options.y_length_mm};
   return request;
 }
@@ -191,7 +193,7 @@ Command compose_command() {
               "Looks for the cells, and their shares of the area, that make the worst of all goals as good as it can "
               "be, by linear programming; says what binds and at what price. Cells that were looked at are kept in "
               "`composition.sqlite` in the output folder and serve the next run. `--design` writes the part with its "
-              "zones as one design, `--job` its fabrication job. Exits with 1 if no part reaches what is asked.",
+              "zones as one design, `--job` its fabrication job. Exits with 1 if no part meets all constraints.",
           .reads = {"retrace.study/1", "retrace.design/1", "retrace.machine/1", "retrace.process/1"},
           .writes = {"retrace.composition/1", "retrace.design/1", "retrace.job/1"},
           .begin = begins(compose_arguments, run_compose)};

@@ -48,9 +48,9 @@ std::vector<Argument> arguments(ExportOptions& options) {
        &options.window_deg},
       {"--source-arcmin D", "material: diameter of the source [10]", &options.source_arcmin},
       {"--receiver-arcmin D", "material: diameter of the receiver [10]", &options.receiver_arcmin},
-      {"--error E", fmt::format("material: target of the relative error [{:g}]", kUsual.error), &options.error},
+      {"--error E", fmt::format("material: relative error to reach [{:g}]", kUsual.error), &options.error},
       {"--most-directions N",
-       fmt::format("material: directions of light that are computed, at most [{}]", kUsual.most_directions),
+       fmt::format("material: maximum number of directions of light that are computed [{}]", kUsual.most_directions),
        &options.most_directions}};
 }
 

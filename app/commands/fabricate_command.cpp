@@ -31,17 +31,18 @@ std::vector<Argument> arguments(FabricateOptions& options) {
   Traits from_pass = whole(1, most);
   from_pass.needs = {any_given({"--from-element"})};
   const Words phases = {"all", "roughing", "finishing"};
-  return {
-      job_argument(options.job, "job file, as retrace job writes it"),
-      dialect_argument(options.dialect),
-      {"--phase PHASE",
-       "roughing, finishing, one stage such as finishing-1-facet-2, or that stage and all after it with a +",
-       &options.phase, one_of(phases)},
-      {"--from-element N", "start at that element's first visit [the first]", &options.from_element, whole(0, most)},
-      {"--from-pass K", "start at the K-th pass of that visit; a narrow tool needs several passes per element [1]",
-       &options.from_pass, from_pass},
-      {"--stop-every N", "optional stop after every N visits [none]", &options.stop_every, whole(1, most)},
-      {"--split-hours H", "programs of at most so many hours [one program]", &options.split_hours}};
+  return {job_argument(options.job, "job file, as retrace job writes it"),
+          dialect_argument(options.dialect),
+          {"--phase PHASE",
+           "all, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all later stages",
+           &options.phase, one_of(phases)},
+          {"--from-element N", "start at the first visit of the tool to element N [the first]", &options.from_element,
+           whole(0, most)},
+          {"--from-pass K", "start at pass K of that visit; a narrow tool needs several passes per element [1]",
+           &options.from_pass, from_pass},
+          {"--stop-every N", "optional stop after every N visits of the tool to an element [none]", &options.stop_every,
+           whole(1, most)},
+          {"--split-hours H", "maximum duration of one program in hours [all in one program]", &options.split_hours}};
 }
 
 bool has_stage(const studies::FabricationResult& result, bool roughing) {

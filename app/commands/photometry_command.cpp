@@ -76,10 +76,15 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
        "r150, j594, bicycle, d4956, iso20471, stvzvo, or a limits file",
        &options.standard,
        {.words = standards, .files = ".csv", .required = true}},
-      {"--class CLASS", "class of the part, such as IA [the only one there is]", &options.part_class, one_of(classes)},
-      {"--colour COLOUR", "white, amber, red, yellow, ... [the only one there is]", &options.colour, one_of(colours)},
-      {"--area-cm2 A", "area of the part that the design shows the make of", &options.area_cm2, {.required = true}},
-      {"--rotation LIST", "turns of the part about its normal in degrees; the least value counts [the standard's]",
+      {"--class CLASS", "class of the part, such as IA [required if the standard has several]", &options.part_class,
+       one_of(classes)},
+      {"--colour COLOUR", "white, amber, red, yellow, ... [required if the standard has several]", &options.colour,
+       one_of(colours)},
+      {"--area-cm2 A",
+       "area of the whole part, of which the design may be a section",
+       &options.area_cm2,
+       {.required = true}},
+      {"--rotation LIST", "rotations of the part about its normal in degrees; the minimum counts [the standard's]",
        &options.rotation},
       dye_argument(
           options.dye,
@@ -89,17 +94,17 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
       {"--window-deg W", "half angle of the far field that is computed", &options.window_deg},
       {"--light LIGHT", "a, d65: a CIE illuminant as the eye sees it; design: what the design says", &options.light,
        one_of(Words{"a", "d65", "design"})},
-      engine_argument(options.engine, "exact, montecarlo (embree), or auto: beams where they serve"),
-      {"--samples N", fmt::format("rays for each direction, by Monte Carlo [{}]", studies::kUsualRaysOfDirection),
+      engine_argument(options.engine, "exact, montecarlo (embree), or auto: beams where they are possible"),
+      {"--samples N", fmt::format("number of Monte Carlo rays for each direction [{}]", studies::kUsualRaysOfDirection),
        &options.samples, of_rays},
       {"--cutoff W",
-       "least power of beams that are followed exactly, as a share of what falls on an element; weaker ones are "
-       "resampled, with exact given up [1e-5; resampled, of finite parts: 5e-5, or 5e-7 of all light if that is more]",
+       "minimum power of a beam that is followed exactly, as a fraction of the light on one element. Weaker beams are "
+       "resampled with auto and truncated with exact [1e-5; finite parts with resampling: see docs/commands.md]",
        &options.cutoff, of_beams},
-      {"--no-diffraction", "geometric far field alone", &options.no_diffraction},
-      {"--window-power", "integrate the power in the far field's window and outside of it, as a check",
+      {"--no-diffraction", "compute the geometric far field only", &options.no_diffraction},
+      {"--window-power", "integrate the power inside and outside of the far field's window, as a check",
        &options.window_power, of_beams},
-      {"--no-advice", "do not look for what to change if a point fails", &options.no_advice}};
+      {"--no-advice", "do not search for a change of the design that passes if a point fails", &options.no_advice}};
 }
 
 /// Returns a request in which options of the command line replace settings of the standard.
@@ -142,7 +147,7 @@ Words what_shortens_photometry(const PhotometryOptions& options, const studies::
   else
     advice.push_back(
         fmt::format("give a smaller --samples (now {})", options.samples.value_or(studies::kUsualRaysOfDirection)));
-  if (has_rotations) advice.emplace_back("give fewer turns (--rotation)");
+  if (has_rotations) advice.emplace_back("give fewer rotations (--rotation)");
   return advice;
 }
 

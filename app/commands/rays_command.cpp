@@ -45,29 +45,31 @@ std::vector<Argument> arguments(RaysOptions& o) {
   return {
       design_argument(o.design),
       {"--source FILE", "rays to trace: IES TM-25 (.tm25ray) or a table (.csv)", &o.source, files("")},
-      {"--emitter KIND", "in place of a file: a disc that sends out rays", &o.emitter, no_file},
+      {"--emitter KIND", "disc that emits rays, instead of --source", &o.emitter, no_file},
       {"--rays N", fmt::format("emitter: number of rays [{}]", kUsualRays), &o.rays,
        of_emitter(whole(1, studies::kMaxEmitterRays))},
       {"--disc-mm D",
        "diameter of the emitter [default: 0, a point; collimated light: the size of the part or of one period]",
        &o.disc_mm, of_emitter()},
       {"--half-angle-deg A",
-       "emitter: to which its light spreads; gaussian: at which it falls to exp(-2) [lambertian: 90, others: 0]",
+       "emitter: half angle of its cone; gaussian: where its light falls to exp(-2) [lambertian: 90, others: 0]",
        &o.half_angle_deg, of_emitter()},
-      {"--power P", "emitter: of all its rays, in W, or lm where the design's light is weighed by the eye [1]",
+      {"--power P", "emitter: total power of its rays, in W, or in lm if the design's light is weighted by the eye [1]",
        &o.power, of_emitter()},
-      {"--incidence T", "angle from the part's normal at which the source stands, looking at the middle of the face",
+      {"--incidence T", "angle between the part's normal and the source, which is aimed at the centre of the face",
        &o.request.placement.incidence_deg},
-      {"--azimuth P", "azimuth at which it stands", &o.request.placement.azimuth_deg},
-      {"--distance-mm D", "distance at which it stands [10]", &o.request.placement.distance_mm},
-      {"--at-mm X,Y,Z", "place of the source's origin, in place of angles and distance [a file's is the part's]",
+      {"--azimuth P", "azimuth of the source", &o.request.placement.azimuth_deg},
+      {"--distance-mm D", "distance of the source from the centre of the face [10]", &o.request.placement.distance_mm},
+      {"--at-mm X,Y,Z", "position of the source's origin, instead of angles and distance [files: the part's origin]",
        &o.at_mm},
-      {"--aim-mm X,Y,Z", "what the source's +z axis points at [a file's is the part's]", &o.aim_mm},
-      {"--split W", "least share of a ray's power for which both branches of an interface are followed; 1: never",
+      {"--aim-mm X,Y,Z", "point at which the source's +z axis is aimed [files: parallel to the part's +z axis]",
+       &o.aim_mm},
+      {"--split W", "minimum power, as a fraction of the launched ray, for following both branches; 1: never",
        &o.request.split},
-      {"--cutoff W", "share of a ray's power below which it is followed no further", &o.request.cutoff},
+      {"--cutoff W", "minimum power of a branch that is followed, as a fraction of the launched ray",
+       &o.request.cutoff},
       {"--stokes", "write polarisation even if the source has none", &o.request.stokes, of_file},
-      {"--keep-missed", "write rays that miss the part too", &o.request.keep_missed, of_file}};
+      {"--keep-missed", "also write rays that miss the part", &o.request.keep_missed, of_file}};
 }
 
 std::optional<std::array<double, 3>> place_of(const std::optional<std::string>& text, const char* option) {
@@ -118,7 +120,7 @@ ExitCode run(const RaysOptions& options, const CommonOptions& common) {
   if (!common.out.empty()) sink = studies::make_ray_file(common.out, "--out");
   studies::RayResult result;
   const Words to_shorten = {emitter ? fmt::format("give fewer --rays (now {})", emitter->rays)
-                                    : "give a --source of fewer rays"};
+                                    : "give a --source with fewer rays"};
   interrupt.run(common, {"tracing", to_shorten}, [&](Progress* bar, const Cancellation* cancel) {
     result = study.run(*source, sink.get(), bar, cancel);
   });

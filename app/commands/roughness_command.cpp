@@ -31,7 +31,7 @@ struct RoughnessOptions {
 std::vector<Argument> arguments(RoughnessOptions& options) {
   return {design_argument(options.design),
           {"--sa LIST", "Sa of the curves in nm: a,b,c and start:stop:step", &options.sa},
-          {"--correlation-length-um LIST", "one curve each; measured facets have the first",
+          {"--correlation-length-um LIST", "correlation lengths, one curve each; the first is for measured facets",
            &options.correlation_length_um},
           {"--waviness-length-um L", "period of the waviness of measured facets", &options.request.waviness_length_um},
           {"--facets FILE", "table of measured facets, repeatable [the shipped ones]", &options.facets, files(".csv")},

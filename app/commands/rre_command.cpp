@@ -39,31 +39,33 @@ std::vector<Argument> arguments(RreOptions& options) {
   for (const char* const option : {"--derivatives", "--footprint", "--far-field"})
     target.needs.push_back({absent("--cutoff").front(), absent(option).front()});
   const Traits files_of_beams = {.needs = {of_beams, any_given({"--out"})}};
-  return {{"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
-          {"--incidence LIST", "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
-           &options.incidence},
-          {"--azimuth LIST", "azimuths of the source in degrees: a,b,c and start:stop:step", &options.azimuth},
-          {"--engine ENGINE", "exact, stochastic, montecarlo (cell or embree), or auto: the fastest for each direction",
-           &options.engine, one_of([] { return engine_words(true); })},
-          {"--samples N", "rays for each point [until the target error is reached]", &request.rays, samples},
-          {"--sampling KIND", "stratified, or plain: random points and no splitting, to compare with",
-           &options.sampling, sampling},
-          {"--target-error E",
-           "standard error of RRE to reach, and most that exact may leave truncated, as a fraction "
-           "[0.0001; --engine exact: 1e-10]",
-           &request.target_error, target},
-          {"--cutoff W",
-           "least power that is followed, as a share of the incident power [1e-10; exact: as the target error asks]",
-           &request.cutoff,
-           {.needs = {engine_need(studies::kCutoffEngines)}}},
-          {"--derivatives",
-           "of RRE by the parameters of the design (--engine exact)",
-           &request.derivatives,
-           {.needs = {of_beams}}},
-          {"--footprint", "which regions of the entrance face send light back, as polygons (--engine exact, --out)",
-           &request.footprint, files_of_beams},
-          {"--far-field", "the directions in which light leaves the entrance face (--engine exact, --out)",
-           &request.far_field, files_of_beams}};
+  return {
+      {"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
+      {"--incidence LIST", "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
+       &options.incidence},
+      {"--azimuth LIST", "azimuths of the source in degrees: a,b,c and start:stop:step", &options.azimuth},
+      {"--engine ENGINE", "exact, stochastic, montecarlo (cell or embree), or auto: the fastest for each direction",
+       &options.engine, one_of([] { return engine_words(true); })},
+      {"--samples N", "number of rays for each point [until the target error is reached]", &request.rays, samples},
+      {"--sampling KIND", "stratified, or plain: random points without splitting, for comparison", &options.sampling,
+       sampling},
+      {"--target-error E",
+       "standard error of RRE to reach, as a fraction; with exact, the maximum truncated power "
+       "[0.0001; --engine exact: 1e-10]",
+       &request.target_error, target},
+      {"--cutoff W",
+       "minimum power of light that is followed, as a fraction of the incident power [1e-10; exact: determined by "
+       "the target error]",
+       &request.cutoff,
+       {.needs = {engine_need(studies::kCutoffEngines)}}},
+      {"--derivatives",
+       "compute the derivatives of RRE by the parameters of the design (--engine exact)",
+       &request.derivatives,
+       {.needs = {of_beams}}},
+      {"--footprint", "write the regions of the entrance face that return light, as polygons (--engine exact, --out)",
+       &request.footprint, files_of_beams},
+      {"--far-field", "write the directions in which light leaves the entrance face (--engine exact, --out)",
+       &request.far_field, files_of_beams}};
 }
 
 studies::RreRequest request_of(const RreOptions& options, const CommonOptions& common) {

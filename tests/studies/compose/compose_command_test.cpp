@@ -135,7 +135,7 @@ TEST(ComposeCommand, RefusesPartsOfZonesThatMeanNothing) {
   EXPECT_EQ(refused({"--design", "part.toml"}),
             "retrace: --x-length-mm: missing: the design of the study is endless, and a part of zones is not\n");
   EXPECT_EQ(refused({"--design", "part.toml", "--x-length-mm", "90"}),
-            "retrace: --y-length-mm: missing beside the other length\n");
+            "retrace: --y-length-mm: is required together with the other length\n");
   EXPECT_EQ(refused({"--design", "part.toml", "--layout", "spirals"}),
             "retrace: --layout: must be \"stripes\", \"blocks\" or \"rows\", got \"spirals\"\n");
   EXPECT_EQ(
