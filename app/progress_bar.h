@@ -35,13 +35,13 @@ class ProgressBar : public Progress {
   /// Shows the finished fraction, followed by the text `remark`.
   void at(double share, const std::string& remark);
   /// Shows the progress of a computation of unknown length, for which the fraction is unknown.
-  /// \param done text about the finished work, such as "65 designs looked at"
+  /// \param done text about the finished work, such as "65 designs evaluated"
   void count(const std::string& done);
   /// Starts a group of tasks within a computation of unknown length. The length of the group is known.
   /// \param share fraction of the group that was finished in an earlier run
   void begin_group(double share);
   /// Reports the finished fraction of the group. The notice about a long run is based on this fraction.
-  /// \param group description of the group for the notice, such as "computing 65 of the designs to look at"
+  /// \param group description of the group for the notice, such as "computing the next 65 designs"
   void at_group(double share, const std::string& group);
 
   /// Sets a function that is called after the notice about a long run. The function must not use the bar, because the

@@ -59,12 +59,12 @@ void SearchBar::at_share(double share) {
 }
 
 void SearchBar::at(std::size_t evaluated) {
-  bar_.count(fmt::format("{} {} looked at", evaluated, of_));
+  bar_.count(fmt::format("{} {} evaluated", evaluated, of_));
 }
 
 void SearchBar::at_group(double share, std::size_t designs) {
   if (share == 0.0) bar_.begin_group(0.0);
-  bar_.at_group(share, fmt::format("computing {} of the {} to look at", designs, of_));
+  bar_.at_group(share, fmt::format("computing the next {} {}", designs, of_));
 }
 
 }  // namespace retrace::app

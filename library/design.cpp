@@ -24,7 +24,7 @@ const char* version() {
 }
 
 Design::Design(std::shared_ptr<const Content> content) : content_(std::move(content)) {
-  if (!content_) throw InputError({"", 0, "design"}, "must be a design that was read, got null");
+  if (!content_) throw InputError({"", 0, "design"}, "must come from Design::load() or Design::parse(), got null");
 }
 
 Design Design::load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

@@ -165,7 +165,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const ExitCode code = files.write(studies::composition_json(study, request, composition, elapsed_s),
                                     studies::composition_text(study, request, composition), warnings,
                                     {.complete = composition.complete,
-                                     .interrupted = fmt::format("cells looked at: {}", composition.evaluations),
+                                     .interrupted = fmt::format("cells evaluated: {}", composition.evaluations),
                                      .is_yes = why_not.empty()});
   if (code == ExitCode::answer_is_no) say("retrace: no such part: " + why_not);
   return code == ExitCode::done && !whole.is_complete ? ExitCode::failed : code;
@@ -190,8 +190,8 @@ Command compose_command() {
   return {.name = "compose",
           .summary = "the best part of several zones of cells, as a study file says",
           .manual =
-              "Looks for the cells, and their shares of the area, that make the worst of all goals as good as it can "
-              "be, by linear programming; says what binds and at what price. Cells that were looked at are kept in "
+              "Searches for the cells, and their fractions of the area, for which the worst of all goals is best, by "
+              "linear programming. Reports the active constraints and their prices. Evaluated cells are kept in "
               "`composition.sqlite` in the output folder and serve the next run. `--design` writes the part with its "
               "zones as one design, `--job` its fabrication job. Exits with 1 if no part meets all constraints.",
           .reads = {"retrace.study/1", "retrace.design/1", "retrace.machine/1", "retrace.process/1"},

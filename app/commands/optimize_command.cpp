@@ -78,7 +78,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
   studies::ResultStore store(file, studies::optimise_layout(study), if_exists_of(options));
   {
     SearchBar bar(
-        {"looking", to_shorten_study(study, fmt::format("give a smaller optimize.scan (now {})", request.scan))},
+        {"searching", to_shorten_study(study, fmt::format("give a smaller optimize.scan (now {})", request.scan))},
         "designs", common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
       if (const ShareTasks share = share_among(session, slots(common), cancel))
@@ -99,7 +99,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
   const ExitCode code = files.write(studies::optimum_json(study, request, optimum, elapsed_s),
                                     studies::optimum_text(study, request, optimum), warnings,
                                     {.complete = optimum.complete,
-                                     .interrupted = fmt::format("designs looked at: {}", optimum.evaluations),
+                                     .interrupted = fmt::format("designs evaluated: {}", optimum.evaluations),
                                      .is_yes = optimum.best.has_value()});
   if (code != ExitCode::answer_is_no) return code;
   say("retrace: no feasible design: " + optimum.none_because);
@@ -125,7 +125,7 @@ Command optimize_command() {
   return {.name = "optimize",
           .summary = "the best design within constraints, as a study file says",
           .manual =
-              "Looks for the best design within constraints, and says why others lost. Designs that were looked at "
+              "Searches for the best design within constraints, and reports why others lost. Evaluated designs "
               "are kept in `optimum.sqlite` in the output folder. Exits with 1 if no design is feasible, and with 3 "
               "if no design is feasible and some were not evaluated because the memory or beam budget ran out. With "
               "`--job` the fabrication job of the chosen design is written, with the options of `job`.",

@@ -51,10 +51,11 @@ std::string tilt_word(const FabricationResult& result) {
 std::string cost(const SetupSheet& sheet, std::string_view key) {
   for (const Sensitivity& row : sheet.sensitivities.rows)
     if (row.quantity->key == key)
-      return fmt::format("1 {} costs up to {} nm on facets, {} nm at roots, {} nm in walls, {} nm of chip",
-                         row.quantity->unit(), fixed(row.farthest_nm(), 0),
-                         fixed(std::max(row.root_left_nm, row.root_cut_nm), 0), fixed(row.wall_nm, 0),
-                         fixed(row.chip_nm, 0));
+      return fmt::format(
+          "An error of 1 {} causes errors of up to {} nm on facets, {} nm at roots, {} nm in walls and {} nm in chip "
+          "thickness",
+          row.quantity->unit(), fixed(row.farthest_nm(), 0), fixed(std::max(row.root_left_nm, row.root_cut_nm), 0),
+          fixed(row.wall_nm, 0), fixed(row.chip_nm, 0));
   return {};
 }
 
