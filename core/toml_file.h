@@ -1,7 +1,7 @@
 #pragma once
 
-// TOML files with checked values and messages that name file, line and key. toml++ stays behind this header; formats
-// are read through core/schema/ on top of it.
+// Reads TOML files with checks of their values. Messages contain the file, line and key. This header hides toml++. File
+// formats are read by core/schema/, which uses this header.
 
 #include <compare>
 #include <cstddef>
@@ -18,94 +18,101 @@
 
 namespace retrace {
 
-/// An entry of a list, whatever it is.
+/// Entry of a list of any type.
 struct TomlItem {
   std::optional<double> number;
   std::optional<std::string> text;
   bool is_list = false;
-  std::string toml;   ///< as a file would have it, on one line
-  std::string shown;  ///< as a message shows it
+  std::string toml;   ///< TOML text of the entry on one line
+  std::string shown;  ///< text of the entry in messages
 };
 
-/// One table of a TOML file. It checks every value it hands out and remembers which keys were requested. A table that
-/// is not there reads as empty. Cheap to copy; copies share that memory. Every function throws InputError with file,
-/// line and key if what was given is not what is allowed; numbers are finite.
+/// One table of a TOML file. Functions that return values check them and record that their key was requested. A table
+/// that is not in the file is treated as empty. Copies are cheap and share their data. All functions throw InputError
+/// with file, line and key if a value is not allowed. Numbers must be finite.
 class TomlTable {
  public:
   bool has(std::string_view key) const;
-  /// Where the table begins; of one that is not there, where it would be missed.
+  /// Returns the position of the table. For a table that is not in the file, returns the position of its parent.
   InputLocation where() const;
   InputLocation where(std::string_view key) const;
   [[noreturn]] void fail(std::string_view key, std::string_view text) const;
 
   std::optional<double> number(std::string_view key, const NumberRange& range = {});
   double required_number(std::string_view key, const NumberRange& range = {});
-  /// A number or a list of one or more numbers.
+  /// Returns the value of a key that is a number or a list of one or more numbers.
   std::optional<std::vector<double>> number_or_numbers(std::string_view key, const NumberRange& range = {});
-  /// A list of one or more pairs of numbers. \param shape of a pair, for messages: "[wavelength_nm, power]"
+  /// Returns a list of one or more pairs of numbers.
+  /// \param shape text for a pair in messages, such as "[wavelength_nm, power]"
   std::optional<std::vector<std::vector<double>>> pairs(std::string_view key, std::string_view shape,
                                                         const NumberRange& first, const NumberRange& second);
-  /// A list of exactly `count` numbers. \param what they are, for messages
+  /// Returns a list of exactly `count` numbers.
+  /// \param what text for the numbers in messages
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const NumberRange& range = {},
                                              std::string_view what = "numbers");
-  /// A list of lists of exactly `columns` numbers.
+  /// Returns a list of lists of exactly `columns` numbers.
   std::optional<std::vector<std::vector<double>>> number_rows(std::string_view key, std::size_t columns,
                                                               const NumberRange& range = {});
-  /// A number without fraction. \pre the range's ends are whole and within 2^53
+  /// Returns an integer.
+  /// \pre the ends of the range are integers of a magnitude up to 2^53
   std::optional<long long> whole(std::string_view key, const NumberRange& range);
   std::optional<bool> flag(std::string_view key);
   std::optional<std::string> text(std::string_view key);
-  /// A list of one or more texts.
+  /// Returns a list of one or more texts.
   std::optional<std::vector<std::string>> texts(std::string_view key);
-  /// The index of the word in `words`. \param or_else what the key may have instead, for messages
+  /// Returns the index of the value in `words`.
+  /// \param or_else text in messages for other allowed values
   std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words,
                                     std::string_view or_else = {});
   std::size_t required_choice(std::string_view key, std::span<const std::string_view> words);
 
-  /// The entries of a list of anything; nothing if the key was not given or has no list.
+  /// Returns the entries of a list of any type. Returns nothing if the key was not given or is not a list.
   std::optional<std::vector<TomlItem>> items(std::string_view key);
-  /// The value of a key, with `{"value": ...}` around it, as JSON; empty if it was not given.
+  /// Returns the value of a key as the JSON object `{"value": ...}`. Returns an empty text if the key was not given.
   std::string as_json(std::string_view key) const;
-  /// The whole table as JSON.
+  /// Returns the whole table as JSON.
   std::string as_json() const;
 
-  /// The table of that name in this one, empty if there is none.
+  /// Returns a table within this table. Returns an empty table if there is none with this name.
   TomlTable table(std::string_view key);
-  /// The tables `[[key]]`, in the order of the file; none if there are none. \param shape what they must be, for
-  /// messages \param are_numbered messages tell them apart: "key[1]"
+  /// Returns the tables `[[key]]` in the order of the file.
+  /// \param shape text for the required type in messages
+  /// \param are_numbered true: messages contain the index of the table, such as "key[1]"
   std::vector<TomlTable> tables(std::string_view key, std::string_view shape = "tables", bool are_numbered = false);
 
   enum class Shape { nothing, text, number, list, table, other };
-  /// What a key was given; nothing if it was not.
+  /// Returns the type of the value of a key, or Shape::nothing if the key was not given.
   Shape shape_of(std::string_view key) const;
-  /// The value of a key that was given, as a message shows it: -3, "text", a table, a list.
+  /// Returns the value of a key as text for messages, such as -3, "text", a table or a list.
+  /// \pre the key was given
   std::string shown(std::string_view key) const;
-  /// What is in the table, in the order of the file, and then of the overrides.
+  /// Returns the names of all keys and tables, in the order of the file. Keys that overrides set come last.
   std::vector<std::string> names() const;
-  /// The same, by name.
+  /// Returns the names of all keys and tables, sorted by name.
   std::vector<std::string> sorted_names() const;
-  /// Orders values of a document as they were written.
+  /// Position of a value in the input. Positions are ordered as the values were written.
   struct Position {
-    std::size_t source = 0;  ///< 0: the file; then the overrides
+    std::size_t source = 0;  ///< 0: the file; otherwise the number of the override, from 1
     std::size_t line = 0;
     std::size_t column = 0;
     friend auto operator<=>(const Position&, const Position&) = default;
   };
   Position position(std::string_view key) const;
 
-  /// Throws for the first key, in file order, that no function was called for: it is unknown. Likewise in the tables
-  /// that were handed out.
+  /// Checks that all keys of this table, and of the tables that it has returned, have been requested.
+  /// \throw InputError for the first key, in the order of the file, that was not requested and is thus unknown
   void finish() const;
 
-  struct Hidden;  ///< toml++ stays inside core/io/
+  struct Hidden;  ///< implementation, which uses toml++
   explicit TomlTable(std::shared_ptr<Hidden> hidden);
 
  private:
   std::shared_ptr<Hidden> hidden_;
 };
 
-/// toml++ recurses once per level when it destroys a tree, and two bytes of `a.a.a...` make a level: 64 KiB of it run
-/// out of an 8 MiB stack. Longer texts may have few dots a line; files that people write have about one KiB.
+/// Maximum size in bytes of a text whose lines may have any number of dots. toml++ uses one level of recursion for each
+/// level of a tree when it destroys the tree, and two bytes of a dotted key `a.a.a...` make one level. 64 KiB of such a
+/// key exceed a stack of 8 MiB. Longer texts may therefore have few dots per line.
 inline constexpr std::size_t kShortTomlBytes = 16384;
 inline constexpr std::size_t kMostDesignBytes = std::size_t{1} << 20;  ///< designs and studies
 
@@ -122,7 +129,7 @@ std::optional<std::string_view> unset_key(std::string_view override_text);
 TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes = kMostTextBytes,
                      std::span<const std::string> overrides = {});
 
-/// `text` between double quotes, with what TOML wants escaped.
+/// Returns `text` as a TOML string in double quotes, with escapes.
 std::string toml_text(std::string_view text);
 
 }  // namespace retrace

@@ -16,13 +16,13 @@
 namespace retrace {
 namespace {
 
-/// toml++ recurses once per level of a tree when it destroys it: dotted keys could make more of them than the stack
-/// holds. No line needs as many dots beside the points of its numbers.
+/// Maximum number of dots in a line, apart from decimal points. toml++ destroys a tree recursively, so very long dotted
+/// keys could exceed the stack.
 constexpr std::size_t kMostDotsInALine = 64;
 constexpr std::size_t kLongestOverride = 4096;
 constexpr std::string_view kBareKeyCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
 
-/// Whether the dot at `i` is the point of a number: digits alone on both sides, and no further dot.
+/// Returns true if the dot at position `i` is a decimal point: there are only digits on both sides and no further dot.
 bool is_decimal_point(std::string_view text, std::size_t i) {
   constexpr std::string_view digits = "0123456789_";
   const std::size_t before = text.find_last_not_of(digits, i == 0 ? 0 : i - 1);
@@ -63,18 +63,19 @@ toml::table parse_file(std::string_view text, const std::string& file) {
   }
 }
 
-/// `key = value` as TOML; where that fails, with the value as a bare string.
+/// Parses an override KEY=VALUE as TOML. If VALUE is not a TOML value, it is taken as a string without quotes.
+/// \param label name of the override in messages
 toml::table parse_override(const std::string& text, const std::string& label) {
   const auto refuse = [&](std::string_view why) { return InputError(InputLocation{label, 0, ""}, why); };
   const auto is_control = [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f; };
   if (text.size() > kLongestOverride) throw refuse(fmt::format("at most {} characters are allowed", kLongestOverride));
-  // One line only: a second line could hold a second assignment that messages do not show.
+  // Line breaks are refused, because a second line could contain a second assignment.
   if (std::any_of(text.begin(), text.end(), is_control)) throw refuse("must be one line of the form KEY=VALUE");
   try {
     toml::table table = toml::parse(text, std::string_view(label));
     if (table.size() == 1 && trimmed(text).front() != '[') return table;
   } catch (const toml::parse_error&) {
-    // The value is taken as a bare string below.
+    // The value is taken as a string below.
   }
   const std::size_t equals = text.find('=');
   const std::string_view key = trimmed(std::string_view(text).substr(0, equals));
@@ -98,7 +99,7 @@ void erase(toml::table& table, std::string_view path) {
   }
 }
 
-/// Moves everything of `from` into `into`; tables are merged, anything else is replaced.
+/// Moves all entries of `from` into `into`. Tables with the same name are merged; other entries are replaced.
 void merge(toml::table& into, toml::table& from) {
   for (auto&& [key, node] : from) {
     toml::table* const source = node.as_table();
@@ -110,7 +111,7 @@ void merge(toml::table& into, toml::table& from) {
   }
 }
 
-/// A value as a message shows it: -3, "text", a table, a list.
+/// Returns a value as text for messages, such as -3, "text", a table or a list.
 std::string shown_node(const toml::node& node) {
   if (const auto* text = node.as_string()) return in_quotes(text->get());
   if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
@@ -123,13 +124,13 @@ std::string shown_node(const toml::node& node) {
 
 }  // namespace
 
-/// A document: keeps the tree alive.
+/// Parsed text of a file with its overrides. It is shared by all tables of the file.
 struct TomlSource {
   std::string file;
   toml::table root;
-  std::vector<toml::source_path_ptr> paths;  ///< of the file, then of the overrides
+  std::vector<toml::source_path_ptr> paths;  ///< source names of toml++: the file, followed by the overrides
 
-  /// 0: the file; then the overrides.
+  /// Returns 0 for a value from the file; otherwise the number of its override, from 1.
   std::size_t index_of(const toml::node& node) const {
     const auto found = std::find(paths.begin(), paths.end(), node.source().path);
     return found == paths.end() ? 0 : static_cast<std::size_t>(found - paths.begin());
@@ -137,20 +138,20 @@ struct TomlSource {
   TomlTable::Position position(const toml::node& node) const {
     return {index_of(node), node.source().begin.line, node.source().begin.column};
   }
-  /// 0: not known.
+  /// Returns the line of a value in the file, or 0 for a value from an override.
   int line(const toml::node& node) const {
     return index_of(node) == 0 ? static_cast<int>(node.source().begin.line) : 0;
   }
 };
 
-/// A table that knows its document and its name.
+/// Data of a TomlTable.
 struct TomlTable::Hidden {
   std::shared_ptr<const TomlSource> source;
-  const toml::table* table = nullptr;  ///< null: there is no such table
-  std::string name;                    ///< empty at top level
-  int line = 0;                        ///< of the table's head; 0: not known
-  std::set<std::string, std::less<>> taken;
-  std::vector<TomlTable> handed_out;
+  const toml::table* table = nullptr;        ///< null: the file has no such table
+  std::string name;                          ///< path of the table; empty: the root
+  int line = 0;                              ///< line of the table's header; 0: unknown
+  std::set<std::string, std::less<>> taken;  ///< keys that have been requested
+  std::vector<TomlTable> handed_out;         ///< tables within this table that have been requested
 
   const toml::node* find(std::string_view key) const { return table != nullptr ? table->get(key) : nullptr; }
   const toml::node* take(std::string_view key) {

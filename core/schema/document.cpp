@@ -18,7 +18,7 @@ Form form_of(const Value& value) {
   return std::holds_alternative<Named>(value) ? Form::table : Form::list;
 }
 
-/// Whether the row may have that value, or what was given is not read yet.
+/// Returns true if the type of the value is allowed by the row, or if the value has not been read yet.
 bool may_have(const Row& row, const Value& value) {
   return std::holds_alternative<std::monostate>(value) || takes(row.kind, form_of(value));
 }

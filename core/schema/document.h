@@ -1,7 +1,7 @@
 #pragma once
 
-// A file as it was read: its values by the paths of their keys, with the line that each came from, so that later checks
-// can still point at it.
+// Values that were read from a file. They are accessed by the paths of their keys. The line of each value is stored, so
+// that messages of later checks can refer to it.
 
 #include <filesystem>
 #include <map>
@@ -16,45 +16,46 @@
 
 namespace retrace::schema {
 
-/// What a file says: the values that it gave, each with its place, under the paths of their keys, such as
-/// "element.base_mm" or "surface.scratches[0].facet". Values that were not given are those of the format's defaults.
-/// \pre of every function with a path: the format has that key or table
+/// Values of a file, each with its file and line. Keys are given by their paths, such as "element.base_mm" or
+/// "surface.scratches[0].facet". Keys that are not given have the default values of the format.
+/// \pre for all functions with a path: the format has this key or table
 class Document {
  public:
-  /// What it was read from.
+  /// Input from which the document was read.
   struct Origin {
-    std::string text;
-    std::vector<std::string> overrides;  ///< each KEY=VALUE
+    std::string text;                    ///< text of the file
+    std::vector<std::string> overrides;  ///< texts of the form KEY=VALUE or KEY=
   };
 
-  /// \param table whose keys the paths are; it must outlive the document. \param place of that table
-  /// \param folder that names of files are meant from
+  /// \param table root table of the paths; it must outlive the document
+  /// \param place position of this table in the file, for messages
+  /// \param folder folder to which relative file names in the document refer
   explicit Document(const Table& table, InputLocation place = {}, std::filesystem::path folder = {});
 
   const Table& table() const { return *table_; }
-  /// Whether the file gave that key or table.
+  /// Returns true if the key or table was given.
   bool has(std::string_view path) const { return given_.contains(path); }
-  /// How many tables a list has; of a single table 1 if it was given.
+  /// Returns the number of tables in a list of tables. For a single table, returns 1 if it was given and 0 otherwise.
   std::size_t count(std::string_view path) const;
-  /// What was given or holds by default; nothing if neither is so.
+  /// Returns the given value or the default of a key, or std::monostate if there is neither.
   Value value(std::string_view path) const;
 
-  // The same of a key of that kind that was given, is required or has a default.
+  // The following functions return the value of a key as a given type. The key must have a value of this type.
   double number(std::string_view path) const { return std::get<double>(value(path)); }
   bool flag(std::string_view path) const { return std::get<bool>(value(path)); }
   std::string text(std::string_view path) const { return std::get<std::string>(value(path)); }
-  /// Whether the value is a list.
+  /// Returns true if the value is a list.
   bool is_list(std::string_view path) const;
-  /// A single number is a list of one.
+  /// Returns the numbers of a list. A single number is returned as a list of one number.
   std::vector<double> numbers(std::string_view path) const;
   std::vector<std::vector<double>> rows(std::string_view path) const {
     return std::get<std::vector<std::vector<double>>>(value(path));
   }
-  /// Nothing if there is no such value.
+  /// Returns the value if it is a number, and nothing otherwise.
   std::optional<double> number_if(std::string_view path) const;
-  /// Empty if there is no such value.
+  /// Returns the value if it is a text, and an empty text otherwise.
   std::string text_if(std::string_view path) const;
-  /// The index of the word among those of its key.
+  /// Returns the index of the word in the list of words of its key.
   std::size_t index(std::string_view path) const;
   template <class Enum>
   Enum choice(std::string_view path) const {
@@ -64,26 +65,29 @@ class Document {
     return std::get<std::vector<std::string>>(value(path));
   }
   const Named& named(std::string_view path) const { return std::get<Named>(given_.find(path)->second.value); }
-  /// The file that a key names, from the working directory. \pre it was given
+  /// Returns the path of the file that a key names, relative to the working directory.
+  /// \pre the key was given
   std::filesystem::path file(std::string_view path) const;
-  /// Every key that names a file, in their order, and the files.
+  /// Returns the paths of all keys that name a file, sorted.
   std::vector<std::string> keys_of_files() const;
+  /// Returns the files that these keys name, in the same order.
   std::vector<std::filesystem::path> files() const;
 
-  /// What messages call the file.
+  /// Returns the name of the file in messages.
   const std::string& source() const { return place_.file; }
-  /// Of a document that was read from a file; otherwise empty.
+  /// Returns the input from which the document was read. It is empty if the document was not read from a text.
   const Origin& origin() const { return origin_; }
   void set_origin(Origin origin) { origin_ = std::move(origin); }
-  /// Where a key was given, or would be missed.
+  /// Returns the position (file, line, key) of a key. If the key was not given, the line is that of its table.
   InputLocation where(std::string_view path) const;
   [[noreturn]] void fail(std::string_view path, std::string_view text) const { throw InputError(where(path), text); }
 
-  /// The row that serves a key; none if its conditions do not hold for any.
+  /// Returns the row of a key whose conditions hold, or null if the conditions of no row hold.
   const Row* row(std::string_view path) const;
-  /// Whether the conditions of a key or table within the table `around` hold.
+  /// Returns true if all conditions of a key or table hold.
+  /// \param around path of the table that contains the key or table
   bool holds(When when, std::string_view around) const { return refused_by(when, around) == nullptr; }
-  /// The first of the conditions that does not hold; null if all do.
+  /// Returns the first condition that does not hold, or null if all hold.
   const Condition* refused_by(When when, std::string_view around) const;
 
   /// Records that the input contains a key, a table or an entry of a list.
@@ -94,11 +98,14 @@ class Document {
   void set(const std::string& path, Value value, InputLocation place = {}, std::size_t source = 0);
   /// Returns the number, from 1, of the override that sets a key. Returns 0 if the file sets the key or nothing does.
   std::size_t source_of(std::string_view path) const;
-  /// Takes a key back. \pre it was given
+  /// Removes a key, which then counts as not given.
+  /// \pre the key was given
   void drop(std::string_view path) { given_.erase(given_.find(path)); }
 
-  /// The path of the key that a condition within the table or key `around` means.
-  /// \throw std::logic_error if the format has none
+  /// Returns the path of the key to which a condition refers, see Condition.
+  /// \param key key of the condition
+  /// \param around path of the table or key that has the condition
+  /// \throw std::logic_error if the format has no such key
   std::string path_of(std::string_view key, std::string_view around) const;
 
  private:

@@ -25,7 +25,7 @@ Json list_json(Json items, std::size_t least, std::size_t most) {
   return {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}, {"maxItems", most}};
 }
 
-/// The pattern of texts that end so.
+/// Returns the regular expression for texts with the given ending.
 std::string ends_in(std::string_view ending) {
   return fmt::format("\\{}$", ending);
 }
@@ -103,7 +103,7 @@ Json kind_json(const Kind& kind) {
       kind);
 }
 
-/// The default as JSON has it; null if there is none.
+/// Returns the default of a key as JSON, or null if there is none.
 Json default_json(const Default& otherwise) {
   return std::visit(
       Overloaded{[](const Required&) { return Json(); }, [](const None&) { return Json(); },
@@ -114,7 +114,7 @@ Json default_json(const Default& otherwise) {
 
 std::string description(std::string_view meaning, std::string_view name) {
   std::string text(meaning);
-  // What is escaped for tables in Markdown.
+  // Removes the escapes that Markdown tables need.
   for (std::size_t at = 0; (at = text.find("\\|", at)) != std::string::npos;) text.erase(at, 1);
   const std::string_view unit = unit_of(name);
   return unit.empty() ? text : fmt::format("{} In {}.", text, unit);
@@ -129,15 +129,15 @@ Json row_json(const Row& row) {
   return json;
 }
 
-/// A table on the way down from the root, and the conditions that keys of it decide.
+/// A table during the traversal from the root, with the conditions that depend on keys of this table.
 struct Place {
   const Table& table;
   Place* around;
   Json conditions = Json::array();
 };
 
-/// Whether a condition may hold where its key is not given. Rows of a key may have different defaults: what one of them
-/// rules out is then left to the reader.
+/// Returns true if a condition may hold when its key is not given. If rows of the key have different defaults, the
+/// schema cannot decide this exactly, and the reader of the format checks the condition.
 bool holds_by_default(const Condition& condition, const Table& table, std::string_view key) {
   using Is = Condition::Is;
   if (condition.is == Is::given || condition.is == Is::absent) return condition.is == Is::absent;
@@ -150,7 +150,7 @@ bool holds_by_default(const Condition& condition, const Table& table, std::strin
                                     : std::ranges::any_of(table.rows, is_other);
 }
 
-/// What the value of a condition's key must be.
+/// Returns the schema that the value of a condition's key must match.
 Json met_value(const Condition& condition) {
   using Is = Condition::Is;
   if (condition.is == Is::given) return Json::object();
@@ -159,7 +159,8 @@ Json met_value(const Condition& condition) {
   return condition.is == Is::one_of ? words : Json{{"not", std::move(words)}};
 }
 
-/// What a table must be for a condition on its key (or that of a table in it) to hold; null if there is no such key.
+/// Returns the schema that a table must match for a condition on one of its keys to hold. The key may be in a table
+/// within this table. Returns null if there is no such key.
 Json met_json(const Table& table, const Condition& condition, std::string_view key) {
   const std::string_view first = key.substr(0, key.find('.'));
   const auto inner = std::ranges::find(table.tables, first, &Table::name);
@@ -178,7 +179,9 @@ Json met_json(const Table& table, const Condition& condition, std::string_view k
   return json;
 }
 
-/// The nearest table that decides all conditions. \throw std::logic_error if there is none
+/// Returns the innermost table that contains the keys of all conditions.
+/// \param from table at which the search begins
+/// \throw std::logic_error if there is no such table
 Place& decider(When when, Place& from) {
   for (Place* place = &from; place != nullptr; place = place->around)
     if (std::ranges::none_of(when, [&](const Condition& c) { return met_json(place->table, c, c.key).is_null(); }))
@@ -186,14 +189,14 @@ Place& decider(When when, Place& from) {
   throw std::logic_error("no table decides the conditions on " + std::string(when.front().key));
 }
 
-/// What that table must be for all of them to hold.
+/// Returns the schema that a table must match for all conditions to hold.
 Json all_met(const Table& table, When when) {
   Json all = Json::array();
   for (const Condition& condition : when) all.push_back(met_json(table, condition, condition.key));
   return all.size() == 1 ? Json(std::move(all.front())) : Json{{"allOf", std::move(all)}};
 }
 
-/// What is said of the table of `inner`, said of that of `outer`.
+/// Converts a schema for the table `inner` to a schema for the table `outer` that contains it.
 Json as_seen_from(const Place& outer, const Place& inner, Json json) {
   for (const Place* place = &inner; place != &outer; place = place->around) {
     if (place->table.presence == Presence::list) json = {{"items", std::move(json)}};
@@ -202,7 +205,7 @@ Json as_seen_from(const Place& outer, const Place& inner, Json json) {
   return json;
 }
 
-/// A key or a table of a table.
+/// A key or an inner table of a table.
 struct Property {
   std::string_view name;
   Json json;
@@ -217,7 +220,7 @@ void add_meaning(std::string_view meaning, Json& json) {
   json["description"] = fmt::format("{} {}", json["description"].get<std::string>(), meaning);
 }
 
-/// Appends what ties the key to others, by the rules of its table and of those around it.
+/// Appends the rules that involve a key to its description. Rules of its table and of all outer tables are included.
 void add_ties(const Place& place, std::string_view key, Json& json) {
   std::string path(key);
   for (const Place* at = &place; at != nullptr; at = at->around) {
@@ -232,7 +235,7 @@ void add_ties(const Place& place, std::string_view key, Json& json) {
   }
 }
 
-/// The rows of a key that differ in the form of the value alone are one property.
+/// Returns the properties of a table. Rows of a key that differ only in the type of the value form one property.
 std::vector<Property> properties_of(Place& place) {
   std::vector<Property> properties;
   const Row* last = nullptr;
@@ -253,7 +256,8 @@ std::vector<Property> properties_of(Place& place) {
   return properties;
 }
 
-/// Puts what holds under conditions where these are decided. A key is refused where none of its rows serves.
+/// Adds the conditional schema of a key to the table that contains the keys of its conditions. The key is refused if
+/// none of its rows has conditions that hold.
 void add_conditions(const std::vector<Property>& all, std::string_view name, Place& place) {
   Json any = Json::array();
   Place* outer = nullptr;
@@ -290,7 +294,7 @@ void add_rule(const OneOf& rule, Json& json) {
   for (const std::string_view key : rule.keys) one_of.push_back({{"required", {key}}});
   json["oneOf"] = std::move(one_of);
 }
-/// What ties keys is said with each of them.
+/// Adds rules on a whole table to its description. Rules on single keys are added to the descriptions of these keys.
 void add_rule(const Check& rule, Json& json) {
   if (rule.keys.empty()) add_meaning(rule.meaning, json);
 }

@@ -18,7 +18,7 @@ namespace {
 
 using Shape = TomlTable::Shape;
 
-// Names: what is there, and whether the format has it.
+// Names: records the keys and tables that the file gives, and refuses unknown ones.
 
 std::vector<std::string_view> names_in(const Table& table, bool with_keys) {
   std::vector<std::string_view> names;
@@ -30,7 +30,7 @@ std::vector<std::string_view> names_in(const Table& table, bool with_keys) {
 
 constexpr std::string_view kId = "schema";
 
-/// What to say of a name that the table does not have: a close one if there is one, and what is allowed.
+/// Returns the message about an unknown key or table. It contains a similar name, if any, and all allowed names.
 std::string unknown_name(const Table& table, std::string_view name, bool is_table, bool is_root) {
   if (is_root && !is_table)
     for (const Table& inner : table.tables)
@@ -43,7 +43,7 @@ std::string unknown_name(const Table& table, std::string_view name, bool is_tabl
                      meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)), fmt::join(names, ", "));
 }
 
-/// What a table must be, for messages.
+/// Returns the required type of a table as text for messages.
 std::string_view shape_of(const Table& table) {
   if (!table.shape.empty()) return table.shape;
   return table.presence == Presence::list ? "tables" : "a table";
@@ -53,7 +53,7 @@ std::vector<TomlTable> entries(const Table& table, TomlTable& around) {
   return around.tables(table.name, shape_of(table), true);
 }
 
-/// Takes in the names of a table and of those in it.
+/// Records the names of all keys and tables of a file in a document.
 class Names {
  public:
   explicit Names(Document& document) : document_(document) {}
@@ -127,7 +127,8 @@ Value terms_of(const Terms& kind, std::string_view key, TomlTable& source) {
   return *std::move(numbers);
 }
 
-/// A byte 0 would end the name for the system alone.
+/// Returns true if a text can be a file name. A name with a zero byte is refused, because the operating system would
+/// use only the part before this byte.
 bool is_file_name(const std::string& name) {
   return !name.empty() && name.find('\0') == std::string::npos;
 }
@@ -167,7 +168,7 @@ std::vector<std::string> texts_of(const TextOrTexts& kind, std::string_view key,
   return texts;
 }
 
-/// The TOML text of each entry.
+/// Returns the TOML text of each entry of a list.
 std::vector<std::string> anything_of(std::string_view key, TomlTable& source) {
   const auto items = source.items(key);
   if (!items || items->empty())
@@ -199,7 +200,7 @@ Named named_of(const ByName& kind, std::string_view key, TomlTable& source) {
   return named;
 }
 
-/// What was given for a key, checked.
+/// Returns the value of a key after checking that it is of the kind `kind`.
 Value given(const Kind& kind, std::string_view key, TomlTable& source) {
   return std::visit(
       Overloaded{
@@ -240,7 +241,7 @@ void check_rule(const OneOf& rule, const Document& document, const std::string& 
   if (count > 1) throw InputError(document.where(last), fmt::format("not allowed together with {}", first));
 }
 
-/// What is said of a key that was given though the condition does not hold.
+/// Returns the message about a key that was given although the condition for it does not hold.
 std::string refusal(const Condition& condition) {
   using Is = Condition::Is;
   if (!condition.refusal.empty()) return std::string(condition.refusal);
@@ -264,7 +265,7 @@ Form form_of(Shape shape) {
   }
 }
 
-/// Reads the values of a document whose names are there.
+/// Reads the values of all keys whose names have been recorded by class Names.
 class Values {
  public:
   explicit Values(Document& document) : document_(document) {}
@@ -293,7 +294,7 @@ class Values {
     for (const TomlTable& entry : entries(table, around)) read(table, entry, path_of_entry(path, index++));
   }
 
-  /// Of the rows of a key, the one that serves. They stand one after another.
+  /// Selects the row of a key that applies, and reads the value with this row.
   void read_key(const Table& table, std::string_view key, TomlTable& source, const std::string& around) {
     const std::string path = path_in(around, key);
     const Form form = form_of(source.shape_of(key));
@@ -322,7 +323,9 @@ class Values {
                    fmt::format("{}, got {}", refusal(*document_.refused_by(row.when, path)), source.shown(row.key)));
   }
 
-  /// A word that the key has in another case is told so.
+  /// Checks a word that is allowed only under other conditions. The message states for which value of the other key the
+  /// allowed words apply.
+  /// \throw InputError if the word is not allowed, but is allowed by another row of the key
   void check_word(const Table& table, const Row& served, const std::string& path, const TomlTable& source) {
     const Word* const word = std::get_if<Word>(&served.kind);
     if (word == nullptr || served.when.empty() || source.shape_of(served.key) != Shape::text) return;
@@ -343,14 +346,14 @@ class Values {
 
 // Objects.
 
-/// The key that is blamed where a rule names none.
+/// Returns the key that a message about a rule refers to: the first key of the rule that was given, or its first key.
 std::string_view blamed(const Check& rule, const Document& document, const std::string& path) {
   for (const std::string_view key : rule.keys)
     if (document.has(path_in(path, key))) return key;
   return rule.keys.empty() ? std::string_view() : rule.keys.front();
 }
 
-/// A word as objects take it.
+/// Returns the value as required by Access::set(), in which a word is replaced by its index.
 Value as_index(const Kind& kind, Value value) {
   const Word* const word = std::get_if<Word>(&kind);
   const std::string* const text = std::get_if<std::string>(&value);
@@ -390,7 +393,7 @@ void check_unset_keys(const Format& format, std::span<const std::string> overrid
       throw InputError({"--set " + printable(each), 0, ""}, complaint_about_key(format, *key));
 }
 
-/// The root without the key that names the format.
+/// Checks the key that gives the format of the file, and returns the root table.
 TomlTable checked_root(const Format& format, TomlTable root) {
   const std::string_view ids[] = {format.id};
   if (!root.choice(kId, ids) && !format.id_is_optional) root.required_choice(kId, ids);
@@ -421,7 +424,7 @@ Document unchecked_names(const Format& format, std::string_view text, const std:
   Document document(format.root, {source_name, 0, ""}, std::filesystem::path(source_name).parent_path());
   try {
     Names(document).take(format.root, parse_toml(text, source_name, most_bytes, overrides), "");
-  } catch (const Error&) {  // read_document() reports it
+  } catch (const Error&) {  // the error is ignored here, because read_document() reports it
   }
   return document;
 }

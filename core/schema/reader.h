@@ -1,7 +1,6 @@
 #pragma once
 
-// Reads TOML text against the rows of a format into a document or a C++ object, and checks keys, values and rules on
-// the way.
+// Reads TOML text of a given format into a document or a C++ object, and checks keys, values and rules.
 
 #include <cstddef>
 #include <span>
@@ -37,27 +36,33 @@ Document unchecked_names(const Format& format, std::string_view text, const std:
 /// default value cause no warning.
 std::vector<std::string> superseded_keys(const Document& document);
 
-/// Reads a document into an object, which is that of the format's root.
-/// \throw InputError likewise, and where values that are allowed each by itself do not fit together
+/// Reads a document and stores its values in an object.
+/// \param object object of the root table of the format
+/// \throw InputError like read_document(), or if a combination of values violates a rule
 Document read_object(const Format& format, std::string_view text, const std::string& source_name, void* object);
 
-/// Fills the object of a table at `path` of a document. \throw InputError where its values do not fit together
+/// Stores the values of a table in an object, and checks the rules of the table.
+/// \param path path of the table in the document
+/// \throw InputError if a combination of values violates a rule
 void fill(const Document& document, const Table& table, const std::string& path, void* object);
 
-/// Checks the rules of a table at `path` of a document, which fill() does as well. \param object of the table, or the
-/// document \throw InputError where its values do not fit together
+/// Checks the rules of a table. fill() calls this function as well.
+/// \param path path of the table in the document
+/// \param object object of the table, or the document for formats that are only read as documents
+/// \throw InputError if a combination of values violates a rule
 void check(const Document& document, const Table& table, const std::string& path, const void* object);
-/// The same of an object that is from no document.
+/// Checks the rules of a table for an object that was not read from a document.
+/// \param refuse function that is called for each violated rule
 void check(const Table& table, const void* object, const Refuse& refuse);
 
-/// The paths of all keys that a value can be given for; a list of tables is one.
+/// Returns the paths of all keys of a format. A list of tables counts as one key.
 std::vector<std::string> keys_of(const Format& format);
 
-/// Whether the format has that key, and it may be a number.
+/// Returns true if the format has a key with this path whose value may be a number.
 bool is_number_key(const Format& format, std::string_view path);
 
-/// What is wrong with `path` as the path of a key of the format, such as "element.base_mm", with a "did you mean" where
-/// a known name is close; empty if a document may have it.
+/// Checks that the format has a key with this path, such as "element.base_mm".
+/// \return an empty text if the key exists; otherwise a message, which proposes a similar key if there is one
 std::string complaint_about_key(const Format& format, std::string_view path);
 
 }  // namespace retrace::schema

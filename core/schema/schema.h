@@ -1,7 +1,7 @@
 #pragma once
 
-// What a file format is, as constant data: its keys, what each may be, and where it goes. Readers, writers, JSON Schema
-// and the tables of the documentation walk these rows.
+// Describes file formats as constant data: their keys, the allowed values, and the members of C++ objects that store
+// the values. Readers, writers, JSON Schema and the key tables of the documentation are generated from these data.
 
 #include <cstddef>
 #include <functional>
@@ -16,26 +16,28 @@
 
 namespace retrace::schema {
 
-/// Numbers or words under names that the file chooses freely.
+/// Table of numbers or words, whose names are chosen freely by the file.
 using Named = std::map<std::string, std::variant<double, std::string>>;
 
-/// A value of a file. A word is its text, a whole number a double, nothing a key that is not given.
+/// Value of a key. Words are stored as std::string and whole numbers as double. std::monostate: the key is not given.
 using Value = std::variant<std::monostate, bool, double, std::string, std::vector<double>,
                            std::vector<std::vector<double>>, std::vector<std::string>, Named>;
 
-/// How a value comes from an object and goes into it (core/schema/access.h makes both), where a word is its index among
-/// the words of its key. A value that an object does not have, or that another key says, is got as nothing. Formats
-/// that are read as documents alone have none.
+/// Functions that read the value of a key from a C++ object and store it there. Both are made by core/schema/access.h.
+/// In these functions, a word is represented by its index in the list of words of the key. Formats that are only read
+/// as documents have no such functions.
 struct Access {
-  Value (*get)(const void* object) = nullptr;
+  Value (*get)(const void* object) = nullptr;  ///< returns std::monostate if the object has no value for the key
   void (*set)(void* object, const Value& value) = nullptr;  ///< \pre the value is of the key's kind
 };
 
-// What a key may be. Numbers are finite; their unit is the suffix of the key, or of the table around it.
+// Kinds of values. Numbers are finite. The unit of a number is the suffix of the name of its key, or of its table.
 
 struct Number {
   NumberRange range;
-  NumberRange sane = {};  ///< the same to be told only where it is missed: beyond it numbers have too few digits
+  /// Range outside of which numbers have too few significant digits. It is mentioned only in the message for a number
+  /// outside of it.
+  NumberRange sane = {};
 };
 /// \pre the range's ends are whole and within 2^53
 struct Whole {
@@ -44,33 +46,33 @@ struct Whole {
 struct Flag {};
 struct Word {
   std::span<const std::string_view> words;
-  std::string_view or_else = {};  ///< what else the key may have, for messages: " or a list of four numbers"
+  std::string_view or_else = {};  ///< text in messages for other allowed values: " or a list of four numbers"
 };
 struct Text {
-  std::string_view what = "a string";  ///< that it must be, for messages
+  std::string_view what = "a string";  ///< text for the allowed values in messages
 };
-/// The name of a file: relative ones are taken from the folder of the file that names it.
+/// Name of a file. Relative names are relative to the folder of the file that contains the key.
 struct File {
-  std::string_view what;  ///< that it is, such as "an STL file"
+  std::string_view what;  ///< description of the file, such as "an STL file"
 };
-/// A word, or the name of a file with that ending.
+/// One of a list of words, or the name of a file with a given extension.
 struct WordOrFile {
   std::span<const std::string_view> words;
-  std::string_view ending;
-  std::string_view allowed;  ///< what a message says that the key must be
+  std::string_view ending;   ///< extension of the file
+  std::string_view allowed;  ///< text for the allowed values in messages
 };
 /// A number, or a list of one or more numbers.
 struct NumberOrNumbers {
   NumberRange range;
-  bool is_whole = false;  ///< each
+  bool is_whole = false;  ///< true if all numbers must be integers
 };
-/// A list of exactly so many numbers.
+/// A list of exactly `count` numbers.
 struct Numbers {
   std::size_t count;
   NumberRange range;
-  std::string_view what = "numbers";  ///< that they are, for messages
+  std::string_view what = "numbers";  ///< text for the numbers in messages
 };
-/// A list of one or more numbers, so many for each of its terms.
+/// A list of one or more terms, each of which consists of `count` numbers.
 struct Terms {
   std::size_t count;
 };
@@ -78,67 +80,66 @@ struct Terms {
 struct NumberRows {
   std::size_t columns;
   NumberRange range;
-  std::size_t least;
-  std::size_t most;
-  std::string_view what;  ///< that the rows are, such as "points"
+  std::size_t least;      ///< minimum number of rows
+  std::size_t most;       ///< maximum number of rows
+  std::string_view what;  ///< text for the rows in messages, such as "points"
 };
 /// A list of one or more pairs of numbers.
 struct Pairs {
   NumberRange first;
   NumberRange second;
-  std::string_view shape;  ///< of a pair, such as "[wavelength_nm, power]"
-  std::size_t least = 1;   ///< pairs, for JSON Schema: readers may say more of a list that is too short
+  std::string_view shape;  ///< text for a pair in messages, such as "[wavelength_nm, power]"
+  std::size_t least = 1;   ///< minimum number of pairs in JSON Schema; the reader of the format checks it itself
 };
 /// A list of one or more texts.
 struct Texts {};
 /// A text, or a list of one or more texts.
 struct TextOrTexts {
-  std::string_view what;  ///< that it must be, for messages
+  std::string_view what;  ///< text for the allowed values in messages
 };
-/// A list of one or more finite numbers, texts or lists. Its value has the TOML text of each.
+/// A list of one or more finite numbers, texts or lists. The value contains the TOML text of each entry.
 struct Anything {};
-/// A table of numbers or words, of one or more names; of exactly these names if there are any.
+/// A table with one or more numbers or words.
 struct ByName {
-  std::variant<Number, Word> each;
-  std::span<const std::string_view> names = {};
-  std::string_view what = "a table";  ///< that it must be, for messages
+  std::variant<Number, Word> each;               ///< kind of each value
+  std::span<const std::string_view> names = {};  ///< required names; empty: the file chooses the names
+  std::string_view what = "a table";             ///< text for the allowed values in messages
 };
 using Kind = std::variant<Number, Whole, Flag, Word, Text, File, WordOrFile, NumberOrNumbers, Numbers, Terms,
                           NumberRows, Pairs, Texts, TextOrTexts, Anything, ByName>;
 
-/// The form of a value, in which rows of one key may differ.
+/// TOML type of a value. If a key has several rows, the type can determine the row that applies.
 enum class Form { other, number, text, list, table };
-/// Whether a value of that form may be of the kind.
+/// Returns true if a value of the type `form` can be of the kind `kind`.
 bool takes(const Kind& kind, Form form);
 
-/// The key must be given.
+/// Marks a key that must be given.
 struct Required {};
-/// Without the key its object stays as it was made.
+/// Marks a key without a default value: if the key is not given, its member of the object is not changed.
 struct None {};
-/// The same, and a sentence says what then holds.
+/// Marks a key whose default is computed elsewhere.
 struct Computed {
-  std::string_view sentence;
+  std::string_view sentence;  ///< description of the default for the documentation
 };
-/// What holds without a key; of a word: the word.
+/// Default value of a key. The default of a word is the word itself.
 using Default = std::variant<Required, None, Computed, bool, double, std::string_view, std::span<const double>>;
 inline constexpr Required kRequired;
 inline constexpr None kNone;
 
-/// What another key must be for a key to mean something. That key is looked for in the same table and then in those
-/// around it; "element.kind" is the key of a table there.
+/// Condition on another key, under which a key is allowed. The other key is searched in the same table first, and then
+/// in the tables that contain this table. It may also be a key of a table there, such as "element.kind".
 struct Condition {
   enum class Is { one_of, none_of, given, absent };
-  std::string_view key;
+  std::string_view key;  ///< path of the other key
   Is is = Is::one_of;
-  std::span<const std::string_view> words = {};  ///< of one_of and none_of
-  std::string_view refusal =
-      {};  ///< what is said of a key that was given all the same, if it needs more than the condition
+  std::span<const std::string_view> words = {};  ///< words for one_of and none_of
+  std::string_view refusal = {};                 ///< message if the condition does not hold; empty: a standard message
 };
-/// All of them must hold.
+/// List of conditions, all of which must hold.
 using When = std::span<const Condition>;
 
-/// A key of a table. There may be several rows of one key, of which at most one serves a file by its conditions and the
-/// form of what was given.
+/// Description of a key. A key may have several rows. At most one of them applies to a file; it is selected by the
+/// conditions of the rows and by the type of the value.
 struct Row {
   constexpr Row(std::string_view of_key, Kind of_kind, Default by_default, std::string_view sentence, Access by = {},
                 When only_when = {})
@@ -152,26 +153,29 @@ struct Row {
   std::string_view key;
   Kind kind;
   Default otherwise;
-  std::string_view meaning;  ///< one sentence
+  std::string_view meaning;  ///< description for the documentation, one sentence
   Access access;
   When when;
-  bool zero_is_none = false;  ///< 0 is let pass where the conditions do not hold
+  bool zero_is_none = false;  ///< true if the value 0 is allowed, and ignored, where the conditions do not hold
 };
 inline constexpr bool kZeroIsNone = true;
 
-/// Exactly one of `keys` must be given.
+/// Rule that exactly one of `keys` must be given.
 struct OneOf {
   std::span<const std::string_view> keys;
-  std::string_view complaint;  ///< what the message says if none is
+  std::string_view complaint;  ///< message if none of the keys is given
 };
-/// Throws an InputError that says what is wrong with a key, by its path from the table whose rule it is; without one,
-/// with the rule's first key that was given, or with the table.
+/// Function that throws an InputError about a key.
+/// \param key path of the key relative to the table of the rule; empty: the first key of the rule that is given, or
+/// else the table
+/// \param complaint message
 using Refuse = std::function<void(std::string_view key, const std::string& complaint)>;
-/// What must hold between values that are allowed each by itself.
+/// Rule on a combination of values, each of which is allowed by itself.
 struct Check {
-  std::span<const std::string_view> keys;  ///< that it ties, by their paths from the table; none: all of the table
-  std::string_view meaning;                ///< one sentence
-  /// \param object that of the table; of formats that are read as documents alone: the document
+  std::span<const std::string_view> keys;  ///< keys in the rule; paths relative to the table; empty: the whole table
+  std::string_view meaning;                ///< the rule in one sentence, for the documentation
+  /// Function that checks the rule.
+  /// \param object object of the table; for formats that are only read as documents, the document
   void (*check)(const void* object, const Refuse& refuse);
 };
 /// Rule that one key, called the winner, takes precedence over other keys, which then have no effect. If the input
@@ -191,69 +195,71 @@ using Rule = std::variant<OneOf, Check, Precedence>;
 enum class Presence {
   always,
   optional,
-  implied,  ///< one that is not given is an empty one
-  list      ///< any number of tables of that name, none included
+  implied,  ///< a table that is not given is treated as an empty table
+  list      ///< any number of tables with this name, including none
 };
 
-/// How a table is written.
+/// Notation of a table in a file.
 enum class Layout {
   headed,  ///< [name]
   in_line  ///< name = { ... }
 };
 
-/// How the object of a table comes from that of the table around it.
+/// Functions that give access to the objects of a table within the object of the table that contains it (the parent).
 struct Child {
-  std::size_t (*count)(const void* parent);
-  const void* (*at)(const void* parent, std::size_t index);
-  void* (*add)(void* parent);  ///< the one that is to be filled
+  std::size_t (*count)(const void* parent);                  ///< returns the number of objects
+  const void* (*at)(const void* parent, std::size_t index);  ///< returns an object
+  void* (*add)(void* parent);                                ///< adds an object and returns it
 };
 
-/// Keys and tables under a name. The values of a root's object are the whole file's.
+/// Description of a table of a file. The root table is the whole file.
 struct Table {
-  std::string_view name;     ///< empty: the root
-  std::string_view meaning;  ///< one sentence
+  std::string_view name;     ///< name of the table; empty: the root
+  std::string_view meaning;  ///< description for the documentation, one sentence
   std::span<const Row> rows = {};
   std::span<const Table> tables = {};
   std::span<const Rule> rules = {};
   Child child = {};
   Presence presence = Presence::always;
   Layout layout = Layout::headed;
-  std::string_view shape = {};          ///< what it must be, for messages, if not a table or tables
-  std::string_view otherwise = "none";  ///< what holds without an optional table
+  std::string_view shape = {};          ///< text for the required type in messages; empty: "a table" or "tables"
+  std::string_view otherwise = "none";  ///< text for the default of an optional table in the documentation
   When when = {};
-  bool is_open = false;  ///< names that it does not have are another reader's and let pass
+  bool is_open = false;  ///< true if unknown keys are allowed, because another reader checks them
 };
 
 struct Format {
-  std::string_view name;  ///< "process"
-  std::string_view id;    ///< "retrace.process/1": what the key `schema` says
+  std::string_view name;  ///< name of the format, such as "process"
+  std::string_view id;    ///< value of the key `schema`, such as "retrace.process/1"
   std::string_view title;
   Table root;
   bool id_is_optional = false;
 };
 
-/// The unit that the suffix of a name stands for, such as "mm/min" of `feed_mm_per_min`; empty without one.
+/// Returns the unit that the suffix of a name gives, such as "mm/min" for `feed_mm_per_min`. Returns an empty text if
+/// the name has no such suffix.
 std::string_view unit_of(std::string_view name);
 
-/// What a key may be, as messages say it: "> 0 and <= 100", "a list of 3 numbers".
+/// Returns the allowed values of a key as text for messages, such as "> 0 and <= 100" or "a list of 3 numbers".
 std::string allowed(const Kind& kind);
 
-/// The value that a key has by default; nothing if it has none.
+/// Returns the default value of a key, or std::monostate if it has none.
 Value default_value(const Row& row);
 
-/// A path as that of the table around a key or table, empty at the top, and its own name.
+/// A path of a key or table, split into two parts.
 struct SplitPath {
-  std::string_view around;
-  std::string_view name;
+  std::string_view around;  ///< path of the table that contains the key or table; empty: the root
+  std::string_view name;    ///< name of the key or table
 };
+/// Splits a path such as "element.base_mm" at its last dot.
 SplitPath split_path(std::string_view path);
 
-/// The table of that path, "" the root itself; null if there is none.
+/// Returns the table at a path, or null if there is no such table. An empty path is the root.
 const Table* table_at(const Table& root, std::string_view path);
 
-/// The path of a key or table within the one that `around` is the path of.
+/// Returns the path of a key or table with the given name within the table at the path `around`.
 std::string path_in(std::string_view around, std::string_view name);
-/// The path of an entry of a list of tables, from 0: "hole[1]".
+/// Returns the path of an entry of a list of tables, such as "hole[1]". Indices start at 0.
 std::string path_of_entry(std::string_view list, std::size_t index);
 
 }  // namespace retrace::schema
