@@ -77,7 +77,7 @@ studies::RoadRequest to_study(const RoadRequest& request) {
   return of_study;
 }
 
-/// What all kinds of picture have in common, but for the pictures.
+/// Runs the study of one kind of picture and copies warnings and completeness to the result.
 template <class Study, class Result>
 void run(const Study& study, const Running& running, Result& found, ImageResult& result) {
   run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });

@@ -12,7 +12,7 @@
 namespace retrace {
 namespace {
 
-/// The drawings of an inspection, made together when the first is asked for.
+/// Drawings of an inspection. All of them are made when the first one is requested.
 struct DrawnLater {
   studies::Inspection inspection;
   std::once_flag once;

@@ -38,7 +38,7 @@ studies::IfExists if_exists_of(const StudyRequest& request) {
   throw InputError({"", 0, "if_exists"}, "must be refuse, resume or overwrite, got " + in_quotes(request.if_exists));
 }
 
-/// Tells a Progress how far a sweep has come.
+/// Reports the progress of a sweep to a Progress. Values that decrease are not reported.
 class Share : public studies::SweepObserver {
  public:
   explicit Share(Progress* progress) : progress_(progress) {}
@@ -56,13 +56,14 @@ class Share : public studies::SweepObserver {
   double reported_ = 0.0;
 };
 
-/// A sweep that is carried out, and what came of it.
+/// Holds a sweep, to which its results refer.
 struct Swept {
   explicit Swept(studies::Sweep of) : sweep(std::move(of)) {}
   studies::Sweep sweep;
 };
 
-/// Computes what the store lacks. \param held kept by who draws the result
+/// Computes the points that are not in the store and returns all results.
+/// \param held sweep; it must exist as long as the result is used
 studies::SweepResult carried_out(Swept& held, const StudyRequest& request, const Running& running) {
   const Clock::time_point start = Clock::now();
   studies::ResultStore store(request.store, held.sweep.layout(), if_exists_of(request));

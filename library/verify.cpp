@@ -20,7 +20,8 @@ struct Verification::Content {
 
 namespace {
 
-/// A design and, where it has planes of its own for its facets, their table beside it: part.toml and part_facets.csv.
+/// Writes the as-machined design, such as part.toml. If its facets have individual planes, the table of these planes is
+/// written to the same folder, such as part_facets.csv.
 void write_as_machined(studies::VerificationRun& run, const std::filesystem::path& file) {
   const studies::AsMachined part = studies::as_machined(run);
   run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());
@@ -56,7 +57,7 @@ Verification verify(const VerificationRequest& request, const Running& running) 
 }
 
 void write_as_machined(const Verification& verification, const std::filesystem::path& design) {
-  studies::VerificationRun run = verification.content->run;  // it is told of warnings
+  studies::VerificationRun run = verification.content->run;  // a copy, because warnings are added to it
   write_as_machined(run, design);
 }
 

@@ -15,9 +15,9 @@
 #include "core/message_text.h"
 #include "core/text.h"
 
-#if defined(__has_feature)  // clang, with which the sanitizers are built
+#if defined(__has_feature)  // only clang, with which sanitizer builds are made
 #if __has_feature(address_sanitizer)
-// Fontconfig keeps what it learned of the fonts until the process ends; the leak checker asks here what to pass over.
+// Suppresses reports of the leak checker about Fontconfig, which keeps its font cache until the process ends.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libfontconfig\n";
@@ -29,7 +29,7 @@ namespace retrace::report {
 namespace {
 
 constexpr std::string_view kEllipsis = "\u2026";
-/// Points of 1/72 inch, cairo's unit of SVG, to the drawing unit.
+/// Number of points (1/72 inch, cairo's unit in SVG files) per drawing unit (1/96 inch).
 constexpr double kPointsPerUnit = 0.75;
 constexpr double kLargestScale = 16.0;
 
@@ -48,12 +48,12 @@ cairo_status_t append(void* closure, const unsigned char* data, unsigned int len
   try {
     static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
     return CAIRO_STATUS_SUCCESS;
-  } catch (...) {  // no exception may cross cairo's C code
+  } catch (...) {  // exceptions must not propagate through the C code of cairo
     return CAIRO_STATUS_NO_MEMORY;
   }
 }
 
-/// The characters of valid UTF-8.
+/// Splits a valid UTF-8 text into its characters.
 std::vector<std::string> characters(std::string_view text) {
   std::vector<std::string> result;
   while (!text.empty()) {
@@ -64,8 +64,8 @@ std::vector<std::string> characters(std::string_view text) {
   return result;
 }
 
-/// Cairo numbers its surfaces through the life of the process and writes the number as an id: it would make the second
-/// plot differ from the first. Nothing refers to it.
+/// Removes the ids of surfaces, which nothing refers to. Cairo counts surfaces over the life of the process, so that
+/// equal plots would otherwise be different files.
 std::string without_surface_ids(std::string svg) {
   constexpr std::string_view start = " id=\"surface";
   for (std::size_t at = svg.find(start); at != std::string::npos; at = svg.find(start, at)) {
@@ -76,7 +76,8 @@ std::string without_surface_ids(std::string svg) {
   return svg;
 }
 
-/// Pictures are numbered likewise, and referred to: they are numbered again from 1.
+/// Renumbers the ids of images, and the references to them, from 1. Cairo counts images over the life of the process,
+/// so that equal plots would otherwise be different files.
 std::string with_own_image_ids(std::string svg) {
   std::vector<std::string> known;
   for (const std::string_view mark : {" id=\"image", "\"#image"})
@@ -149,7 +150,7 @@ Canvas::Canvas(Format format, Size size, double scale) : hidden_(std::make_uniqu
   cairo_t* const context = hidden.context.get();
   cairo_scale(context, scale, scale);
   cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
-  // Independent of the user's font settings, and the same layout at every scale.
+  // These options make the drawing independent of the user's font settings and the layout independent of the scale.
   const std::unique_ptr<cairo_font_options_t, Release> options(cairo_font_options_create());
   cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
   cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
@@ -174,7 +175,8 @@ std::vector<std::string> Canvas::fitted(std::string_view raw, Font font, double 
   std::vector<std::string> lines;
   std::string rest = text.substr(std::min(text.find_first_not_of(' '), text.size()));
   while (!rest.empty() && static_cast<int>(lines.size()) + 1 < most_lines && text_width(rest, font) > width) {
-    // The longest part that ends before a space and fits; a word longer than a line is left to the ellipsis.
+    // Finds the longest part of the text that ends at a space and fits into the line. A word that is longer than a line
+    // is shortened below.
     std::size_t best = 0;
     for (std::size_t at = rest.find(' '); at != std::string::npos; at = rest.find(' ', at + 1)) {
       if (text_width(rest.substr(0, at), font) > width) break;
@@ -186,7 +188,7 @@ std::vector<std::string> Canvas::fitted(std::string_view raw, Font font, double 
   }
   if (rest.empty()) return lines;
   if (text_width(rest, font) > width) {
-    // Keep as many characters as fit.
+    // Finds the maximum number of characters that fit.
     const std::vector<std::string> all = characters(rest);
     const auto shortened = [&](std::size_t kept) {
       const std::size_t tail = ellipsis == Ellipsis::middle ? kept / 2 : 0;
@@ -280,7 +282,7 @@ void Canvas::hatch(const std::vector<Point>& polygon, double spacing, const Stro
 
 void Canvas::marker(Point centre, Marker shape, double radius, Colour colour) {
   cairo_t* const context = hidden_->context.get();
-  // Sizes by which the shapes look alike in weight.
+  // The corners are scaled such that all shapes appear equally large.
   const auto polygon = [&](const std::vector<Point>& corners) {
     for (const Point corner : corners)
       cairo_line_to(context, centre.x + radius * corner.x, centre.y + radius * corner.y);
@@ -294,7 +296,7 @@ void Canvas::marker(Point centre, Marker shape, double radius, Colour colour) {
     case Marker::diamond: polygon({{0.0, -1.35}, {1.2, 0.0}, {0.0, 1.35}, {-1.2, 0.0}}); break;
     case Marker::inverted_triangle: polygon({{0.0, 1.3}, {1.15, -0.75}, {-1.15, -0.75}}); break;
   }
-  // A thin white rim keeps markers apart where curves cross.
+  // A thin white border separates markers that overlap.
   hidden_->set(colour);
   cairo_fill_preserve(context);
   hidden_->set(Colour{1.0, 1.0, 1.0});

@@ -10,7 +10,8 @@
 namespace retrace::report {
 namespace {
 
-// Light, and dark where the reader's page is. Facets get lighter the more they look to the upper left.
+// Style with light colours, and dark colours if the reader prefers a dark scheme. Facets whose normals point to the
+// upper left are lighter.
 constexpr std::string_view kStyle = R"css(
 text{font-family:"DejaVu Sans",Verdana,Arial,sans-serif;font-size:12px;fill:#1d2530}
 .title{font-size:17px;font-weight:bold}.panel{font-size:13.5px;font-weight:bold}.remark{fill:#55606e}
@@ -33,7 +34,7 @@ text{fill:#e7edf4}.remark{fill:#a8b4c2}.paper,.gap{fill:#12171e}
 .break{stroke:#e7edf4}}
 )css";
 
-/// With up to three decimals, as short as can be.
+/// Returns a number with up to three decimals, without trailing zeros.
 std::string coordinate(double value) {
   std::string text = fmt::format("{:.3f}", value);
   while (text.back() == '0') text.pop_back();

@@ -71,7 +71,8 @@ PageSection roughness_section(const ResultDocument& document, const ResultFolder
 
 namespace {
 
-/// The way of the tool through one element, by kinds of motion.
+/// Returns the tool path through one element, grouped by kinds of motion.
+/// \param path JSON object with `name` and `moves`
 PagePath tool_path(const Json& path, bool is_dmc) {
   const std::string name = text(path, "name");
   PagePath shown{"The way of the tool through one element: " + name,
@@ -155,7 +156,8 @@ PageSection forces_section(const ResultDocument& document, const ResultFolder&) 
 
 namespace {
 
-/// A curve of the first quantity over the first parameter of numbers, one for each set of the others.
+/// Returns a chart of the first quantity over the last numeric parameter of a sweep. It has one curve for each
+/// combination of the other parameters.
 PageChart sweep_chart(const Json& json) {
   const std::vector<std::string> parameters = words(list(json, "parameters"));
   const std::vector<std::string> quantities = words(list(json, "quantities"));

@@ -1,7 +1,7 @@
 #pragma once
 
-// Private to the page: result documents as tables, figures and texts. Whatever a document lacks, or has with another
-// type, reads as absent.
+// Converts result documents to tables, values and texts of the page. Members that are missing or have an unexpected
+// type are treated as absent. This header is private to the page.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,40 +14,40 @@ namespace retrace::report::document {
 
 using Json = nlohmann::ordered_json;
 
-/// Rows of a table: a page must stay small enough to be sent on, the files have everything.
+/// Maximum number of rows of a table in the page. The limit keeps the page small. The result files contain all rows.
 inline constexpr std::size_t kMostRows = 400;
 
-const Json& member(const Json& json, const char* key);  ///< null if absent
-double number(const Json& json, const char* key);       ///< not a number if absent
+const Json& member(const Json& json, const char* key);  ///< returns a member; null if absent
+double number(const Json& json, const char* key);       ///< returns a number; NaN if absent
 std::string text(const Json& json, const char* key);
 bool flag(const Json& json, const char* key);
-const Json& list(const Json& json, const char* key);  ///< empty if absent
+const Json& list(const Json& json, const char* key);  ///< returns a list; empty if absent
 
-/// With a unit; empty for a value that is not finite.
+/// Returns a number with its unit. Returns an empty text if the number is not finite.
 std::string measured(double value, int digits, const char* unit);
-/// The same with six digits.
+/// Returns a number with six digits and its unit. Returns an empty text if the number is not finite.
 std::string measured(double value, const char* unit);
 std::string percent(double share);
 
 PageCell cell_of(const Json& value);
-/// "incidence_deg" as a person would write it: "incidence (deg)".
+/// Returns a key as the title of a column, such as "incidence (deg)" for "incidence_deg".
 std::string column_name(const std::string& key);
-/// A table of a list of objects; its columns are the given keys that any of them has.
+/// Returns a table with one row for each object of a list. Its columns are those of `keys` that occur in the objects.
 PageTable table_of(const Json& rows, const std::vector<std::string>& keys, const std::string& caption,
                    const std::string& csv_name);
-/// The plain members of an object: one row each.
+/// Returns a table with one row for each member of an object that is not an object or a list.
 PageTable figures_of(const Json& json, const std::string& caption, const std::string& csv_name);
 std::string csv_name(const ResultDocument& document, const char* what);
 
-/// The series of that label, made if there is none.
+/// Returns the series with the given label. Adds an empty series if there is none.
 ChartSeries& series_of(PageChart& chart, const std::string& label);
 
-/// "good", "bad" or "open".
+/// Returns the style of a verdict: "good", "bad" or "open".
 std::string verdict_style(const std::string& verdict);
 std::string name_of_design(const Json& design);
-/// The keys of the first rows of a list, in their order.
+/// Returns the keys of the first objects of a list, in their order.
 std::vector<std::string> keys_of(const Json& rows);
-/// The texts in a list.
+/// Returns the texts in a list.
 std::vector<std::string> words(const Json& values);
 
 }  // namespace retrace::report::document

@@ -38,7 +38,7 @@ std::string json_of(const PageChart& chart) {
                      }));
 }
 
-/// To a nanometre.
+/// Returns the coordinates of a tool move in mm as JSON, rounded to 1 nm.
 std::string json_move(const std::array<double, 4>& move) {
   return json_list(move, [](double c) { return shortest(std::round(c * 1e6) / 1e6 + 0.0); });
 }
@@ -51,7 +51,7 @@ std::string json_of(const PagePath& path) {
       }));
 }
 
-/// To a hundred thousandth of a millimetre, which no screen shows.
+/// Returns the coordinates of a point in mm as JSON, rounded to 1 nm.
 std::string json_point(const std::array<double, 3>& p) {
   return json_list(p, [](double c) { return shortest(std::round(c * 1e6) / 1e6 + 0.0); });
 }

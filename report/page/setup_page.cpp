@@ -16,7 +16,7 @@ using namespace fabrication;
 using geometry::Vec3;
 using studies::FabricationResult, studies::SetupSheet, studies::Sensitivity;
 
-/// A sheet of paper is narrower than a screen, and is filled in by hand.
+/// Additional style of the set-up sheet, for printing on A4 paper and for ticking off steps by hand.
 constexpr const char* kPrintStyle =
     "ol.steps{padding-left:1.4rem}ol.steps li{margin:.35rem 0;padding-right:2.2rem;position:relative}"
     "ol.steps li:after{content:\"\";position:absolute;right:.2rem;top:.15rem;width:1rem;height:1rem;border:1px solid "
@@ -108,7 +108,7 @@ PageSection blank_section(const FabricationResult& result, const SetupSheet& she
   return s;
 }
 
-/// What a chisel or a V must look like, and how that is seen.
+/// Returns the steps for mounting and checking the tool, a chisel or a V-shaped diamond.
 std::vector<std::string> tool_steps(const FabricationResult& result, const SetupSheet& sheet) {
   const bool is_dmc = result.job.strategy == Strategy::dmc;
   std::vector<std::string> steps;
@@ -221,7 +221,7 @@ PageSection control_section(const FabricationResult& result, const SetupSheet& s
   return s;
 }
 
-/// Where programs wait for the operator.
+/// Returns the table of stops at which programs wait for the operator.
 PageTable stops_table(const FabricationResult& result) {
   PageTable table;
   table.caption = "Stops";
@@ -303,7 +303,8 @@ std::string effect_text(const studies::FacetEffect& effect) {
                      angle(effect.along_arcmin));
 }
 
-/// A relative change in percent; less than `least` is not told.
+/// Returns a relative change in percent.
+/// \param least relative change below which "< ..." is returned
 std::string change_text(double change, double of, double least) {
   if (!(of > 0.0)) return "-";
   const double share = change / of;

@@ -14,7 +14,8 @@ namespace {
 
 using geometry::Polygon, geometry::Vec2;
 
-/// Of more elements neighbours in a row are drawn as one.
+/// Maximum number of prisms that are drawn one by one. In larger arrays, adjacent prisms of a row are drawn as one
+/// rectangle.
 constexpr std::size_t kMostElementsDrawn = 4000;
 
 std::string name_of(const studies::FabricationResult& result) {
@@ -25,13 +26,14 @@ Polygon rectangle(const Vec2& low, const Vec2& high) {
   return {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
 }
 
-/// Half the width at the blank's face, and the height of it, of what the path is drawn in.
+/// Returns half of the width and the height of the section in which the tool path is drawn. The width is measured at
+/// the face of the blank.
 std::pair<double, double> section_of(const fabrication::Job& job) {
   if (job.strategy != fabrication::Strategy::dmc) {
     const geometry::RtpElement prism = fabrication::blank_prism(job);
     return {0.5 * prism.base_mm, fabrication::root_depth_mm(prism)};
   }
-  // The dihedral edges rise by 1 in sqrt(3) and lie at 45 degrees to the facet's slope.
+  // A dihedral edge of length sqrt(3) rises by 1. It is at 45 degrees to the line of steepest slope of the facet.
   const double edge_mm = std::numbers::sqrt3 * geometry::element_depth_mm(fabrication::blank_element(job));
   const double up_mm = edge_mm / std::numbers::sqrt2;
   return {up_mm, up_mm};
@@ -96,14 +98,17 @@ PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing)
 
 namespace {
 
-/// Elements of a row that are drawn as one.
+/// Adjacent elements of a row that are drawn as one outline.
 struct DrawnElements {
   Polygon outline;
-  std::size_t count = 1;
-  std::int64_t places = 0;  ///< sum of their places in the order of cutting
+  std::size_t count = 1;    ///< number of elements
+  std::int64_t places = 0;  ///< sum of the positions of the elements in the order of cutting
 };
 
-/// From element `first` on: prisms that touch, where there are many elements, else that one alone.
+/// Returns the element `first`, or a group of adjacent prisms that begins with it if there are more than
+/// kMostElementsDrawn elements.
+/// \param places position of each element in the order of cutting
+/// \param in_plan function that converts coordinates of the workpiece to coordinates of the drawing
 template <class InPlan>
 DrawnElements drawn_from(std::size_t first, const std::vector<fabrication::CutElement>& elements,
                          const std::vector<std::int64_t>& places, const fabrication::Job& job, const InPlan& in_plan) {
@@ -141,7 +146,8 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
   if (result.job.workpiece.kind == fabrication::WorkpieceKind::direct)
     panel.remarks = {"the optic's back seen from the tool: mirrored against the design"};
   panel.outline = rectangle(Vec2::Zero(), extent);
-  // x_part = -y_w and y_part = x_w, from a corner of the extent.
+  // Converts workpiece coordinates to coordinates of the part (x_part = -y_w, y_part = x_w). The origin is moved to a
+  // corner of the array.
   const auto in_plan = [&](const Vec2& w) -> Vec2 { return Vec2(-w.y(), w.x()) + 0.5 * extent; };
   for (std::size_t k = 0; k < elements.size();) {
     const Vec2 centre = in_plan(elements[k].centre_mm);

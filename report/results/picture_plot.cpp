@@ -13,7 +13,7 @@ namespace {
 
 using studies::CameraResult, studies::DetectorResult;
 
-/// Rows from above: grids of directions have the lowest first.
+/// Reverses the order of the rows. Grids of directions begin with the lowest row, pictures with the top row.
 std::vector<double> turned_over(const std::vector<double>& values, std::size_t columns) {
   std::vector<double> result;
   result.reserve(values.size());

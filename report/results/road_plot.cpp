@@ -22,10 +22,12 @@ constexpr double kMargin = 14.0;
 constexpr double kHead = 40.0;
 constexpr double kCaption = 46.0;
 constexpr double kViewWidth = 330.0;
-// Of the logarithmic mean of what is lit: nights are dark.
+// Brightness of the picture to which the logarithmic mean of the luminances is mapped. It is low, because the scene is
+// at night.
 constexpr double kNightKey = 0.045;
 
-/// What the dye makes of white, linear sRGB of luminance 1 where the display can show it.
+/// Returns the colour of white light after the dye, in linear sRGB with luminance 1. Components may be outside of the
+/// range of the display.
 std::array<double, 3> tint_of(const std::string& dye) {
   if (dye == "red") return {3.2, 0.42, 0.28};
   if (dye == "amber") return {2.1, 0.76, 0.08};
@@ -46,7 +48,8 @@ std::vector<Colour> colours_of(const RoadResult& result, const RoadView& view, c
     const double part = view.luminance[k] > 0.0 ? view.coloured[k] / view.luminance[k] : 0.0;
     std::array<double, 3> channel{};
     for (std::size_t c = 0; c < 3; ++c) {
-      // Headlamps and night are a little warm and a little blue; what burns out turns white as on film.
+      // Light from the reflectors has the colour of the dye. All other light is white. Overexposed pixels become white,
+      // as on film.
       const double colour = part * tint[c] + (1.0 - part);
       channel[c] = srgb_byte(shown[k] * colour + 0.3 * std::max(0.0, shown[k] - 0.75)) / 255.0;
     }
