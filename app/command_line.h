@@ -1,6 +1,6 @@
 #pragma once
 
-// Turns argc and argv into a call of one command, with all its options read and checked.
+// Parses the command line. Reads and checks the options of a command.
 
 #include <functional>
 #include <span>
@@ -10,7 +10,8 @@
 
 namespace retrace::app {
 
-/// Reads the command line. \return what runs the command; nothing if help or the version was requested: that is printed
+/// Parses the command line. Prints the help or the version if it is requested.
+/// \return function that runs the command; empty if there is no command to run
 /// \throw InputError for a usage error
 std::function<ExitCode()> read_command_line(int argc, const char* const* argv);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The list of all commands of the program, each defined in a file of its own in app/commands/.
+// List of all commands of the program. Each command is defined in a separate file in app/commands/.
 
 #include <span>
 
@@ -8,10 +8,10 @@
 
 namespace retrace::app {
 
-/// Every command, in the order of help.
+/// Returns all commands, in the order in which help lists them.
 std::span<const Command> commands();
 
-// One function a command, each in a file of its own.
+// Functions that return the description of one command each.
 
 Command completion_command();
 Command explore_command();

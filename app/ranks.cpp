@@ -11,8 +11,8 @@
 namespace retrace::app {
 namespace {
 
-/// Another rank than 0: computes what it is dealt and says nothing. What is wrong is told by rank 0, which goes on
-/// without this one; another exit code than 0 would have mpirun end the job.
+/// Runs a rank other than 0: computes the tasks assigned by rank 0 and prints nothing. If this rank fails, rank 0
+/// reports it and continues without it. The exit code is always 0, because mpirun would otherwise end the whole job.
 ExitCode serve(const CommonOptions& common, std::size_t at_a_time, const std::function<ComputeTask()>& help,
                studies::MpiSession& session) {
   try {
@@ -38,7 +38,7 @@ ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
   studies::MpiSession session;
   const ExitCode code = session.rank() == 0 ? lead(&session) : serve(common, at_a_time, help, session);
   if (session.end()) return code;
-  // Ranks are gone, and MPI may wait for them for ever: what is left of it is not tidied up.
+  // Some ranks have ended, and finalizing MPI could wait for them forever. Therefore, MPI is not finalized.
   std::fflush(nullptr);
   ::_exit(static_cast<int>(code));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-// Commands whose work several machines share: `mpirun retrace sweep` and the others that docs/commands.md names.
+// Runs commands under MPI, so that several machines share the work: `mpirun retrace sweep` and other commands, see
+// docs/commands.md.
 
 #include <functional>
 
@@ -11,20 +12,24 @@
 
 namespace retrace::app {
 
-/// Tasks that a process has in work at a time where each is for one thread.
+/// Returns the number of single-threaded tasks that a process computes at the same time.
 std::size_t slots(const CommonOptions& common);
 
-/// Runs a command by itself or, where mpirun launched this process, as one rank of its job. \param lead reads, computes
-/// and writes; session null: alone, else as rank 0 \param help reads the same on another rank, and makes what computes
-/// the tasks that rank 0 deals out \param at_a_time tasks of a rank \throw Error of lead
+/// Runs a command as a single process, or as one rank of an MPI job if the process was started by mpirun.
+/// \param at_a_time number of tasks that a rank computes at the same time
+/// \param lead function that reads the input, computes and writes the results. It runs on rank 0, or without MPI, in
+/// which case `session` is null.
+/// \param help function that runs on all other ranks. It reads the same input and returns the function that computes
+/// the tasks assigned by rank 0.
+/// \throw Error thrown by `lead`
 ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
                       const std::function<ExitCode(studies::MpiSession* session)>& lead,
                       const std::function<ComputeTask()>& help);
 
-/// Has tasks done by all ranks; none without a session.
+/// Returns the function that distributes tasks over all ranks. It is empty if `session` is null.
 ShareTasks share_among(studies::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel);
 
-/// What rank 0 learnt about the others; nothing without a session.
+/// Returns messages of rank 0 about the other ranks. The list is empty if `session` is null.
 std::vector<std::string> remarks_of(const studies::MpiSession* session);
 
 }  // namespace retrace::app

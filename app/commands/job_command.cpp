@@ -17,8 +17,9 @@ namespace {
 
 struct JobOptions : MakingOptions {
   std::string design;
-  std::string reachable;  ///< output file for the design that a chisel can cut of cube corners; empty: not written
-  std::string test_cuts;  ///< output folder for jobs of test cuts, which calibrate the machine; empty: not written
+  /// Output file for a design with the facets that a chisel can cut instead of ideal cube corners; empty: not written.
+  std::string reachable;
+  std::string test_cuts;  ///< output folder for jobs of test cuts, from which the machine is calibrated; empty: none
 };
 
 std::vector<Argument> arguments(JobOptions& options) {
@@ -41,8 +42,8 @@ std::vector<std::string> inputs_of(const JobOptions& options, const studies::Des
   return inputs;
 }
 
-/// Writes the design that a chisel can cut of cube corners. It consists of the design file, such as part.toml, and the
-/// table of its facet planes, such as part_facets.csv.
+/// Writes a design with the facets that a chisel can cut instead of ideal cube corners. It consists of the design file,
+/// such as part.toml, and the table of its facet planes, such as part_facets.csv.
 ExitCode write_reachable(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
   if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --reachable");
   const fs::path file = options.reachable;
