@@ -1,4 +1,5 @@
-// Chords within a tube: against the circle, and against all sets of chords of random profiles.
+// Tests of chords that approximate a profile within a tolerance. The references are a circle, and all sets of chords of
+// random profiles.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ double random(std::uint32_t seed, std::uint32_t k) {
   return unit_interval(philox({seed, 7}, k, 0)[0]);
 }
 
-/// Distance of a point from the piece between two.
+/// Returns the distance of the point p from the line segment between a and b.
 double off_piece(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& p) {
   const double dx = b.x_mm - a.x_mm;
   const double dz = b.z_mm - a.z_mm;
@@ -37,7 +38,7 @@ bool fits(const std::vector<ProfilePoint>& points, std::size_t i, std::size_t j,
   return true;
 }
 
-/// The fewest chords by dynamic programming over all pairs.
+/// Returns the minimum number of chords, by dynamic programming over all pairs of points.
 std::size_t fewest_by_all_pairs(const std::vector<ProfilePoint>& points, double tolerance_mm) {
   std::vector<std::size_t> count(points.size(), std::numeric_limits<std::size_t>::max());
   count[0] = 0;
@@ -56,7 +57,7 @@ void expect_in_tube(const std::vector<ProfilePoint>& points, const Chords& chord
   }
 }
 
-/// Heights that wander from point to point.
+/// Returns a profile whose slope changes at random from point to point.
 std::vector<ProfilePoint> wandering(std::uint32_t seed) {
   std::vector<ProfilePoint> points;
   double slope = 0.0;
@@ -69,7 +70,7 @@ std::vector<ProfilePoint> wandering(std::uint32_t seed) {
   return points;
 }
 
-/// A profile that bends one way alone.
+/// Returns a convex profile, whose slope only increases.
 std::vector<ProfilePoint> convex(std::uint32_t seed) {
   std::vector<ProfilePoint> points;
   double slope = -1.0;
@@ -83,7 +84,7 @@ std::vector<ProfilePoint> convex(std::uint32_t seed) {
 }
 
 TEST(Chords, OfACircle) {
-  // Half a chord squared is R^2 - (R - t)^2: 0.894 mm at R = 10 mm and t = 0.01 mm.
+  // The square of half the chord is R^2 - (R - t)^2. The chord is 0.894 mm long at R = 10 mm and t = 0.01 mm.
   const double chord_mm = 2.0 * std::sqrt(2.0 * 10.0 * 0.01 - 0.01 * 0.01);
   EXPECT_NEAR(chord_mm, 0.894, 5e-4);
   const double spacing_mm = 1e-3;
@@ -91,7 +92,7 @@ TEST(Chords, OfACircle) {
   for (const Chords& chords : {longest_chords(points, 0.01), fewest_chords(points, 0.01)}) {
     const ProfilePoint& end = points[chords[1]];
     EXPECT_NEAR(std::hypot(end.x_mm, end.z_mm), chord_mm, 2.0 * spacing_mm);
-    EXPECT_EQ(chords.size() - 1, 7U);  // 6 mm of arc
+    EXPECT_EQ(chords.size() - 1, 7U);  // on an arc of 6 mm
     expect_in_tube(points, chords, 0.01);
   }
 }
@@ -117,8 +118,8 @@ TEST(Chords, LongestAreTheFewestOfConvexProfiles) {
 }
 
 TEST(Chords, LongestAreNotAlwaysTheFewest) {
-  // The first chord may reach point 2, which lies high; from there the low point 3 is in the way of the end. From point
-  // 1 the end is reached at once.
+  // The longest first chord ends at the high point 2. From there, no chord reaches the end, because it would be too far
+  // from the low point 3. From point 1, one chord reaches the end.
   const std::vector<ProfilePoint> points = {{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.9}, {3.0, -0.9}, {4.0, 0.0}, {9.0, 0.0}};
   const std::size_t longest = longest_chords(points, 1.0).size() - 1;
   EXPECT_LE(fewest_chords(points, 1.0).size() - 1, longest);

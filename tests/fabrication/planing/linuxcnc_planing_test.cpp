@@ -5,7 +5,7 @@
 #include "fabrication/post/post.h"
 #include "tests/fabrication/linuxcnc.h"
 
-// LinuxCNC's interpreter reads the programs of the worked examples: its moves are the planned ones.
+// The interpreter of LinuxCNC reads the programs of the worked examples. Its moves must equal the planned moves.
 
 namespace retrace::fabrication::linuxcnc_planing_test {
 namespace {

@@ -1,5 +1,5 @@
-// Programs of planing mills and lathes, right and changed: right ones of random parts pass in every dialect, and of
-// every small change of a small program that an independent rule calls a fault something is found.
+// Tests of correct and changed programs of planing mills and lathes. Correct programs of random parts must pass in
+// every dialect. The verifier must find every small change of a small program that an independent rule calls a fault.
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ std::vector<PlaningText> texts_of(const PlanedPart& part, const std::string& dia
   return texts;
 }
 
-/// Whether anything is found, or the text is refused.
+/// Returns true if the check reports a finding or refuses the text.
 bool is_found(const PlanedPart& part, const std::vector<PlaningText>& texts) {
   try {
     return !check_planing(part, texts, NcDialect::rs274ngc).passes();
@@ -65,7 +65,7 @@ bool is_found(const PlanedPart& part, const std::vector<PlaningText>& texts) {
   }
 }
 
-/// The first kind of fault; empty: none.
+/// Function that returns the first kind of fault in a set of programs, or an empty string.
 using Rule = std::function<std::string(const std::vector<PlainProgram>&)>;
 
 std::string form_fault(const PlainProgram& program) {
@@ -78,7 +78,8 @@ std::string form_fault(const PlainProgram& program) {
   return "";
 }
 
-/// A mill: strokes of a tool with an upright outer side, laid over each other place by place.
+/// Returns the first fault of programs of a mill, or an empty string. The strokes of a tool with a vertical outer side
+/// are superimposed at sample points of the profile.
 std::string mill_fault(const PlanedPart& part, double slope, const std::vector<PlainProgram>& programs) {
   struct Stroke {
     double x;
@@ -131,7 +132,7 @@ struct Tally {
   int tried = 0;
   int faults = 0;
   int missed = 0;
-  int found_besides = 0;  ///< that the rule does not call a fault
+  int found_besides = 0;  ///< found changes that the rule does not call a fault
 };
 
 Tally judge_all(const PlanedPart& part, const std::vector<PlaningText>& texts,
@@ -189,7 +190,8 @@ TEST(PlaningMutants, OfAMillAreFound) {
                    {"M3 S3000", "G64", "G91", "G20", "G1 F500."}, rule));
 }
 
-/// A lathe: discs along the moves, place by place.
+/// Returns the first fault of programs of a lathe, or an empty string. The nose of the tool is a disc that follows the
+/// moves. The remaining height is computed at sample points.
 std::string lathe_fault(const PlanedPart& part, const std::vector<PlainProgram>& programs) {
   const double end = part.lens.half_width_mm;
   const double nose = part.lathe->nose_radius_mm;
@@ -248,7 +250,8 @@ std::string lathe_fault(const PlanedPart& part, const std::vector<PlainProgram>&
     if (program.spindle_is_left_on) return "spindle at the end";
     if (ends_pass()) return "chip";
   }
-  // Only what is beyond the tolerance without doubt: away from walls by twice the nose and the tolerance.
+  // Skip points that are close to walls, within twice the sum of the nose radius and the tolerance. The deviation at
+  // all other points is unambiguous.
   const ZoneProfile profile(part.lens);
   for (std::size_t i = 0; i < standing.size(); ++i) {
     const double x = kStep * static_cast<double>(i);
@@ -304,7 +307,7 @@ TEST(Planing, ATruncatedProgramIsAFinding) {
 }
 
 TEST(Planing, ProgramsMayBeSplitAndBegunAgain) {
-  // The passes of a lathe in two programs, and the last one begun again in its middle.
+  // Split the passes of a lathe into two programs. Then interrupt the last pass and restart it.
   const PlanedPart part = lathe_part(0.8);
   const std::string text = texts_of(part, "rs274ngc")[0].text;
   std::vector<std::string> lines = test::lines_of_text(text);
@@ -325,7 +328,8 @@ TEST(Planing, ProgramsMayBeSplitAndBegunAgain) {
   EXPECT_FALSE(is_found(part, {{"a", first}, {"b", second}}));
   EXPECT_TRUE(is_found(part, {{"a", first}})) << "the last pass is missing";
   EXPECT_TRUE(is_found(part, {{"b", second}})) << "and so are those before it";
-  // The last pass up to a line, and again from the place where that line ended.
+  // The program `broken` contains the beginning of the last pass. The program `again` continues this pass from two
+  // lines before its interruption.
   std::vector<std::string> broken(from(starts.back()), from(starts.back() + 12));
   broken.emplace_back("G0 Z2.000000");
   std::vector<std::string> again = {"G0 Z2.000000", lines[starts.back() + 10]};
@@ -334,7 +338,7 @@ TEST(Planing, ProgramsMayBeSplitAndBegunAgain) {
   EXPECT_FALSE(is_found(part, {{"a", first}, {"b", program(broken)}, {"c", program(again)}}));
 }
 
-/// Parts that can be planned.
+/// Calls `use` with random parts that can be planned, and with their plans.
 template <class Use>
 void for_random_parts(unsigned seed, int count, const Use& use) {
   std::mt19937 random(seed);
@@ -365,7 +369,7 @@ void for_random_parts(unsigned seed, int count, const Use& use) {
       use(part, plan_planing(part));
       ++made;
     } catch (const InputError&) {
-      continue;  // no such lens, or no such plan
+      continue;  // the lens does not exist or cannot be planned
     }
   }
 }

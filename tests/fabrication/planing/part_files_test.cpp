@@ -1,4 +1,4 @@
-// Files of parts to be planed or turned: what is read, and what is refused in one line.
+// Tests of the files of planed and turned parts: what is read, and what is refused with one line.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Lenses of zones: their profile against Snell's law, their programs by what the text does.
+// Tests of lenses that consist of zones. Profiles are compared with Snell's law. Programs are judged by the moves of
+// their text.
 
 #include <gtest/gtest.h>
 
@@ -184,7 +185,8 @@ TEST(Planing, TravelThatIsTooShortIsToldWithWhatItTakes) {
   }
 }
 
-/// A program with one line replaced; line counts from 1, of those that hold `word`.
+/// Returns the programs with one line replaced.
+/// \param nth number of the line among the lines that contain `word`, from 1
 std::vector<PlaningText> with_fault(std::vector<PlaningText> texts, std::size_t program, const std::string& word,
                                     std::size_t nth, const std::function<std::string(const std::string&)>& change) {
   std::istringstream in(texts[program].text);
@@ -217,7 +219,7 @@ TEST(Planing, EveryPlantedFaultIsFound) {
   };
   EXPECT_TRUE(finds(check(with_fault(texts, 0, "G0 X", 9, moved(0.004))), "off_grid"));
   EXPECT_TRUE(finds(check(with_fault(texts, 0, "G0 Z-", 9, moved(-0.6))), "gouge"));
-  bool is_gouged = false;  // one of the words brings the tool to a stroke, others to the middle
+  bool is_gouged = false;  // true as soon as one of the changed X words causes a gouge
   for (std::size_t nth = 20; nth < 40 && !is_gouged; ++nth)
     is_gouged = finds(check(with_fault(texts, 0, "G0 X", nth, moved(-1.0))), "gouge");
   EXPECT_TRUE(is_gouged);
@@ -253,7 +255,7 @@ TEST(Planing, TheExampleIsMadeInTwoHalves) {
   EXPECT_LE(json["form_error_mm_max"].get<double>(), 0.2);
   EXPECT_EQ(json["published_seconds_per_frame"], nlohmann::json({7.2, 8.2}));
   for (const auto& program : json["programs"]) EXPECT_LE(program["hours"].get<double>(), 8.0);
-  // Inner zones are too flat for one cut a depth; outer ones are not.
+  // Inner zones are too flat for one cut at each depth. Outer zones are steep enough.
   EXPECT_EQ(json["zones"].front()["method"], "one_after_another");
   EXPECT_EQ(json["zones"].back()["method"], "by_depths");
   EXPECT_NEAR(json["seconds_per_frame"].get<double>() * json["frames"].get<double>(),
@@ -278,7 +280,7 @@ TEST(Planing, TheTemplateOfALatheIsMadeInEveryDialect) {
   const std::string text = studies::design_template("round_zone_lens");
   const PlanedPart part = parse_planed_part(text, "t.toml");
   EXPECT_EQ(part.lathe->spindle_rpm, 800);
-  // The lines that show a default or an alternative are valid when their "#" is taken away.
+  // Lines that show a default or an alternative must be valid without their leading "# ".
   std::istringstream lines(text);
   std::string all;
   for (std::string line; std::getline(lines, line);)
@@ -300,8 +302,8 @@ TEST(Planing, TheRoundExampleStaysInItsTube) {
   EXPECT_LE(result.check.path_distance_mm_max, 0.05 * 1.001);
   EXPECT_GT(result.check.path_distance_mm_max, 0.04);
   EXPECT_LE(result.plan.chords.size(), result.plan.longest.size());
-  EXPECT_EQ(result.plan.passes, 4);  // 9.615 mm by 2.5
-  // A last pass that stands off is found.
+  EXPECT_EQ(result.plan.passes, 4);  // 9.615 mm in passes of 2.5 mm
+  // The check must find a last pass that does not reach the profile.
   auto programs = result.programs;
   const std::size_t at = programs[0].text.rfind("G1 X");
   const std::size_t z = programs[0].text.find(" Z", at);

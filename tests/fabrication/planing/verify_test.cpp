@@ -1,5 +1,6 @@
-// The check of planed and turned lenses, which shares nothing with the planner: its profile against the planner's, its
-// sweep of a round nose against closed forms, and plans for other lenses and tools, which it must find out.
+// Tests of the check of planed and turned lenses, which shares no code with the planner. Its profile is compared with
+// the profile of the planner. Its simulation of a round nose is compared with closed forms. It must find plans for
+// other lenses and tools.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +39,7 @@ PlanedPart turned_part(double nose_mm = 0.0) {
   return part;
 }
 
-/// What the plan for one part does to another.
+/// Checks the plan for one part against another part.
 PlaningCheck check_of(const PlanedPart& planned, const PlanedPart& wanted) {
   const PlaningPlan plan = plan_planing(planned);
   std::vector<PlaningText> texts;
@@ -92,7 +93,8 @@ std::vector<double> places(double from, double to, int pieces) {
 }
 
 TEST(SweptNose, LeavesCuspsBetweenPlacesAndLinesAlongPieces) {
-  // Two places apart: circles; the cusp between them stands r - sqrt(r^2 - f^2 / 4) above the valleys.
+  // A nose at two positions leaves two arcs. With the distance f between them, the cusp is r - sqrt(r^2 - f^2 / 4)
+  // above the valleys.
   const double nose = 0.8;
   const double feed = 0.5;
   const SectionLine one = left_by_nose({{-feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
@@ -100,13 +102,13 @@ TEST(SweptNose, LeavesCuspsBetweenPlacesAndLinesAlongPieces) {
   const double cusp = nose - std::sqrt(nose * nose - feed * feed / 4.0);
   EXPECT_NEAR(std::min(one[40].z_mm, two[40].z_mm), cusp, 1e-15);
   EXPECT_NEAR(one[15].z_mm, 0.0, 1e-15);
-  // A sloping piece leaves the parallel line at the radius' distance.
+  // A nose that moves along a slope leaves a parallel line at the distance of its radius.
   const SectionLine line = left_by_nose({{-2.0, -1.0}, {4.0, 2.0}}, nose, places(-0.5, 0.5, 10));
   for (const SectionPoint& p : line) EXPECT_NEAR(p.z_mm, 0.5 * p.x_mm - nose * std::sqrt(1.25), 1e-14);
 }
 
 TEST(SweptNose, ComesAsDeepAsACornerLetsIt) {
-  // An upright wall on a level floor: the nose leaves a quarter of a circle.
+  // In the corner between a vertical wall and a horizontal floor, the nose leaves a quarter of a circle.
   const double nose = 1.5;
   const SectionLine corner = {{-10.0, 0.0}, {0.0, 0.0}, {0.0, 6.0}, {10.0, 6.0}};
   const auto at = places(-10.0, 10.0, 2000);
@@ -176,7 +178,8 @@ TEST(Lathe, ARoundNoseKeepsTheTubeAndLeavesFillets) {
     for (const Finding& f : check.findings) ADD_FAILURE() << f.kind << ' ' << f.message << ' ' << f.value;
     EXPECT_LE(check.path_distance_mm_max, 0.05 * 1.01);
     EXPECT_GT(check.path_distance_mm_max, 0.03);
-    // A circle in the corner between an upright wall and a floor that falls towards it by the angle a.
+    // The nose is a circle in the corner between a vertical wall and a floor that descends towards the wall by the
+    // angle a.
     const ZoneProfile profile(part.lens);
     double corner = 0.0;
     for (std::size_t zone = 0; zone + 1 < profile.zones().size(); ++zone) {
@@ -195,7 +198,8 @@ PlaningCheck check_of(const PlanedPart& part, const std::string& text, NcDialect
   return check_planing(part, {{"p", text}}, dialect);
 }
 
-/// \param at where the line is looked for: from the beginning, or from the end
+/// Returns the text with one line replaced by `other`, or removed if `other` is empty.
+/// \param is_last true: replaces the last occurrence of the line; false: the first
 std::string with_line(std::string text, const std::string& line, const std::string& other, bool is_last = false) {
   const std::size_t at = is_last ? text.rfind(line + "\n") : text.find(line + "\n");
   EXPECT_NE(at, std::string::npos) << line;
@@ -205,7 +209,7 @@ std::string with_line(std::string text, const std::string& line, const std::stri
 const std::string kStarts[] = {"G97 S800 M3", "S800 M3", "G97 S800 M3", "M103", "M103", "M103"};
 const std::string kStops[] = {"M5", "M5", "M5", "M105", "M105", "M105"};
 
-/// The only finding of the spindle, and nothing else.
+/// Returns all findings of a check as text. The tests expect at most one finding, about the spindle.
 std::string spindle_finding(const PlaningCheck& check) {
   std::string found;
   for (const Finding& f : check.findings) found += f.kind + ": " + f.message + ";";
@@ -238,7 +242,7 @@ TEST(Lathe, EveryFaultOfTheSpindleIsFoundInEveryDialect) {
     const auto found = [&](const std::string& faulty) { return spindle_finding(check_of(part, faulty, dialect)); };
     EXPECT_EQ(found(with_line(text, start, "")), still) << d;
     EXPECT_EQ(found(with_line(text, stop, "", true)), "spindle: the program ends without stopping the spindle;") << d;
-    // Stopped before the last cut: the line goes before the last feed.
+    // Stop the spindle before the last cut: insert the line before the last feed move.
     const std::size_t last_cut = text.rfind(dialect == NcDialect::pmac ? "\nlinear " : "\nG1 ") + 1;
     EXPECT_EQ(found(std::string(text).insert(last_cut, stop + "\n")), still) << d;
     if (has_own_texts(dialect)) {

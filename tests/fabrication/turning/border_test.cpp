@@ -1,5 +1,5 @@
-// Tests of the border of turned parts. Cuts that are too high at the border are found; the reference is PlainCut, which
-// computes the cut surface at points on the border.
+// Tests of the border of turned parts. The verifier must find cuts that are too high at the border. The reference is
+// PlainCut, which computes the cut surface at points on the border.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -21,8 +21,8 @@ using fabrication::test::border_places;
 using fabrication::test::deviations;
 using fabrication::test::PlainCut;
 
-/// A bowl with a cubic term. The slope of its surface shifts the point of contact outwards from the lowest point of the
-/// nose.
+/// First lines of a part file. The surface is a bowl with a cubic term. Because of its slope, the point of contact is
+/// farther out than the lowest point of the nose.
 const std::string kHead =
     "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"xy_polynomial\"\nterms = [[2, 0, 0.05], [0, 2, 0.03], [3, 0, "
     "0.02]]\n[tool]\nnose_radius_mm = 0.5\nclearance_deg = 15\n";
@@ -49,7 +49,8 @@ struct Planned {
   TurnedPart part;
   std::vector<std::string> lines;
 
-  /// Returns the line indices of the blocks of a cut. \param number index of the cut, from 0
+  /// Returns the line indices of the blocks of a cut.
+  /// \param number index of the cut, from 0
   std::vector<std::size_t> blocks(std::size_t number) const {
     std::vector<std::size_t> result;
     std::size_t cuts = 0;
@@ -63,7 +64,7 @@ struct Planned {
     return result;
   }
 
-  /// Returns the program with the Z words of the lines `which` raised.
+  /// Returns the program with increased Z words in the lines `which`.
   std::string raised(const std::vector<std::size_t>& which, double by_mm) const {
     std::vector<std::string> changed = lines;
     for (const std::size_t i : which) {
@@ -76,7 +77,7 @@ struct Planned {
   }
 
   std::vector<Finding> findings(const std::string& text) const {
-    // Use one thread: the programs are so small that parallel loops would be slower.
+    // Use one thread. The programs are so small that parallel loops would be slower.
     const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
     FindingList list;
     check_turning(part, read_cuts(part, {parse_nc(text, "p", NcDialect::rs274ngc)}, list), std::nullopt, list);
@@ -114,7 +115,8 @@ TEST(TurningBorder, ARaisedFirstLineOfARasterIsFound) {
     for (const Finding& f : found) told_nm = std::max(told_nm, f.kind == "excess" ? f.value : 0.0);
     const std::vector<double> border = plan.border_nm(high, 200);
     EXPECT_NEAR(told_nm, *std::max_element(border.begin(), border.end()), 1.0) << by_mm;
-    // The nose on the second line, 10 um away, is 80.4 nm above the surface at the border. Words are rounded to 1 nm.
+    // On the second line, 10 um away, the nose is 80.4 nm above the surface at the border. It therefore limits the
+    // excess. Words are rounded to 1 nm.
     EXPECT_NEAR(told_nm, 80.4, 1.5) << by_mm;
   }
   EXPECT_TRUE(plan.findings(plan.raised(first, 1e-5)).empty()) << "less than the tolerance";
@@ -138,8 +140,8 @@ TEST(TurningBorder, AMissingOuterLineOfARasterIsFound) {
   }
 }
 
-/// Raises random blocks near the border. If this leaves 1.05 times the tolerance more material at the border than the
-/// correct program does, the verifier must report it.
+/// Raises random blocks near the border and compares the result with the correct program. The verifier must report a
+/// change that leaves 1.05 times the tolerance more material at the border.
 void judge_raised(const Planned& plan, std::size_t first_cut, std::size_t last_cut, std::size_t outer_blocks) {
   EXPECT_TRUE(plan.findings(fabrication::test::text_of_lines(plan.lines)).empty());
   const std::vector<double> right = plan.border_nm(fabrication::test::text_of_lines(plan.lines), 60);
@@ -176,7 +178,7 @@ TEST(TurningBorder, RaisedBlocksOfASpiralThatBeginsBeyondThePartAreFound) {
   judge_raised(Planned(spiral(0.006)), 0, 0, 90);
 }
 
-/// Blocks that do not cut the part, because they are too far outside of the border, may be raised without a finding.
+/// Blocks that are too far outside of the border do not cut the part. They may be raised without a finding.
 TEST(TurningBorder, CutsBeyondThePartAreFree) {
   const Planned plan(spiral(0.04));
   std::vector<std::size_t> blocks = plan.blocks(0);

@@ -22,8 +22,9 @@
 #include "tests/fabrication/turning/plain_cut.h"
 #include "tests/support/sample_size.h"
 
-// Spirals by places, velocities and times. Their text is read here by a few lines of the test's own and evaluated as
-// Bezier curves, and held against planes, on which the nose touches by a closed form.
+// Tests of spirals that are given by positions, velocities and times. The test parses the program text itself and
+// evaluates its moves as Bezier curves. The reference is a plane, for which the position of the nose is known in closed
+// form.
 
 namespace retrace::fabrication::turning::cubic_path_test {
 namespace {
@@ -35,7 +36,7 @@ std::string word_of(NcDialect dialect) {
   return std::string(kNcDialectWords[static_cast<std::size_t>(dialect)]);
 }
 
-/// A plane and how it is cut.
+/// A plane surface, its tool and its path.
 struct Plane {
   double x_slope = 0.1;
   double y_slope = 0.05;
@@ -56,8 +57,9 @@ struct Plane {
         x_slope, y_slope, nose_mm, skew_deg, radius_mm, 1e3 * feed_mm, rpm, error_nm, acceleration, more);
   }
 
-  /// Height of the nose's lowest point where the spindle has turned by c: the plane over it, and what the nose must
-  /// rise not to cut it aside, r (sqrt(1 + s^2) - 1) for a slope s along the edge.
+  /// Returns the height of the lowest point of the nose at the spindle angle c. It is the height of the plane plus r
+  /// (sqrt(1 + s^2) - 1), where s is the slope along the edge. With the additional height, the nose touches the plane
+  /// beside its lowest point and does not gouge.
   double height_mm(double x_mm, double y_mm, double c_deg) const {
     const double c = c_deg * kRad;
     const double px = x_mm * std::cos(c) + y_mm * std::sin(c);
@@ -66,7 +68,7 @@ struct Plane {
     return x_slope * px + y_slope * py + nose_mm * (std::sqrt(1.0 + aside * aside) - 1.0);
   }
 
-  /// How far from the spindle's axis the nose touches there, without skew.
+  /// Returns the distance of the point of contact from the spindle axis, for a tool without skew.
   double touching_radius_mm(double x_mm, double c_deg) const {
     const double c = c_deg * kRad;
     const double aside = x_slope * std::cos(c) - y_slope * std::sin(c);
@@ -88,7 +90,7 @@ Planned planned(const std::string& file) {
   return {std::move(part), std::move(path), std::move(program)};
 }
 
-/// Where X, Y, Z and C are at the end of a move, how fast they are, per second, and how long it took.
+/// Positions of X, Y, Z and C at the end of a move, their speeds per second, and the duration of the move.
 struct Knot {
   std::array<double, 4> at{};
   std::array<double, 4> speed{};
@@ -103,7 +105,7 @@ std::vector<double> numbers_in(const std::string& text) {
   return result;
 }
 
-/// The moves of a text, after where it begins.
+/// Returns the moves of a program text. The first element is `start`.
 std::vector<Knot> knots_in(const std::string& text, NcDialect dialect, const Knot& start) {
   std::vector<Knot> knots = {start};
   double clock_s = 0.0;
@@ -148,7 +150,8 @@ std::vector<Knot> knots_in(const std::string& text, NcDialect dialect, const Kno
   return knots;
 }
 
-/// By de Casteljau's rule.
+/// Returns the position at the fraction t of the move from a to b. The cubic is evaluated by the algorithm of de
+/// Casteljau.
 std::array<double, 4> between(const Knot& a, const Knot& b, double t) {
   std::array<double, 4> at{};
   for (std::size_t axis = 0; axis < 4; ++axis) {
@@ -195,13 +198,13 @@ TEST(CubicPath, TextOfEveryDialectStaysAsNearAsAsked) {
           worst_nm = std::max({worst_nm, 1e6 * aside, 1e6 * std::abs(at[2] - plane.height_mm(at[0], at[1], at[3]))});
         }
       }
-      // Words are rounded to half a nanometre.
+      // Positions in the text are rounded to 1 nm, so that each may be wrong by half a nanometre.
       EXPECT_LT(worst_nm, plane.error_nm + 1.5) << word_of(dialect) << ' ' << k;
     }
   }
 }
 
-/// Returns the deviations at points on the border, from the cubic curves that this test evaluates.
+/// Returns the deviations from the design at points on the border. The moves are evaluated as cubics by this test.
 std::vector<double> border_of(const TurnedPart& part, const std::vector<Knot>& knots) {
   std::vector<std::array<double, 4>> points = {knots.front().at};
   for (std::size_t i = 1; i < knots.size(); ++i)
@@ -271,7 +274,8 @@ TEST(CubicPath, MovesAreNoShorterThanTheControlCarriesOut) {
   EXPECT_THROW(planned(Plane{.rpm = 6000.0, .acceleration = 1e6, .error_nm = 0.1}.file()), InputError);
 }
 
-/// What machines cannot follow is found from cubics as from straight moves: speeds by closed forms.
+/// Limits of the machine are checked for cubic moves as for straight moves. The expected motion is computed from closed
+/// forms.
 TEST(CubicPath, LimitsOfTheMachineAreThose) {
   const Plane plane{.x_slope = 0.2, .y_slope = 0.0, .radius_mm = 0.3, .rpm = 60.0};
   const Planned plan = planned(plane.file());
@@ -281,7 +285,8 @@ TEST(CubicPath, LimitsOfTheMachineAreThose) {
       std::nullopt, findings);
   EXPECT_NEAR(check.motion.spindle_rpm, 60.0, 1e-3);
   EXPECT_NEAR(check.motion.c_acceleration_deg_per_s2, plane.acceleration, 0.01 * plane.acceleration);
-  // Z at a turn a second goes about as it would on a circle a little within the rim: C must first come to its speed.
+  // At one revolution per second, Z moves about as it would on a circle slightly inside the rim. At the rim itself, C
+  // is still accelerating.
   double acceleration = 0.0;
   double jerk = 0.0;
   for (int c_deg = 0; c_deg < 360; ++c_deg) {
@@ -298,7 +303,7 @@ TEST(CubicPath, LimitsOfTheMachineAreThose) {
   EXPECT_TRUE(std::any_of(found.begin(), found.end(), [](const Finding& f) { return f.kind == "axis_acceleration"; }));
 }
 
-/// Every number of every second move, changed in four ways.
+/// Adds programs in which one number of every second move is changed, in four ways.
 void add_changed_numbers(const std::string& text, std::vector<fabrication::test::Mutant>& mutants) {
   static const std::regex kNumber("-?[0-9]+\\.[0-9]+");
   const std::vector<std::string> lines = fabrication::test::lines_of_text(text);
@@ -317,10 +322,10 @@ void add_changed_numbers(const std::string& text, std::vector<fabrication::test:
   }
 }
 
-/// Changes one line or number of a program. The test interpolates the moves by cubics of its own and computes how much
-/// the change alters the part. The verifier must find every change that alters the part by more than the tolerance.
+/// Changes one line or number of a program. The test evaluates the moves as cubics and computes how much the change
+/// alters the part. The verifier must find every change that alters the part by more than twice the tolerance.
 TEST(CubicPath, NoFaultOfAMovePasses) {
-  // Only every seventh change is tried in a usual run, and every change in a long run.
+  // A usual run tries every seventh change. A long run tries every change.
   const std::size_t stride = retrace::test::sample_size<std::size_t>(7, 1);
   const Plane plane{.radius_mm = 0.05, .feed_mm = 0.02, .error_nm = 5.0};
   const Planned plan = planned(plane.file());
@@ -349,14 +354,14 @@ TEST(CubicPath, NoFaultOfAMovePasses) {
       try {
         const std::vector<Knot> knots = knots_in(mutant.text, dialect, start);
         left_nm = worst_nm(knots);
-        // If only Z differs, the correct program is the reference for the deviations at the border.
+        // If only Z differs, compare the deviations at the border with those of the correct program.
         if (differ_in_z_only(knots, right_knots)) {
           const std::vector<double> border = border_of(plan.part, knots);
           for (std::size_t i = 0; i < border.size(); ++i)
             left_nm = std::max(left_nm, 1e6 * std::max(border[i] - right[i], -border[i]));
         }
       } catch (const std::exception&) {
-        continue;  // no move that these lines can read
+        continue;  // the test cannot parse the changed move
       }
       if (!(left_nm > 2.0 * plan.part.form_tolerance_nm)) continue;
       ++faults;

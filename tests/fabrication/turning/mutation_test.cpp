@@ -1,5 +1,5 @@
-// Programs of turned parts, right and changed: right ones of random parts pass in every dialect, and of every small
-// change of a small program that an independent rule calls a fault something is found.
+// Tests of correct and changed programs of turned parts. Correct programs of random parts must pass in every dialect.
+// The verifier must find every small change of a small program that an independent rule calls a fault.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -97,8 +97,8 @@ std::string form_fault(const PlainProgram& program) {
 }
 
 /// Returns a description of the first fault of a program, or an empty text.
-/// \param border deviations of the correct program at points of the border. If it is empty, the deviations of `program`
-///        are stored in it
+/// \param border deviations of the correct program at points of the border; if it is empty, the deviations of `program`
+/// are stored in it
 std::string fault_of(const TurnedPart& part, const PlainProgram& program, std::vector<double>& border) {
   if (const std::string fault = form_fault(program); !fault.empty()) return fault;
   const bool is_spiral = part.path.strategy == Strategy::spiral;
@@ -178,7 +178,8 @@ std::string fault_of(const TurnedPart& part, const PlainProgram& program, std::v
     for (int k = 0; k < 30; ++k) {
       std::string fault;
       if (is_spiral) {
-        // The centre, where the edge turns on the spot, is left out, and the rim, which has one cut beside it.
+        // Skip the centre, where the part rotates under a nearly fixed edge. Also skip the rim, where a neighbouring
+        // cut exists on one side only.
         const double r = 0.25 * reach + (0.75 * reach - part.path.feed_mm) * (i + 0.5) / 10.0;
         const double angle = 2.0 * std::numbers::pi * (k + 0.3 * i) / 30.0;
         fault = fault_at(r * std::cos(angle), r * std::sin(angle));
@@ -203,7 +204,7 @@ void judge_all(const std::string& file, const std::vector<fabrication::test::Num
   EXPECT_EQ(listed(findings_of(plan.part, {text})), "");
   std::vector<double> border;
   EXPECT_EQ(fault_of(plan.part, fabrication::test::plain_program(text), border), "");
-  // Each is so small that handing it out would take longer.
+  // Use one thread. The programs are so small that parallel loops would take longer.
   const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   int tried = 0;
   int faults = 0;
@@ -305,12 +306,12 @@ TEST(TurningKinematics, AShortSpiralNeverReachesItsSpeed) {
   }
 }
 
-/// A program that holds the moves of another from one line to another, between its beginning and end.
+/// Returns a program with the moves of another program from line `from` to line `to`, between its first and last lines.
 std::string part_of(const std::vector<std::string>& lines, std::size_t from, std::size_t to) {
   std::size_t begin = 0;
   while (!lines[begin].starts_with("G93")) ++begin;
   std::vector<std::string> result(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(begin) + 1);
-  const std::string& first = lines[from - 1];  // where it begins
+  const std::string& first = lines[from - 1];  // start position of the moves
   for (std::string& line : result) {
     const std::size_t z = first.find(" Z");
     if (line.starts_with("G0 X") && from > begin + 1)
@@ -326,7 +327,7 @@ std::string part_of(const std::vector<std::string>& lines, std::size_t from, std
 
 TEST(TurningCheck, ASpiralMayBeSplitAndBegunAgain) {
   Planned plan = planned(kSpiral);
-  // A split spiral stops within its turns, which a limit of C does not allow.
+  // A split spiral stops during its rotation, which a limit on the acceleration of C does not allow. Remove this limit.
   plan.part.machine.c_acceleration_deg_per_s2.reset();
   const std::vector<std::string> lines = fabrication::test::lines_of_text(plan.text("rs274ngc"));
   std::size_t begin = 0;
@@ -384,7 +385,8 @@ TEST(TurningCheck, StrokesOfAFastServoBelongToTheirPoints) {
   EXPECT_THROW(found("c_deg,stroke_mm\nx,1\n"), InputError);
 }
 
-// Results are not checked within one feed of the axis, where the part rotates under a nearly fixed edge.
+// The verifier does not check the surface within one feed of the axis, where the part rotates under a nearly fixed
+// edge.
 TEST(TurningCheck, PartsOfFewTurnsAreNotJudgedAtTheirAxis) {
   for (const double radius_mm : {0.04, 0.08, 0.12, 0.135, 0.15, 0.2}) {
     const Planned plan = planned(fmt::format(
@@ -438,7 +440,7 @@ TEST(TurningCheck, RightProgramsOfRandomPartsPassInEveryDialect) {
             << file;
       }
     } catch (const InputError&) {
-      continue;  // a surface that the tool does not clear
+      continue;  // the tool collides with this surface
     }
   }
   EXPECT_EQ(made, 6);

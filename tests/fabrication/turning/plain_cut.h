@@ -1,8 +1,8 @@
 #pragma once
 
-// Independent simulation of turning programs: computes the height of the cut surface at single points. It divides each
-// block into small steps and evaluates the edge where it passes over the point. It shares no code with the verifier,
-// and is valid for tools without rake.
+// Independent simulation of turning programs, which computes the height of the cut surface at single points. The
+// simulation divides each block into small steps and evaluates the edge where it passes over the point. It shares no
+// code with the verifier. It is valid for tools without rake.
 
 #include <array>
 #include <cmath>
@@ -28,12 +28,14 @@ class PlainCut {
       add(points);
     }
   }
-  /// \param points positions X, Y, Z (mm) and C (degrees) along a program with one cut
+  /// Simulates a program with one cut.
+  /// \param points positions X, Y, Z (mm) and C (degrees) along the cut
   PlainCut(const turning::TurnedPart& part, const std::vector<std::array<double, 4>>& points) : part_(part) {
     add(points);
   }
 
-  /// Returns the height of the cut surface above the design, along Z, in mm; a huge value if no edge passes the point.
+  /// Returns the height of the cut surface above the design, along Z, in mm. Returns a huge value if the edge does not
+  /// pass over the point.
   double deviation(double x, double y) const {
     const double r = part_.tool.nose_radius_mm;
     const double reach = r * std::sin(0.5 * part_.tool.window_deg * kRad);
@@ -78,7 +80,7 @@ class PlainCut {
   std::vector<Pose> poses_;
 };
 
-/// Returns points just inside the border of a part.
+/// Returns points just inside the border of a part, in mm.
 inline std::vector<std::array<double, 2>> border_places(const turning::TurnedPart& part, int count) {
   constexpr double kInside = 1.0 - 1e-6;
   const turning::PathOptions& path = part.path;
