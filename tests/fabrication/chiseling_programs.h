@@ -1,6 +1,6 @@
 #pragma once
 
-// Machines and programs of micro chiseling for tests.
+// Helper functions for tests of micro chiseling: they read machine files, plan programs and verify programs.
 
 #include <string>
 #include <string_view>
@@ -19,7 +19,8 @@ inline Machine machine(const std::string& name = "ideal-dmc") {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
 }
 
-/// Returns a machine with errors of its axes by arc minutes and of its pivots by tenths of a millimetre.
+/// Returns the machine `ideal-dmc` with position and angle errors. The directions of the rotary axes are wrong by some
+/// arc minutes. Their positions are wrong by tenths of a millimetre along X and Y, and by several millimetres along Z.
 inline Machine crooked_machine() {
   Machine m = machine();
   m.name = "crooked";

@@ -31,8 +31,8 @@
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/swept_volume_sink.h"
 
-// Diamond micro chiseling: poses and paths against the geometry of cubes, programs cut again from their text, and
-// faults that are planted in them.
+// Tests of diamond micro chiseling. Poses and tool paths are compared with the geometry of cube corners. Programs are
+// read back from their text and simulated. The verifier must find faults that the tests insert into programs.
 
 namespace retrace::fabrication::test::chiseling_test {
 namespace {
@@ -76,14 +76,15 @@ TEST(Chiseling, ThePoseLaysTheToolOnTheFacetAndTheTipOnItsEdges) {
       }
 }
 
-/// The head's kinematics against the chain written out: the tool swings about B's pivot, the workpiece about C.
+/// Compares the kinematics of the head with explicit rotations: the tool rotates about the pivot of B, and the
+/// workpiece rotates about C.
 TEST(Chiseling, TheHeadSwingsTheToolAboutItsPivot) {
   const Machine m = crooked_machine();
   const AxisPositions axes{1.5, -2.0, 3.0, 0.0, 77.0, 35.0};
   const Eigen::Matrix3d b = rotation_about(m.a.direction.value, Angle::from_deg(35.0));
   const Eigen::Matrix3d c = rotation_about(m.c.direction.value, Angle::from_deg(77.0));
   const Vec3 tip = Vec3(1.5, -2.0, 3.0);
-  // The words are where the tip would be at B = 0; the pivot stands at p from there.
+  // The axis words are the position of the tip at B = 0. The vector from the tip to the pivot of B is `a.point_mm`.
   const Vec3 pivot = tip + m.a.point_mm.value;
   const Vec3 carried = pivot + b * (tip - pivot);
   const Vec3 in_workpiece = c.transpose() * (carried - m.c.point_mm.value) + m.c.point_mm.value;
@@ -121,8 +122,9 @@ TEST(Chiseling, MeasuredAxesLeaveTheSameFacets) {
   }
 }
 
-/// Planned for ideal axes a program shows the machine's errors. The tip follows the edges whatever B does, but the
-/// leading edge leaves the facet: it becomes two planes that meet along it.
+/// A program that is planned for ideal axes is run on a machine with a tilted axis B. The tip still follows the
+/// dihedral edges, but the leading edge leaves the facet. The facet is therefore cut as two planes that meet along the
+/// leading edge.
 TEST(Chiseling, PlannedForIdealAxesShowsTheErrorsOfTheMachine) {
   Machine leaning = machine();
   leaning.a.direction.value = Vec3(std::sin(0.005), std::cos(0.005), 0.0);
@@ -143,20 +145,23 @@ TEST(Chiseling, PlannedForIdealAxesShowsTheErrorsOfTheMachine) {
   EXPECT_NEAR(v.facet_distance_nm_max, expected_nm, 1.0 + 0.01 * expected_nm);
 }
 
-/// A V with a round nose in closed form, along a facet's first edge, its second one and its normal. Every support of it
-/// is that of its circle.
+/// Closed forms for a V-shaped tool with a rounded nose. Coordinates are along the first dihedral edge of a facet,
+/// along the second dihedral edge, and along the facet normal. The point of the tool that is closest to a plane is
+/// always on the circle of the nose.
 struct RoundV {
   explicit RoundV(const Tool& tool) : edges(v_tool_edges(tool)), radius_mm(1e-3 * tool.edge_radius_um) {
     const double half_nose = Angle::from_deg(0.5 * tool.nose_angle_deg).rad();
     centre_mm = radius_mm / std::sin(half_nose) * (edges.leading + edges.trailing).normalized();
   }
-  /// How far all of it stays off the plane through the sharp tip with that normal, towards it.
+  /// Returns the distance of the rounded tool from the plane through the sharp tip with the given normal, along this
+  /// normal.
   double off_mm(const Vec3& normal) const {
     const Vec3 face = edges.leading.cross(edges.trailing).normalized();
     return normal.dot(centre_mm) - radius_mm * (normal - face * face.dot(normal)).norm();
   }
-  /// From a dihedral edge, along the middle of its two facets, to the flank of the cut along one of them.
-  /// \param in_facet across the edge
+  /// Returns the distance from a dihedral edge to the flank of the cut along one of its two facets. The distance is
+  /// measured along the bisector of both facets.
+  /// \param in_facet direction in the facet, perpendicular to the edge
   double ridge_mm(const Vec3& edge, const Vec3& in_facet) const {
     Vec3 normal = edge.cross(edges.spine).normalized();
     if (normal.dot(in_facet) < 0.0) normal = -normal;
@@ -167,10 +172,10 @@ struct RoundV {
   Vec3 centre_mm;
 };
 
-/// The nose is cut, and leaves what formulas say: strips beside the edges, and between them a ridge up to where the
-/// flanks of the two cuts begin.
+/// A rounded nose leaves material as the formulas predict. Strips remain next to the dihedral edges. Between the
+/// strips, a ridge remains that reaches up to the flanks of the two cuts.
 TEST(Chiseling, ANoseLeavesTheStripsOfTheFormulaAndARidge) {
-  constexpr double kWordUm = 1e-3;  // of programs
+  constexpr double kWordUm = 1e-3;  // resolution of positions in programs
   for (const double radius_um : {0.5, 2.0})
     for (const double wedge_deg : {62.0, 65.0, 68.0}) {
       Job job = cube_job(radius_um > 1.0, 0.3);
@@ -183,7 +188,8 @@ TEST(Chiseling, ANoseLeavesTheStripsOfTheFormulaAndARidge) {
       const Verification v = verified(job, machine(), text);
       EXPECT_TRUE(v.passes()) << listed(v);
       EXPECT_EQ(v.facet_distance_nm_max, sharp.facet_distance_nm_max);
-      // The formula is that of an arc in the facet; the arc leans by the clearance, of which the square counts.
+      // The formula assumes that the arc of the nose is in the plane of the facet. The arc is tilted by the clearance
+      // angle, which changes the strip by the square of this angle.
       const double clearance = Angle::from_deg(job.tool.clearance_deg).rad();
       EXPECT_NEAR(v.root_chamfer_um, 1e3 * std::sqrt(2.0) * nose_strip_mm(job.tool), clearance * clearance * radius_um);
       const RoundV tool(job.tool);
@@ -195,7 +201,8 @@ TEST(Chiseling, ANoseLeavesTheStripsOfTheFormulaAndARidge) {
     }
 }
 
-/// Without its last layer an element keeps a whole layer more beside its edges.
+/// An element without its last layer has additional material next to its dihedral edges. This material is as thick as
+/// the layer.
 TEST(Chiseling, StripsBesideEdgesShowAMissingLayer) {
   Job job = cube_job(false, 0.15);
   job.tool.edge_radius_um = 1.0;
@@ -208,8 +215,9 @@ TEST(Chiseling, StripsBesideEdgesShowAMissingLayer) {
   EXPECT_GT(v.root_chamfer_um, 1e3 * std::sqrt(2.0) * nose_strip_mm(job.tool) + job.process.finishing_depth_um);
 }
 
-/// The union of overlapping triangular cavities is the full-cube array: surface and volume of dexels against a stair of
-/// unit cubes, told by whole numbers alone (docs/theory/micro_chiseling.md).
+/// The union of overlapping triangular cavities is the full-cube array (docs/theory/micro_chiseling.md). The surface
+/// and the volume of a dexel simulation are compared with a staircase of unit cubes. The cubes are identified by
+/// integer coordinates only.
 TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
   const Job job = cube_job(true, 0.3);
   const Machine m = machine();
@@ -217,7 +225,8 @@ TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
   ASSERT_TRUE(v.passes()) << listed(v);
   const double edge_mm = 0.5 * cavity_edge_mm(job.element);
   EXPECT_NEAR(edge_mm, 0.3 * std::sqrt(3.0 / 8.0), 1e-15);
-  // Cubes are told by their lowest corners in units of the edge: those of cells lie on i + j + k = 0.
+  // A cube is identified by the coordinates i, j, k of its lowest corner, in units of the edge length. For the cubes of
+  // the cells, i + j + k = 0.
   const auto elements = cut_elements(job);
   std::set<std::array<int, 3>> cells;
   const auto& [e1, e2, third] = blank_corner(job).edges;
@@ -241,7 +250,7 @@ TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
   EXPECT_NEAR(v.removed_volume_mm3, volume_mm3, 1e-6 * volume_mm3);
   EXPECT_NEAR(v.border_overcut_mm3, volume_mm3 - 9.0 * std::pow(edge_mm, 3), 1e-12);
 
-  // The same by dexels from the text alone.
+  // Simulate the program text with dexels and compare the removed volume and the surface.
   SweptVolumeSink sink(m);
   run_nc(parse_nc(text_of(job, m), "p", NcDialect::rs274ngc), sink);
   const double reach = 5.0 * edge_mm;
@@ -254,7 +263,7 @@ TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
     for (std::size_t column = 0; column < field.columns; ++column) {
       const double x = (2.0 * (static_cast<double>(column) + 0.5) / static_cast<double>(field.columns) - 1.0) * reach;
       const double y = (2.0 * (static_cast<double>(row) + 0.5) / static_cast<double>(field.rows) - 1.0) * reach;
-      // The stair over this place: the lowest of the octants that start at cells.
+      // Height of the staircase of cubes at (x, y): the minimum of the octants that begin at the cells.
       double stair_mm = 0.0;
       for (const CutElement& element : elements) {
         const Vec3 from(x - element.centre_mm.x(), y - element.centre_mm.y(), 0.0);
@@ -269,7 +278,8 @@ TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
   EXPECT_GT(below, 3000);
 }
 
-/// The picture of errors shows flares as cut right, and land as land.
+/// The cavities at the border extend beyond their hexagons. The error map must show these flares as correct cuts, and
+/// it must show no value where the blank is not cut.
 TEST(Chiseling, TheMapOfErrorsHoldsFlares) {
   const Job job = cube_job(true, 0.3);
   const Machine m = machine();
@@ -282,7 +292,8 @@ TEST(Chiseling, TheMapOfErrorsHoldsFlares) {
     cut_mm2 += pixel_mm2;
     worst_nm = std::max(worst_nm, std::abs(nm));
   }
-  // Dexels stand in the middle of their cells, beside that of the pixel: that costs nothing on planes but a place.
+  // Each dexel is evaluated at the centre of its own cell, not at the centre of the pixel. On a plane facet, this
+  // offset does not change the error of height.
   EXPECT_LT(worst_nm, 20.0);
   const double hexagons_mm2 = 9.0 * geometry::area(geometry::aperture_outline(job.element));
   EXPECT_GT(cut_mm2, 1.05 * hexagons_mm2);
@@ -300,7 +311,7 @@ TEST(Chiseling, EveryDialectCutsTheSame) {
   }
 }
 
-/// The program of four triangles, to be spoilt.
+/// Fixture with the program of a triangular array. Tests insert faults into this program.
 class ChiselingFaults : public ::testing::Test {
  protected:
   ChiselingFaults() {
@@ -313,14 +324,15 @@ class ChiselingFaults : public ::testing::Test {
     EXPECT_NE(at, std::string::npos) << "the program has no " << from;
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
   }
-  /// The text without the line that holds `what`, the first behind `after`.
+  /// Returns the text without the first line after the position `after` that contains `what`.
   static std::string without_line(std::string text, const std::string& what, std::size_t after = 0) {
     const std::size_t at = text.find(what, after);
     EXPECT_NE(at, std::string::npos) << "the program has no " << what;
     const std::size_t begin = text.rfind('\n', at) + 1;
     return text.erase(begin, text.find('\n', at) + 1 - begin);
   }
-  /// Every number behind `letter` in the main part's lines that begin with `start`, put through `change`.
+  /// Returns the text with changed words in the lines that begin with `start`. The function `change` is applied to the
+  /// number that follows `letter`.
   static std::string changed(const std::string& text, const std::string& start, char letter,
                              const std::function<double(double)>& change) {
     std::istringstream lines(text);
@@ -347,7 +359,8 @@ TEST_F(ChiselingFaults, NoneWithoutAFault) {
   EXPECT_EQ(kinds(text_), "");
 }
 
-/// Of every layer, every element and every facet.
+/// A program fails verification if any of its subroutine calls is missing. The calls cover all layers, elements and
+/// facets.
 TEST_F(ChiselingFaults, EveryCallIsNeeded) {
   int tried = 0;
   for (std::size_t at = text_.find(" call"); at != std::string::npos; at = text_.find(" call", at + 1), ++tried)
@@ -355,14 +368,15 @@ TEST_F(ChiselingFaults, EveryCallIsNeeded) {
   EXPECT_GE(tried, 30);
 }
 
-/// The smallest layers lie over the apex: a cut turned by what brings it over no facet takes a bite of them too.
+/// A program fails verification if C is wrong in any pose. The smallest layers are above the apex. Even a cut at an
+/// angle that matches no facet removes material of these layers.
 TEST_F(ChiselingFaults, EveryPoseIsNeeded) {
   int tried = 0;
   for (std::size_t at = text_.find("\nG0 B"); at != std::string::npos; at = text_.find("\nG0 B", at + 1)) {
     const std::size_t c = text_.find(" C", at) + 2;
     const std::size_t end = text_.find('\n', c);
     const double c_deg = std::stod(text_.substr(c, end - c));
-    if (c_deg == 0.0) continue;  // home, at the end
+    if (c_deg == 0.0) continue;  // move to the home position at the end
     for (const double by_deg : {-60.0, 30.0, 60.0, 180.0}) {
       const std::string spoilt = text_.substr(0, c) + fmt::format("{:.7f}", c_deg + by_deg) + text_.substr(end);
       EXPECT_NE(kinds(spoilt), "") << text_.substr(at + 1, end - at - 1) << " + " << by_deg;
@@ -408,7 +422,7 @@ TEST_F(ChiselingFaults, ElementDroppedAltogether) {
 }
 
 TEST_F(ChiselingFaults, AxisScaled) {
-  // A tenth of a percent of X over half a millimetre.
+  // The factor 1.001 shifts positions by half a micrometre over a length of half a millimetre.
   EXPECT_NE(kinds(changed(text_, "G0 X", 'X', [](double x) { return 1.001 * x; })).find("gouge"), std::string::npos);
 }
 
@@ -419,7 +433,7 @@ TEST_F(ChiselingFaults, ReturnToAbsoluteLost) {
 TEST_F(ChiselingFaults, OriginShifted) {
   const Verification v = verified(job_, machine(), changed(text_, "G0 X", 'X', [](double x) { return x + 0.001; }));
   EXPECT_FALSE(v.passes());
-  // A micrometre along X of the machine goes into every facet by the cosine of 35.26 degrees.
+  // A shift of 1 um along X of the machine moves the cut into every facet by cos(35.26 degrees) um.
   for (const ElementResult& element : v.elements)
     for (const FacetFigures& facet : element.figures.facets)
       EXPECT_NEAR(facet.mean_nm, -1000.0 * std::sqrt(2.0 / 3.0), 2.0);
@@ -448,7 +462,7 @@ TEST_F(ChiselingFaults, FeedOfZero) {
 }
 
 TEST_F(ChiselingFaults, StopsShortOfTheApex) {
-  // All three words of one plunge a tenth shorter, and of the way up a tenth longer at its start.
+  // Shorten one plunge by a tenth, so that the tool stops before the apex.
   const std::size_t sub = text_.find("o110 sub");
   const std::size_t line = text_.find("G1 X", sub);
   const std::string move = text_.substr(line, text_.find('\n', line) - line);
@@ -468,7 +482,7 @@ TEST_F(ChiselingFaults, AWordForAnAxisThatTheMachineHasNot) {
 TEST_F(ChiselingFaults, TheTableTurnsWithTheToolInTheBlank) {
   const std::size_t turn = text_.find("G0 B", text_.find("o101 call"));
   const std::size_t lift = text_.rfind("G0 Z", turn);
-  // B has carried the tip 100 (1 - cos B) = 18.35 mm above where the word says.
+  // The rotation about B raises the tip by 100 (1 - cos B) = 18.35 mm above the position of the word Z.
   EXPECT_NE(kinds(replaced(text_, text_.substr(lift, text_.find('\n', lift) - lift), "G1 Z-18.4 F50.", lift - 1))
                 .find("turn_too_low"),
             std::string::npos);
@@ -544,7 +558,7 @@ TEST(ChiselingJobs, WhatIsWrongIsRefusedWithFileLineAndKey) {
   }
 }
 
-/// A V that is too thick behind its edges would run into the next facet.
+/// A V-shaped tool that is too thick behind its edges would collide with the next facet.
 TEST(ChiselingJobs, AToolThatRunsIntoTheNextFacetIsRefused) {
   Job job = cube_job(true);
   job.tool.nose_angle_deg = 80.0;

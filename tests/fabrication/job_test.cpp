@@ -12,7 +12,7 @@
 #include "tests/fabrication/jobs.h"
 #include "tests/support/refusals.h"
 
-// Jobs: where the elements lie, files that are read and written without loss, and what is refused.
+// Tests of jobs: positions of the elements, reading and writing of job files without loss, and refused input.
 
 namespace retrace::fabrication::test::job_test {
 namespace {
@@ -25,7 +25,7 @@ bool same(const Job& a, const Job& b) {
 }
 
 TEST(Job, CountsThesisArrays) {
-  // Milliken 2017, 2.3 and 2.7: the first structure of every second row is left out.
+  // Milliken 2017, 2.3 and 2.7: every second row lacks its first element.
   const std::pair<int, std::size_t> counts[] = {{1, 1}, {3, 8}, {4, 14}, {5, 23}, {7, 46}, {25, 613}};
   for (const auto& [n, elements] : counts) EXPECT_EQ(cut_elements(square_job(n)).size(), elements) << n;
 }
@@ -57,7 +57,7 @@ TEST(Job, PlacesElementsInTheWorkpieceFrame) {
   Job job = square_job(2);
   const auto elements = cut_elements(job);  // row 1: two, row 2 shifted by half a base: one
   ASSERT_EQ(elements.size(), 3U);
-  // x_w = y_part, y_w = -x_part, from the centre of the extent.
+  // Transformation to the workpiece frame: x_w = y_part and y_w = -x_part, from the centre of the extent.
   EXPECT_NEAR((elements[0].centre_mm - geometry::Vec2(-0.2255, 0.2255)).norm(), 0.0, 1e-15);
   EXPECT_NEAR((elements[1].centre_mm - geometry::Vec2(-0.2255, -0.2255)).norm(), 0.0, 1e-15);
   EXPECT_NEAR((elements[2].centre_mm - geometry::Vec2(0.2255, 0.0)).norm(), 0.0, 1e-15);
@@ -132,7 +132,7 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   job.workpiece.kind = *rc::gen::element(WorkpieceKind::mould, WorkpieceKind::direct);
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
   job.tool.width_mm = real(0.1, 0.451);
-  // No fin stays between plunges, and chips have their room.
+  // Choose a wedge angle for which no fin remains between plunges and chips have enough room.
   job.tool.wedge_deg = std::max(50.0, 0.5 * prism_of(job).apex_angle_deg);
   job.tool.edge_radius_um = real(0.0, 5.0);
   job.tool.side_clearance_deg = real(0.1, 1.0);

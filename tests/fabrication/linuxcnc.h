@@ -13,16 +13,16 @@
 
 #include "core/atomic_file.h"
 
-// LinuxCNC's own interpreter, and what it would have a machine do.
+// Runs the interpreter of LinuxCNC on a program and parses the machine moves that it prints.
 
 namespace retrace::fabrication::test {
 
-/// One move as the interpreter printed it.
+/// One move that the interpreter has printed.
 struct CanonicalMove {
   bool rapid = false;
   std::array<double, 6> at{};  ///< x, y, z, a, b, c
   double feed = 0.0;
-  double dwell_s = 0.0;  ///< after it
+  double dwell_s = 0.0;  ///< dwell after the move
 };
 
 /// Output of the interpreter and its exit status, which is 0 for an accepted program.
@@ -32,8 +32,9 @@ struct Interpretation {
   std::string err;
 };
 
-/// Runs `rs274`, which writes its parameters into the working folder and maps a file of tools in the home folder: tests
-/// that run at a time must not share it.
+/// Runs `rs274`, the interpreter of LinuxCNC, on a program. `rs274` writes its parameters into the working folder and a
+/// file of tools into the home folder. Each process therefore uses a folder of its own, so that tests can run in
+/// parallel.
 inline Interpretation interpretation_of(const std::string& text) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("retrace_rs274_" + std::to_string(::getpid()));

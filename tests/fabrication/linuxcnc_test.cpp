@@ -21,8 +21,8 @@
 #include "tests/fabrication/substrate_jobs.h"
 #include "tests/support/refusals.h"
 
-// LinuxCNC's own interpreter reads our RS274/NGC text: its canonical moves are the planned ones. Golden programs pin
-// the text of every dialect.
+// Tests of RS274/NGC programs with the interpreter of LinuxCNC: its canonical moves must equal the planned moves.
+// Golden files contain the expected program text of every dialect.
 
 namespace retrace::fabrication::test::linuxcnc_test {
 namespace {
@@ -46,11 +46,12 @@ void expect_planned(const Plan& plan, const std::string& what) {
     std::vector<PlannedMove> planned;
     for_each_move(program, [&](const PlannedMove& move) { planned.push_back(move); });
     ASSERT_EQ(moves.size(), planned.size());
-    constexpr double kPrinted = 1e-4;  // four decimals
+    constexpr double kPrinted = 1e-4;  // the interpreter prints four decimals
     for (std::size_t k = 0; k < moves.size(); ++k) {
       const Words& to = planned[k].at;
       ASSERT_EQ(moves[k].rapid, planned[k].is_rapid()) << "move " << k;
-      // Behind a stop a program does not know where axes stand, and the interpreter does.
+      // After a stop, the program does not know the positions of the axes. The interpreter does know them, so unknown
+      // axes are not compared.
       for (const Axis axis : {kX, kY, kZ}) {
         const double at_mm = to[axis] ? millimetres(*to[axis]) : moves[k].at[axis];
         ASSERT_NEAR(moves[k].at[axis], at_mm, kPrinted);
@@ -139,7 +140,7 @@ TEST(LinuxCnc, WhatItRefusesIsRefused) {
   }
 }
 
-/// LinuxCNC accepts every randomly edited program that retrace accepts.
+/// Edits programs at random. LinuxCNC must accept every edited program that retrace accepts.
 TEST(LinuxCnc, TakesEveryEditedProgramThatIsRead) {
   const std::vector<std::string> lines_put_in = {
       "G94",       "G93",       "F50.000",     "G80",         "G80 G90",
@@ -196,8 +197,8 @@ TEST(LinuxCnc, TakesSplitAndStoppedPrograms) {
   expect_planned(plan, "split");
 }
 
-/// The folders of golden/ hold a job and its programs in every dialect. RETRACE_WRITE_GOLDEN=1 writes them anew, to be
-/// looked through before they are committed.
+/// Each folder of golden/ contains a job and its programs in every dialect. RETRACE_WRITE_GOLDEN=1 rewrites the
+/// programs. Review them before you commit them.
 TEST(Golden, ProgramsOfSmallJobs) {
   const char* const rewrite = std::getenv("RETRACE_WRITE_GOLDEN");
   int folders = 0;
@@ -247,8 +248,8 @@ TEST(Dialects, AreComplete) {
   EXPECT_THROW(text("kugler"), InputError);
 }
 
-/// A line of the machine file may be recognized as harmless in one dialect and unknown in another one. If the machine
-/// file permits unknown lines, the header of the program names them.
+/// retrace checks lines of the machine file by the syntax of the dialect. A line that is harmless in one dialect may be
+/// unknown in another dialect. If the machine file permits unknown lines, the header of the program names them.
 TEST(Dialects, NameLinesThatNobodyChecked) {
   Machine on = for_dialect(machine("ideal"), "a3200");
   const auto text = [&](std::string_view dialect) {

@@ -57,7 +57,8 @@ RC_GTEST_PROP(Machine, ForwardUndoesInverse, ()) {
   RC_ASSERT((forward(machine, axes).reference_mm - point).norm() < 1e-12);
 }
 
-/// Whatever the axes, the solved pose stands the facet where the tool plunges it, and turns the root by the tilt.
+/// For random directions of the axes, the solved pose makes the facet parallel to the plunged plane. The root is
+/// rotated in the facet by the returned tilt.
 RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
   Machine machine = shipped("ideal");
   machine.a.direction.value = (Vec3(1, 0, 0) + 1e-2 * point_within(1)).normalized();
@@ -76,7 +77,8 @@ RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
   const Vec3 edge = tool_turn(machine) * Vec3(1, 0, 0);
   const Vec3 plunged = edge.cross(Vec3(0, 0, 1)).normalized();
   RC_ASSERT((motion.direction(normal) - plunged).norm() < 1e-14);
-  // The root keeps to the facet: what it is turned by is told from the edge's share in it.
+  // The root remains in the plane of the facet. Its rotation is measured from the projection of the edge onto this
+  // plane.
   const Vec3 level = (edge - plunged * plunged.dot(edge)).normalized();
   const Vec3 expected_root = rotation_about(plunged, solved.root_tilt) * level;
   RC_ASSERT((motion.direction(root) - expected_root).norm() < 1e-14);
@@ -112,7 +114,7 @@ TEST(MachineFile, EveryShippedValueSaysWhereItComesFrom) {
   EXPECT_EQ(shipped("ideal").a.direction.basis, Basis::assumed);
 }
 
-/// The message for a machine file in which `from` was replaced by `to`.
+/// Returns the error message for a machine file in which `from` is replaced by `to`.
 std::string refusal(const std::string& from, const std::string& to) {
   const std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml");
   return refusal_of([&] { parse_machine(with_replaced(text, from, to), "m.toml"); }, "accepted");
@@ -154,8 +156,8 @@ TEST(MachineFile, BadInputIsRefusedOnOneLine) {
             "m.toml:3: schema: must be \"retrace.machine/1\", got \"retrace.machine/2\"");
 }
 
-/// Programs contain the lines of the machine file unchanged. retrace recognizes lines that neither move an axis nor
-/// wait. Other lines are refused unless the machine file permits them.
+/// Programs contain the lines of the machine file unchanged. retrace accepts lines that neither move an axis nor wait.
+/// It refuses all other lines unless the machine file permits them.
 TEST(MachineFile, LinesOfAnIntegratorAreKnownOrPermitted) {
   const auto file_with = [](const std::string& lines) { return refusal("[z]", "[control]\n" + lines + "[z]"); };
   for (const char* line : {"linear Z-3 F100",

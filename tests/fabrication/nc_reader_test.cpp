@@ -27,8 +27,9 @@ std::string word_of(NcDialect dialect) {
   return std::string(kNcDialectWords[static_cast<std::size_t>(dialect)]);
 }
 
-/// One and the same program in every language, written by hand after their manuals: turn, approach, a subroutine
-/// that plunges, waits, ploughs and retracts, called at two places.
+/// Returns the same program in the given dialect, written by hand according to the manual of the control. The program
+/// rotates the table, approaches the part, and calls a subroutine at two positions. The subroutine plunges, dwells,
+/// ploughs and retracts.
 std::string sample(NcDialect dialect) {
   switch (dialect) {
     case NcDialect::rs274ngc:
@@ -122,12 +123,12 @@ TEST(NcReader, MovesKnowTheirLineAndTheCallThatLedThere) {
   EXPECT_EQ(record.motions[0].place.call_line, 0);
 }
 
-/// Text of a random sequence of moves, in every language.
+/// One move of a random program.
 struct Step {
   bool is_absolute = true;
   NcMove move = NcMove::rapid;
   std::size_t axis = 0;
-  long long micro = 0;  ///< in 1e-6 mm or 1e-7 degrees
+  long long micro = 0;  ///< distance in 1e-6 mm, or angle in 1e-7 degrees
 };
 
 std::string number_of(const Step& step) {
@@ -159,7 +160,7 @@ std::string text_of(const std::vector<Step>& steps, NcDialect dialect) {
   return is_pmac ? text + "close\n" : text;
 }
 
-/// Positions are those of whole nanometres, however the moves are written: to 1e-10 mm after 200 of them.
+/// After 200 random moves, absolute or incremental, positions agree with sums of whole nanometres to 1e-10 mm.
 RC_GTEST_PROP(NcReader, RandomMovesInEveryLanguage, ()) {
   std::vector<Step> steps;
   for (int i = 0; i < 200; ++i) {
@@ -286,7 +287,8 @@ TEST(NcReader, WhatIsNotUnderstoodOfAeroScript) {
   EXPECT_EQ(read("G90\nend\n", "G90\n"), "cut off at 13: the file does not hold the whole of subroutine Plunge");
 }
 
-/// A feed of an Aerotech is the speed of all axes together, so that it says how long a blended line takes.
+/// The feed of an Aerotech control is the speed along the common path of all axes. It therefore determines the time of
+/// a move whose ends are blended.
 TEST(NcReader, FeedsOfAllAxesSayTimes) {
   const auto move = [](const std::string& line, const std::string& mode) {
     const Record record =
@@ -339,8 +341,8 @@ TEST(NcReader, APmacsSpindleIsTakenLetterByLetter) {
   EXPECT_THROW(settings_after("M105\n" + text, NcDialect::pmac, texts), InputError) << "outside of the program";
 }
 
-/// P of G64 is the tolerance for rounding corners, and Q that for merging blocks. The path may deviate by P + Q. Q
-/// defaults to P. Both are in the unit of the program.
+/// P of G64 is the tolerance for rounding corners, and Q is the tolerance for merging blocks. The path may deviate by P
+/// + Q. If Q is missing, it equals P. Both are in the unit of the program.
 TEST(NcReader, BlendingOfLinuxCncIsPAndQ) {
   const auto blend_mm = [](const std::string& words) {
     return settings_after("G21\n" + words + "\nM2\n", NcDialect::rs274ngc).blend_mm;
@@ -375,11 +377,12 @@ TEST(NcReader, TextThatIsNoProgram) {
   EXPECT_THROW(recognise_dialect("hello world\n", "p"), InputError);
 }
 
-/// A file that stops in the middle is no error of the reader: it says where, and the verifier makes a finding of it.
+/// An incomplete file is not an error for the reader. The reader reports the line at which the file ends, and the
+/// verifier reports a finding.
 TEST(NcReader, EveryCutOffFileIsRecognised) {
   for (const NcDialect dialect : kAll) {
     const std::string whole = sample(dialect);
-    // Less than the last line end is nothing that a controller would miss.
+    // A missing last line end makes no difference to a controller.
     for (std::size_t length = 1; length + 1 < whole.size(); ++length) {
       const std::string outcome = refusal(whole.substr(0, length), dialect);
       EXPECT_NE(outcome, "accepted") << word_of(dialect) << " cut to " << length;
@@ -387,7 +390,8 @@ TEST(NcReader, EveryCutOffFileIsRecognised) {
   }
 }
 
-/// The label is there, its block is not: no subroutine ends with it.
+/// The file contains the end label of a subroutine but not the complete block of this line. The subroutine is therefore
+/// incomplete.
 TEST(NcReader, AFileThatStopsInTheLineOfALabelLacksItsSubroutine) {
   const std::string text = "G0 A45. C=-0.1\nCALL BLOCK RT101 TO RE101\nM30\nRT101:\nG91\nG1 F50. Z-0.25\nRE101:1.5 Y";
   const std::string outcome = refusal(text, NcDialect::sinumerik);

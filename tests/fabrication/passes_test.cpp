@@ -16,8 +16,8 @@
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/jobs.h"
 
-// Elements that are wider than the tool and are therefore cut in several passes: the verifier finds a pass that is
-// missing and a pass that is too high, whichever pass it is.
+// Tests of elements that are wider than the tool and are cut in several passes. The verifier must find any pass that is
+// missing or too high.
 
 namespace retrace::fabrication::test::passes_test {
 namespace {
@@ -44,7 +44,7 @@ Verification verified(const Job& job, const Machine& machine, const Program& pro
                          {parse_nc(nc_text(program, "rs274ngc"), "p", NcDialect::rs274ngc, control_texts())}, {}, {});
 }
 
-/// Returns the positions of the items that visit the element.
+/// Returns the indices of the program items that visit the element.
 std::vector<std::size_t> visits_of(const Program& program) {
   std::vector<std::size_t> visits;
   for (std::size_t i = 0; i < program.items.size(); ++i)
@@ -74,7 +74,7 @@ RC_GTEST_PROP(Passes, AMissingPassAndAPassThatIsTooHighAreFound, ()) {
     RC_LOG() << "without visit " << k << "\n";
     RC_ASSERT(!verified(job, machine, wrong).passes());
   }
-  // Only the last cycle of each facet forms the surface.
+  // Raise each visit of the last cycle. Only this cycle forms the final surface.
   for (std::size_t k = visits.size() - passes; k < visits.size(); ++k) {
     Program wrong = right;
     std::get<Visit>(wrong.items[visits[k]]).start.z() += 1000;
@@ -83,8 +83,8 @@ RC_GTEST_PROP(Passes, AMissingPassAndAPassThatIsTooHighAreFound, ()) {
   }
 }
 
-/// Flanks of 45 degrees that are moved along Z by d move along their normals by d / sqrt(2). The verifier reports this
-/// distance if it is greater than the tolerance.
+/// If flanks of 45 degrees are moved along Z by d, the distance along their normals is d / sqrt(2). The verifier
+/// reports this distance if it is greater than the tolerance.
 TEST(Passes, AnElementThatIsTooDeepOrTooHighIsFoundBeyondTheTolerance) {
   const Job job = wide_prism(Strategy::unidirectional, 1.0);
   const Machine machine = machine_of("ideal");
@@ -103,7 +103,8 @@ TEST(Passes, AnElementThatIsTooDeepOrTooHighIsFoundBeyondTheTolerance) {
   }
 }
 
-/// A prism of base b has flanks of 45 degrees, a cross section of b * b / 4, and passes that abut.
+/// A prism with base b and flanks of 45 degrees has a cross section of b * b / 4. The passes lie side by side without
+/// overlap, so that a missing pass leaves the volume of its own width.
 TEST(Passes, TheVolumeOfAMissingPassIsThatOfItsPrism) {
   const Job job = wide_prism(Strategy::unidirectional, 3.0);
   const Machine machine = machine_of("ideal");

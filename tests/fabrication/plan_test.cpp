@@ -18,8 +18,8 @@
 #include "tests/fabrication/jobs.h"
 #include "tests/support/refusals.h"
 
-// Plans: cuts, poses, order, safety of moves and time, against the figures of the thesis and the machine's own forward
-// kinematics.
+// Tests of plans: cuts, poses, order, safety of moves and time. The references are figures of the thesis and the
+// forward kinematics of the machine.
 
 namespace retrace::fabrication::test::plan_test {
 namespace {
@@ -62,7 +62,7 @@ std::vector<Visit> visits_of(const Plan& plan) {
   return visits;
 }
 
-/// Lengths of the plunges below the blank's face, in order.
+/// Returns the lengths of the plunges below the face of the blank, in order.
 std::vector<double> plunge_lengths_mm(const Job& job) {
   const CuttingPose pose = cutting_pose(job, machine("ideal"), {}, 0.0);
   const Routine routine = unidirectional_routine(job, pose.section);
@@ -75,7 +75,8 @@ std::vector<double> plunge_lengths_mm(const Job& job) {
 }
 
 TEST(Cuts, AreThoseOfTheThesis) {
-  // Milliken 2017, 4.1.3: 1 mm at 10 um takes 71 cuts; the last three are 687.1, 697.1 and 707.1 um long.
+  // Milliken 2017, 4.1.3: a prism of 1 mm with a depth of cut of 10 um takes 71 cuts. The last three are 687.1, 697.1
+  // and 707.1 um long.
   const std::vector<double> lengths = plunge_lengths_mm(job_of(1.0, 10.0, Strategy::unidirectional));
   ASSERT_EQ(lengths.size(), 71U);
   EXPECT_NEAR(lengths.front(), 0.0071, 6e-5);
@@ -85,7 +86,8 @@ TEST(Cuts, AreThoseOfTheThesis) {
 }
 
 TEST(Cuts, OfLayersRemoveAsMuchFromEitherFacet) {
-  // Nested V shells: the root of shell i is (N - i) DOC sqrt 2 above the design's, so half as many reach the face.
+  // The layers are nested V-shaped shells. The root of shell i is (N - i) DOC sqrt(2) above the root of the design,
+  // where DOC is the depth of cut. Half as many shells as cuts therefore reach the face of the blank.
   EXPECT_EQ(cuts_per_facet(job_of(1.0, 10.0, Strategy::bidirectional)), 36);
 }
 
@@ -126,7 +128,7 @@ TEST(Poses, StandThePlungedFacetUpright) {
 }
 
 TEST(Poses, LeaveThePredictedRotation) {
-  // Closed form 12 of the issue: rotation that is left about the facet's normal, in arc minutes.
+  // Expected residual rotation about the normal of the facet, in arc minutes.
   struct Expected {
     std::string machine;
     int facet;
@@ -146,13 +148,14 @@ TEST(Poses, LeaveThePredictedRotation) {
   }
 }
 
-/// Signed distance of a point of the workpiece from a facet of an element: positive outside the material.
+/// Returns the signed distance of a point of the workpiece from a facet of an element, in nm. It is positive outside of
+/// the material.
 double distance_nm(const Job& job, const CutElement& element, int facet, const Vec3& point) {
   const Vec3 root(element.centre_mm.x(), element.centre_mm.y(), -root_depth_mm(blank_prism(job)));
   return 1e6 * facet_normal(blank_prism(job), {element.rotated, facet}).dot(point - root);
 }
 
-/// Both ends of the tool's edge in the workpiece, where the axes are there.
+/// Returns both ends of the tool's edge in the workpiece frame at the given axis words.
 std::array<Vec3, 2> edge_ends(const Job& job, const Machine& m, const Words& at) {
   const ToolPose tool = forward(m, axes_of(at));
   const Vec3 half = tool.workpiece_from_machine * Vec3(0.5 * job.tool.width_mm, 0.0, 0.0);
@@ -167,7 +170,7 @@ TEST(Plunges, EndWhereTheDeeperEndTouchesTheOtherFacetAndNeverBelow) {
         prism_of(job).apex_angle_deg = apex_deg;
         const Machine m = machine(name);
         const Plan plan = make_plan(job, m);
-        std::map<std::pair<std::int32_t, int>, std::array<double, 2>> nearest;  // to wall and floor
+        std::map<std::pair<std::int32_t, int>, std::array<double, 2>> nearest;  // distances to wall and floor
         for (const PlannedMove& move : moves_of(plan)) {
           if (move.is_rapid() || move.move.motion != Motion::plunge) continue;
           const CutElement& element = plan.elements[static_cast<std::size_t>(move.element)];
@@ -207,13 +210,13 @@ TEST(Bidirectional, EveryTipStopsOnTheRootOfItsShell) {
   const Job job = job_of(1.0, 20.0, Strategy::bidirectional);
   const Machine m = machine("ideal");
   const Plan plan = make_plan(job, m);
-  std::map<int, int> plunges;  // by facet
+  std::map<int, int> plunges;  // number for each facet
   for (const PlannedMove& move : moves_of(plan)) {
     if (move.is_rapid() || move.move.motion != Motion::plunge) continue;
     const int facet = *move.at[kC] < 900000000 ? 1 : 2;
     const int layer = ++plunges[facet];
     const Vec3 tip = forward(m, axes_of(move.at)).reference_mm;
-    // Past the floor of the layer before by one depth of cut, which is the floor of this one.
+    // Each layer ends one depth of cut below the floor of the previous layer.
     for (const int side : {1, 2})
       EXPECT_NEAR(distance_nm(job, plan.elements[0], side, tip), 2e4 * (plan.cuts_per_facet - layer), 1.5);
   }
@@ -275,7 +278,8 @@ TEST(Order, CTurnsOnlyTwicePerFinishingCut) {
 }
 
 TEST(Order, TravelBetweenElementsIsShort) {
-  // To and fro: hardly longer than one pitch for each element, which no order can undercut.
+  // Rows are visited in alternating directions. The mean travel is hardly longer than one pitch, the minimum of any
+  // order.
   const Machine m = machine("ideal");
   for (const Arrangement arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
     const Job job = square_job(20, arrangement);
@@ -291,7 +295,8 @@ TEST(Order, TravelBetweenElementsIsShort) {
       last = at;
       ++lines;
     }
-    // Of a checker either half has diagonal neighbours only; the way along a line is two pitches.
+    // The prisms of one orientation of a checker have diagonal neighbours only. Along a line, the distance between them
+    // is two pitches.
     const double pitches = arrangement == Arrangement::checker ? 2.0 : arrangement == Arrangement::offset ? 1.15 : 1.0;
     EXPECT_LT(travel_mm, 1.05 * pitches * 0.451 * lines);
   }
@@ -309,14 +314,16 @@ TEST(Time, WideToolHalvesTheTimePerArea) {
 }
 
 TEST(Time, OfAMoveFromRestToRest) {
-  EXPECT_DOUBLE_EQ(rest_to_rest_s(10.0, {2.0, 1.0}), 7.0);  // 2 s up, 3 s at speed over 6, 2 s down
+  EXPECT_DOUBLE_EQ(rest_to_rest_s(10.0, {2.0, 1.0}), 7.0);  // 2 s up to speed, 3 s for a distance of 6, 2 s down
   EXPECT_DOUBLE_EQ(rest_to_rest_s(4.0, {2.0, 1.0}), 4.0);
   EXPECT_DOUBLE_EQ(rest_to_rest_s(1.0, {2.0, 1.0}), 2.0);
   EXPECT_DOUBLE_EQ(rest_to_rest_s(0.0, {2.0, 1.0}), 0.0);
 }
 
-/// Moves on as an axis does: jerk on while acceleration is below its limit and speed can still grow, then off again
-/// so that both end together. \return how far it has come when it is at `speed`, and after what time
+/// Simulates an axis that accelerates from rest to `speed` with limited jerk. The jerk is positive until the
+/// acceleration reaches its limit. It is negative at the end, so that the acceleration is 0 when the axis reaches
+/// `speed`.
+/// \return distance and time until the axis reaches `speed`
 std::pair<double, double> speeding_up(double speed, const MotionLimits& limits) {
   const double step_s = 1e-5 * (speed / limits.acceleration + std::sqrt(speed / limits.jerk));
   double at = 0.0;
@@ -324,7 +331,7 @@ std::pair<double, double> speeding_up(double speed, const MotionLimits& limits) 
   double a = 0.0;
   double time_s = 0.0;
   while (v < speed) {
-    // With jerk against it the speed still grows by a^2 / (2 jerk).
+    // While negative jerk reduces the acceleration a to 0, the speed still increases by a^2 / (2 jerk).
     const bool must_fall = v + a * a / (2.0 * limits.jerk) >= speed;
     const double next = must_fall ? a - limits.jerk * step_s : std::min(a + limits.jerk * step_s, limits.acceleration);
     if (must_fall && next <= 0.0) break;
@@ -343,7 +350,7 @@ RC_GTEST_PROP(Time, WithJerkIsThatOfTheMotionStepByStep, ()) {
   };
   const MotionLimits limits{size(0.1, 50.0), size(10.0, 5000.0), size(1e2, 1e7)};
   const auto [ramp, ramp_s] = speeding_up(limits.speed, limits);
-  // Long moves have a part at speed; of short ones the greatest speed is that of speeding up over half of the way.
+  // A long move has a section at constant speed. In a short move, the axis accelerates over half of the distance.
   const double way = size(0.01, 10.0);
   RC_ASSERT(std::abs(rest_to_rest_s(2.0 * ramp + way, limits) / (2.0 * ramp_s + way / limits.speed) - 1.0) < 2e-3);
   const double lower = limits.speed * size(0.01, 1.0);
@@ -362,7 +369,7 @@ TEST(Time, MovesSettle) {
   EXPECT_DOUBLE_EQ(rotary_move_s(m, 0.0, 0.0), 0.0);
 }
 
-/// Height of a point above the blank's face, normal to it.
+/// Returns the height of the tool reference point above the face of the blank, in mm.
 double height_mm(const Machine& m, const Words& at) {
   return forward(m, axes_of(at)).reference_mm.z();
 }
@@ -386,7 +393,8 @@ RC_GTEST_PROP(Moves, AreSafe, ()) {
       const bool down = *to[kZ] < *at[kZ];
       const bool across = to[kX] != at[kX] || to[kY] != at[kY];
       RC_ASSERT(!(down && across));
-      // Never nearer to the face than the clearance, but for rounding: half the way is as high as its ends.
+      // The height is never below the clearance, except for rounding. Rapid moves are straight, so that the height
+      // between their ends is not below the lower end.
       RC_ASSERT(height_mm(m, to) > job.process.clearance_mm - 1e-3);
     } else if (!move.is_rapid()) {
       RC_ASSERT(to[kX] == at[kX]);
@@ -409,7 +417,8 @@ RC_GTEST_PROP(Positions, DoNotDrift, ()) {
     const CuttingPose& pose = plan.poses[stage.pose];
     const geometry::Vec2 centre = plan.elements[static_cast<std::size_t>(visit.element)].centre_mm;
     const AxisPositions root = inverse(m, Vec3(centre.x(), centre.y(), -pose.section.depth_mm), pose.rounded);
-    // Where a routine starts relative to its element is the same for all, to the rounding of either.
+    // The start of a routine relative to its element is the same for all elements, except for rounding at both
+    // elements.
     const Visit first = visits_of(plan).front();
     if (visit.subroutine != first.subroutine) continue;
     const geometry::Vec2 centre0 = plan.elements[static_cast<std::size_t>(first.element)].centre_mm;

@@ -20,8 +20,8 @@
 #include "fabrication/post/post.h"
 #include "tests/fabrication/jobs.h"
 
-// What the less usual keys of a job ask for is cut as designed: programs are read back and cut virtually, on the
-// machines with measured axes.
+// Tests of jobs with rarely used keys. Programs are planned for different machines, read back and simulated. The result
+// must match the design.
 
 namespace retrace::fabrication::test::planned_jobs_test {
 namespace {
@@ -39,12 +39,13 @@ Verification verified(const std::vector<Program>& planned, const Job& job, const
   return verify_programs(job, m, programs, {}, {});
 }
 
-/// What programs planned for one job leave, judged by another.
+/// Verifies the programs that are planned for the job `planned` against another job.
 Verification verified(const Job& planned, const Job& job, const Machine& m) {
   return verified(make_plan(planned, m).programs, job, m);
 }
 
-/// The programs with all visits of an element in one subroutine, or in all, moved along Z.
+/// Returns the programs with visits of an element moved along Z.
+/// \param title first words of the titles of the subroutines whose visits are moved; empty: all subroutines
 std::vector<Program> raised(std::vector<Program> programs, std::int32_t element, Nanometres by_nm,
                             const std::string& title = "") {
   int moved = 0;
@@ -143,7 +144,8 @@ TEST(PlannedJobs, EveryKeyIsCutAsDesigned) {
         const std::string what = fmt::format("{}, {}, strategy {}", variant.what, name, static_cast<int>(strategy));
         EXPECT_TRUE(v.passes()) << what << "\n" << listed(v);
         EXPECT_EQ(v.elements_cut, static_cast<std::int64_t>(cut_elements(job).size())) << what;
-        // Side-by-side ploughs make steps, whose mean leans less than one plough does.
+        // Ploughs side by side form steps, whose mean plane is tilted less than one ploughed facet. The angle is
+        // therefore checked only for two_step, where no facet is ploughed.
         if (strategy == Strategy::two_step) {
           EXPECT_LT(v.facet_angle_arcmin_max, 0.01) << what;
         }
@@ -162,8 +164,9 @@ TEST(PlannedJobs, AnotherApexIsFound) {
   }
 }
 
-/// An edge of radius r reaches r (1 - sin a + cos a) less far towards the floor than a sharp one: a program for a sharp
-/// tool that a blunt one runs gouges where that is positive and leaves material where it is negative.
+/// An edge of radius r extends beyond a sharp edge by r (1 - sin a + cos a) towards the floor, where a is the apex
+/// angle. A program for a sharp edge that runs with a blunt edge gouges where this distance is positive. It leaves
+/// excess material where the distance is negative.
 TEST(PlannedJobs, AnEdgeThatTheProgramForgotIsFound) {
   for (const auto& [apex_deg, kind] : {std::pair{85.0, "gouge"}, {95.0, "excess"}}) {
     Job planned = square_job(2, Arrangement::aligned);
@@ -177,7 +180,8 @@ TEST(PlannedJobs, AnEdgeThatTheProgramForgotIsFound) {
       EXPECT_TRUE(has_kind(v, kind)) << name << " " << apex_deg << "\n" << listed(v);
       const double apex = Angle::from_deg(apex_deg).rad();
       const double missed_nm = 1e3 * (1.0 - std::sin(apex) + std::cos(apex));
-      // Of the floor; lines normal to the wall skim over it close to the root and tell more.
+      // Use the smallest deviation, which belongs to the floor. Lines normal to the wall intersect the floor at a small
+      // angle close to the root and give larger deviations.
       double found_nm = 1e9;
       for (const Finding& f : v.findings)
         if (f.kind == kind) found_nm = std::min(found_nm, std::abs(f.value));
@@ -186,7 +190,8 @@ TEST(PlannedJobs, AnEdgeThatTheProgramForgotIsFound) {
   }
 }
 
-/// Ploughed floors of passes side by side are known to a nanometre: 15 nm more or less are found.
+/// The heights of floors that are ploughed in several passes are predicted to 1 nm. The verifier must find one that is
+/// 15 nm too high or too low.
 TEST(PlannedJobs, PassesAtAnotherHeightAreFound) {
   for (const double wider_mm : {2e-5, 3e-4, 4e-3, 0.1}) {
     Job job = square_job(2, Arrangement::aligned);
@@ -202,7 +207,8 @@ TEST(PlannedJobs, PassesAtAnotherHeightAreFound) {
   }
 }
 
-/// Prisms of 0.97 x 1.754 mm in brick rows on 2.231 x 2.231 mm, as `retrace job` makes them for a tool of 1.754 mm.
+/// Returns a job with prisms of 0.97 x 1.754 mm in brick rows on 2.231 x 2.231 mm. `retrace job` makes these sizes for
+/// a tool of 1.754 mm.
 Job wide_job() {
   Job job = square_job(2, Arrangement::offset);
   job.strategy = Strategy::unidirectional;
@@ -212,8 +218,9 @@ Job wide_job() {
   return job;
 }
 
-/// On machine `paper` the ploughed facet rises by 596.9 nm along the edge. The tip of one cut ends 0.894 um below the
-/// rim, and half-way from there to the rim the blank's face is only 446.8 nm over the facet: what is left ends there.
+/// On machine `paper`, the ploughed facet rises by 596.9 nm along the edge of the tool. The tip of one cut ends 0.894
+/// um below the rim. Half-way from there to the rim, the face of the blank is only 446.8 nm above the design facet. The
+/// ploughed facet therefore leaves the blank below the rim, which is not a gouge.
 TEST(PlannedJobs, APloughedFacetThatLeavesTheBlankBelowItsRimIsNoGouge) {
   const Job job = wide_job();
   const Machine paper = machine("paper");
@@ -222,13 +229,13 @@ TEST(PlannedJobs, APloughedFacetThatLeavesTheBlankBelowItsRimIsNoGouge) {
   EXPECT_TRUE(v.passes()) << listed(v);
   EXPECT_EQ(v.elements_cut, 2);
   EXPECT_LT(v.facet_distance_nm_max, 2.0);
-  // 15 nm along Z are 10.6 along the facet's normal: more than the tolerance, at the rim as elsewhere.
+  // 15 nm along Z are 10.6 nm along the normal of the facet. This is more than the tolerance, also at the rim.
   EXPECT_TRUE(has_kind(verified(raised(programs, 0, -15), job, paper), "gouge"));
   EXPECT_TRUE(has_kind(verified(raised(programs, 0, 15), job, paper), "excess"));
 }
 
-/// Sizes that put the tips of cuts next to the rim, where a tilted facet leaves the blank, with any overhang of the
-/// array over whole elements.
+/// Random sizes place the tips of cuts close to the rim, where a tilted facet leaves the blank. The array is longer
+/// than a whole number of elements by a random amount.
 RC_GTEST_PROP(PlannedJobs, PloughedFacetsOfAnySizeAreCutAsDesigned, ()) {
   Job job = square_job(2, Arrangement::offset);
   job.strategy = Strategy::unidirectional;
@@ -237,7 +244,7 @@ RC_GTEST_PROP(PlannedJobs, PloughedFacetsOfAnySizeAreCutAsDesigned, ()) {
   const double facet_um = job.process.roughing_depth_um * *rc::gen::inRange(15, 30) + 0.05 * *rc::gen::inRange(1, 60);
   prism.base_mm = 1e-3 * facet_um * std::numbers::sqrt2;
   prism.width_mm = 1e-3 * *rc::gen::inRange(300, 2500);
-  // One pass, or several side by side.
+  // One pass, or up to four passes side by side.
   job.tool.width_mm = std::clamp(prism.width_mm / *rc::gen::inRange(1, 4), 0.25, std::min(2.0, prism.width_mm));
   job.array.x_length_mm = prism.base_mm * (1.0 + 0.01 * *rc::gen::inRange(0, 200));
   job.array.y_length_mm = prism.width_mm * (1.0 + 0.01 * *rc::gen::inRange(0, 200));
@@ -247,8 +254,8 @@ RC_GTEST_PROP(PlannedJobs, PloughedFacetsOfAnySizeAreCutAsDesigned, ()) {
   RC_ASSERT(v.facet_distance_nm_max < 2.0);
 }
 
-/// What tilted edges must leave at the root is the same at every apex angle, w tan(delta) up the facet; 20 nm more are
-/// found.
+/// A tilted edge leaves a strip at the root. The width of the strip up the facet is w tan(delta) for every apex angle,
+/// with the tool width w and the tilt delta. The verifier must find a strip that is 20 nm wider.
 TEST(PlannedJobs, RootsAreAsPredictedAtEveryApex) {
   for (const double apex_deg : {80.0, 90.0, 95.0, 100.0}) {
     Job job = square_job(2, Arrangement::aligned);
@@ -264,8 +271,8 @@ TEST(PlannedJobs, RootsAreAsPredictedAtEveryApex) {
   }
 }
 
-/// Returns a machine with an oblique axis A.
-/// \param slope tangent of the largest angle between a root and the tool's edge
+/// Returns a machine whose axis A is not parallel to X.
+/// \param slope tangent of the largest angle between a root and the edge of the tool
 Machine with_root_slope(const Job& job, double slope) {
   Machine m = machine("ideal");
   const auto lean = [&](double angle) {
@@ -286,9 +293,9 @@ Machine with_root_slope(const Job& job, double slope) {
 }
 
 /// A tilted edge leaves a strip at the root. A plunge separates its chip only if this strip is narrower than the depth
-/// of cut. Jobs with wider strips are refused. The programs of all other jobs pass verification. A plough separates its
-/// chip whatever the width of the strip. Unidirectional jobs are therefore refused only if the ploughed facet deviates
-/// by more than acos 0.985 = 9.94 degrees.
+/// of cut, so that jobs with wider strips are refused. A plough separates its chip for any width of the strip.
+/// Unidirectional jobs are therefore refused only if the ploughed facet deviates by more than acos 0.985 = 9.94
+/// degrees. The programs of all other jobs pass verification.
 TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
   for (const Strategy strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step})
     for (const double share : {0.3, 0.9, 0.99, 1.01, 1.3, 2.5, 3.5, 5.0, 10.0}) {
@@ -296,8 +303,8 @@ TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
       job.strategy = strategy;
       job.process.roughing_depth_um = 20.0;
       job.process.finishing_depth_um = 4.0;
-      // One end of the oblique edge is closer to the blank than the tool's reference point. Rapid moves tolerate only
-      // 5 % of the clearance for this, so that a larger clearance is needed.
+      // One end of the oblique edge is closer to the blank than the reference point of the tool. Rapid moves may be
+      // closer by at most 5 % of the clearance. A larger clearance is therefore needed.
       job.process.clearance_mm = 1.0;
       const double depth_mm = strategy == Strategy::two_step ? 4e-3 : 20e-3;
       const Machine m = with_root_slope(job, share * depth_mm / job.tool.width_mm);
@@ -312,9 +319,9 @@ TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
     }
 }
 
-/// The floor that a plough leaves at an oblique root is known exactly, with slides that are not square and several
-/// passes as well: right programs pass, and programs 30 nm too high or too low do not. Terms of third order are up to
-/// 0.4 um here.
+/// The floor that a plough leaves at an oblique root is predicted exactly, also for slides that are not square and for
+/// several passes. Correct programs pass. Programs that are 30 nm too high or too low fail. Terms of third order are up
+/// to 0.4 um here.
 TEST(PlannedJobs, PloughedFloorsOfObliqueRootsAreAsDerived) {
   for (const double slope : {0.01, 0.05, 0.1, 0.15})
     for (const double lean : {0.0, 0.002})

@@ -21,8 +21,8 @@
 #include "tests/fabrication/findings_text.h"
 #include "tests/support/sample_size.h"
 
-// Tests with machines whose slides, rotary axes and tool are tilted. Programs that are planned for such a machine pass,
-// and the unavoidable errors agree with closed forms.
+// Tests with machines whose slides, rotary axes and tool are tilted. Programs that are planned for such a machine must
+// pass verification. The unavoidable errors must agree with closed forms.
 
 namespace retrace::fabrication::test::random_machines_test {
 namespace {
@@ -64,11 +64,11 @@ struct Lean {
   double least_share;  ///< minimum ratio of the simulated to the predicted cut into a wall
 };
 
-/// The depth of cut into a wall is the tilt of a slide times the travel along this slide: Z moves up facet 1, and Y
-/// moves along facet 2. A tilted edge additionally tilts the side of the tool towards the wall by the same angle. The
-/// simulated depth is less than the prediction in two cases. The first roughing cuts begin below the rim, which
-/// shortens the travel of Y. The clearance face is at 3 degrees to the wall, so that only cos 3 sin 45 / sin 48 = 0.95
-/// of its length is in the blank.
+/// If a slide or the edge is tilted, the tool cuts into a wall. The depth of this cut is the tilt of the slide times
+/// its travel: Z moves up facet 1, and Y moves along facet 2. A tilted edge tilts the side of the tool towards the wall
+/// by the same angle. The simulated depth is smaller than the prediction in two cases. First, roughing cuts begin below
+/// the rim, which shortens the travel of Y. Second, the clearance face is at 3 degrees to the wall, so that only cos 3
+/// sin 45 / sin 48 = 0.95 of its length is in the blank.
 TEST(RandomMachines, WhatGoesIntoWallsIsTheDirectionOfTravel) {
   const double facet_nm = 1e6 * 0.451 / std::numbers::sqrt2;
   for (const auto& [key, strategy, least_share] :
@@ -86,7 +86,7 @@ TEST(RandomMachines, WhatGoesIntoWallsIsTheDirectionOfTravel) {
     }
 }
 
-/// The verifier allows only the predicted cut into a wall: a further shift of 15 nm towards the wall is found.
+/// The verifier allows only the predicted cut into a wall. It must find a further shift of 15 nm towards the wall.
 TEST(RandomMachines, AnEdgeTooFarInAWallIsFound) {
   for (const double arcsec : {-200.0, 200.0}) {
     const Machine m = machine_with("z_lean_x_arcsec", arcsec);
@@ -97,8 +97,8 @@ TEST(RandomMachines, AnEdgeTooFarInAWallIsFound) {
   }
 }
 
-/// An edge is tilted, and the slides are tilted in the same plane. While it ploughs, the edge remains on the facet of
-/// the design and moves along the root as predicted.
+/// The edge and the slides are tilted in the same plane. While the edge ploughs, it remains in the designed facet and
+/// moves along the root as predicted.
 TEST(RandomMachines, PloughsKeepToTheFacetWhereSlidesLeanAlongATiltedEdge) {
   for (const double tilt_arcsec : {-1000.0, 1000.0})
     for (const double lean_arcsec : {-1000.0, 1000.0}) {
@@ -110,8 +110,8 @@ TEST(RandomMachines, PloughsKeepToTheFacetWhereSlidesLeanAlongATiltedEdge) {
     }
 }
 
-/// Returns a random machine. Its axes and its tool are tilted by at most `most_arcsec`, and displaced in um by at most
-/// a hundredth of this number.
+/// Returns a random machine. The tilts of its axes and of its tool are at most `most_arcsec`. The displacements are at
+/// most 0.01 `most_arcsec`, in um.
 Machine any_machine(std::mt19937_64& bits, const std::string& name, double most_arcsec) {
   std::uniform_real_distribution<double> share(-1.0, 1.0);
   Machine m = machine(name);
@@ -145,8 +145,8 @@ Job any_job(std::mt19937_64& bits, bool is_prism) {
   return job;
 }
 
-/// Correct programs pass on machines with errors from an arc second, comparable to the tolerance, to a tenth of a
-/// degree. All programs must pass, so the bounds do not depend on the number of machines.
+/// Correct programs pass on machines whose errors are between 1 arc second, comparable to the tolerance, and 0.1
+/// degrees. All programs must pass, so that the bounds do not depend on the number of machines.
 TEST(RandomMachines, RightProgramsOfAnyMachinePass) {
   const int machines = retrace::test::sample_size(100, 500);
   std::mt19937_64 bits(59);
@@ -169,7 +169,8 @@ TEST(RandomMachines, RightProgramsOfAnyMachinePass) {
 }
 
 /// The tool is touched off after mounting. Its rounded edge therefore touches the same two planes at the reference
-/// point for every rotation of the diamond. The tip of the wedge is the intersection of the tangents along both facets.
+/// point for every rotation of the diamond. The tip of the wedge is the intersection of the two tangents along both
+/// facets.
 TEST(RandomMachines, ATurnedToolCutsWhereItWasTouchedOff) {
   std::mt19937_64 bits(8);
   std::uniform_real_distribution<double> share(-1.0, 1.0);

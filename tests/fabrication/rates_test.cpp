@@ -27,8 +27,8 @@
 #include "tests/fabrication/nc_record.h"
 #include "tests/fabrication/substrate_jobs.h"
 
-// Tests of feeds and times. The verifier gives equal results for feeds per minute, inverse times and inches. The time
-// of a plan agrees with that of its program, and with closed forms.
+// Tests of feeds and times. The verifier must give equal results for feeds per minute, inverse-time feeds and inches.
+// The planned time must agree with the time of the program text and with closed forms.
 
 namespace retrace::fabrication::test::rates_test {
 namespace {
@@ -60,7 +60,8 @@ Verification verified(const Job& job, const Machine& machine, const std::string&
   return verify_programs(job, machine, {parse_nc(text, "p", dialect, control_texts())}, {}, {});
 }
 
-/// Replaces the words of all G0 and G1 blocks. \param change function of letter and number that returns the new word
+/// Returns the program with changed words in all G0 and G1 blocks.
+/// \param change function that returns the new word from the letter and the number of the old word
 std::string with_words(const std::string& text, const std::function<std::string(char, double)>& change) {
   std::vector<std::string> lines = lines_of_text(text);
   for (std::string& line : lines) {
@@ -79,7 +80,8 @@ std::string with_words(const std::string& text, const std::function<std::string(
   return text_of_lines(lines);
 }
 
-/// Returns the program with inverse times instead of feeds. \param factor factor on all speeds
+/// Returns the program with inverse-time feeds (G93) instead of feeds per minute.
+/// \param factor factor on all speeds
 std::string by_inverse_times(const std::string& text, double factor = 1.0) {
   double length = 0.0;
   std::vector<std::string> lines = lines_of_text(text);
@@ -112,7 +114,8 @@ TEST(Rates, InverseTimesAreFeedsOverLengths) {
   }
 }
 
-/// Checks of limits tolerate the rounding of printed numbers, but not more than 0.1 % of a feed.
+/// The checks of feed limits tolerate the rounding of printed numbers. They must report a feed that exceeds its limit
+/// by 0.2 %.
 TEST(Rates, ProgramsInInchesPass) {
   const Machine machine = shipped("ideal");
   const auto in_inches = [](const std::string& text, int decimals, int decimals_of_feeds, double factor) {
@@ -132,7 +135,7 @@ TEST(Rates, ProgramsInInchesPass) {
     }
   const Verification fast = verified(small_job(), machine, in_inches(text, 8, 6, 1.002), NcDialect::rs274ngc);
   EXPECT_NE(listed(fast).find("feed_too_high"), std::string::npos) << listed(fast);
-  // A feed without decimals counts as exact, so that a feed 0.4 mm/min too high is found.
+  // The verifier treats a feed without decimals as exact. It must therefore report a feed that is 0.4 mm/min too high.
   Job slower = small_job();
   slower.process.roughing_feed_mm_per_min -= 0.4;
   const std::string whole = with_words(
@@ -172,9 +175,10 @@ TEST(Rates, FeedsOfRotaryAxesAreDegrees) {
   EXPECT_NEAR(seconds("G0 Z5.5 C0").total_s(), seconds("G0 C0").total_s(), 1e-9);
 }
 
-/// Returns the time, in s, in which axes travel from rest to rest together, all of them the same share of their way at
-/// any time. The motion is integrated in small steps: the share moves as fast as the maximum speed of each axis, its
-/// acceleration since the start and its deceleration before the end allow.
+/// Returns the time, in s, of a simultaneous move of several axes from rest to rest. At any time, all axes have
+/// travelled the same fraction of their distance. The time is integrated over small steps of this fraction. In each
+/// step, the speed is limited by the maximum speed of each axis, by its acceleration since the start and by its
+/// deceleration before the end.
 /// \param axes travel, maximum speed and maximum acceleration of each axis
 double integrated_s(const std::vector<std::array<double, 3>>& axes) {
   constexpr int kSteps = 4000;
@@ -191,8 +195,9 @@ double integrated_s(const std::vector<std::array<double, 3>>& axes) {
   return seconds;
 }
 
-/// Rapid moves of linear and rotary axes together take the time of the integrated motion: of all axes along the
-/// straight line, or of the slowest axis. Planner and verifier agree.
+/// The times of rapid moves of linear and rotary axes agree with numerically integrated times. If rapid moves are
+/// straight, all axes move together along a line. Otherwise the slowest axis determines the time. Planner and verifier
+/// agree.
 TEST(Rates, RapidMovesOfAllAxesAreIntegrated) {
   std::mt19937 random(7);
   const auto between = [&](double low, double high) {
@@ -244,7 +249,7 @@ TEST(Rates, RapidMovesOfAllAxesAreIntegrated) {
   EXPECT_GT(largest_excess, 0.1) << "the two rules differ";
 }
 
-/// Adds up the times of the moves of a program, by closed forms and by ProgramTime.
+/// Adds up the times of the moves of a program in two ways: by closed forms and by ProgramTime.
 class TimeSink : public NcSink {
  public:
   explicit TimeSink(const Machine& machine) : machine_(machine) {}

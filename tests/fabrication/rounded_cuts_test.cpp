@@ -23,16 +23,20 @@
 #include "tests/fabrication/findings_text.h"
 #include "tests/support/sample_size.h"
 
-// Tests of V-shaped tools at rounded positions. Bounds on the height of fins are compared with randomly displaced cuts.
-// Correct jobs with random tools pass verification.
+// Tests of V-shaped tools at positions that are rounded to the increments of the control. Bounds on the height of fins
+// are compared with randomly displaced cuts. Correct jobs with random tools must pass verification.
 
 namespace retrace::fabrication::test::rounded_cuts_test {
 namespace {
 
 using namespace chiseling;
 
-/// Returns the height, above the first facet, of the material that remains between two cuts. Each cut removes a wedge
-/// with the given angle above its facet, starting at its tip. The facets are at the angles 0 and `between`.
+/// Returns the height, above the first facet, of the fin that remains between two cuts. The facets are at the angles 0
+/// and `between`.
+/// \param first angle of the wedge that the first cut removes above its facet, in rad
+/// \param second angle of the wedge that the second cut removes above its facet, in rad
+/// \param tip tip of the first wedge
+/// \param other_tip tip of the second wedge
 double fin_between(double first, double second, double between, const geometry::Vec2& tip,
                    const geometry::Vec2& other_tip) {
   const geometry::Vec2 up(std::cos(first), std::sin(first));
@@ -56,7 +60,8 @@ TEST(RoundedCuts, FinsAreNoHigherThanTheFormula) {
         rounded_fin_mm({Angle::from_rad(first), Angle::from_rad(second), Angle::from_rad(between)}, 1.0);
     double highest = 0.0;
     for (int k = 0; k < 20'000; ++k) {
-      // Rounding errors along and normal to the facets, in increments. Half of the samples are at the extreme values.
+      // Displace the tips along and normal to the facets, in increments. Half of the samples have the maximum
+      // displacements.
       const auto corner = [&](double size) {
         return k % 2 == 0 ? std::copysign(size, uniform(-1, 1)) : uniform(-size, size);
       };
@@ -74,7 +79,8 @@ TEST(RoundedCuts, FinsAreNoHigherThanTheFormula) {
   }
 }
 
-/// Three facet planes with random errors of angle, and the direction of a random tool's spine while it cuts each facet.
+/// Three facet planes with random angle errors. For each facet, the direction of the spine of a random tool during the
+/// cut. The two flanks of the tool meet in the spine.
 struct RandomCuts {
   std::array<geometry::Vec3, 3> normals;
   std::array<geometry::Vec3, 3> spines;
@@ -109,8 +115,8 @@ bool removes(const RandomCuts& cuts, std::size_t facet, const geometry::Vec3& ti
   return (cone.inverse() * (point - tip)).minCoeff() >= 0.0;
 }
 
-/// Returns true if cuts at exact positions leave a peak. Directions from the apex are searched on a fine grid for
-/// points that no cut removes.
+/// Returns true if cuts at exact positions leave a peak above the apex. The function tests directions from the apex on
+/// a fine grid. A peak exists if no cut removes the points in one of these directions.
 bool leaves_a_peak(const RandomCuts& cuts) {
   constexpr int kSteps = 160;
   for (int i = 1; i < kSteps; ++i)
@@ -126,7 +132,7 @@ bool leaves_a_peak(const RandomCuts& cuts) {
   return false;
 }
 
-/// Cuts may overlap along every dihedral edge and still leave a peak over the apex.
+/// Cuts can leave a peak above the apex although they overlap along every dihedral edge.
 TEST(RoundedCuts, PeaksAreWhereTheFormulaHasThem) {
   std::mt19937 bits(5);
   int peaks = 0;
@@ -151,7 +157,7 @@ TEST(RoundedCuts, PeaksAreWhereTheFormulaHasThem) {
   EXPECT_GE(peaks, 20);
 }
 
-/// Displaces tips by random rounding errors. No material remains that is higher than the bound above two facets.
+/// Displaces the tips by random rounding errors. No remaining material is higher than the bound above two facets.
 TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
   std::mt19937 bits(7);
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
@@ -169,8 +175,8 @@ TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
         along = (along - along.dot(normal) * normal).normalized();
         tips[f] = std::copysign(rounded_across_mm(1.0), uniform(-1, 1)) * normal + rounded_along_mm(1.0) * along;
       }
-      // Samples are higher than the bound above two facets and have any height above the third facet. Material lower
-      // than the bound above two facets may belong to the fin along their edge.
+      // The samples are higher than the bound above two facets. Above the third facet, their height is random. Material
+      // that is lower above two facets may belong to the fin along the edge between these facets.
       geometry::Vec3 heights(uniform(0, 2), uniform(0, 2), uniform(0, 2));
       heights = (heights * bound).cwiseMax(3.0 * rounded_along_mm(1.0));
       for (const int facet : {k % 3, (k + 1) % 3}) heights[facet] = std::max(heights[facet], bound * 1.0001);
@@ -209,8 +215,8 @@ bool fits(const Job& job) {
   return true;
 }
 
-/// Correct jobs of tools with a blunt nose pass, even if rounding leaves a fin of 10 nm. Near the apex, measuring lines
-/// run along the dihedral edge of the two other facets. They must end before the fin at that edge.
+/// Correct jobs with a blunt nose pass, even if rounding leaves a fin of 10 nm. Near the apex, some measuring lines run
+/// along the dihedral edge of the two other facets. These lines must end before the fin at that edge.
 TEST(RoundedCuts, RightCutsOfABluntNosePass) {
   for (const auto& [clearance_deg, apex] :
        {std::pair{3.0, geometry::Vec2(0.844313, 0.5911)}, {2.0, geometry::Vec2(0.51237, 0.5031)}}) {
@@ -264,8 +270,8 @@ TEST(RoundedCuts, RandomNosesPass) {
   EXPECT_EQ(cut, noses);
 }
 
-/// A Fanuc rounds positions to its increments. A job of cube corners passes verification, or is refused with the name
-/// of the key to change.
+/// A Fanuc control rounds positions to its increments. A job of cube corners passes verification, or it is refused with
+/// the name of the key to change.
 TEST(RoundedCuts, CubeCornersOfEveryIncrementSystemPassOrAreRefused) {
   for (const IncrementSystem system : {IncrementSystem::b, IncrementSystem::c, IncrementSystem::d, IncrementSystem::e})
     for (const bool is_hexagonal : {false, true})
@@ -296,8 +302,8 @@ std::optional<double> number_after(const std::string& text, const std::string& b
   return std::strtod(text.c_str() + at + before.size(), nullptr);
 }
 
-/// Values that a message names as allowed are accepted, and smaller wedges and larger increments are refused again. No
-/// number of the message has more than eight digits.
+/// The values that a message names as allowed are accepted. Smaller wedge angles and larger increments are refused
+/// again. No number in a message has more than eight digits.
 TEST(RoundedCuts, RefusalsNameValuesThatAreAccepted) {
   const auto refusal = [](const Job& job, const Machine& m) -> std::string {
     try {

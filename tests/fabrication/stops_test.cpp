@@ -21,8 +21,9 @@
 #include "tests/fabrication/substrate_jobs.h"
 #include "tests/support/refusals.h"
 
-// Programs that stop: for the next edge, for inspection, before finishing; restarts where they stopped, and chips too
-// thin to be cut. The planner counts by its moves, the verifier by what it reads; they share neither.
+// Tests of programs that stop: for the next cutting edge, for inspection, and before finishing. Other tests cover
+// restarts after a stop, and chips that are too thin to be cut. The planner counts its own moves, and the verifier
+// counts the moves of the program text. They share no code for this.
 
 namespace retrace::fabrication::test::stops_test {
 namespace {
@@ -84,7 +85,7 @@ class Stops : public ::testing::TestWithParam<NcDialect> {
     return line.starts_with("(") || line.starts_with(";") || line.starts_with("//") || line.starts_with("'") ||
            line.starts_with("MSG");
   }
-  /// Kinds of what is found, each once; "error" for a text that cannot be carried out.
+  /// Returns the kinds of the findings, each kind one time. Returns "error" for a text that cannot be executed.
   std::string kinds_in(const Case& c, const Machine& machine, const Lines& lines) const {
     try {
       return kinds_of(verify_programs(c.job, machine, {program(text_of_lines(lines))}, {}, {}));
@@ -101,7 +102,8 @@ class Stops : public ::testing::TestWithParam<NcDialect> {
   }
 };
 
-/// Of all visits of a plan, the one that cuts most.
+/// Returns the longest length of cut of a visit. A visit is one call of a cutting subroutine at an element. The length
+/// is taken from the message that refuses a shorter edge life.
 double longest_visit_mm(const Case& c, const Machine& machine) {
   Job job = c.job;
   job.tool.edge_life_mm = 1e-3;
@@ -135,7 +137,8 @@ TEST_P(Stops, EdgesCutNoMoreThanTheirLifeAndNoLess) {
       const std::vector<NcProgram> read = programs(plan);
       const Verification v = verify_programs(c.job, machine, read, {}, {});
       EXPECT_TRUE(v.passes()) << c.name << "\n" << listed(v);
-      // What the planner counts is what the verifier reads: a life a little shorter than the most is found.
+      // Planner and verifier count the same length of cut. If the edge life is slightly shorter than the longest
+      // length, the verifier must report it.
       const double most_mm = *std::max_element(cut_mm.begin(), cut_mm.end());
       EXPECT_LE(most_mm, *c.job.tool.edge_life_mm) << c.name;
       Job shorter = c.job;
@@ -178,7 +181,7 @@ TEST_P(Stops, ElementsAreInspectedBeforeTheyAreFinished) {
     const std::vector<NcProgram> without = programs(make_plan(c.job, machine));
     c.job.process.stop_before_finishing = true;
     const Plan plan = make_plan(c.job, machine);
-    // Elements of a checker are roughed and first cut in two groups.
+    // The elements of a checker are cut in two groups, with one stop before the finishing of each group.
     EXPECT_EQ(plan.stops.size(), c.name == "dmc" ? 1U : 2U);
     for (const PlannedStop& stop : plan.stops) EXPECT_EQ(stop.reason, StopReason::finishing);
     const Verification v = verify_programs(c.job, machine, programs(plan), {}, {});
@@ -187,7 +190,8 @@ TEST_P(Stops, ElementsAreInspectedBeforeTheyAreFinished) {
   }
 }
 
-/// Every line of every stop, from the last cut before it to the first behind it, is one that is missed.
+/// A program fails verification if any line of a stop is missing. The tested lines are those from the last cut before
+/// the stop to the first cut after it.
 TEST_P(Stops, EveryLineOfAStopIsMissed) {
   for (Case c : cases()) {
     const Machine machine = machine_of(c, 5.0);
@@ -201,7 +205,8 @@ TEST_P(Stops, EveryLineOfAStopIsMissed) {
     int tried = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (lines[i] != stop_line()) continue;
-      // Down to the turn and the way up before it, up to the second line that names the element again.
+      // A stop begins at the last Z move before it, which retracts the tool. It ends at the next comment that names an
+      // element, except for the comment "Goes on".
       const auto is_element = [&](std::size_t k) {
         return lines[k].find("element ") != std::string::npos && lines[k].find("Goes on") == std::string::npos;
       };
@@ -213,7 +218,7 @@ TEST_P(Stops, EveryLineOfAStopIsMissed) {
         if (is_comment(lines[k])) continue;
         Lines spoilt = lines;
         spoilt.erase(spoilt.begin() + static_cast<std::ptrdiff_t>(k));
-        // Strokes of a warm-up are long enough together, or not.
+        // A missing warm-up stroke is not judged, because the other strokes may take long enough without it.
         const bool is_stroke =
             k > i && k < end && (lines[k].find(" X") != std::string::npos || lines[k].find(" Y") != std::string::npos);
         if (!is_stroke) {
@@ -232,7 +237,7 @@ TEST_P(Stops, EveryLineOfAStopIsMissed) {
   }
 }
 
-/// A stop anywhere else in the main program is found.
+/// The verifier must find a stop at any other position of the main program.
 TEST_P(Stops, AStopElsewhereIsFound) {
   Case c = two_step();
   const Machine machine = machine_of(c);
@@ -252,14 +257,14 @@ TEST_P(Stops, AStopElsewhereIsFound) {
   EXPECT_GE(tried, 15);
 }
 
-/// The line of the n-th call of a visit, from 1.
+/// Returns the line of the n-th call that cuts an element, counted from 1.
 std::int32_t line_of_visit(const Lines& lines, std::int64_t n) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::size_t at = lines[i].find("element ");
     const bool marks = at != std::string::npos && lines[i].find("Goes on") == std::string::npos &&
                        lines[i].find("from element") == std::string::npos && at < 4;
     if (!marks || --n > 0) continue;
-    // Rapid moves, and mist on, come before the call.
+    // Skip the rapid moves and the line that switches the mist on. They precede the call.
     for (++i; i < lines.size(); ++i) {
       const std::string& line = lines[i];
       if (line.ends_with("call") || line.starts_with("REPEAT") || line.starts_with("M98") || line.starts_with("call") ||
@@ -298,7 +303,8 @@ TEST_P(Stops, RestartsFromAnyVisit) {
         EXPECT_EQ(v.verdict(), "pass") << c.name << " " << options.phase << " " << *options.from_element << "\n"
                                        << listed(v);
         if (n != 1) continue;
-        // One visit too early, with a tool that was touched off 0.3 um deeper.
+        // Restart one visit too early, with a tool that was touched off 0.3 um too low. The repeated visit then cuts a
+        // chip that is too thin.
         options.from_element = order[0].element;
         options.from_pass = order[0].pass;
         Machine lower = machine;
@@ -331,7 +337,8 @@ Verification verified(const Job& job, const Machine& machine, const Plan& plan) 
   return verify_programs(job, machine, programs, {}, {});
 }
 
-/// Slices of an ideal machine: plunges from the face to the floor, ploughs along it until they leave the blank.
+/// Expected length of cut on an ideal machine: each plunge cuts from the face of the blank to the floor. Each plough
+/// cuts along the floor until it leaves the blank.
 TEST(LengthOfCut, IsThatOfTheClosedForm) {
   Job job = square_job(2, Arrangement::aligned);
   job.strategy = Strategy::unidirectional;
@@ -343,7 +350,8 @@ TEST(LengthOfCut, IsThatOfTheClosedForm) {
   EXPECT_NEAR(make_plan(job, shipped("ideal")).program_cuts_mm.front(), 4.0 * visit_mm, 1e-4);
 }
 
-/// Whatever the depth of cut leaves to the first cut: it is as thick as the edge needs, or shares with the second.
+/// The first cut of a facet takes the remainder of the depth. If this remainder is thinner than the minimum chip
+/// thickness, the first two cuts share their depth. No cut of a correct program is therefore too thin.
 RC_GTEST_PROP(LeastChip, NoCutOfARightProgramRubs, ()) {
   Job job = square_job(1);
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
@@ -355,18 +363,19 @@ RC_GTEST_PROP(LeastChip, NoCutOfARightProgramRubs, ()) {
   const Plan plan = make_plan(job, machine);
   const Verification v = verified(job, machine, plan);
   if (!v.passes()) RC_FAIL(listed(v));
-  // Where the programs are the same nothing had to be shared.
+  // If both programs are equal, no first cut was too thin.
   const bool is_same = nc_text(without.programs.front(), "rs274ngc") == nc_text(plan.programs.front(), "rs274ngc");
   RC_CLASSIFY(is_same);
-  // Of a tilted edge the plan allows for what its ends may do; of others for two steps of 1 nm, and the verifier for
-  // 2 nm of rounding.
+  // On an ideal machine, the plan allows for two increments of 1 nm, and the verifier allows for 2 nm of rounding. On
+  // machines with a tilted edge, the plan also allows for the different depths at both ends of the edge.
   if (machine.name != "ideal" || is_same) return;
   constexpr double kAllowedUm = 4e-3;
   job.process.least_chip_um = *job.process.least_chip_um + kAllowedUm;
   RC_ASSERT(!verified(job, machine, without).passes());
 }
 
-/// The same with other wedges, rounded edges and coarser steps: the edge reaches below its reference point.
+/// No cut of a correct program is too thin, also for other wedge angles, rounded edges and larger increments. In these
+/// cases, the edge extends below its reference point.
 RC_GTEST_PROP(LeastChip, OfAnyPrisms, ()) {
   Job job = square_job(1);
   geometry::RtpElement& prism = prism_of(job);
@@ -399,7 +408,7 @@ TEST(LeastChip, OfCubeCorners) {
   }
 }
 
-/// First cuts there take what they meet, however thin.
+/// On a substrate, the first cut of a facet may be arbitrarily thin, and the verifier must accept it.
 TEST(LeastChip, OnABase) {
   struct OnBase {
     std::string name;

@@ -30,8 +30,8 @@
 #include "tests/fabrication/swept_volume_sink.h"
 #include "tests/support/refusals.h"
 
-// Jobs of elements on inclined, curved and freeform substrates: where they stand, against the part that light is traced
-// in; and their programs, read back and cut again.
+// Tests of jobs with elements on inclined, curved and freeform substrates. The positions of elements are compared with
+// the part that light is traced in. Programs are read back and simulated.
 
 namespace retrace::fabrication::test::substrate_jobs_test {
 namespace {
@@ -45,7 +45,7 @@ struct Named {
   Job job;
 };
 
-/// Substrates of every kind that prisms can be cut into, and cube corners.
+/// Returns jobs with prisms and with cube corners on substrates of every kind.
 std::vector<Named> jobs() {
   const ElementAxes normal = ElementAxes::normal;
   const ElementAxes parallel = ElementAxes::parallel;
@@ -74,7 +74,7 @@ std::vector<Named> jobs() {
   return all;
 }
 
-/// Where the elements of a job stand, and their planes, are those of the part that light is traced in.
+/// The positions and the facet planes of the elements of a job equal those of the part that light is traced in.
 TEST(OnSubstrate, ElementsStandWhereThePartHasThem) {
   for (const Named& named : jobs()) {
     SCOPED_TRACE(named.what);
@@ -143,7 +143,7 @@ TEST(OnSubstrate, AllStrategiesCutPrismsAlongACylinder) {
     }
 }
 
-/// What the less usual keys of a job ask for.
+/// Jobs with rarely used keys pass verification on substrates as on a plane.
 TEST(OnSubstrate, VariantsVerifyAsOnAPlane) {
   const std::vector<std::pair<std::string, std::function<void(Job&)>>> variants = {
       {"shrinkage", [](Job& job) { job.workpiece.shrinkage_percent = 2.0; }},
@@ -163,7 +163,8 @@ TEST(OnSubstrate, VariantsVerifyAsOnAPlane) {
       const Verification v = verified(job, text_of(job));
       EXPECT_TRUE(v.passes()) << what << "\n" << listed(v);
       EXPECT_GE(v.elements_cut, 9) << what;
-      // Tips that are rounded to whole nanometres leave a burr of a few at the root of an open V.
+      // The positions of tips are rounded to 1 nm. If the apex angle is greater than 90 degrees, this leaves a burr of
+      // a few nanometres at the root.
       EXPECT_LT(v.facet_distance_nm_max, what == "wide apex" ? 4.0 : 1.0) << what;
     }
   Job large = cubes_on(sphere_substrate(4.0, ElementAxes::normal), true);
@@ -171,7 +172,7 @@ TEST(OnSubstrate, VariantsVerifyAsOnAPlane) {
   EXPECT_TRUE(verified(large, text_of(large)).passes());
 }
 
-/// An incline is either refused or cut right, whichever way it rises.
+/// A job on an inclined plane is either refused or cut correctly, for every direction of the slope.
 TEST(OnSubstrate, EveryInclineIsRefusedOrCutRight) {
   int refused = 0;
   int cut = 0;
@@ -217,7 +218,7 @@ TEST(OnSubstrate, SplitProgramsVerifyTogether) {
   EXPECT_TRUE(v.passes()) << listed(v);
 }
 
-/// A machine with measured axes leaves no more on an incline than on a plane.
+/// On a machine with measured axis errors, deviations on a substrate are as small as on a plane.
 TEST(OnSubstrate, MeasuredAxesAreAllowedFor) {
   for (const char* const name : {"paper", "thesis"}) {
     const Machine m = machine(name);
@@ -233,7 +234,8 @@ TEST(OnSubstrate, MeasuredAxesAreAllowedFor) {
   }
 }
 
-/// Nor does one with B on its head: what its axes leave only turns the tool in the facets a little more.
+/// On a machine with axis B in its head, errors of the axes are compensated on a substrate as well. The remaining
+/// errors only rotate the tool slightly in the plane of the facets.
 TEST(OnSubstrate, MeasuredAxesOfAHeadAreAllowedFor) {
   Machine m = machine("ideal-dmc");
   m.name = "crooked";
@@ -247,7 +249,7 @@ TEST(OnSubstrate, MeasuredAxesOfAHeadAreAllowedFor) {
     const Verification v = verify_programs(job, m, {parse_nc(text, "p", NcDialect::rs274ngc)}, {}, {});
     EXPECT_TRUE(v.passes()) << listed(v);
     EXPECT_LT(v.facet_distance_nm_max, 1.0);
-    // The same program is wrong on a machine without those errors.
+    // The program must fail on a machine without these errors.
     EXPECT_FALSE(verified(job, text).passes());
   }
 }
@@ -262,7 +264,8 @@ TEST(OnSubstrate, EveryDialectCutsTheSame) {
           std::pair{"automation1", NcDialect::automation1}}) {
       const Verification v = verified(job, text_of(job, name), dialect);
       EXPECT_TRUE(v.passes()) << name << "\n" << listed(v);
-      // A Fanuc's poses have a digit less; a modulo axis turns the shorter way, through sums of its words.
+      // A Fanuc program has one digit less in the positions of rotary axes. A modulo axis rotates in the shorter
+      // direction, and its position is a sum of words. Results therefore differ slightly.
       const bool is_fanuc = dialect == NcDialect::fanuc;
       EXPECT_NEAR(v.facet_distance_nm_max, first.facet_distance_nm_max, is_fanuc ? 0.5 : 1e-6) << name;
       EXPECT_NEAR(v.removed_volume_mm3, first.removed_volume_mm3, is_fanuc ? 1e-6 : 1e-12) << name;
@@ -271,7 +274,7 @@ TEST(OnSubstrate, EveryDialectCutsTheSame) {
   }
 }
 
-/// All moves of a plan.
+/// Returns all moves of the plan of a job.
 std::vector<PlannedMove> moves_of(const Job& job) {
   std::vector<PlannedMove> moves;
   const Plan plan = make_plan(job, machine_of(job));
@@ -286,7 +289,7 @@ std::vector<Job> flat_jobs() {
   return {square_job(3), square_job(3, Arrangement::checker), cubes, cube_job(false, 0.15)};
 }
 
-/// The same words, to the last digit.
+/// If the substrate is a plane at z = 0, all words equal those of the flat array exactly.
 TEST(OnSubstrate, APlaneGivenAsAFormulaMovesAsTheFlatArray) {
   for (Job job : flat_jobs()) {
     const std::vector<PlannedMove> flat = moves_of(job);
@@ -305,14 +308,15 @@ TEST(OnSubstrate, APlaneGivenAsAFormulaMovesAsTheFlatArray) {
   }
 }
 
-/// Where a feed move brings the tool: in the workpiece, and the words of the rotary axes.
+/// Position of the tool at the end of a feed move: the reference point in the workpiece frame, and the words of the
+/// rotary axes.
 struct Cut {
   Vec3 reference_mm;
   RotaryUnits a = 0;
   RotaryUnits c = 0;
 };
 
-/// The feed moves of each element.
+/// Returns the end positions of the feed moves of each element.
 std::vector<std::vector<Cut>> cuts_by_element(const Job& job) {
   const Machine m = machine_of(job);
   std::vector<std::vector<Cut>> cuts(cut_elements(job).size());
@@ -327,9 +331,9 @@ std::vector<std::vector<Cut>> cuts_by_element(const Job& job) {
 }
 
 TEST(OnSubstrate, AHugeCylinderMovesAsTheFlatArrayToAMillionth) {
-  constexpr double kRounding = 1.74e-6;  // of three words in whole nanometres, twice
+  constexpr double kRounding = 1.74e-6;  // rounding of three words to 1 nm, in two programs
   for (Job job : flat_jobs()) {
-    if (job.array.arrangement == Arrangement::checker) continue;  // as aligned ones
+    if (job.array.arrangement == Arrangement::checker) continue;  // covered by the aligned array
     const auto flat = cuts_by_element(job);
     for (const ElementAxes element_axes : {ElementAxes::normal, ElementAxes::parallel})
       for (const bool axis_is_x : {false, true})
@@ -350,19 +354,20 @@ TEST(OnSubstrate, AHugeCylinderMovesAsTheFlatArrayToAMillionth) {
   }
 }
 
-/// On an incline across its roofs each prism is cut as on a plane, with A turned on by the incline.
+/// If the plane is inclined across the roof edges, each prism is cut as on a horizontal plane. A is increased or
+/// decreased by the inclination.
 TEST(OnSubstrate, AnInclineAcrossTheRoofsTurnsA) {
   const Plan plan = make_plan(prisms_on(plane_substrate(12.0, 0.0, ElementAxes::normal)), machine("ideal"));
   ASSERT_EQ(plan.poses.size(), 2U);
-  // The part rises towards +x, that is the blank towards -Y: facet 1, which faces -Y, leans back by as much.
+  // The part rises towards +x, which is -Y of the blank. Facet 1 faces -Y and is therefore tilted by the inclination.
   EXPECT_NEAR(plan.poses[0].rounded.a_deg, 57.0, 1e-7);
   EXPECT_NEAR(plan.poses[1].rounded.a_deg, 33.0, 1e-7);
   EXPECT_EQ(plan.poses[0].rounded.c_deg, 0.0);
   EXPECT_EQ(plan.stock_mm, 0.0);
 }
 
-/// Of prisms in parallel on an incline the blank stands over the rims by half a base times its slope, and more where
-/// the cut opens wider for it: h = s (b / 2 + h) along x.
+/// If upright prisms stand on an inclined plane, the blank extends above their rims by h = s (b / 2 + h), with the
+/// slope s and the base b. The term s h is due to the cut, which becomes wider towards the face of the blank.
 TEST(OnSubstrate, TheBlankStandsOverTheRimsOfParallelElements) {
   const Job job = prisms_on(plane_substrate(10.0, 0.0, ElementAxes::parallel));
   const double slope = std::tan(Angle::from_deg(10.0).rad());
@@ -371,20 +376,23 @@ TEST(OnSubstrate, TheBlankStandsOverTheRimsOfParallelElements) {
   EXPECT_EQ(stock_mm(bulging, cut_elements(bulging)), 0.0);
 }
 
-/// A neighbour that stands lower by d cuts d / sqrt(2) deep under a prism's rim, normal to its own facet.
+/// If a neighbour is lower by d, its cut reaches below the rim of the higher prism. The depth of this cut is d /
+/// sqrt(2), normal to the facet of the higher prism.
 TEST(OnSubstrate, RimsAreCutAsDeepAsNeighboursStandLower) {
   const auto overcut_um = [](const Job& job) { return verified(job, text_of(job)).rim_overcut_um_max; };
   const double d_mm = 0.451 * std::tan(Angle::from_deg(8.0).rad());
   EXPECT_NEAR(overcut_um(prisms_on(plane_substrate(8.0, 0.0, ElementAxes::parallel))), 1e3 * d_mm / std::sqrt(2.0),
               1e-6);
-  // Along the roofs rims do not run beside each other: the tool's ends stand where the walls are.
+  // Neighbours along the roof edge have no common rim. The ends of the tool are at the walls between them.
   EXPECT_EQ(overcut_um(prisms_on(plane_substrate(8.0, 90.0, ElementAxes::parallel))), 0.0);
   EXPECT_EQ(overcut_um(prisms_on(plane_substrate(8.0, 0.0, ElementAxes::normal))), 0.0);
   EXPECT_EQ(overcut_um(cubes_on(plane_substrate(6.0, 40.0, ElementAxes::normal), true)), 0.0);
   EXPECT_EQ(overcut_um(cubes_on(plane_substrate(6.0, 40.0, ElementAxes::normal), false)), 0.0);
 }
 
-/// Height of the lowest of all elements' cuts over a place, each open upwards without end; 0 where none is.
+/// Returns the height of the lowest cut of all elements at a point, and 0 where no element is cut. Each cut is extended
+/// upwards without limit.
+/// \param is_beside_an_end set to true if the point is at the end of a groove, and to false otherwise
 double lowest_cut_mm(const std::vector<Groove>& grooves, double x_mm, double y_mm, bool& is_beside_an_end) {
   double lowest_mm = 0.0;
   is_beside_an_end = false;
@@ -400,8 +408,8 @@ double lowest_cut_mm(const std::vector<Groove>& grooves, double x_mm, double y_m
   return lowest_mm;
 }
 
-/// What is cut, by dexels of all programs' moves together, is the lowest of all elements' cavities and no more: no
-/// element's cut goes into a neighbour but where that element's own facets do.
+/// A dexel simulation of the moves of all programs leaves a surface. This surface is the lowest of the cavities of all
+/// elements. The cut of an element enters a neighbour only where the facets of the element do.
 TEST(OnSubstrate, WhatIsLeftIsTheLowestOfAllCavities) {
   for (const Named& named : jobs()) {
     SCOPED_TRACE(named.what);
@@ -439,7 +447,7 @@ std::string complaint(const std::function<void()>& action) {
 
 TEST(OnSubstrate, TiltsThatTheMachineCannotReachAreNamed) {
   const auto planned = [](const Job& job, const Machine& m) { return complaint([&] { make_plan(job, m); }); };
-  // sin(turn) = sin(tilt) / cos(A), with sin(A) = cos(tilt) / sqrt(2): by hand.
+  // Angles of the expected message, derived by hand: sin(turn) = sin(tilt) / cos(A), with sin(A) = cos(tilt) / sqrt(2).
   const std::string along_roofs =
       planned(prisms_on(cylinder_substrate(20.0, true, ElementAxes::normal)), machine("ideal"));
   EXPECT_EQ(
@@ -459,7 +467,7 @@ TEST(OnSubstrate, TiltsThatTheMachineCannotReachAreNamed) {
       << steep;
 }
 
-/// A holder that clears a flat blank runs into a hollow one.
+/// A tool holder that does not touch a flat blank collides with a concave blank.
 TEST(OnSubstrate, HoldersAreSeenToReachIntoHollowBlanks) {
   Machine m = machine("ideal");
   MachineBody holder;

@@ -22,8 +22,8 @@
 #include "tests/fabrication/chiseling_programs.h"
 #include "tests/fabrication/findings_text.h"
 
-// Tests of jobs with cube corners that have intended errors of angle or belong to zones. The references are closed
-// forms and the path of the tool. The verifier must find a change of any number of a job.
+// Tests of jobs whose cube corners have intended angle errors or belong to zones. Results are compared with closed
+// forms and with the path of the tool. The verifier must find a change of any number in a job.
 
 namespace retrace::fabrication::test::zone_jobs_test {
 namespace {
@@ -36,7 +36,8 @@ constexpr double kRadPerArcmin = std::numbers::pi / (180.0 * 60.0);
 
 using namespace chiseling;
 
-/// Returns the apexes of a rotated honeycomb. \param middle apex of the first element
+/// Returns the apexes of a rotated honeycomb.
+/// \param middle apex of the first element
 std::vector<Vec2> honeycomb(const Vec2& middle, double turn_deg, double aperture_mm, int columns, int rows) {
   const double turn = turn_deg * std::numbers::pi / 180.0;
   const Eigen::Rotation2Dd turned(turn);
@@ -49,7 +50,7 @@ std::vector<Vec2> honeycomb(const Vec2& middle, double turn_deg, double aperture
   return apexes;
 }
 
-/// Returns a job with three zones of different sizes, errors of angle and rotations.
+/// Returns a job with three zones of different sizes, angle errors and rotations.
 Job zoned_job() {
   Job job = cube_job(true, 0.3);
   job.array.pattern.clear();
@@ -84,7 +85,8 @@ TEST(CubeCorners, HaveTheAnglesThatTheirErrorsSay) {
         EXPECT_NEAR(corner.edges[k].dot(before), 0.0, 1e-15);
         EXPECT_NEAR(corner.edges[k].dot(corner.normals[k]), 0.0, 1e-15);
         EXPECT_GT(corner.edges[k].z(), 0.5);
-        // y of the part is x of the workpiece, and x of the part is -y of the workpiece.
+        // The y axis of the part is the x axis of the workpiece. The x axis of the part is the -y axis of the
+        // workpiece.
         const double azimuth = (120.0 * static_cast<double>(k) + (rotated ? 90.0 : -90.0)) * std::numbers::pi / 180.0;
         const Vec2 along(std::cos(azimuth), std::sin(azimuth));
         EXPECT_GT(corner.edges[k].head<2>().normalized().dot(along), std::cos(0.03));
@@ -160,7 +162,7 @@ TEST(ZoneJobs, EveryDialectCutsTheSame) {
   }
 }
 
-/// Records the feed moves of the tool's tip, in the workpiece frame.
+/// Records the feed moves of the tool tip in the workpiece frame.
 struct TipWays : NcSink {
   explicit TipWays(const Machine& m) : machine_of(m) {}
   void motion(const NcMotion& motion, const NcSettings&) override {
@@ -174,8 +176,8 @@ struct TipWays : NcSink {
   std::vector<std::pair<Vec3, Vec3>> ways;
 };
 
-/// Reference that is independent of planner and verifier: the deepest moves of the tip, down and up each facet, span
-/// the plane of this facet.
+/// The deepest moves of the tip, down and up each facet, must span the plane of this facet. This reference is
+/// independent of the planner and of the verifier.
 TEST(ZoneJobs, TheTipSpansPlanesWithTheAnglesOfEachZone) {
   const Job job = zoned_job();
   const Machine m = machine();
@@ -205,13 +207,13 @@ TEST(ZoneJobs, TheTipSpansPlanesWithTheAnglesOfEachZone) {
         };
         const Vec3 first = plane_of(static_cast<double>(k) + 2.0).second;
         const Vec3 second = plane_of(static_cast<double>(k)).second;
-        if (z == 1) continue;  // its facets also have tilts
+        if (z == 1) continue;  // the facets of this zone also have tilts
         EXPECT_NEAR(first.dot(second), std::sin(errors[z][k] * kRadPerArcmin), 2e-5) << z << " " << k;
       }
     }
 }
 
-/// A program fails the verification of a job that differs from its own job in one number of one zone.
+/// A program must fail verification for a job that differs from the job of the program in one number of one zone.
 TEST(ZoneJobs, EveryNumberOfEveryZoneMatters) {
   const Job job = zoned_job();
   const Machine m = machine();
@@ -247,8 +249,8 @@ TEST(ZoneJobs, EveryNumberOfEveryZoneMatters) {
   }
 }
 
-/// Over all poses, C rotates in one direction and skips only the widest gap. The facets of each zone are cut in the
-/// order 1, 2, 3.
+/// Over all poses, C rotates in one direction and skips only the widest gap between their angles. The facets of each
+/// zone are cut in the order 1, 2, 3.
 TEST(ZoneJobs, PosesTurnAsLittleAsTheyCan) {
   const Plan plan = make_plan(zoned_job(), machine());
   ASSERT_EQ(plan.poses.size(), 9U);
@@ -274,7 +276,8 @@ TEST(ZoneJobs, PosesTurnAsLittleAsTheyCan) {
   }
 }
 
-/// Returns the volume that all cavities remove together, from their planes at the centers of small squares.
+/// Returns the volume that all cavities remove together. The volume is summed over small squares. The depth is computed
+/// from the facet planes at the centre of each square.
 double removed_by_squares_mm3(const Job& job, double step_mm) {
   struct Cavity {
     Vec3 root;
@@ -305,7 +308,7 @@ double removed_by_squares_mm3(const Job& job, double step_mm) {
 
 TEST(ZoneJobs, TakeWhatAllCavitiesTakeTogether) {
   Job job = zoned_job();
-  // The zones are so close that cavities of one zone extend into hexagons of another zone.
+  // Place the zones so close together that cavities of one zone extend into hexagons of another zone.
   job.zones[1].rotation_deg = 180.0;
   job.zones[1].apexes_mm = {{0.76, 0.4}, {0.76, 0.66}, {0.76, 0.92}};
   const Verification v = verified(job, machine(), text_of(job, machine()));
@@ -317,8 +320,8 @@ TEST(ZoneJobs, TakeWhatAllCavitiesTakeTogether) {
   EXPECT_NEAR(v.removed_volume_mm3, expected_mm3, 2e-3 * expected_mm3);
 }
 
-/// A honeycomb whose cells belong alternately to two zones is equal to the array: no material of the other zone is
-/// removed.
+/// A honeycomb whose cells belong alternately to two zones must give the same result as a honeycomb without zones. No
+/// zone removes material of the other zone.
 TEST(ZoneJobs, OneArrayInTwoZonesIsTheArray) {
   Job array = cube_job(true, 0.3);
   Job zones = array;
