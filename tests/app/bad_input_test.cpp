@@ -6,14 +6,15 @@
 
 #include "tests/app/program.h"
 
-// What is refused, and how: one line that says where, exit code 2, nothing written. And what cannot be written: 3.
+// Tests of refused input: one line with the position of the error, exit code 2, and no file written. An output that
+// cannot be written gives exit code 3.
 
 namespace retrace::test::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A valid design, so that cases can speak of line numbers.
+/// Lines of a valid design. Test cases replace a line by its number.
 const std::vector<std::string> kLines = {
     "[element]",                 // 1
     "kind = \"rtp\"",            // 2
@@ -159,7 +160,8 @@ TEST(BadInput, FilesThatCannotBeReadAreRefused) {
   }
 }
 
-/// If a named file is missing, the message begins with the position of its name: file, line and key, or the option.
+/// If a design or an option names a file that does not exist, the message begins with the position of the name. The
+/// position is file, line and key, or the option.
 TEST(BadInput, MissingFilesAreReportedWithWhatNamesThem) {
   const TemporaryFolder folder;
   const std::string missing = "none.toml: cannot be read: No such file or directory\n";
@@ -197,8 +199,8 @@ TEST(BadInput, MissingFilesAreReportedWithWhatNamesThem) {
   expect_refused(folder, cases, {}, {});
 }
 
-/// If the design of a study names a file that is missing, the study is refused before any point is computed. The
-/// message begins with the position of the key, which is in the design, in a parameter of the study or in an override.
+/// If the design of a study names a missing file, retrace refuses the study before it computes any point. The message
+/// begins with the position of the key, which is in the design, in a parameter of the study or in an override.
 TEST(BadInput, MissingFilesOfTheDesignsOfAStudyAreReportedWithWhatNamesThem) {
   const std::string cells = "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 10\n";
   const std::string rest = "y_length_mm = 10\n[body]\nthickness_mm = 2.0\nrefractive_index = 1.49\n";
@@ -240,7 +242,7 @@ TEST(BadInput, MissingFilesOfTheDesignsOfAStudyAreReportedWithWhatNamesThem) {
   EXPECT_EQ(retrace(folder, {"sweep", "study.toml"}).code, 0) << "all its files exist";
 }
 
-/// A limits file and a file of a dye that cannot be read are reported with the key or the option that names them.
+/// If a limits file or a dye file cannot be read, the message contains the key or the option that names it.
 TEST(BadInput, UnreadableFilesOfPhotometryAreReportedWithWhatNamesThem) {
   const TemporaryFolder folder;
   folder.write("d.toml", design_with(0, ""));

@@ -7,14 +7,14 @@
 
 #include "tests/app/program.h"
 
-// inspect, init, list, help, and what an interrupt does.
+// Tests of the commands inspect, init, list and help, and of interrupts.
 
 namespace retrace::test::commands_test {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// Brick rows of n x n elements on 10 mm x 10 mm.
+/// Returns a design with n x n elements in brick rows on 10 mm x 10 mm.
 std::string brick(int n, const std::string& shifted_rows) {
   const std::string size = std::to_string(10.0 / n);
   return "[element]\nkind = \"rtp\"\nbase_mm = " + size + "\nwidth_mm = " + size +
@@ -57,8 +57,8 @@ TEST(Inspect, OddRowsShiftedGiveTheCountOfThePaper) {
   EXPECT_EQ(json["warnings"].size(), 1U) << "elements that the border cuts";
 }
 
-/// A fillet of radius r in a root of 90 degrees touches the facets at the distance r from the root. It therefore takes
-/// a strip of width sqrt(2) r of each base, also if this is a large fraction of the base.
+/// A fillet of radius r in a root of 90 degrees touches both facets at the distance r from the root. It therefore takes
+/// a strip of width sqrt(2) r of each base, even if this is a large fraction of the base.
 TEST(Inspect, ReportsTheFractionThatARootTakesOfPrisms) {
   for (const double fraction : {0.01, 0.1, 0.3}) {
     const double radius_um = 1e3 * fraction / std::sqrt(2.0);
@@ -70,15 +70,16 @@ TEST(Inspect, ReportsTheFractionThatARootTakesOfPrisms) {
   }
 }
 
-// Strips of r / sqrt(2) on either side of three roots of length a sqrt(2/3), and beside the six rims of a hexagon; of
-// sqrt(2/3) r beside the three rims of a triangle. What is left over, where strips meet, is of second order.
+// A rounded edge of radius r makes strips of the aperture ineffective. The strips are r / sqrt(2) wide on either side
+// of three roots of length a sqrt(2/3), and along the six rims of a hexagon. Along the three rims of a triangle, they
+// are sqrt(2/3) r wide. The overlap of strips is of second order in r.
 TEST(Inspect, TellsWhatEdgesTakeOfCubeCorners) {
   const auto share = [](const std::string& kind, const std::string& key, double radius_um) {
     return inspect(infinite_cubes(kind, 1.5) + "[surface]\n" + key + " = " +
                    std::to_string(radius_um))["dead_zone_share"]
         .get<double>();
   };
-  const double r = 1e-3;  // of an edge of 1 mm
+  const double r = 1e-3;  // radius in mm; the edge of the cube is 1 mm long
   const double hexagon = std::sqrt(3.0);
   const double triangle = 0.5 * std::sqrt(3.0);
   const double root = 3.0 * std::sqrt(2.0 / 3.0) * std::sqrt(2.0) * r;
@@ -111,7 +112,7 @@ TEST(Inspect, DihedralErrorOfAPrismIsItsApexAngle) {
   const Json apex = inspect(plain.substr(0, array) + "apex_angle_deg = 90.5\n" + plain.substr(array));
   for (const char* key : {"element_depth_mm", "facet_area_mm2", "tir_limit_deg"})
     EXPECT_NEAR(error[key].get<double>(), apex[key].get<double>(), 1e-12) << key;
-  // The first facet is met at 44.75 degrees, which is 0.25 less than without.
+  // At the limit, light meets the first facet, which is inclined by 44.75 degrees instead of 45, at the critical angle.
   const double inside = std::asin(std::sin(apex["tir_limit_deg"].get<double>() * std::numbers::pi / 180.0) / 1.4917);
   EXPECT_NEAR(inside, 44.75 * std::numbers::pi / 180.0 - std::asin(1.0 / 1.4917), 1e-9);
 }
@@ -124,8 +125,9 @@ TEST(Inspect, SaysHowUnlikeErrorsCloseTheBoundary) {
             "closed, touches itself along edges (checked on a smaller array of the same elements)");
 }
 
-/// A canted cube, dihedral edges over 0, 120 and 240 degrees before it leans: where total reflection of light that
-/// meets all facets ends first, by trying.
+/// Smallest angle of incidence at which a facet of a canted cube corner no longer reflects totally, and its azimuth.
+/// Before canting, the dihedral edges are at the azimuths 0, 120 and 240 degrees. first_loss() searches all directions
+/// on a fine grid.
 struct FirstLoss {
   double incidence_deg = 90.0;
   double azimuth_deg = 0.0;
@@ -136,7 +138,7 @@ FirstLoss first_loss(double cant_deg, double cant_azimuth_deg, double index, dou
   for (double azimuth = 0.0; azimuth < 360.0; azimuth += 0.5) {
     for (double incidence = 0.0; incidence < first.incidence_deg; incidence += 0.005) {
       const double sine = std::sin(incidence * deg) / index;
-      // The light as the cube sees it: leaning back by the cant.
+      // Rotate the direction of the light by the cant, into the frame of the cube corner.
       const double x = sine * std::cos((azimuth - cant_azimuth_deg) * deg);
       const double y = sine * std::sin((azimuth - cant_azimuth_deg) * deg);
       const double z = std::sqrt(1.0 - sine * sine);
@@ -171,7 +173,8 @@ TEST(Inspect, CantedCubesHaveTheLimitThatTryingFinds) {
     }
 }
 
-// The facet that the cant flattens lies atan(sqrt 2) - cant from the xy plane: asin(n sin(that - critical angle)).
+// Let b = atan(sqrt(2)) - cant be the angle between the flattest facet and the xy plane. Total reflection is lost above
+// the angle of incidence asin(n sin(b - critical angle)).
 TEST(Inspect, WarnsWhereTotalReflectionIsLost) {
   const auto warnings = [](const std::string& kind, const std::string& element, const std::string& body) {
     std::string design = infinite_cubes(kind, 1.5);
@@ -311,7 +314,8 @@ TEST(Help, ShowsEveryOptionWithItsDefault) {
 TEST(Interrupt, WritesTheFinishedPointsAndEndsWith130) {
   const std::string design = example("rtp_brick_2mm.toml");
   Arguments arguments = {RETRACE_PROGRAM, "rre", design, "--samples=65536", "--incidence=-80:80:0.01", "-o", "r"};
-  // Far longer than any wait below; the wait grows until a slow machine has finished a point.
+  // The complete run takes far longer than any wait. The wait is doubled until at least one point is finished, also on
+  // a slow machine.
   for (auto wait = 1s;; wait *= 2) {
     ASSERT_LE(wait, 64s) << "no point was finished";
     const TemporaryFolder folder;
@@ -329,7 +333,8 @@ TEST(Interrupt, WritesTheFinishedPointsAndEndsWith130) {
     ASSERT_LT(finished, 16001U);
     if (finished == 0) continue;
 
-    // Only whole points: the last one is what an undisturbed run says of its direction.
+    // The file contains only finished points. The last point must equal the result of an uninterrupted run for this
+    // direction.
     const Json& last = json["points"][finished - 1];
     const std::string incidence = "--incidence=" + last["incidence_deg"].dump();
     const Json whole = retrace_json(folder, {"rre", design, "--samples=65536", incidence});
@@ -340,7 +345,7 @@ TEST(Interrupt, WritesTheFinishedPointsAndEndsWith130) {
 }
 
 TEST(Interrupt, BeforeAPointIsFinishedWritesAValidDocumentWithoutPoints) {
-  // The wait grows until a slow machine has come so far that there is something to write.
+  // The wait is doubled until the run has something to write, also on a slow machine.
   for (auto wait = 3s;; wait *= 2) {
     ASSERT_LE(wait, 48s) << "nothing was begun";
     const TemporaryFolder folder;

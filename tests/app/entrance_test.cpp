@@ -1,5 +1,5 @@
-// Curved fronts as users meet them: turned parts and meshes in front of plates and prisms, what refuses them, and files
-// that make no sense.
+// Tests of curved fronts with the program: turned parts and meshes in front of plates and prisms, commands that refuse
+// a curved front, and invalid files.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ class Entrance : public ::testing::Test {
     return retrace_json(folder_, all);
   }
 
-  /// The one line that refuses a design, without "retrace: ".
+  /// Returns the error message of a refused design, without the prefix "retrace: ".
   std::string refusal(const std::string& design, Arguments command = {"rre", "design.toml", "-o", "out"}) {
     folder_.write("design.toml", design);
     const auto before = folder_.names();
@@ -72,8 +72,8 @@ TEST_F(Entrance, FlatTurnedFrontIsThePlaneEntranceFace) {
   }
 }
 
-// -r^2 / 6 has no derivative by formula at its centre, where a grid of samples has a point; the conic is the same
-// paraboloid.
+// The formula -r^2 / 6 has no derivative at its centre, where the sampling grid has a point. The conic describes the
+// same paraboloid and must give the same result.
 TEST_F(Entrance, FormulaOfTheRadiusIsItsConic) {
   const std::string body = kBody + "[detector]\nacceptance_half_angle_deg = 10\n[idealisation]\nfacets = \"mirror\"\n";
   const Arguments how = {"--samples", "2048", "--incidence=0,5"};
@@ -92,7 +92,7 @@ double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Along a + s b.
+/// Returns a + s b.
 Vector along(const Vector& a, double s, const Vector& b) {
   return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]};
 }
@@ -103,8 +103,8 @@ Vector refracted(const Vector& d, const Vector& n, double ratio) {
                n);
 }
 
-/// By how many degrees light along -z, in at (x, y) from the vertex of a cap over a mirror, misses its way back; the
-/// cap is 1 mm by 0.8 mm.
+/// Returns the angle, in degrees, between the returned light and the direction to the source. The light enters a
+/// spherical cap in front of a mirror along -z, at (x, y) from the vertex. The cap is 1 mm by 0.8 mm.
 double miss_deg(double radius, double thickness, double n, double x, double y) {
   const double r = std::abs(radius);
   const Vector in = {x, y, thickness - r + std::sqrt(r * r - x * x - y * y)};
@@ -121,7 +121,8 @@ double miss_deg(double radius, double thickness, double n, double x, double y) {
   return std::acos(std::min(1.0, d[2])) * 180.0 / std::numbers::pi;
 }
 
-// The share of a cap over a mirror that returns light within a cone, by rays that the test follows itself.
+// The fraction of a cap in front of a mirror that returns light within a cone must agree with rays that the test traces
+// itself.
 TEST_F(Entrance, CapOverAMirrorReturnsWhatRaysByHandReturn) {
   folder_.write("lens.toml", turned(kCap));
   const double n = 1.4917;
@@ -146,7 +147,8 @@ TEST_F(Entrance, CapOverAMirrorReturnsWhatRaysByHandReturn) {
   }
 }
 
-// What the tool leaves, as the mesh that retrace turn writes, is the design to within its cusps and triangles.
+// The mesh of the machined surface that `retrace turn` writes must act as the design, except for its cusps and the size
+// of its triangles.
 TEST_F(Entrance, MachinedMeshActsAsTheDesign) {
   folder_.write("lens.toml", turned(kCap, {}, 0.7, "feed_um = 4\nspindle_rpm = 60\npoints_per_turn = 720\n") +
                                  "[inspect]\nmesh_thickness_mm = 0.3\nmesh_rings = 100\n");
@@ -168,7 +170,8 @@ TEST_F(Entrance, MachinedMeshActsAsTheDesign) {
   }
 }
 
-// The example: lenslets in a hexagonal lattice on a square, which half a turn leaves alike; and a cat's eye.
+// The example has lenslets in a hexagonal lattice on a square. A rotation by 180 degrees does not change the part. Each
+// lenslet acts as a cat's eye.
 TEST_F(Entrance, LensletsAreACatsEye) {
   const Json json = retrace_json(folder_, {"rre", example("fronts/cats_eye_lenslets.toml"), "--samples", "16384",
                                            "--incidence=0,2", "--azimuth=40,220", "--set", "body.absorption_per_mm=0"});
@@ -178,7 +181,7 @@ TEST_F(Entrance, LensletsAreACatsEye) {
     EXPECT_NEAR(total(point), 1.0, 1e-9);
     EXPECT_EQ(point["ledger"]["lost"], 0.0);
   }
-  // By azimuth, incidence and cone: 1 degree.
+  // The points are ordered by azimuth, incidence and cone. Compare two points with the cone of 1 degree.
   const Json& one = json["points"][4];
   const Json& other = json["points"][10];
   EXPECT_EQ(one["incidence_deg"], 2.0);
@@ -207,7 +210,7 @@ TEST_F(Entrance, InspectTellsAndDrawsIt) {
             (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/front.svg", "out/inspect.json"}));
 }
 
-// A report draws no part with a plane entrance face in place of the one that was traced.
+// A report must not draw a plane entrance face in place of the curved one that was traced.
 TEST_F(Entrance, ReportSaysThatItIsNotShown) {
   folder_.write("lens.toml", turned(kCap));
   rre(kPlate + kFront + kBody, {"--samples", "64", "-o", "out"});
@@ -218,7 +221,7 @@ TEST_F(Entrance, ReportSaysThatItIsNotShown) {
             std::string::npos);
 }
 
-// The freeform lenslets of turning's example, steep blends and all, over prisms.
+// Freeform lenslets of the example of `retrace turn`, including their steep blends, in front of prisms.
 TEST_F(Entrance, FreeformLensletsOverPrismsKeepAllLight) {
   const Json json =
       rre("[element]\nkind = \"rtp\"\nbase_mm = 0.05\nwidth_mm = 0.05\n[array]\nx_length_mm = 0.5\ny_length_mm = 0.4\n"

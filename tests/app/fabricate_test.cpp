@@ -7,7 +7,7 @@
 
 #include "tests/app/program.h"
 
-// retrace job and retrace fabricate: from a design to files of NC text, and what is refused on the way.
+// Tests of `retrace job` and `retrace fabricate`: from a design to files of NC text, and refused input.
 
 namespace retrace::test::fabricate_test {
 namespace {
@@ -21,7 +21,7 @@ std::string design(const std::string& arrangement, double length_mm, const std::
 
 const Arguments kJob = {"job", "d.toml", "--tool-width-mm", "0.451", "--machine", "thesis", "--strategy", "two-step"};
 
-/// A portable grey map of so many pixels, white but for those of `black` (index from the upper left).
+/// Returns a portable grey map with the given pixel values, row by row from the upper left corner.
 std::string grey_map(int columns, int rows, const std::vector<int>& values) {
   std::string text = "P2\n" + std::to_string(columns) + " " + std::to_string(rows) + "\n255\n";
   for (const int value : values) text += std::to_string(value) + "\n";
@@ -115,7 +115,7 @@ TEST(Fabricate, SplitsAndResumes) {
 
 TEST(Fabricate, TakesAMask) {
   const TemporaryFolder folder;
-  // 178 is cut, 179 is not; the first row of the picture has the largest y.
+  // Pixels up to 178 are cut, and pixels from 179 are not. The first row of the picture has the largest y.
   folder.write("m.pgm", grey_map(3, 2, {255, 178, 179, 0, 255, 255}));
   folder.write("d.toml",
                "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 1.5\n"
@@ -154,7 +154,8 @@ TEST(Fabricate, AMachineOfTheUserIsNamedFromTheJob) {
   EXPECT_EQ(retrace_json(folder, {"fabricate", "jobs/j.toml"})["machine"], "paper");
 }
 
-/// Also through a folder that is a link, above which lies something else than its name says.
+/// A job contains the path of its design relative to the folder of the job. This must also work if that folder is a
+/// symbolic link, whose target has another parent folder.
 TEST(Job, NamesItsDesignFromWhereItLies) {
   const TemporaryFolder folder;
   folder.write("d.toml", design("single", 0) + "\n");
@@ -172,7 +173,7 @@ TEST(Job, NamesItsDesignFromWhereItLies) {
   EXPECT_EQ(named({"-o", "j.toml"}), "design = \"d.toml\"");
   EXPECT_EQ(named({"-o", "jobs/j.toml"}), "design = \"../d.toml\"");
   EXPECT_EQ(named({"-o", "link/j.toml"}), "design = \"../../d.toml\"");
-  // The part that its programs leave has the design's plate, not one that is made up.
+  // The machined part uses the plate of the design.
   ASSERT_EQ(retrace(folder, {"fabricate", "jobs/j.toml", "--dialect", "rs274ngc", "-o", "programs"}).code, 0);
   const Outcome verified = retrace(folder, {"verify", "jobs/j.toml", "programs/program.ngc", "--as-machined",
                                             "parts.toml", "--quiet", "--json", "-"});

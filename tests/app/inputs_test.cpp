@@ -1,4 +1,5 @@
-// Files that are read: never overwritten, by whatever path or link they are named; and never longer than they may be.
+// Tests that retrace never overwrites a file that it reads, for any path or link that names the file. Files that are
+// longer than their limit are refused.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every file of a folder with what is in it.
+/// Returns the names and contents of all files in a folder.
 std::map<std::string, std::string> contents(const TemporaryFolder& folder) {
   std::map<std::string, std::string> all;
   for (const std::string& name : folder.names())
@@ -28,7 +29,7 @@ std::map<std::string, std::string> contents(const TemporaryFolder& folder) {
   return all;
 }
 
-/// Refused with one line, and nothing in the folder is touched.
+/// Expects that the command is refused with one line, and that no file in the folder changes.
 void expect_refused(const TemporaryFolder& folder, const Arguments& arguments, const std::string& why) {
   std::string shown;
   for (const std::string& word : arguments) shown += word + " ";
@@ -45,7 +46,8 @@ void expect_refused(const TemporaryFolder& folder, const Arguments& arguments, c
 
 const std::string kRead = " is a file that is read; it would be overwritten";
 
-/// Offers a file as --json under every name that it can have.
+/// Expects that retrace refuses a file as an output of --json, for every name that the file can have: path, symbolic
+/// link and hard link.
 void expect_protected(const TemporaryFolder& folder, const Arguments& command, const std::string& file) {
   fs::create_directories(folder.path() / "beside");
   fs::remove(folder.path() / "link");
@@ -100,7 +102,8 @@ const std::string kBody = "[body]\nthickness_mm = 1.2\nrefractive_index = 1.49\n
 struct FileKey {
   std::string name;
   std::string content;
-  std::string before;  ///< design up to the file's name, which stands between quotes
+  // Text of the design before the name of the file, including the opening quotation mark.
+  std::string before;
   std::string after;
 };
 
@@ -136,12 +139,12 @@ TEST(Inputs, FilesThatADesignNamesAreNoOutputs) {
   }
 }
 
-// The same where --out writes the files, by their own names there.
+// Files that a design names are not replaced if they are in the output folder of --out and have the name of a result.
 TEST(Inputs, FilesThatADesignNamesAreNotReplacedInTheOutputFolder) {
   for (const FileKey& key : file_keys())
     for (const std::string name : {"rre.csv", "rre.json", "rre.svg"}) {
       SCOPED_TRACE(key.name);
-      if (key.name == "lamp.csv" && name != "rre.csv") continue;  // spectra end in .csv
+      if (key.name == "lamp.csv" && name != "rre.csv") continue;  // spectra must be .csv files
       const TemporaryFolder folder;
       fs::create_directory(folder.path() / "out");
       folder.write("out/" + name, key.content);
@@ -205,7 +208,7 @@ TEST(Inputs, ResultsAreNotReplacedByTheSummaryOfTheirPage) {
     expect_refused(folder, {"report", "out", "--json", file}, "--json: " + file + kRead);
 }
 
-/// What an example is read by.
+/// Returns the command that reads an example.
 Arguments command_of(const std::string& text, const std::string& file) {
   const auto has = [&](const char* what) { return text.find(what) != std::string::npos; };
   if (has("retrace.turned_part/")) return {"turn", file};
@@ -216,7 +219,7 @@ Arguments command_of(const std::string& text, const std::string& file) {
   return {"sweep", file};
 }
 
-/// An example and every file that a text in it names, and so on.
+/// Adds an example and all files that it names, directly or through other files.
 void add_named(const fs::path& root, const fs::path& file, std::set<std::string>& named) {
   if (!named.insert(file.lexically_normal().string()).second || file.extension() != ".toml") return;
   const std::string text = read_text(root / file);
@@ -227,7 +230,7 @@ void add_named(const fs::path& root, const fs::path& file, std::set<std::string>
   }
 }
 
-// A rule instead of a list: whatever an example names that is there is a file that it reads.
+// The test needs no list of files. It assumes that an example reads every existing file that it names.
 TEST(Inputs, WhatExamplesReadIsNotOverwritten) {
   const TemporaryFolder folder;
   fs::copy(fs::path(example("rtp_gaps.toml")).parent_path(), folder.path(), fs::copy_options::recursive);
@@ -239,7 +242,7 @@ TEST(Inputs, WhatExamplesReadIsNotOverwritten) {
     std::set<std::string> named;
     add_named(folder.path(), name, named);
     const Arguments command = command_of(folder.read(name), name);
-    if (command.front() == "turn") continue;  // names no files, and is long at work before it writes
+    if (command.front() == "turn") continue;  // names no files and takes long before it writes
     for (const std::string& file : named) expect_refused(folder, with(command, {"--json", file}), file + kRead);
     (command.front() == "sweep" ? studies : others) += named.size() - 1;
   }
@@ -257,14 +260,14 @@ constexpr std::size_t kText = std::size_t{64} << 20;
 constexpr std::size_t kPlanes = std::size_t{512} << 20;
 constexpr std::size_t kData = std::size_t{1} << 30;
 
-/// A run that reads a file of that name, and the most that it may have.
+/// A command that reads a file, and the size limit of this file.
 struct Endless {
   Arguments command;
   std::string file;
   std::size_t most_bytes;
 };
 
-// Files with one byte too many, of which nothing is on the disk.
+// The files are one byte longer than their limit. They are sparse and take no disk space.
 TEST(Inputs, LongFilesAreRefusedWithTheirLimit) {
   const TemporaryFolder folder;
   folder.write("plain.toml", kPrisms + kBody);
@@ -307,7 +310,7 @@ TEST(Inputs, LongFilesAreRefusedWithTheirLimit) {
     EXPECT_NE(outcome.err.find(c.file + most(c.most_bytes)), std::string::npos) << c.command.front() << outcome.err;
     EXPECT_FALSE(fs::exists(folder.path() / "r.json"));
     fs::remove(folder.path() / c.file);
-    // And a folder of that name.
+    // A folder with the name of the file is refused as well.
     if (c.command.front() == "report") continue;
     fs::create_directory(folder.path() / c.file);
     const Outcome as_folder = retrace(folder, arguments);
@@ -319,7 +322,7 @@ TEST(Inputs, LongFilesAreRefusedWithTheirLimit) {
   }
 }
 
-/// A shell line that must end in time, with exit code 2 and one line.
+/// Expects that a shell command ends in time, with exit code 2 and one line.
 void expect_ends(const std::string& shell, const std::string& message) {
   SCOPED_TRACE(shell);
   const TemporaryFolder folder;

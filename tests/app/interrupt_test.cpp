@@ -1,4 +1,4 @@
-// What an interrupt does to work that takes long, command by command.
+// Tests of interrupts during long work, for each command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Time of the processor, which other work on the machine does not lengthen, that a run may spend once it is
-// interrupted: a second, and what the results that are left take to write.
+// Maximum processor time, in s, that a run may use after an interrupt: one second, plus the time to write the remaining
+// results. Processor time does not depend on other work on the machine.
 constexpr double kAfter_s = 2.0;
 constexpr auto kFarTooLong = 300s;
 
@@ -23,8 +23,8 @@ struct LongRun {
   std::string name;
   Arguments arguments;
   int signal = SIGINT;
-  double before_s = 1.0;              ///< of the processor, before it is interrupted
-  std::vector<Arguments> first = {};  ///< runs that make its inputs
+  double before_s = 1.0;              ///< processor time before the interrupt
+  std::vector<Arguments> first = {};  ///< runs that create the inputs
 };
 
 void PrintTo(const LongRun& run, std::ostream* stream) {
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"photometry", "finite.toml", "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=1.44", "--engine=exact", "--light=design", "-o", "p"},
                 SIGINT,
-                3.0},  // by then the beams have been followed, and their polygons are summed for minutes
+                3.0},  // all beams have been traced by then; the sum over their polygons takes minutes
         LongRun{"photometry_by_rays",
                 {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=30", "--engine=montecarlo", "--samples=4294967296"},
@@ -86,12 +86,12 @@ INSTANTIATE_TEST_SUITE_P(
                 {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=30", "--engine=montecarlo", "--samples=4294967296"},
                 SIGINT,
-                3.0},  // by then the preliminary readings are being computed as well
+                3.0},  // the preliminary readings are being computed at this time
         LongRun{"photometry_seeks_advice",
                 {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=1e-3", "--rotation=0,20,40,60", "--quiet"},
                 SIGINT,
-                2.0},  // by then the table is done, which is a third of all
+                2.0},  // the table, a third of the work, is finished by then
         LongRun{"image_detector",
                 {"image", example("rtp_brick_2mm.toml"), "--detector", "--threads=1", "--engine=montecarlo",
                  "--samples=1000000000", "-o", "i"}},
@@ -114,7 +114,8 @@ INSTANTIATE_TEST_SUITE_P(
         LongRun{"roughness", {"roughness", example("facet_quality.toml"), "--threads=1", "--target-error=1e-6"}}),
     [](const auto& run) { return run.param.name; });
 
-/// If work does not stop in time after an interrupt, the process ends. One line says so, and no temporary file is left.
+/// If the work does not stop in time after an interrupt, the process ends immediately. It prints one line and leaves no
+/// temporary file.
 TEST(Interrupt, WorkThatCannotStopInTimeLeavesNoTemporaryFile) {
   const TemporaryFolder folder;
   const Arguments arguments = {RETRACE_PROGRAM,
@@ -131,7 +132,7 @@ TEST(Interrupt, WorkThatCannotStopInTimeLeavesNoTemporaryFile) {
   const auto has_temporary = [&] { return std::ranges::any_of(folder.names(), is_temporary); };
   while (!child.has_ended() && !has_temporary()) std::this_thread::sleep_for(5ms);
   ASSERT_TRUE(has_temporary());
-  child.interrupt(SIGALRM);  // the signal of the deadline that an interrupt sets
+  child.interrupt(SIGALRM);  // signal at the deadline that an interrupt sets
   const Outcome outcome = child.wait(kFarTooLong);
   EXPECT_EQ(outcome.code, 130);
   EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;

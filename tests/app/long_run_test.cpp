@@ -1,4 +1,5 @@
-// The line about long work that the program writes to standard error, without a terminal.
+// Tests of the note about a long run. The program writes this note to standard error, which is not a terminal in these
+// tests.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +14,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kBefore_s = 4.0;  // processor time after which the run is interrupted; the estimate comes within 2 s
+// Processor time, in s, after which a run is interrupted. The program estimates the remaining time within 2 s.
+constexpr double kBefore_s = 4.0;
 
 const std::string kStudy =
     "design = \"" + example("tail_lamp_100cm2.toml") +
@@ -30,7 +32,7 @@ Outcome interrupted(const TemporaryFolder& folder, Arguments arguments) {
   return child.wait(patient(60));
 }
 
-/// Notes among the lines of a text.
+/// Returns the number of lines that begin with "note: ".
 std::ptrdiff_t note_count(const std::string& text) {
   std::ptrdiff_t count = text.starts_with("note: ") ? 1 : 0;
   for (std::size_t at = text.find("\nnote: "); at != std::string::npos; at = text.find("\nnote: ", at + 1)) ++count;
@@ -54,7 +56,8 @@ TEST(LongRunOfTheProgram, OfAStudyIsReportedBeforeItsFirstPointIsFinished) {
   EXPECT_NE(outcome.err.find("analysis.samples (now 1000000000)"), std::string::npos) << outcome.err;
 }
 
-// Preliminary readings appear during the run. The standard output of an interrupted run does not depend on them.
+// The program prints preliminary readings to standard error during the run. They do not change the standard output of
+// an interrupted run.
 TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadings) {
   const TemporaryFolder folder;
   const Arguments arguments = {"photometry",

@@ -53,8 +53,8 @@ const std::string kInfiniteCubes =
     "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 2.5\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = "
     "2\nrefractive_index = 1.49\n";
 
-// Beams need a list of all elements, rays do not. With very many elements, it takes longer to make this list than to
-// trace the rays.
+// Tracing beams requires a list of all elements, but tracing rays does not. With very many elements, making this list
+// takes longer than tracing the rays. The engine `auto` may need at most 1.5 times the processor time of rays.
 TEST(MemoryBudget, AutoCostsNoMoreThanHalfAgainOfTheEngineThatItTakes) {
   const TemporaryFolder folder;
   folder.write("cubes.toml", small_cubes(9.87));
@@ -79,7 +79,7 @@ TEST(MemoryBudget, MoreElementsThanItHoldsAreRefusedBeforeTheyAreListed) {
   EXPECT_LE(exact.processor_s, 5.0);
 }
 
-// Without a cut-off, beams split without end. Only the memory budget ends the run.
+// Without a cut-off, the number of beams grows without limit. Only the memory budget ends the run.
 TEST(MemoryBudget, BeamsWithoutACutoffEndWithIt) {
   const TemporaryFolder folder;
   folder.write("cubes.toml", kInfiniteCubes);
@@ -122,13 +122,13 @@ TEST(MemoryBudget, ASearchWithoutAnAnswerBecauseOfItEndsWith3) {
   EXPECT_EQ(ended.code, 3) << ended.out;
   EXPECT_NE(ended.err.find("3 of 3 designs are not evaluated because a budget ran out"), std::string::npos)
       << ended.err;
-  // The designs are not stored as failed. A resumed search that uses rays therefore finds an optimum.
+  // A search that uses rays finds an optimum with the same memory budget.
   folder.write("auto.toml", study("auto"));
   const Measured found = measured(folder, {"optimize", "auto.toml", "--memory-gib", "0.02", "-o", "other"});
   EXPECT_EQ(found.code, 0) << found.err;
 }
 
-// The far field of beams with diffraction needs memory for each element. Rays need no memory for elements.
+// The far field of beams with diffraction requires memory for each element. Rays require no memory for elements.
 TEST(MemoryBudget, PhotometryOfAMillionElementsGoesOnWithRays) {
   const TemporaryFolder folder;
   folder.write("prisms.toml", array("kind = \"rtp\"\nbase_mm = 0.01\nwidth_mm = 0.01", 10.0));
@@ -147,7 +147,8 @@ TEST(MemoryBudget, PhotometryOfAMillionElementsGoesOnWithRays) {
   EXPECT_NE(exact.err.find("exceeds the memory budget of 1 GiB (--memory-gib)"), std::string::npos) << exact.err;
 }
 
-// The header of a binary STL file contains the number of its triangles. The file is as long as its header says, or not.
+// The header of a binary STL file contains the number of its triangles. One file has the length that follows from this
+// number, and the other file is shorter.
 TEST(MemoryBudget, MeshesOfTooManyTrianglesAreRefusedBeforeTheyAreRead) {
   const TemporaryFolder folder;
   folder.write("mesh.toml", "[body]\nrefractive_index = 1.49\n[part]\nmesh = \"part.stl\"\n");
@@ -155,7 +156,7 @@ TEST(MemoryBudget, MeshesOfTooManyTrianglesAreRefusedBeforeTheyAreRead) {
   for (const auto& [bytes, complaint] : {std::pair(1'000'000'084U, "must have at most 10000000 triangles"),
                                          {1'000'000'000U, "not an STL file: binary STL must have 84 bytes plus 50"}}) {
     folder.write("part.stl", header);
-    std::filesystem::resize_file(folder.path() / "part.stl", bytes);  // takes no room: the rest is a hole
+    std::filesystem::resize_file(folder.path() / "part.stl", bytes);  // a sparse file, which takes no disk space
     const Measured refused = measured(folder, {"inspect", "mesh.toml"});
     EXPECT_EQ(refused.code, 2);
     EXPECT_TRUE(refused.err.starts_with(std::string("retrace: mesh.toml:4: part.mesh: part.stl: ") + complaint))
@@ -164,7 +165,8 @@ TEST(MemoryBudget, MeshesOfTooManyTrianglesAreRefusedBeforeTheyAreRead) {
   }
 }
 
-// If the rays that leave exceed the memory budget, fewer rays are traced at a time. Each ray gives the same result.
+// If the exiting rays exceed the memory budget, retrace traces fewer rays at a time. The result of each ray stays the
+// same.
 TEST(MemoryBudget, RaysThatLeaveStayWithinIt) {
   const TemporaryFolder folder;
   folder.write("cubes.toml", kInfiniteCubes);

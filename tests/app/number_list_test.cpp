@@ -2,7 +2,7 @@
 
 #include "tests/app/program.h"
 
-// Lists of angles, as --incidence reads them.
+// Tests of the lists of angles that --incidence reads.
 
 namespace retrace::test::number_list_test {
 namespace {

@@ -15,7 +15,7 @@ std::string name_of(const Json& argument) {
   return argument["names"].empty() ? argument["value"] : argument["names"].back();
 }
 
-/// A command line that is built from the declarations of a command.
+/// Builds a valid command line from the declarations of a command in the output of `retrace manual`.
 class Line {
  public:
   Line(const Json& manual, const Json& command) : command_(command) {
@@ -38,7 +38,7 @@ class Line {
                                                 : "1";
   }
 
-  /// Adds options with which the requirement is not met, and fixes them.
+  /// Adds options that violate the requirement. satisfy() does not meet this requirement afterwards.
   void violate(const Json& need) {
     for (const Json& condition : need) {
       const std::string option = condition["option"];
@@ -54,7 +54,7 @@ class Line {
   }
 
   /// Adds options until the requirements of all given options are met.
-  /// \param but requirement that shall not be met; null: none
+  /// \param but requirement to leave violated; null: none
   void satisfy(const Json& but) {
     for (bool changed = true; changed;) {
       changed = false;
@@ -84,7 +84,8 @@ class Line {
     });
   }
 
-  /// Adds options that meet a requirement. Returns false if other conditions exclude them.
+  /// Adds options that meet a requirement.
+  /// \return false if other conditions exclude all such options
   bool make_hold(const Json& need) {
     for (const Json& condition : need) {
       const std::string option = condition["option"];
@@ -114,7 +115,8 @@ std::string text_of(const Arguments& arguments) {
   return text;
 }
 
-/// The design files do not exist, so that an accepted command line fails when it reads them.
+/// Runs each command with each requirement met, and with each requirement violated. The design files do not exist, so
+/// that retrace reports a missing file if it accepts the options.
 TEST(OptionNeeds, AreCheckedForEveryOptionOfEveryCommand) {
   const TemporaryFolder folder;
   const Json manual = retrace_json(folder, {"manual"});
@@ -145,7 +147,7 @@ TEST(OptionNeeds, AreCheckedForEveryOptionOfEveryCommand) {
     EXPECT_EQ(checked.count(known), 1U) << known;
 }
 
-/// The engine `auto` may use any engine, so that it accepts the options of all engines.
+/// The engine `auto` may select any engine. It therefore accepts the options of all engines.
 TEST(OptionNeeds, TheEngineAutoTakesTheOptionsOfAllEngines) {
   const TemporaryFolder folder;
   for (const Arguments& more : std::vector<Arguments>{

@@ -6,7 +6,7 @@
 
 #include "tests/app/program.h"
 
-// retrace photometry: verdicts and exit codes, its files, and what it refuses.
+// Tests of `retrace photometry`: verdicts, exit codes, files, and refused input.
 
 namespace retrace::test::photometry_test {
 namespace {
@@ -17,14 +17,14 @@ const std::string kDesign =
     "thickness_mm = 1.5\nrefractive_index = 1.4917\n[light]\nwavelength_nm = 600\n";
 const std::string kHeader = "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n";
 
-/// Of one wavelength and without diffraction, where nothing else is asked.
+/// Returns arguments for a computation with the light of the design, which has one wavelength.
 Arguments photometry(const Arguments& more) {
   Arguments arguments = {"photometry", "d.toml", "--area-cm2=30", "--light=design"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
 
-// Wide enough that the discs of run_limits() hide their diffraction.
+// Apertures so wide that the source and receiver discs of run_limits() hide the effect of diffraction.
 const std::string kWide = "--set=element.aperture_mm=5";
 
 Outcome run_limits(const TemporaryFolder& folder, const std::string& rows, const Arguments& more = {}) {
@@ -50,7 +50,7 @@ TEST(Photometry, AnswersWithItsExitCode) {
   const Outcome incomplete = run_limits(folder, "S,,red,0.2,0,0,1,cd/lx/m2,confirmed\nS,,,,,,,,incomplete\n", {kWide});
   EXPECT_EQ(incomplete.code, 0);
   EXPECT_NE(incomplete.out.find("not all that the standard asks"), std::string::npos) << incomplete.out;
-  // Cells of half a millimetre diffract.
+  // Diffraction at cells of half a millimetre is not negligible.
   const Outcome open = run_limits(folder, "S,,red,0.2,0,0,1,mcd/lx,read\n");
   EXPECT_EQ(open.code, 1) << open.err;
   EXPECT_NE(open.out.find("verdict: undetermined - diffraction is left out, as it was not asked for"),
@@ -124,7 +124,7 @@ TEST(Photometry, DyesAndRotationsAreTaken) {
   EXPECT_NEAR(value({"--dye=none", "--rotation=0:90:30"}), clear, 1e-6 * clear);
 }
 
-// The colour has a verdict of its own; one that fails is a part that fails.
+// The colour has its own verdict. The command fails if this verdict is a failure.
 TEST(Photometry, TellsTheColourWithItsOwnVerdict) {
   const TemporaryFolder folder;
   folder.write("d.toml", kDesign);
@@ -144,7 +144,7 @@ TEST(Photometry, TellsTheColourWithItsOwnVerdict) {
   ASSERT_EQ(seen["boundaries"].size(), 2U);
   EXPECT_GT(seen["boundaries"][1]["margin"].get<double>(), 0.0);
   EXPECT_EQ(seen["boundaries"][1]["limit"], "z <= 0.008");
-  // Without its dye the part sends CIE A back, which is not red.
+  // Without its dye, the part returns the white light of CIE A, which is not red.
   const Outcome clear = outcome({"--dye=none"});
   EXPECT_EQ(clear.code, 1) << clear.err;
   const Json json = Json::parse(clear.out);
@@ -152,7 +152,7 @@ TEST(Photometry, TellsTheColourWithItsOwnVerdict) {
   EXPECT_EQ(json["chromaticity"]["verdict"], "fail");
   EXPECT_NEAR(json["chromaticity"]["x"].get<double>(), 0.4476, 2e-4);
   EXPECT_NEAR(json["chromaticity"]["y"].get<double>(), 0.4074, 2e-4);
-  // Boundaries of CIE A say nothing of D65, and nothing is told of the design's own light.
+  // Colour boundaries for CIE A do not apply to D65. No colour is reported for the light of the design.
   const Outcome day = outcome({"--dye=none", "--light=d65"});
   EXPECT_EQ(day.code, 0) << day.err;
   const Json d65 = Json::parse(day.out)["chromaticity"];
@@ -176,7 +176,7 @@ TEST(Photometry, RoughDesignsAreTracedByMonteCarlo) {
   EXPECT_GT(json["points"][0]["std_error_mcd_per_lx"].get<double>(), 0.0);
 }
 
-// The example that its comment tells to make: a tenth of a nanometre of roughness does not make it fail.
+// The comment of this example suggests these settings. A roughness of 0.1 nm must not make the example fail.
 TEST(Photometry, AnExampleOfATenthOfANanometrePasses) {
   const TemporaryFolder folder;
   const Outcome outcome =
@@ -241,7 +241,8 @@ TEST(Photometry, ItsOutputReplacesNoInput) {
   EXPECT_NE(outcome.err.find("would be overwritten"), std::string::npos) << outcome.err;
 }
 
-// The published ratio, 5.6 : 10, lies within what the observation angle alone does: docs/theory/photometry.md.
+// The published ratio of 5.6 : 10 is within the range that the observation angle alone causes
+// (docs/theory/photometry.md).
 TEST(LuminanceFixture, RatioOfThePublishedSamplesDependsOnTheObservationAngle) {
   const TemporaryFolder folder;
   const std::string examples = RETRACE_SOURCE_DIR "/examples/luminance_fixture/";

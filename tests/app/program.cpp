@@ -30,7 +30,8 @@ std::string content(std::FILE* file) {
   return text;
 }
 
-/// For tools/same_bytes: in the folder that RETRACE_KEEP_RUNS names, if it does, what a run was given, said and left.
+/// Stores the arguments, the output and the files of a run for tools/same_bytes. They are stored in the folder that the
+/// environment variable RETRACE_KEEP_RUNS names. Does nothing if the variable is not set.
 void keep(const TemporaryFolder& folder, const Arguments& arguments, const Outcome& outcome) {
   const char* kept = std::getenv("RETRACE_KEEP_RUNS");
   if (kept == nullptr) return;
@@ -77,8 +78,8 @@ std::vector<std::string> TemporaryFolder::names() const {
 
 namespace {
 
-/// What the program itself said: a sanitizer that looks up the place of a report that is left out says what it cannot
-/// read.
+/// Returns the output of the program without the lines of the sanitizer's symbolizer. The symbolizer reports files that
+/// it cannot read.
 std::string said_by_program(std::string text) {
   constexpr std::string_view kSymbolizer = "LLVMSymbolizer: ";
   for (std::size_t at = 0; kIsSanitized && (at = text.find(kSymbolizer)) != std::string::npos;)
@@ -128,7 +129,7 @@ void Child::interrupt(int signal) const {
 }
 
 std::string Child::err_so_far() const {
-  // Reads at given offsets, because the child writes at the file offset, which both processes share.
+  // Use pread(), which does not move the file offset. The child process shares this offset and writes there.
   std::string text;
   std::array<char, 4096> block{};
   for (;;) {
@@ -168,7 +169,7 @@ Outcome Child::wait(std::chrono::seconds limit) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   if (!has_ended()) {
     ADD_FAILURE() << "still running after " << limit.count() << " s";
-    // mpirun takes its ranks along if it is asked.
+    // SIGTERM lets mpirun end its ranks before SIGKILL ends mpirun.
     ::kill(process_, SIGTERM);
     for (int k = 0; k < 100 && !has_ended(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     ::kill(process_, SIGKILL);

@@ -16,15 +16,15 @@ namespace retrace::test {
 using Arguments = std::vector<std::string>;
 using Json = nlohmann::ordered_json;
 
-/// What a program left behind. `code` is its exit code, or -n if signal n ended it.
+/// Result of a run. `code` is the exit code, or -n if signal n ended the program.
 struct Outcome {
   int code = 0;
   std::string out;
   std::string err;
-  double processor_time_s = 0.0;  ///< of all its threads
+  double processor_time_s = 0.0;  ///< processor time of all threads
 };
 
-/// A folder of its own, removed with everything in it.
+/// A new temporary folder. The destructor removes the folder and its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -36,17 +36,17 @@ class TemporaryFolder {
   void write(const std::string& name, const std::string& text) const;
   std::string read(const std::string& name) const;
   Json json(const std::string& name) const { return Json::parse(read(name)); }
-  /// Everything in it, hidden files and files of folders included, sorted.
+  /// Returns the sorted names of all files and folders in the folder, including hidden and nested ones.
   std::vector<std::string> names() const;
 
  private:
   std::filesystem::path path_;
 };
 
-/// Where standard input comes from.
+/// Source of standard input.
 enum class Input {
-  text,   ///< what was given
-  silent  ///< a pipe that stays open and says nothing
+  text,   ///< the given text
+  silent  ///< a pipe that stays open and contains nothing
 };
 
 #if defined(__has_feature)
@@ -60,15 +60,16 @@ inline constexpr bool kIsSanitized = true;
 inline constexpr bool kIsSanitized = false;
 #endif
 
-/// A limit on time that programs keep by far, also with sanitizers, which make them some ten times as slow.
+/// Returns a generous time limit. With sanitizers it is ten times as long, because they make programs about ten times
+/// slower.
 constexpr std::chrono::seconds patient(int seconds) {
   return std::chrono::seconds(kIsSanitized ? 10 * seconds : seconds);
 }
 
-/// A program that runs as a child process, without a shell between. The first argument is the program.
+/// A program that runs as a child process, without a shell. The first argument is the program.
 class Child {
  public:
-  /// \param out file to be its standard output; empty: it is caught
+  /// \param out file for standard output; empty: standard output is captured
   Child(const std::filesystem::path& folder, const Arguments& arguments, const std::string& input = {},
         Input kind = Input::text, const std::string& out = {});
   ~Child();
@@ -77,13 +78,14 @@ class Child {
 
   void interrupt(int signal = SIGINT) const;
   Outcome wait();
-  /// The same for a child that must end in time: one that does not is a failure of the test, and is killed.
+  /// Waits for a child that must end within `limit`. Otherwise the test fails, and the child is killed.
   Outcome wait(std::chrono::seconds limit);
-  /// Whether it has ended; what it left behind is still told by wait().
+  /// Returns true if the child has ended. wait() still returns its result afterwards.
   bool has_ended() const;
-  /// Returns what it has written to standard error so far.
+  /// Returns the text that the child has written to standard error so far.
   std::string err_so_far() const;
-  /// Time of the processor that its threads have spent so far. \pre wait() has not been called
+  /// Returns the processor time that all threads of the child have used so far.
+  /// \pre wait() has not been called
   double processor_time_s() const;
 
  private:
@@ -92,47 +94,52 @@ class Child {
   File in_;
   File out_;
   File err_;
-  int silent_pipe_ = -1;  ///< the end that would be written to
+  int silent_pipe_ = -1;  ///< write end of the pipe, which is never used
   pid_t process_ = -1;
 };
 
-/// Runs retrace in `folder`. \param input text on standard input \param out file to be its standard output
+/// Runs retrace in `folder`.
+/// \param input text on standard input
+/// \param out file for standard output; empty: standard output is captured
 Outcome retrace(const TemporaryFolder& folder, Arguments arguments, const std::string& input = {},
                 const std::string& out = {});
 
-/// The same, for a run that must say it is done and complain of nothing: the JSON that `--json -` prints.
+/// Runs retrace and returns the JSON document that `--json -` prints. The exit code of the run must be 0.
 Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std::string& input = {});
 
-/// Expects a run to have ended so, with nothing on standard output and one line that says what was wrong, from where it
-/// begins.
+/// Expects that a run has the given exit code, an empty standard output and one line of error message.
+/// \param begin beginning of the message
 void expect_refused(const Outcome& outcome, const std::string& begin, int code = 2);
-/// The same of a line that has the words anywhere.
+/// Expects that a run was refused with a message that contains `words`.
 void expect_refused_with(const Outcome& outcome, const std::string& words);
 
-/// Arguments that are refused, and how the message begins.
+/// Arguments that are refused, and the beginning of the message.
 struct Refused {
   Arguments arguments;
   std::string begin;
 };
 
-/// Expects runs in `folder` to be refused and to write nothing. \param before, after the arguments of each case
+/// Expects that runs in `folder` are refused and write nothing.
+/// \param before arguments before the arguments of each case
+/// \param after arguments after the arguments of each case
 void expect_refused(const TemporaryFolder& folder, const std::vector<Refused>& cases, const Arguments& before,
                     const Arguments& after = {"-o", "out", "--json", "r.json"});
 
-/// The arguments, and more.
+/// Returns the arguments followed by `more`.
 Arguments with(Arguments arguments, const Arguments& more);
 
-/// A file of examples/.
+/// Returns the path of a file in examples/.
 std::string example(const std::string& name);
 std::string read_text(const std::filesystem::path& file);
 std::vector<std::string> lines_of(const std::string& text);
-/// The text of a design without the keys of its surfaces' texture.
+/// Returns the text of a design without the keys of its surface texture.
 std::string without_texture(const std::string& design);
 
-/// A result without its line or member on elapsed time, the only thing that may differ from run to run.
+/// Returns a result without the line or the member that contains the elapsed time. Only this time may differ between
+/// runs.
 std::string without_elapsed(const std::string& json);
 
-/// Gives the shipped machine of a job lines for mist, which a Power PMAC has no words of its own for.
+/// Replaces the machine of a job by a copy with lines for mist. A Power PMAC has no standard codes for mist.
 inline void give_mist_lines(const TemporaryFolder& folder, const std::string& job_file) {
   std::string job = folder.read(job_file);
   const std::size_t begin = job.find("machine = \"") + 11;

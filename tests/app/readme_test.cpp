@@ -16,10 +16,10 @@
 #include "tests/app/program.h"
 
 // Runs every command that README.md, docs/*.md and docs/tutorials/*.md show, exactly as the page shows it. Each page is
-// a test of its own, so that pages run in parallel. A test runs in a folder that looks like the project's: tools/run
-// and retrace are the program, examples/ is the project's folder, and results such as build/... are written there.
-// Tests of tutorials also write the files that the tutorial tells the reader to save, and compare the output that the
-// tutorial shows with that of the program.
+// a separate test, so that pages run in parallel. A test runs in a temporary folder with the layout of the project. In
+// this folder, tools/run and retrace are the program, and examples/ is a link to the examples. Tests of tutorials also
+// write the files that the reader is told to save. They compare the output that a tutorial shows with the output of the
+// program.
 
 namespace retrace::test::readme_test {
 namespace {
@@ -35,19 +35,20 @@ bool starts_with_word(const std::string& text, const std::string& word) {
   return text == word || text.starts_with(word + " ");
 }
 
-/// A line of a code block without its comment.
+/// Returns a line of a code block without its comment.
 std::string command_in(const std::string& line) {
   if (line.starts_with("#")) return "";
   return trimmed(line.substr(0, line.find(" #")));
 }
 
-/// What a page asks its reader to do, or shows.
+/// A step of a page: a command, a file to save, or a line of output that the page shows.
 struct Step {
   enum Kind { kCommand, kFile, kShown };
   Kind kind = kCommand;
-  std::string text;  ///< a command; a file's content; a line that the commands before it print
-  std::string name;  ///< of a file
-  int code = 0;      ///< that a command ends with: told in its comment, "# exit code 1"
+  std::string text;  ///< the command, the content of the file, or the line of output
+  std::string name;  ///< name of the file
+  // Expected exit code of a command, from its comment "# exit code 1".
+  int code = 0;
 };
 
 int code_in(const std::string& line) {
@@ -56,7 +57,8 @@ int code_in(const std::string& line) {
   return at == std::string::npos ? 0 : std::stoi(line.substr(at + mark.size()));
 }
 
-/// A block whose first line is "# my_NAME.ENDING" is a file to be saved; of text blocks the lines are what is printed.
+/// Adds the steps of a code block. A block whose first line is "# my_NAME.ENDING" is a file to save. The lines of a
+/// `text` block are expected output.
 void add_block(const std::string& kind, const std::vector<std::string>& lines, std::vector<Step>& steps) {
   const bool is_file = !lines.empty() && lines.front().starts_with("# my_") && kind != "sh" && kind != "text";
   if (is_file) {
@@ -68,7 +70,7 @@ void add_block(const std::string& kind, const std::vector<std::string>& lines, s
     for (const std::string& line : lines)
       if (line != "...") steps.push_back({Step::kShown, line, ""});
   if (kind != "sh") return;
-  std::string begun;  // of a command that goes on in the next line
+  std::string begun;  // beginning of a command that continues on the next line
   for (const std::string& line : lines) {
     std::string command = begun + command_in(line);
     begun.clear();
@@ -79,10 +81,11 @@ void add_block(const std::string& kind, const std::vector<std::string>& lines, s
   }
 }
 
-/// Its blocks, and indented lines with retrace that are no synopsis.
+/// Returns the steps of a page, from its code blocks and from indented lines with `retrace`. Lines that show a synopsis
+/// are skipped.
 std::vector<Step> steps_of(const std::string& page) {
   std::vector<Step> steps;
-  std::optional<std::string> kind;  // of the block that is being read
+  std::optional<std::string> kind;  // kind of the current block
   std::vector<std::string> block;
   for (const std::string& line : lines_of(page)) {
     if (trimmed(line).starts_with("```")) {
@@ -109,7 +112,7 @@ bool is_run(const std::string& command) {
   return (starts_with_word(command, "tools/run") && command != "tools/run") || starts_with_word(command, "retrace");
 }
 
-/// What builds, tests or installs is not run from within a test.
+/// Returns true if the command is known. Tests do not run the known commands that build, test or install.
 bool is_known(const std::string& command) {
   for (const char* word :
        {"tools/run", "tools/test", "tools/package", "tools/try_packages", "cmake", "apt-get", "podman"})
@@ -117,13 +120,13 @@ bool is_known(const std::string& command) {
   return starts_with_word(command, "retrace");
 }
 
-/// A command that reads examples/ alone and writes to a folder named by its last word, as in `... -o my_result`.
+/// A command that reads only examples/ and writes to the folder that its last word names, as in `... -o my_result`.
 struct Example {
-  std::string question;  ///< what stands between the program and that name
+  std::string question;  ///< words between the name of the program and `-o`
   std::string output;
 };
 
-/// A file that a page's own commands have written, such as my_job.toml.
+/// Returns true if the word is a file that commands of the page have written, such as my_job.toml.
 bool is_own_file(const std::string& word) {
   const std::size_t point = word.rfind('.');
   return point != std::string::npos && point + 1 < word.size() && std::isalpha(word[point + 1]) != 0 &&
@@ -142,10 +145,11 @@ std::optional<Example> example_of(const std::string& command) {
   return example;
 }
 
-/// Folders that the examples of a page have written, by their question. A page may show an example twice.
+/// Output folders of the examples of a page, by their command. A page may show an example twice.
 class Written {
  public:
-  /// Puts what it wrote into `folder`. \return false if it has not been run
+  /// Copies the output of an example into `folder`.
+  /// \return false if the example has not been run
   bool give(const Example& example, const fs::path& folder) const {
     const fs::path kept = of(example.question);
     if (kept.empty()) return false;
@@ -189,7 +193,7 @@ std::vector<fs::path> pages() {
   return found;
 }
 
-/// Returns the commands, without the name of their output, of the examples on pages before `page`. The tests of these
+/// Returns the examples on the pages before `page`, as commands without the name of their output. The tests of those
 /// pages run these examples.
 std::set<std::string> questions_before(const fs::path& page) {
   std::set<std::string> questions;
@@ -201,14 +205,15 @@ std::set<std::string> questions_before(const fs::path& page) {
   return questions;
 }
 
-/// Returns true if a command after the one at `at` contains the name of the folder that the example writes.
+/// Returns true if a command after the command number `at` contains the name of the output folder of the example.
 bool is_read_later(const std::vector<std::string>& commands, std::size_t at, const Example& example) {
   return std::any_of(commands.begin() + static_cast<std::ptrdiff_t>(at) + 1, commands.end(),
                      [&](const std::string& later) { return later.find(example.output) != std::string::npos; });
 }
 
-/// Runs the commands of a page one after another, as a reader would, except for examples that an earlier page shows.
-/// \return the number of commands that the page shows
+/// Runs the commands of a page in order, as a reader would. Examples that an earlier page shows are skipped unless a
+/// later command reads their output.
+/// \return number of commands on the page
 int run_page(const fs::path& page) {
   const TemporaryFolder folder;
   make_like_the_project(folder);
@@ -236,7 +241,8 @@ std::vector<std::string> words_of(const std::string& line) {
   return {std::istream_iterator<std::string>(text), {}};
 }
 
-/// Equal words, or numbers within 2 % or 0.02 of each other: instruction sets draw other rays.
+/// Returns true if two words are equal, or are numbers within 2 % or 0.02 of each other. Numbers may differ because the
+/// random rays depend on the instruction set.
 bool is_like(const std::string& shown, const std::string& printed) {
   if (shown == printed) return true;
   const auto number = [](const std::string& word, double& value) {
@@ -254,7 +260,8 @@ bool is_line_like(const std::string& shown, const std::string& printed) {
   return std::ranges::equal(words_of(shown), words_of(printed), is_like);
 }
 
-/// Does all that a tutorial asks for, and looks for what it shows in what was printed since it last showed something.
+/// Executes all steps of a tutorial. Each line of output that the tutorial shows must occur in the output of the
+/// commands since the last lines that it showed.
 void follow(const fs::path& page) {
   const TemporaryFolder folder;
   make_like_the_project(folder);
@@ -282,14 +289,14 @@ void follow(const fs::path& page) {
   }
 }
 
-/// mpirun as a tutorial calls it, wherever the tests run.
+/// Sets the environment so that mpirun runs in any test environment as a tutorial calls it.
 void let_mpirun_run_here() {
   for (const char* name :
        {"OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "OMPI_MCA_rmaps_base_oversubscribe"})
     ::setenv(name, "1", 1);
   ::setenv("OMPI_MCA_plm", "isolated", 1);
   ::setenv("OMPI_MCA_hwloc_base_binding_policy", "none", 1);
-  // What Open MPI itself leaves behind is no leak of ours.
+  // Ignore memory leaks of Open MPI.
   ::setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
 }
 
@@ -304,7 +311,7 @@ std::string name_of(const testing::TestParamInfo<std::string>& tutorial) {
   return tutorial.param;
 }
 
-// ctest runs every tutorial by itself (register_tests.py).
+// ctest runs every tutorial as a separate test (register_tests.py).
 INSTANTIATE_TEST_SUITE_P(Docs, Tutorials,
                          testing::Values("first_curve", "measured_facet", "nc_program", "test_cuts", "regulation",
                                          "cluster"),
@@ -334,7 +341,7 @@ TEST(TutorialPages, AreReadStepByStep) {
   EXPECT_FALSE(is_line_like("a 1", "a 1 2"));
 }
 
-/// Where a heading of a page may be linked to, as GitHub and mkdocs name it.
+/// Returns the anchor of a heading, as GitHub and mkdocs form it.
 std::string anchor_of(const std::string& heading) {
   std::string anchor;
   for (const char c : trimmed(heading)) {
@@ -346,7 +353,7 @@ std::string anchor_of(const std::string& heading) {
   return anchor;
 }
 
-/// Lines that stand in no fenced block.
+/// Returns the lines that are not in a fenced block.
 std::vector<std::string> prose_of(const fs::path& page) {
   std::vector<std::string> prose;
   bool in_block = false;
@@ -398,7 +405,7 @@ TEST_P(Pages, CommandsRun) {
   EXPECT_GE(run_page(*page), 1);
 }
 
-// ctest runs every page by itself (register_tests.py).
+// ctest runs every page as a separate test (register_tests.py).
 INSTANTIATE_TEST_SUITE_P(Docs, Pages, testing::Values("README", "commands", "gallery", "planing_file"), name_of);
 
 TEST(Readme, PagesWithCommandsAreAllRun) {

@@ -5,7 +5,7 @@
 
 #include "tests/app/program.h"
 
-// rre --footprint and --far-field: what they write, what they need.
+// Tests of `retrace rre --footprint` and `--far-field`: the files that they write and the options that they need.
 
 namespace retrace::test::returned_light_test {
 namespace {
@@ -60,7 +60,7 @@ TEST(ReturnedLight, FarFieldHoldsWhatLeavesTheFace) {
   const Json field = folder.json("far_field.json");
   EXPECT_EQ(field["schema"], "retrace.far_field/1");
   ASSERT_EQ(field["directions"].size(), 2U);
-  // At normal incidence face and elements send light back to the source alone.
+  // At normal incidence, the entrance face and the elements return light only to the source.
   EXPECT_EQ(field["directions"][0]["spots"][0]["deviation_arcmin"], 0);
   EXPECT_EQ(field["directions"][0]["spots"][0]["depth_min"], 0);
   const std::vector<std::string> csv = lines_of(folder.read("far_field.csv"));

@@ -5,7 +5,7 @@
 
 #include "tests/app/program.h"
 
-// retrace roughness: its files, the shipped facets, and what it refuses.
+// Tests of `retrace roughness`: its files, the shipped facets, and refused input.
 
 namespace retrace::test::roughness_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "tests/app/program.h"
 
-// Elements on substrates from a design to NC text and back, as users do it.
+// Tests of elements on substrates with the program: from a design to NC text and back.
 
 namespace retrace::test::substrate_job_test {
 namespace {
@@ -13,7 +13,7 @@ const char* const kExample = "fabrication/prisms_on_cylinder.toml";
 
 class SubstrateJob : public ::testing::Test {
  protected:
-  /// A refusal: exit code 2, one line, nothing written.
+  /// Expects that the arguments are refused with exit code 2 and one line, and that nothing is written.
   void expect_refused(const Arguments& arguments, const std::string& what) {
     const auto before = folder_.names();
     const Outcome refused = retrace(folder_, arguments);
@@ -46,13 +46,13 @@ TEST_F(SubstrateJob, OfTheExampleVerifiesInEveryDialect) {
     EXPECT_EQ(json["elements"], json["elements_cut"]);
     EXPECT_EQ(json["elements"], 60);
     EXPECT_LT(json["facet_distance_nm_max"].get<double>(), 1.0);
-    // Ten rows of roofs, each with its own A for either facet.
+    // There are ten rows of prisms. Each facet of a row has its own angle A.
     EXPECT_EQ(json["poses"].size(), 20U);
   }
   expect_refused({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}, "base: no map is drawn");
 }
 
-/// What is left returns what the design does, but for the texture of its facets.
+/// The machined part has the RRE of the design, except for the effect of the surface texture.
 TEST_F(SubstrateJob, AsMachinedReturnsWhatTheDesignDoes) {
   std::string design = read_text(example(kExample));
   design.replace(design.find("x_length_mm = 5"), 15, "x_length_mm = 2");
@@ -74,7 +74,7 @@ TEST_F(SubstrateJob, AsMachinedReturnsWhatTheDesignDoes) {
   const Json machined = rre("smooth.toml");
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_NEAR(machined[k]["rre"].get<double>(), designed[k]["rre"].get<double>(), 1e-6);
-  // Without its last element there is no such design.
+  // Without the cut of its last element, the part corresponds to no design.
   const std::string text = folder_.read("rs274ngc/program.ngc");
   std::string cut;
   bool skips = false;

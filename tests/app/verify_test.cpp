@@ -12,7 +12,8 @@
 
 #include "tests/app/program.h"
 
-// retrace verify and retrace forces: from a design to programs, back from their text, and to the part they leave.
+// Tests of `retrace verify` and `retrace forces`: from a design to programs, from their text to a verdict, and to the
+// machined part.
 
 namespace retrace::test::verify_test {
 namespace {
@@ -22,7 +23,7 @@ const std::string kDesign =
     "0.902\n"
     "y_length_mm = 0.902\n[body]\nthickness_mm = 1\nrefractive_index = 1.4917\n";
 
-/// A folder with a job and its program in every dialect.
+/// Fixture with a folder that contains a job and its program in every dialect.
 class VerifyCommand : public ::testing::Test {
  protected:
   void make(const std::string& machine, const std::string& strategy) {
@@ -64,14 +65,15 @@ TEST_F(VerifyCommand, CorrectProgramsOfEveryDialectPass) {
     EXPECT_LE(json["root_residual_nm_max"].get<double>(), json["root_residual_nm_predicted"].get<double>() + 10.0);
     EXPECT_NEAR(json["wall_overcut_nm_max"].get<double>(), json["wall_overcut_nm_predicted"].get<double>(), 10.0);
     EXPECT_NEAR(json["removed_volume_mm3"].get<double>(), 4 * 0.451 * 0.451 * 0.2255 / 2, 1e-5);
-    // The planner's own time, from a model of its own.
+    // The planner computes the time with a model of its own.
     const double planned_s = folder_.json(dialect + "/fabrication.json")["time_s"].get<double>();
     EXPECT_NEAR(json["time_s"].get<double>(), planned_s, 0.01 * planned_s);
     EXPECT_EQ(json["complete"], true);
   }
 }
 
-/// A phase, and a restart behind a line: what stands before them is said.
+/// Verifies the programs of single phases, and a program that was stopped after a line. `--standing` names the phase
+/// that is next when the programs start.
 TEST_F(VerifyCommand, PartsOfAJob) {
   make("paper", "two-step");
   const std::string whole = program("rs274ngc");
@@ -88,7 +90,7 @@ TEST_F(VerifyCommand, PartsOfAJob) {
   EXPECT_EQ(after["verdict"], "pass");
   EXPECT_EQ(after["programs"].size(), 1U);
   EXPECT_EQ(verified({roughing, finishing}, 0)["verdict"], "pass");
-  // The operator stops behind the third call.
+  // The operator stops the program after the third call.
   const std::string text = folder_.read(whole);
   std::size_t call = 0;
   for (int k = 0; k < 3; ++k) call = text.find(" call\n", call + 1);
@@ -174,7 +176,8 @@ TEST_F(VerifyCommand, AProgramForAnotherMachineIsRefused) {
       << outcome.err;
 }
 
-/// Outward normals of the part's facets, from a table of planes: facets 1 and 2 of each element.
+/// Returns the outward normals of the facets of the part, from a table of planes. The order is facet 1 and facet 2 of
+/// each element.
 std::vector<std::array<double, 3>> normals_of(const std::string& csv) {
   std::vector<std::array<double, 3>> normals;
   std::istringstream lines(csv);
@@ -205,9 +208,9 @@ std::string without_texture(const std::string& design) {
   return text;
 }
 
-/// The circle closes: design, job, NC text, the part it leaves, and its RRE. Planned for ideal axes and run on the
-/// paper's machine, facet normals are off by 5.06 and 5.42 arcmin and the apex by 3.32 arcmin, which spreads the light
-/// at 0.05 degrees acceptance and not at 0.5.
+/// Complete cycle: design, job, NC text, machined part and its RRE. The program is planned for ideal axes and runs on
+/// the machine of the paper. The facet normals are therefore wrong by 5.06 and 5.42 arcmin, and the apex angle by 3.32
+/// arcmin. This reduces the RRE for an acceptance of 0.05 degrees, but not for 0.5 degrees.
 TEST_F(VerifyCommand, TheAsMachinedPartIsTraced) {
   make("ideal", "two-step");
   const std::string file = program("rs274ngc");
@@ -223,7 +226,7 @@ TEST_F(VerifyCommand, TheAsMachinedPartIsTraced) {
   ASSERT_EQ(normals.size(), 8U);
   const double h = std::sqrt(0.5);
   for (std::size_t k = 0; k < normals.size(); k += 2) {
-    // Facet 1 of the cut is the one towards -x of the part.
+    // Facet 1 of a cut is the facet on the -x side of the part.
     EXPECT_NEAR(between_arcmin(normals[k], {-h, 0, -h}), 5.06, 0.01);
     EXPECT_NEAR(between_arcmin(normals[k + 1], {h, 0, -h}), 5.42, 0.01);
     EXPECT_NEAR(std::abs(between_arcmin(normals[k], normals[k + 1]) - 90.0 * 60.0), 3.32, 0.01);
@@ -238,14 +241,15 @@ TEST_F(VerifyCommand, TheAsMachinedPartIsTraced) {
   const auto wrong = rre("wrong_smooth.toml");
   EXPECT_NEAR(wrong.second, right.second, 5e-3) << "0.5 degrees";
   EXPECT_LT(wrong.first, 0.2 * right.first) << "0.05 degrees";
-  // Monte Carlo traces it with its texture.
+  // Monte Carlo traces the part with its surface texture.
   const Json textured = retrace_json(folder_, {"rre", "wrong.toml", "--target-error", "5e-3"});
   EXPECT_LT(textured["points"][1]["rre"].get<double>(), right.second);
 }
 
-/// A part that was planned for its machine returns what the design does. Finished by plunges, its facets are the
-/// design's. Ploughed, one facet is turned by delta about the other's normal: their right angle stays exact, but the
-/// root lines up no more, and the light comes back off by 2 n delta sin 45 degrees.
+/// A part that is planned for its machine has the RRE of the design. If plunges finish both facets, they equal the
+/// facets of the design. If one facet is ploughed, it is rotated by delta about the normal of the other facet. The
+/// angle between the facets remains exact, but the root is tilted. The returned light then deviates by 2 n delta sin(45
+/// degrees).
 TEST_F(VerifyCommand, WhatMachinesAndStrategiesCostInLight) {
   constexpr double index = 1.4917;
   for (const std::string machine : {"ideal", "paper", "thesis"})
@@ -263,7 +267,8 @@ TEST_F(VerifyCommand, WhatMachinesAndStrategiesCostInLight) {
       const Json design = rre("design.toml");
       const Json part = rre("smooth.toml");
       EXPECT_NEAR(part[1]["rre"].get<double>(), design[1]["rre"].get<double>(), 1e-3) << "0.5 degrees";
-      // Light that a tilted root sends back twice, reflected at the face between, leaves the narrow cone.
+      // Light that the entrance face reflects back into the part is deviated twice by a tilted root. It then misses the
+      // narrow cone.
       const double lost = strategy == "unidirectional" && machine != "ideal" ? 0.05 : 1e-3;
       EXPECT_NEAR(part[0]["rre"].get<double>(), design[0]["rre"].get<double>(), lost) << "0.05 degrees";
       if (strategy != "unidirectional") continue;
@@ -296,7 +301,7 @@ TEST_F(VerifyCommand, ElementsThatAreNotCutAreNotThere) {
   EXPECT_EQ(json["elements_full"], 3);
   EXPECT_EQ(json["boundary"], "closed, free of self-intersections");
   EXPECT_EQ(json["design"]["part"]["facets"], "part_facets.csv");
-  // Upper left, lower left and lower right of the part.
+  // The elements at the lower left, lower right and upper left exist. The element at the upper right does not.
   const std::string csv = folder_.read("part_facets.csv");
   for (const char* place : {"0.2255,0.2255,", "0.6765,0.2255,", "0.2255,0.6765,"})
     EXPECT_NE(csv.find(place), std::string::npos) << place << "\n" << csv;
@@ -304,7 +309,8 @@ TEST_F(VerifyCommand, ElementsThatAreNotCutAreNotThere) {
   folder_.write("smooth.toml", without_texture(folder_.read("part.toml")));
   const double part = retrace_json(folder_, {"rre", "smooth.toml", "--engine", "exact"})["points"][0]["rre"];
   const double design = retrace_json(folder_, {"rre", "design.toml", "--engine", "exact"})["points"][0]["rre"];
-  // A quarter of the back is flat and reflects once, to the front: about 4 % of what it would return.
+  // A quarter of the back is flat. Its single reflection returns about 4 % of the light that elements would return
+  // there.
   EXPECT_NEAR(part, 0.75 * design, 0.04);
   EXPECT_EQ(retrace(folder_, {"rre", "part.toml", "--derivatives", "--engine", "exact"}).code, 2);
   EXPECT_EQ(retrace(folder_, {"job", "part.toml", "--tool-width-mm", "0.451"}).code, 2);
@@ -324,14 +330,16 @@ TEST_F(VerifyCommand, TheTextureIsTheProcesses) {
   const auto value = [&](const std::string& key) {
     return std::stod(part.substr(part.find(key + " = ") + key.size() + 3));
   };
-  // Sa 19.7 and 29.9 nm of facets with 48.9 nm in all; Sq of Gaussian heights; 42.4 feed marks a mm at 10 mm/min.
+  // Expected values: Sa is 19.7 nm for the roughness and 29.9 nm for the waviness of facets with Sa 48.9 nm. Sq follows
+  // from Sa for Gaussian heights. There are 42.4 feed marks per mm at 10 mm/min.
   EXPECT_NEAR(value("roughness_sq_nm"), 19.7 * std::sqrt(0.5 * std::numbers::pi), 1e-3);
   EXPECT_NEAR(value("waviness_sq_nm"), 29.9 * std::sqrt(0.5 * std::numbers::pi), 1e-3);
   EXPECT_NEAR(1e3 / value("waviness_length_um"), 42.4, 0.05);
 }
 
-// A chip of 9.02 um on an edge of 451 um takes 2 % of what a prism returns: once where facet 2 is ploughed, as both
-// facets have their scratch at one place, and twice where it is plunged, from the other side.
+// A chip of 9.02 um in an edge of 451 um leaves a scratch on both facets. If facet 2 is ploughed, both scratches are at
+// the same position along the roof edge and take 2 % of the returned light. If facet 2 is plunged from the other side,
+// they are at different positions and take twice as much.
 TEST_F(VerifyCommand, ChipsOfTheEdgeBecomeScratches) {
   for (const auto& [strategy, kept] : {std::pair{"unidirectional", 0.98}, {"two-step", 0.96}}) {
     make("ideal", strategy);
@@ -352,7 +360,7 @@ TEST_F(VerifyCommand, ChipsOfTheEdgeBecomeScratches) {
                                     "idealisation.entrance=lossless"})["points"][0]["rre"]
           .get<double>();
     };
-    // Light that one scratch turns aside comes back by another to second order.
+    // Light that one scratch deflects may return by another scratch. This effect is of second order.
     const double share = lossless("part.toml") / lossless("design.toml");
     EXPECT_GT(share, kept - 1e-6);
     EXPECT_LT(share, kept + 0.02 * (1.0 - kept) * (1.0 - kept));

@@ -9,7 +9,7 @@
 
 #include "tests/app/program.h"
 
-// A part of zones from its design to NC text, and back to a part of zones that is traced.
+// Tests of parts with zones: from the design to a job and NC text, and back to a part with zones that is traced.
 
 namespace retrace::test::zone_job_command_test {
 namespace {
@@ -33,7 +33,8 @@ class ZoneJobCommand : public ::testing::Test {
       if (std::ranges::find(more, option) == more.end()) words.insert(words.end(), {option, value});
     return retrace(folder_, words);
   }
-  /// The verification of the job's program, which writes the part as machined.
+  /// Verifies the program of the job and writes the machined part.
+  /// \return the result document
   Json verified() {
     const Outcome run = retrace(
         folder_, {"verify", "job.toml", "nc/program.ngc", "--as-machined", "part.toml", "--json", "v.json", "--quiet"});
@@ -65,7 +66,8 @@ TEST_F(ZoneJobCommand, ComesBackAsThePartOfZonesThatItIsMadeOf) {
                                       "--set", "detector.acceptance_half_angle_deg=0.5"})["points"][0]["rre"]
             .get<double>();
       };
-      // The same rays, on facets that lie where they are meant to up to a nanometre.
+      // Both parts are traced with the same rays. The facets of the machined part deviate from the design by at most 1
+      // nm.
       EXPECT_NEAR(rre("smooth.toml"), rre("design.toml"), 2e-3) << kind << " " << angle;
     }
   }
@@ -124,7 +126,8 @@ TEST_F(ZoneJobCommand, WhatCannotBeCutIsRefusedAndNothingWritten) {
   }
 }
 
-/// A job that was edited is cut as it says, and comes back so or not at all.
+/// An edited job is cut as edited. `--as-machined` writes the edited angle errors. It refuses a job whose zones have
+/// another size or rotation than those of the design.
 TEST_F(ZoneJobCommand, EditedJobsComeBackAsTheyAreCut) {
   folder_.write("design.toml", zoned_design("hexagonal_icc"));
   ASSERT_EQ(job().code, 0);
