@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "tests/support/refusals.h"
 
-// The tests may run as root, whom permissions do not bind: failures are made by other means.
+// The tests may run as root, for whom permissions have no effect. Failures are therefore caused by other means.
 
 namespace retrace::atomic_file_test {
 namespace {
@@ -46,7 +46,7 @@ class AtomicFile : public ::testing::Test {
   fs::path folder_;
 };
 
-/// While one exists, no file may grow beyond `bytes`: a full disk, more or less.
+/// Limits the size of files to `bytes` during its lifetime. This simulates a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -109,7 +109,7 @@ TEST_F(AtomicFile, SymbolicLinkStaysAndWhatItPointsToIsReplaced) {
   EXPECT_EQ(read_file(folder_ / "target"), "new");
 }
 
-/// Permission bits of a file.
+/// Returns the permission bits of a file.
 int mode_of(const fs::path& file) {
   return static_cast<int>(fs::status(file).permissions());
 }
@@ -139,7 +139,8 @@ TEST_F(AtomicFile, AReplacedFileKeepsItsMode) {
 TEST_F(AtomicFile, NoPlantedFileIsFollowedOverwrittenOrRemoved) {
   const fs::path victim = folder_ / "victim";
   write_file_atomically(victim, "precious");
-  // Names that could be guessed: with the number of the process, and of the form of temporary files.
+  // Create files with names that an attacker could guess for the temporary file: with the process id, or in the format
+  // of temporary names.
   const std::string by_process = ".a.txt." + std::to_string(::getpid()) + ".tmp";
   fs::create_symlink("victim", folder_ / by_process);
   fs::create_symlink("victim", folder_ / ".a.txt.0123456789abcdef.tmp");
@@ -156,7 +157,8 @@ TEST_F(AtomicFile, NoPlantedFileIsFollowedOverwrittenOrRemoved) {
 }
 
 TEST_F(AtomicFile, WritersOfOneFileDoNotMixAndTheLastOneWins) {
-  // Processes in different containers may have the same process id. Two files of this process imitate them.
+  // Processes in different containers may have the same process id. Two files that are open in this process simulate
+  // this case.
   const fs::path file = folder_ / "a.txt";
   GrowingFile first(file);
   first.append("first");
@@ -247,7 +249,7 @@ TEST_F(AtomicFile, NothingIsLeftOfAGrowingFileThatIsNotFinished) {
   EXPECT_THROW(growing.finish(), OutputError);
 }
 
-/// What a file is refused for.
+/// Returns the message with which a file is refused, or an empty text.
 std::string complaint_of(const fs::path& file, std::size_t most_bytes) {
   return refusal_of([&] { read_file(file, most_bytes); });
 }

@@ -20,7 +20,7 @@ struct Budget {
   ~Budget() { set_memory_budget_bytes(1024 * kMiB); }
 };
 
-/// Adds bytes to a sum; the destructor subtracts them again, also after an exception.
+/// Adds bytes to a sum. The destructor subtracts them again, also after an exception.
 struct Share {
   std::atomic<std::uint64_t>& sum;
   std::uint64_t own = 0;
@@ -31,15 +31,15 @@ struct Share {
   }
 };
 
-/// Sets `most` to the maximum of `most` and `value`.
+/// Increases `most` to `value` if `value` is greater.
 void raise(std::atomic<std::uint64_t>& most, std::uint64_t value) {
   std::uint64_t seen = most.load();
   while (seen < value && !most.compare_exchange_weak(seen, value)) {
   }
 }
 
-// Each of 64 tasks fits into the quarter of the budget that one trace may use, but eight parallel tasks do not fit.
-// With any number of threads, all tasks must be completed within half of the budget.
+// Each of 64 tasks fits into the quarter of the budget that one trace may use. Eight parallel tasks do not fit into the
+// half that all traces share. All tasks must nevertheless be completed, with any number of threads.
 TEST(MemoryBudget, WorkThatDoesNotFitSideBySideIsDoneAllTheSame) {
   const Budget budget(400 * kMiB);
   for (const unsigned threads : {1U, 8U}) {

@@ -9,7 +9,7 @@
 namespace retrace::testing::message_text_test {
 namespace {
 
-/// A code point in UTF-8.
+/// Returns a code point in UTF-8.
 std::string utf8(unsigned point) {
   const auto byte = [](unsigned value) { return static_cast<char>(value); };
   if (point < 0x80) return {byte(point)};

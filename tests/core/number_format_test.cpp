@@ -75,7 +75,7 @@ std::string of_charconv(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-/// The standard library's own writer, where it has one, is the judge: not only of digits, of the layout as well.
+/// The text must equal the output of the standard library, in its digits and in its layout.
 TEST(Shortest, IsWhatTheStandardLibraryWrites) {
   EXPECT_TRUE(rc::check([](std::uint64_t bits, std::int64_t whole, int power) {
     const auto any = std::bit_cast<double>(bits);
@@ -125,7 +125,7 @@ TEST(FixedApart, KeepsTheSideOfTheBound) {
   });
 }
 
-/// Numbers as Germans write them; needs no locale installed.
+/// Number format with German separators. It requires no installed locale.
 class GermanNumbers : public std::numpunct<char> {
  protected:
   char do_decimal_point() const override { return ','; }

@@ -1,4 +1,4 @@
-// Tests of keys that have no effect because another key takes precedence: a warning names both keys. The tests cover
+// Tests of keys that have no effect because another key takes precedence. A warning names both keys. The tests cover
 // every kind of table that a file can contain.
 #include <gtest/gtest.h>
 

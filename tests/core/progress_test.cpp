@@ -1,4 +1,4 @@
-// Progress of work that consists of tasks, and the estimate of its remaining time.
+// Tests of the progress of work that consists of tasks, and of the estimate of the remaining time.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -16,8 +16,10 @@ class Reports : public Progress {
   std::vector<double> shares;
 };
 
-/// Time in seconds at which work of constant speed, which takes `total_s`, is first reported to be long; negative:
-/// never. \param step_s time between two reports of progress
+/// Returns the time, in s, at which work with constant speed is first reported to be long, or -1 if it is never
+/// reported.
+/// \param total_s duration of the work
+/// \param step_s time between two reports of progress
 double notice_time_s(double total_s, double step_s) {
   LongRun run;
   for (int k = 0; k * step_s <= total_s; ++k) {

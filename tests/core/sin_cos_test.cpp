@@ -1,4 +1,4 @@
-// Tests of the sines and cosines from which directions are computed.
+// Tests of the sine and cosine functions that compute directions.
 #include "core/sin_cos.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Expected values are computed in extended precision.
+// The expected values are computed in extended precision.
 TEST(SinCos, MultiplesOf15DegreesAreTheNearestNumbers) {
   for (int step = -96; step <= 96; ++step) {
     const auto [sine, cosine] = sin_cos_deg(15.0 * step);
