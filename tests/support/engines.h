@@ -16,8 +16,9 @@
 
 namespace retrace::testing {
 
-/// Beams, stochastic beams and rays find the same efficiency of PMMA at 3 degrees, and all light is in the ledgers.
-/// \param most_truncated that beams may leave behind
+/// Expects that beams, stochastic beams and rays give the same efficiency for PMMA at 3 degrees of incidence. The
+/// powers of each ledger must add up to 1.
+/// \param most_truncated maximum power that beams may truncate
 inline void expect_engines_agree(const geometry::PartSpec& spec, double most_truncated) {
   using raytrace::Account;
   const geometry::Part part = geometry::build_part(spec);
@@ -40,7 +41,8 @@ inline void expect_engines_agree(const geometry::PartSpec& spec, double most_tru
   EXPECT_LT(sampled.ledger[Account::lost], 1e-9);
 }
 
-/// Closed, manifold and free of self-intersections. \pre a finite part
+/// Expects that the boundary of a part is closed, manifold and free of self-intersections.
+/// \pre the part is finite
 inline void expect_closed_part(const geometry::PartSpec& spec) {
   const geometry::BoundaryReport report =
       geometry::check_boundary(geometry::closed_boundary(geometry::build_part(spec)));
@@ -49,7 +51,8 @@ inline void expect_closed_part(const geometry::PartSpec& spec) {
   EXPECT_FALSE(report.self_intersects);
 }
 
-/// From all these directions, through PMMA and between perfect mirrors, all light is booked and none is lost.
+/// Expects that the ledger contains all light and that no light is lost. All given angles of incidence are tested, with
+/// PMMA and with perfect mirrors.
 inline void expect_nothing_lost(const geometry::Part& part, const std::vector<double>& incidences_deg,
                                 std::uint64_t ray_count, const std::string& name) {
   const raytrace::MonteCarlo tracer(part);
@@ -64,7 +67,8 @@ inline void expect_nothing_lost(const geometry::Part& part, const std::vector<do
       }
 }
 
-/// Beams, followed to `cutoff`, and rays send light to the same accounts within what beams leave and `slack`.
+/// Expects that beams and rays give the same power in each account of the ledger. The tolerance is the power that beams
+/// truncate at `cutoff`, plus `slack`.
 inline void expect_same_accounts(const geometry::Part& part, const raytrace::Illumination& light, double cutoff,
                                  double slack, const std::string& name) {
   raytrace::BeamPolicy policy;
@@ -78,8 +82,9 @@ inline void expect_same_accounts(const geometry::Part& part, const raytrace::Ill
         << name << ": " << raytrace::kAccountNames[a];
 }
 
-/// Rays send light to the accounts that the reference finds, within its noise, what it leaves and `slack`.
-/// \param comparisons that are made in all
+/// Expects that rays give the same power in each account as the reference. The tolerance is the noise of the reference
+/// plus its truncated power and `slack`.
+/// \param comparisons total number of comparisons in the test
 inline void expect_accounts_of(const ReferenceResult& reference, const raytrace::Ledger& traced,
                                std::size_t comparisons, double slack, const std::string& name) {
   const double z = student_bound(comparisons);
@@ -91,7 +96,8 @@ inline void expect_accounts_of(const ReferenceResult& reference, const raytrace:
   }
 }
 
-/// The same of PMMA and light within 8 degrees, one of two cases.
+/// Expects that rays agree with the reference tracer, for PMMA and a cone of 8 degrees. The statistical bound is for a
+/// test with two such comparisons.
 inline void expect_agrees_with_reference(const geometry::Part& part, const raytrace::Illumination& light,
                                          std::uint64_t reference_rays, std::uint64_t ray_count,
                                          const std::string& name) {

@@ -19,7 +19,7 @@ std::string codes(std::span<const std::string_view> words, std::string_view sepa
   return fmt::format("{}", fmt::join(texts, separator));
 }
 
-/// 1e6 as people write it.
+/// Returns a number with a short exponent, such as 1e6 instead of 1e+06.
 std::string bound(double value) {
   if (!std::isfinite(value)) return {};
   std::string text = shortest(value);
@@ -28,7 +28,8 @@ std::string bound(double value) {
   return text;
 }
 
-/// "above 0, to 100", "0 to 60", "at least 1"; empty without bounds.
+/// Returns a range as text, such as "above 0, to 100", "0 to 60" or "at least 1". Returns an empty text for a range
+/// without bounds.
 std::string range_text(const NumberRange& range) {
   const std::string low = bound(range.low);
   const std::string high = bound(range.high);
@@ -40,7 +41,7 @@ std::string range_text(const NumberRange& range) {
                      fmt::format("{}{}", up_to, high));
 }
 
-/// A number's range behind what it is one of.
+/// Returns the text followed by the range, if the range has bounds.
 std::string with_range(std::string text, const NumberRange& range) {
   const std::string limits = range_text(range);
   return limits.empty() ? text : text + ", " + limits;
@@ -91,7 +92,8 @@ std::string default_words(const Default& otherwise) {
                     otherwise);
 }
 
-/// "required", or of which keys of the table one must be given.
+/// Returns "required", "one of these" for a table of which one alternative is required, or the meaning of a missing
+/// table.
 std::string presence_words(const Table& inner, const Table& table) {
   for (const Rule& rule : table.rules) {
     const auto* const one_of = std::get_if<OneOf>(&rule);
@@ -101,7 +103,8 @@ std::string presence_words(const Table& inner, const Table& table) {
   return inner.presence == Presence::always ? "required" : std::string(inner.otherwise);
 }
 
-/// What a key belongs to; what it does not go with is left to the messages.
+/// Returns the conditions under which a key has an effect. Conditions that exclude a key are not listed, because
+/// messages explain them.
 std::string conditions_words(When when) {
   std::vector<std::string> texts;
   for (const Condition& condition : when) {
@@ -116,7 +119,7 @@ std::string line(std::string_view key, std::string_view otherwise, std::string_v
   return fmt::format("| `{}` | {} | {} |\n", key, otherwise, text);
 }
 
-/// What must hold of values whose keys the rule names.
+/// Returns the rules of a table that name keys.
 std::string rule_words(const Table& table) {
   std::string text;
   for (const Rule& rule : table.rules)
@@ -125,7 +128,8 @@ std::string rule_words(const Table& table) {
   return text;
 }
 
-/// Of a table that stands in one line: what its first key may be; of a list of them: all of its keys.
+/// Returns the allowed values of a table that is written in one line: those of its first key. For a list of tables,
+/// returns all keys.
 std::string in_line_words(const Table& table) {
   if (table.presence != Presence::list) return allowed_words(table.rows.front().kind);
   std::string text = "a list of tables";
@@ -149,7 +153,7 @@ std::string rows_text(const Table& table) {
   return text;
 }
 
-/// What follows the rows of a table.
+/// Returns the text after the rows of a table.
 std::string rules_text(const Table& table) {
   const std::string rules = rule_words(table);
   return rules.empty() ? "" : fmt::format("\n{}\n", rules.substr(1));

@@ -1,7 +1,7 @@
 #pragma once
 
-// Reference model of a cube corner at normal incidence. For each pixel of the aperture, a ray and its field vectors are
-// followed through three reflections. The model shares no code with the engine.
+// Reference model of a cube corner at normal incidence. For each pixel of the aperture, the model follows a ray and its
+// field vectors through three reflections. It shares no code with the engine.
 
 #include <array>
 #include <cmath>
@@ -23,19 +23,18 @@ struct PixelCubeSpec {
   double wavelength_mm = 550e-6;
   bool mirrors = true;  ///< perfect mirrors; otherwise total reflection
   int pixels = 400;     ///< number of pixels across the aperture
-  /// Inward normals of the facets, whose planes meet at the apex. The default is the normals of a perfect cube
+  /// Inward normals of the facets, whose planes meet at the apex. The default values are the normals of a perfect cube
   /// corner.
   std::optional<std::array<geometry::Vec3, 3>> normals = {};
-  /// Height of the surface over the plane of a facet, positive out of the body, in mm. The two arguments are
-  /// coordinates from the center of the facet, in mm: horizontally along the facet, and down the facet. The function is
+  /// Height of the surface above the plane of a facet, positive out of the body, in mm. The two arguments are
+  /// coordinates from the centre of the facet, in mm: horizontally along the facet, and down the facet. The function is
   /// null for plane facets.
   std::function<double(double, double)> height = {};
 };
 
 /// Far field of one cube corner as a sum over the pixels of its aperture. Each pixel contributes a plane wave in the
-/// direction of its outgoing ray, with the phase that this wave has at the apex. The exit pixel of the wave and its
-/// entry pixel are point-symmetric with respect to the apex. The model assumes this even if the facets have errors of
-/// angle.
+/// direction of its outgoing ray, with the phase that this wave has at the apex. The exit pixel and the entry pixel are
+/// symmetric about the apex. The model uses this symmetry also for facets with angle errors.
 class PixelCube {
  public:
   using Vec2 = geometry::Vec2;
@@ -57,7 +56,8 @@ class PixelCube {
   }
 
   /// Returns the radiant intensity in a direction, relative to the peak intensity of a perfect cube corner with
-  /// mirrors. \param q direction cosines along x and y
+  /// mirrors.
+  /// \param q direction cosines along x and y
   double at(const Vec2& q) const {
     Field sum = Field::Zero();
     for (const Pixel& pixel : pixels_)
@@ -88,7 +88,7 @@ class PixelCube {
     field(0, 0) = field(1, 1) = 1.0;
     Vec3 p(place.x(), place.y(), 10.0);
     Vec3 d = -Vec3::UnitZ();
-    double path_mm = 0.0;  // geometric, in the material
+    double path_mm = 0.0;  // geometric path length in the material
     std::array<bool, 3> met{};
     for (int bounce = 0; bounce < 3; ++bounce) {
       double nearest = 1e9;
