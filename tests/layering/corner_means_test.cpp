@@ -1,5 +1,5 @@
 // Searches the source files for positions that are computed as the average of the corners of a polygon. Such an average
-// moves if an edge is divided. The result of geometry::centroid() does not move.
+// moves if a corner is added on an edge. The result of geometry::centroid() does not move.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ namespace retrace::layering::corner_means_test {
 namespace fs = std::filesystem;
 namespace {
 
-/// Files that are allowed to average points, and the reason for each file. The points are not the corners of a polygon.
+/// Files that are allowed to average points, and the reason for each file. In these files, the points are not the
+/// corners of a polygon.
 const std::map<std::string, std::string>& exempt() {
   static const std::map<std::string, std::string> files = {
       {"fabrication/chisel/check/bodies.cpp", "any point inside a hull is sufficient"},
@@ -26,8 +27,9 @@ const std::map<std::string, std::string>& exempt() {
   return files;
 }
 
-/// Searches C++ code for an expression that averages points: a sum of vectors divided by their number, or a constant
-/// times a sum of named points. Returns the first one, or an empty string if there is none.
+/// Searches C++ code for an expression that averages points. Such an expression is a sum of vectors divided by their
+/// number, or a constant times a sum of named points.
+/// \return the first such expression, or an empty string
 std::string mean_of_points(const std::string& text) {
   static const std::regex sum(R"((Vec[23]) (\w+) = Vec[23]::Zero\(\);)");
   for (std::sregex_iterator at(text.begin(), text.end(), sum), end; at != end; ++at) {
@@ -73,7 +75,7 @@ TEST(CornerMeans, NoneIsAPosition) {
     EXPECT_TRUE(met.contains(name)) << name << " no longer averages points: remove it from exempt()";
 }
 
-// Each text averages corners by an expression that source files have used.
+// Each text averages the corners of a polygon. The expressions are from earlier versions of source files.
 TEST(CornerMeans, AreFound) {
   for (const char* text :
        {"  Vec2 sum = Vec2::Zero();\n  for (const Vec2& p : polygon) sum += p;\n"

@@ -25,8 +25,8 @@
 #include "retrace/verify.h"
 #include "tests/app/program.h"
 
-// The library as programs outside meet it: what it shows of itself, that it says what the program says, and that a
-// project of a few lines builds against an installation.
+// Tests of the library as external programs use it. They check its exported symbols, compare its results with those of
+// the program, and build a small project against an installation.
 
 namespace retrace::test::library_test {
 namespace {
@@ -35,14 +35,15 @@ namespace fs = std::filesystem;
 
 const fs::path kSource = RETRACE_SOURCE_DIR;
 
-/// A program with what it prints. \pre it returns 0
+/// Runs a program and returns its output.
+/// \pre the exit code of the program is 0
 std::string output_of(const Arguments& arguments, const fs::path& folder = fs::temp_directory_path()) {
   const Outcome outcome = Child(folder, arguments).wait();
   EXPECT_EQ(outcome.code, 0) << arguments[0] << ": " << outcome.err << outcome.out;
   return outcome.out;
 }
 
-/// The document that the program prints.
+/// Returns the document that the program prints.
 std::string document(const TemporaryFolder& folder, const Arguments& arguments, int code = 0) {
   const Outcome outcome = retrace(folder, with(arguments, {"--json", "-", "--quiet"}));
   EXPECT_EQ(outcome.code, code) << outcome.err;
@@ -141,7 +142,7 @@ TEST(Library, WrongInputIsAnErrorWithItsPlace) {
   wrong = {};
   wrong.incidence_deg = {90};
   EXPECT_THROW(rre(design, wrong), InputError);
-  // Numbers that the command line never lets through.
+  // The command line never passes these numbers to the library.
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, infinity, -infinity, -1.0, 0.0, 1.0, 2.0}) {
@@ -309,7 +310,7 @@ TEST(Library, ADesignIsCutAndReadBack) {
   EXPECT_EQ(verified.verdict, "pass");
   EXPECT_NO_THROW(Design::load(folder.path() / "left.toml"));
 
-  // A block that goes deeper is found, with its line.
+  // The verifier must find a block that cuts deeper, and must report its line.
   std::string wrong = program.text;
   const std::size_t deep = wrong.find("Z-");
   ASSERT_NE(deep, std::string::npos);
@@ -385,7 +386,7 @@ TEST(Library, OnePageHasSeveralResults) {
   EXPECT_THROW(report_page({{"rre.json", "{\"schema\": \"retrace.rre/1\""}}), InputError);
 }
 
-/// A report page reads only files that the caller names.
+/// A report page reads only files that the caller permits by name, or that are in a folder that the caller permits.
 TEST(Library, APageReadsNamedFilesOnly) {
   const test::TemporaryFolder folder;
   const std::string file = (folder.path() / "part.stl").string();

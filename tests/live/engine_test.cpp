@@ -32,7 +32,7 @@ Json ask(live::Engine& engine, const Json& request) {
   return Json::parse(engine.call(request.dump()));
 }
 
-/// \pre the answer is ok
+/// Sends a request and returns the answer, which must be successful.
 Json told(live::Engine& engine, const Json& request) {
   const Json answer = ask(engine, request);
   EXPECT_TRUE(answer.value("ok", false)) << request << answer;
@@ -62,7 +62,7 @@ TEST(LiveEngine, AnswersWhateverIsAsked) {
   EXPECT_EQ(ask(engine, {{"ask", "about"}, {"id", 17}})["id"], 17);
 }
 
-/// The form is made from the format: it has each of its keys.
+/// The form is generated from the file format and contains each key of the format.
 TEST(LiveEngine, FormHasEveryKeyOfTheFormat) {
   live::Engine engine;
   const Json form = told(engine, {{"ask", "form"}});
@@ -125,7 +125,7 @@ TEST(LiveEngine, ChangesKeys) {
   const Json back =
       told(engine, {{"ask", "set"}, {"design", after["design"]}, {"changes", {{"body.material", nullptr}}}});
   EXPECT_EQ(studies::parse_design(back["toml"].get<std::string>(), "").substance.material, "PMMA");
-  // A warning names a key that has no effect because another key takes precedence over it.
+  // The warning names a key that has no effect because another key takes precedence.
   EXPECT_TRUE(after["warnings"].empty()) << after["warnings"];
   const Json both =
       told(engine, {{"ask", "set"}, {"design", after["design"]}, {"changes", {{"body.refractive_index", 1.6}}}});
@@ -149,11 +149,11 @@ TEST(LiveEngine, RefusesChangesThatMakeNoDesign) {
   EXPECT_EQ(refused({{"element.kind", "rtp"}}), "design.toml: element.base_mm: missing, must be > 0");
   EXPECT_NE(refused({{"element.apertur_mm", 1}}).find("did you mean"), std::string::npos);
   EXPECT_NE(refused({{"element.aperture_mm", nullptr}}).find("missing"), std::string::npos);
-  // What cannot be built is told as well.
+  // A design that cannot be built is refused as well.
   EXPECT_NE(refused({{"element.cant_deg", 10}, {"body.thickness_mm", 1e-6}}).find("thickness"), std::string::npos);
 }
 
-/// From every kind to every other, whatever was given beside it.
+/// A design can be changed from every kind of element to every other kind. The engine adapts the other keys.
 TEST(LiveEngine, AdaptsWhatIsLeftOfAnotherKind) {
   live::Engine engine;
   for (const std::string_view from : studies::design_kinds())
@@ -192,7 +192,8 @@ studies::RreResult rre_of(const std::string& toml, double incidence_deg, double 
   return studies::RreStudy({studies::parse_design(toml, "design.toml")}, request).run();
 }
 
-/// A direction is what `retrace rre --engine exact` says of it. Both leave a little behind, not the same.
+/// The live engine gives the same results for a direction as `retrace rre --engine exact`. Both truncate a small
+/// fraction of the light, but not the same beams.
 TEST(LiveEngine, TellsWhatTheStudyTells) {
   constexpr double kLeft = 1e-6;
   live::Engine engine;
@@ -244,7 +245,7 @@ TEST(LiveEngine, EndsInTime) {
   EXPECT_FALSE(some["complete"]);
 }
 
-/// Light that enters a dead zone does not come back; light that enters a region of the footprint does.
+/// Light that enters a region of the footprint with an efficiency above 0.5 must return.
 TEST(LiveEngine, PathsComeBackFromTheFootprintAlone) {
   live::Engine engine;
   const Json design = opened(engine, kHoneycomb);
@@ -291,7 +292,7 @@ std::string unpacked(const std::string& base64) {
   return bytes;
 }
 
-/// Of a binary STL file, by the divergence theorem.
+/// Returns the volume of a binary STL file, by the divergence theorem.
 double volume_mm3(const std::string& stl) {
   constexpr std::size_t kHead = 84;
   constexpr std::size_t kTriangle = 50;
@@ -310,10 +311,10 @@ TEST(LiveEngine, GivesTheSolidOfOneElement) {
   const auto volume_of = [&](const std::string& toml) {
     return volume_mm3(unpacked(told(engine, {{"ask", "stl"}, {"design", opened(engine, toml)["design"]}})["base64"]));
   };
-  // Of a plate of 2 mm, and the wedge or pyramid below it.
+  // The expected volume is that of a plate of 2 mm and of the prism or pyramid below it.
   const std::string endless = "[array]\nextent = \"infinite\"\n[body]\nthickness_mm = 2\n";
   EXPECT_NEAR(volume_of("[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 3\n" + endless), 3.0 * (2.0 + 0.25), 1e-5);
-  const double side = std::sqrt(0.75);  // of the triangle in a circle of 1 mm
+  const double side = std::sqrt(0.75);  // side of the triangle in a circle of 1 mm diameter
   EXPECT_NEAR(volume_of("[element]\nkind = \"triangular_icc\"\naperture_mm = 1\n" + endless),
               std::sqrt(3.0) / 4.0 * side * side * (2.0 + side / std::sqrt(6.0) / 3.0), 1e-5);
   for (const std::string_view kind : studies::design_kinds())
@@ -338,7 +339,7 @@ TEST(LiveEngine, SaysWhatItCannotDo) {
   EXPECT_NE(file["text"].get<std::string>().find("names a file"), std::string::npos);
 }
 
-/// What is said of symmetry holds, by the exact engine.
+/// The reported symmetry must agree with the RRE of the exact engine.
 TEST(AzimuthSymmetry, IsThatOfRre) {
   const std::string prism =
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[body]\nthickness_mm = 1\n[array]\nextent = "
@@ -354,8 +355,9 @@ TEST(AzimuthSymmetry, IsThatOfRre) {
     const auto symmetry = studies::azimuth_symmetry(studies::parse_design(toml, "design.toml"));
     ASSERT_TRUE(symmetry) << toml;
     EXPECT_EQ(symmetry->period_deg, period) << toml;
-    constexpr double kLeft = 3e-3;  // that is followed no further, which differs a little
-    // Prisms askew send back little into a narrow cone.
+    // Fraction of the light that may be truncated. It differs slightly between azimuths.
+    constexpr double kLeft = 3e-3;
+    // Obliquely illuminated prisms return little light into a narrow cone, so that a wide cone is used.
     const std::string text = toml + "[detector]\nacceptance_half_angle_deg = 25\n";
     const auto rre = [&text](double azimuth_deg) {
       return rre_of(text, 23.0, azimuth_deg, kLeft, false).points[0].rre;

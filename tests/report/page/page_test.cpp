@@ -39,10 +39,10 @@ TEST(Page, TextsAreTextsWhateverTheyHold) {
   page.sections = {section};
   page.scene = SceneView{{{0, 0, 0}}, {}, {}, {{nasty, {{0, 0, 0}}, {nasty}}}};
   const std::string html = page_html(page, kAssets);
-  EXPECT_EQ(count(html, "<script"), 2U);  // data, and the page's own
+  EXPECT_EQ(count(html, "<script"), 2U);  // the data and the script of the page
   EXPECT_EQ(count(html, "</script"), 2U);
   EXPECT_EQ(count(html, "alert(1)</script"), 0U);
-  // What is in the data is read back whole.
+  // The data of the page must contain the texts unchanged.
   const std::size_t begin = html.find("id=\"page-data\">") + 15;
   const auto data = nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
   EXPECT_EQ(data["charts"][0]["title"], nasty);
@@ -106,7 +106,7 @@ TEST(StudyPage, CurvesAreSplitByAzimuthAndGoOverIncidence) {
   EXPECT_EQ(section->tables[0].rows.size(), 4U);
   EXPECT_EQ(section->tables[0].columns[6], "absorbed (%)");
   EXPECT_EQ(section->tables[0].rows[0][6].text, "25");
-  // Summary: nothing at normal incidence, all of it at 10 and 90 degrees.
+  // The summary shows 0 % at normal incidence and 100 % at an incidence of 10 degrees and an azimuth of 90 degrees.
   EXPECT_EQ(page.sections[0].facts[0].value, "0.00 %");
   EXPECT_EQ(page.sections[0].facts[1].value, "100.00 %");
 }
@@ -166,7 +166,7 @@ TEST(StudyPage, DocumentsThatLackEverythingGiveASectionEach) {
   for (const char* kind : {"inspect", "rre", "footprint", "far_field", "photometry", "roughness", "sweep", "optimum",
                            "fabrication", "verification", "forces", "metrology", "image", "anything"}) {
     folder.documents.push_back(document(kind, nlohmann::ordered_json::object()));
-    // And of wrong types.
+    // Add a document whose values have wrong types.
     folder.documents.push_back(document(kind, {{"points", "no"},
                                                {"designs", {1, "a"}},
                                                {"features", {nullptr, 3}},
@@ -255,7 +255,7 @@ TEST(StudyPage, ADesignThatIsAloneIsNotNamedAgain) {
   EXPECT_EQ(card_names(page), (std::vector<std::string>{"RRE at normal incidence", "Greatest RRE, at 10 deg"}));
 }
 
-/// On a page with several designs, no two cards, curves or captions have the same name, even if designs have the same
+/// On a page with several designs, all names of cards, curves and captions are different, even if designs have the same
 /// title.
 TEST(StudyPage, DifferentDesignsHaveDifferentNames) {
   using Json = nlohmann::ordered_json;

@@ -9,7 +9,7 @@
 
 #include "tests/app/program.h"
 
-// `retrace report` as users meet it; what the page looks like is the browser test's.
+// Tests of the command `retrace report`. The browser test checks the appearance of the page.
 
 namespace retrace::test::report_command_test {
 namespace {
@@ -40,7 +40,8 @@ TEST(Report, IsWrittenBesideTheResultsOrWhereOneSays) {
   EXPECT_NE(html.find("Permission is hereby granted"), std::string::npos) << "licences of the scripts";
 }
 
-/// Whoever made the results may have put links into their folder. A link that the user names is followed.
+/// The folder of results may contain links that somebody else has created. retrace does not write through such a link.
+/// It follows a link only if the user names this link as the output.
 TEST(Report, FollowsNoLinkInPlaceOfThePage) {
   const TemporaryFolder folder;
   make_results(folder);
@@ -83,7 +84,7 @@ TEST(Report, TakesResultsInFoldersOfTheFolder) {
   EXPECT_EQ(retrace_json(folder, {"report", "study"}).at("documents"), Json::array({"optics/rre.json"}));
 }
 
-/// The data of a page: charts and what is in the view.
+/// Returns the data of a page: its charts and the scene of its 3D view.
 Json data_of(const std::string& html) {
   const std::size_t begin = html.find("id=\"page-data\">") + 15;
   return Json::parse(html.substr(begin, html.find("</script>", begin) - begin));
@@ -104,7 +105,7 @@ TEST(Report, ShowsDrawingsAndPictures) {
   EXPECT_NE(html.find("data:image/svg+xml;base64,"), std::string::npos);
 }
 
-/// A part from a mesh and one with planes of its own have their views and sections as well.
+/// Parts from a mesh and parts from a table of facets are shown in views and sections as well.
 TEST(Report, TakesMeshesAndTablesOfFacets) {
   const TemporaryFolder folder;
   const std::string shape =
@@ -113,7 +114,7 @@ TEST(Report, TakesMeshesAndTablesOfFacets) {
   folder.write("d.toml", shape + body);
   ASSERT_EQ(retrace(folder, {"export", "d.toml", "part.stl"}).code, 0);
   folder.write("mesh.toml", "[part]\nmesh = \"part.stl\"\n[body]\nrefractive_index = 1.5\n");
-  // One of the two prisms, 20 um deeper than it should be.
+  // The table describes one of the two prisms, 20 um deeper than nominal.
   folder.write("planes.csv", "x_mm,y_mm,facet,height_mm,x_slope,y_slope\n0.5,0.5,1,-0.52,-1,0\n0.5,0.5,2,-0.52,1,0\n");
   folder.write("facets.toml", shape + "[part]\nfacets = \"planes.csv\"\n" + body);
   for (const std::string name : {"mesh", "facets"}) {
@@ -123,13 +124,13 @@ TEST(Report, TakesMeshesAndTablesOfFacets) {
     EXPECT_GT(data["scene"]["triangles"].size(), 8U) << name;
     EXPECT_GE(data["scene"]["paths"].size(), 1U) << name;
   }
-  // The plate, and a prism of 1 x 0.5 / 2 x 1 on a step of 20 um.
+  // Expected volume: the plate, a prism of 1 mm x 0.5 mm / 2 x 1 mm, and a step of 20 um below it.
   const Json solid = retrace_json(folder, {"export", "facets.toml", "facets.stl"});
   EXPECT_NEAR(solid["volume_mm3"].get<double>(), 2.0 * 1.0 * 1.0 + 0.25 + 0.02, 1e-9);
   EXPECT_NEAR(retrace_json(folder, {"export", "mesh.toml", "again.stl"})["volume_mm3"].get<double>(), 2.5, 1e-5);
 }
 
-/// Elements on a base stand on it in the view too, and scratches are seen.
+/// The view shows elements on their substrate, and it shows scratches.
 TEST(Report, ShowsBasesAndScratches) {
   const TemporaryFolder folder;
   const std::string array =
@@ -149,7 +150,7 @@ TEST(Report, ShowsBasesAndScratches) {
     triangles[name] = scene["triangles"].size();
   }
   EXPECT_NEAR(lowest["flat"], -0.5, 1e-6);
-  // Roofs run across the slope; the last one's middle lies 3.5 mm from the highest place.
+  // The roof edges run across the slope. The centre of the last one is 3.5 mm from the highest position.
   EXPECT_NEAR(lowest["inclined"], -0.5 - 3.5 * std::tan(20.0 * std::numbers::pi / 180.0), 1e-6);
   EXPECT_GT(triangles["scratched"], triangles["flat"] + 16);
 }
