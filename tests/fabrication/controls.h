@@ -1,6 +1,6 @@
 #pragma once
 
-// Machines whose control has words for all that programs say, for tests.
+// Machine codes for tests with controls that have no standard codes for mist, spindle and stops.
 
 #include <string_view>
 #include <utility>
@@ -11,12 +11,12 @@
 
 namespace retrace::fabrication::test {
 
-/// Lines of a control without words of its own.
+/// Returns example codes for a control that has no standard codes.
 inline NcTexts control_texts() {
   return {"", "", "M107", "M109", "M101", "M100"};
 }
 
-/// With those lines, and rounding positions as that dialect does.
+/// Returns the machine with the codes of control_texts(). Its control rounds positions as the dialect requires.
 inline Machine for_dialect(Machine machine, std::string_view dialect) {
   const NcTexts texts = control_texts();
   machine.control.mist_on = texts.mist_on;
