@@ -75,7 +75,8 @@ std::string of_charconv(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-/// The text must equal the output of the standard library, in its digits and in its layout.
+/// The text must equal the output of the standard library if it can print shortest numbers. Both the digits and the
+/// layout must agree.
 TEST(Shortest, IsWhatTheStandardLibraryWrites) {
   EXPECT_TRUE(rc::check([](std::uint64_t bits, std::int64_t whole, int power) {
     const auto any = std::bit_cast<double>(bits);

@@ -1,8 +1,8 @@
-"""The live page that retrace explore writes, in a browser without a screen and without a network.
+"""Tests the live page that `retrace explore` writes, in a headless browser without a network.
 
     python3 page_test.py RETRACE SOURCE [--keep]
 
---keep writes the screenshots anew into this folder instead of comparing with them.
+--keep writes new screenshots into this folder instead of comparing the page with the old ones.
 """
 
 import json
@@ -29,7 +29,7 @@ KINDS = ("rtp", "hexagonal_icc", "triangular_icc")
 SLIDERS = {"rtp": ("element.base_mm", 0.3, 0.7), "hexagonal_icc": ("element.aperture_mm", 1.0, 2.0),
            "triangular_icc": ("element.aperture_mm", 1.0, 2.0)}
 STEPS = 100
-# What is asked for, in ms, and by how much it may be missed here, where other tests may run beside this one.
+# Maximum response times, in ms. FACTOR relaxes them, because other tests may run at the same time.
 WANTED_MS = {"point": 50, "curve": 300, "map": 2000}
 FACTOR = 20
 ODD = ('# Äpfel & "Birnen" <script>\r\nschema = "retrace.design/1"\n\n[element]\nkind = "rtp"   \nbase_mm = 0.50\t# half\n'
@@ -63,7 +63,7 @@ class LiveCase(BrowserCase):
         return self.script(f"return retraceLive.{what}")
 
     def rest(self):
-        """Until nothing moves and the direction is traced in full."""
+        """Waits until nothing moves and the direction is traced completely."""
         self.wait(lambda d: self.script("return !retraceLive.isMoving && !retraceLive.isDue"))
         self.wait(lambda d: not self.all(".accuracy.resting.old") and self.text(".accuracy.resting output") != "–")
 
@@ -83,7 +83,7 @@ class LiveCase(BrowserCase):
         self.script("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))", area, toml)
 
     def bounds(self, selector):
-        """Between what RRE lies, as a share: of "72.1 … 72.2 %" or "72.15 ± 0.05 %"."""
+        """Returns the bounds of the RRE, as fractions, from a text such as "72.1 … 72.2 %" or "72.15 ± 0.05 %"."""
         text = self.text(selector).removesuffix(" %")
         if "±" in text:
             middle, half = map(float, text.split(" ± "))
@@ -346,7 +346,7 @@ class PageWorks(LiveCase):
                 self.rest()
                 self.wait(lambda d: self.session("map.shown && retraceLive.map.shown.level") == 3)
                 self.wait(lambda d: self.session("curve.pass.target_error") == 1e-4 and self.session("curve.pass.queue.length") == 0)
-                # Times differ from run to run.
+                # Remove the computing times from the page, because they differ between runs.
                 self.script("document.querySelectorAll('.accuracy .quiet').forEach((e) => (e.textContent = ''))")
                 time.sleep(0.2)
                 self.assertLessEqual(self.script("return document.documentElement.scrollWidth"), width)

@@ -1,8 +1,8 @@
-"""The page that retrace report writes, in a browser without a screen and without a network.
+"""Tests the page that `retrace report` writes, in a headless browser without a network.
 
     python3 browser_test.py RETRACE SOURCE [--keep]
 
---keep writes the screenshots anew into this folder instead of comparing with them.
+--keep writes new screenshots into this folder instead of comparing the page with the old ones.
 """
 
 import pathlib

@@ -1,6 +1,7 @@
-"""Measures pages in a browser: whether two blocks of a page overlap."""
+"""Measures pages in a browser: finds blocks that overlap, and style rules that match too many elements."""
 
-# Texts, pictures, controls and boxes with a background or border. An element without any of these covers nothing.
+# JavaScript that finds overlapping items: texts, pictures, controls, and boxes with a background or a border. Other
+# elements cover nothing.
 OVERLAPS = """
 const MIN_PX = 1.5;  // rounding of positions, and ascenders of one line in the line above it
 const GRAPHICS = "img, canvas, svg, iframe, input, select, textarea, button";
@@ -117,12 +118,13 @@ WIDTHS = (1400, 800, 390)
 
 
 def overlaps(driver):
-    """Returns the number of measured items and a line for each pair of blocks of the loaded page that overlap."""
+    """Returns the number of measured items of the loaded page, and a line for each pair of blocks that overlap."""
     found = driver.execute_script(OVERLAPS)
     return found["items"], found["faults"]
 
 
-# Rules of the page that a style sheet lacks and that match an element outside of the live section.
+# JavaScript that lists style rules of the page that are missing in a given style sheet. A rule is listed if it matches
+# an element outside of the live section.
 LEAKS = """
 const live = document.getElementById("live");
 const visit = (rules, see, media = "") => {
@@ -147,5 +149,5 @@ return faults;
 
 
 def leaks(driver, shared_style):
-    """Returns a line for each rule of the live section that is not in `shared_style` and styles other parts of a report."""
+    """Returns a line for each rule that is not in `shared_style` and that matches an element outside of the live section."""
     return driver.execute_script(LEAKS, shared_style)

@@ -1,4 +1,4 @@
-"""The blocks of pages that retrace writes do not overlap, on wide and narrow screens: report, set-up sheet and live page.
+"""Tests that blocks of the report, the set-up sheet and the live page do not overlap, on wide and narrow screens.
 
     python3 layout_test.py RETRACE SOURCE
     python3 layout_test.py --site FOLDER    every page of the site that tools/site has built in FOLDER
@@ -28,7 +28,7 @@ class LayoutCase(BrowserCase):
         self.driver.execute_async_script("document.fonts.ready.then(arguments[0])")
 
     def settle(self):
-        """Until what follows the size of the window has been drawn."""
+        """Waits until the page has been drawn for the new size of the window."""
         self.driver.execute_async_script("setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(arguments[0])), 300)")
 
     def check(self, name, least_items):

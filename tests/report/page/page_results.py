@@ -1,4 +1,4 @@
-"""Makes a folder of results and its page with the program itself: what the tests of the page look at."""
+"""Makes a folder of results and its page with the program, for the tests of the page."""
 
 import pathlib
 import subprocess
@@ -13,7 +13,7 @@ def run(program, *arguments, codes=(0,)):
 
 
 def make_page(program, source, folder):
-    """Results of optics, fabrication and verification in one folder, and report.html of it."""
+    """Makes results of optics, fabrication and verification in one folder, and writes their report.html."""
     folder = pathlib.Path(folder)
     results = folder / "study"
     design = pathlib.Path(source) / "examples" / "rtp_single_0p45mm.toml"
@@ -46,7 +46,7 @@ thickness_mm = 0.5
 
 
 def make_sheet_and_study(program, source, folder):
-    """A set-up sheet, and report.html of results of many kinds: of two designs, one of which has a long title."""
+    """Makes a set-up sheet, and report.html of results of many kinds. One of the two designs has a long title."""
     folder = pathlib.Path(folder)
     make_page(program, source, folder)
     study = folder / "study"

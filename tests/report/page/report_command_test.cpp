@@ -198,8 +198,8 @@ std::string document_naming(const std::string& table, const std::string& key, co
   return Json{{"schema", "retrace.rre/1"}, {"designs", {design}}, {"points", Json::array()}}.dump();
 }
 
-/// A file outside the folder is not opened if only a design names it, whatever the key and the path. Its content
-/// appears neither in the page nor in the document nor on the terminal.
+/// retrace does not open a file outside of the folder of results if only a design names it, for any key and path. The
+/// content of such a file appears neither in the page, nor in the document, nor on the terminal.
 TEST(Report, ReadsNoFileThatOnlyADocumentNames) {
   const TemporaryFolder folder;
   const std::string secret = "swordfish";
@@ -237,7 +237,7 @@ TEST(Report, ReadsNoFileThatOnlyADocumentNames) {
   }
 }
 
-/// Results and pictures that are links to files elsewhere are left out, unless the user names these files.
+/// Results and pictures that are links to files outside of the folder are left out, unless the user names these files.
 TEST(Report, FollowsNoLinkOutOfTheFolder) {
   const TemporaryFolder folder;
   make_results(folder);
