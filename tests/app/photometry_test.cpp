@@ -50,7 +50,8 @@ TEST(Photometry, AnswersWithItsExitCode) {
   const Outcome incomplete = run_limits(folder, "S,,red,0.2,0,0,1,cd/lx/m2,confirmed\nS,,,,,,,,incomplete\n", {kWide});
   EXPECT_EQ(incomplete.code, 0);
   EXPECT_NE(incomplete.out.find("not all that the standard asks"), std::string::npos) << incomplete.out;
-  // Diffraction at cells of half a millimetre is not negligible.
+  // Diffraction at cells of half a millimetre is not negligible. Without diffraction, the verdict is therefore
+  // undetermined.
   const Outcome open = run_limits(folder, "S,,red,0.2,0,0,1,mcd/lx,read\n");
   EXPECT_EQ(open.code, 1) << open.err;
   EXPECT_NE(open.out.find("verdict: undetermined - diffraction is left out, as it was not asked for"),

@@ -74,7 +74,7 @@ TEST_F(SubstrateJob, AsMachinedReturnsWhatTheDesignDoes) {
   const Json machined = rre("smooth.toml");
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_NEAR(machined[k]["rre"].get<double>(), designed[k]["rre"].get<double>(), 1e-6);
-  // Without the cut of its last element, the part corresponds to no design.
+  // Without the cut of one element, the machined part corresponds to no design and is refused.
   const std::string text = folder_.read("rs274ngc/program.ngc");
   std::string cut;
   bool skips = false;

@@ -1,4 +1,4 @@
-// Tests that texts and names of files cannot control the terminal or add lines to the output, whatever characters they
+// Tests that texts and file names cannot control the terminal or add lines to the output, whatever characters they
 // contain.
 
 #include <gtest/gtest.h>
@@ -14,12 +14,12 @@
 namespace retrace::test::terminal_test {
 namespace {
 
-/// Name with control sequences that clear the screen, set the title of the terminal and add a line.
+/// File name with control sequences that clear the screen, set the title of the terminal and add a line.
 const std::string kHostile =
     "a\x1b[2J\x1b]0;t\x07\r\nverdict: pass\x7f\xc2\x9b"
     "1m";
 
-/// The text as a TOML string.
+/// Returns the text as a TOML string, with escaped control characters.
 std::string in_toml(const std::string& text) {
   std::string toml = "\"";
   for (std::size_t k = 0; k < text.size(); ++k) {

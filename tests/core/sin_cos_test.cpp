@@ -1,4 +1,4 @@
-// Tests of the sine and cosine functions that compute directions.
+// Tests of the sine and cosine functions with which directions are computed.
 #include "core/sin_cos.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Machine codes for tests with controls that have no standard codes for mist, spindle and stops.
+// Machine codes for tests with controls that have no standard codes for mist and stops.
 
 #include <string_view>
 #include <utility>
@@ -11,7 +11,7 @@
 
 namespace retrace::fabrication::test {
 
-/// Returns example codes for a control that has no standard codes.
+/// Returns example codes for mist and stops.
 inline NcTexts control_texts() {
   return {"", "", "M107", "M109", "M101", "M100"};
 }

@@ -57,8 +57,8 @@ RC_GTEST_PROP(Machine, ForwardUndoesInverse, ()) {
   RC_ASSERT((forward(machine, axes).reference_mm - point).norm() < 1e-12);
 }
 
-/// For random directions of the axes, the solved pose makes the facet parallel to the plunged plane. The root is
-/// rotated in the facet by the returned tilt.
+/// For random directions of the axes, the solved pose moves the facet into the plane in which the tool plunges. In this
+/// plane, the root is rotated by the returned tilt.
 RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
   Machine machine = shipped("ideal");
   machine.a.direction.value = (Vec3(1, 0, 0) + 1e-2 * point_within(1)).normalized();

@@ -74,7 +74,7 @@ RC_GTEST_PROP(Passes, AMissingPassAndAPassThatIsTooHighAreFound, ()) {
     RC_LOG() << "without visit " << k << "\n";
     RC_ASSERT(!verified(job, machine, wrong).passes());
   }
-  // Raise each visit of the last cycle. Only this cycle forms the final surface.
+  // Raise each visit of the last cycle, which forms the final surface.
   for (std::size_t k = visits.size() - passes; k < visits.size(); ++k) {
     Program wrong = right;
     std::get<Visit>(wrong.items[visits[k]]).start.z() += 1000;

@@ -86,8 +86,9 @@ TEST(Cuts, AreThoseOfTheThesis) {
 }
 
 TEST(Cuts, OfLayersRemoveAsMuchFromEitherFacet) {
-  // The layers are nested V-shaped shells. The root of shell i is (N - i) DOC sqrt(2) above the root of the design,
-  // where DOC is the depth of cut. Half as many shells as cuts therefore reach the face of the blank.
+  // The layers are nested V-shaped shells. The root of shell i is (N - i) sqrt(2) DOC above the root of the design,
+  // with the number of shells N and the depth of cut DOC. N is therefore half of the 71 cuts of the unidirectional
+  // strategy.
   EXPECT_EQ(cuts_per_facet(job_of(1.0, 10.0, Strategy::bidirectional)), 36);
 }
 

@@ -244,7 +244,7 @@ RC_GTEST_PROP(PlannedJobs, PloughedFacetsOfAnySizeAreCutAsDesigned, ()) {
   const double facet_um = job.process.roughing_depth_um * *rc::gen::inRange(15, 30) + 0.05 * *rc::gen::inRange(1, 60);
   prism.base_mm = 1e-3 * facet_um * std::numbers::sqrt2;
   prism.width_mm = 1e-3 * *rc::gen::inRange(300, 2500);
-  // One pass, or up to four passes side by side.
+  // One pass, or several passes side by side.
   job.tool.width_mm = std::clamp(prism.width_mm / *rc::gen::inRange(1, 4), 0.25, std::min(2.0, prism.width_mm));
   job.array.x_length_mm = prism.base_mm * (1.0 + 0.01 * *rc::gen::inRange(0, 200));
   job.array.y_length_mm = prism.width_mm * (1.0 + 0.01 * *rc::gen::inRange(0, 200));

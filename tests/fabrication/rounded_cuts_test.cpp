@@ -143,7 +143,7 @@ TEST(RoundedCuts, PeaksAreWhereTheFormulaHasThem) {
     const auto fins = [&](const EdgeCover& cover) { return std::isinf(rounded_fin_mm(cover, 1.0)); };
     if (std::any_of(covers.begin(), covers.end(), fins)) continue;
     const double height = rounded_peak_mm(covers, 1.0);
-    // A narrow peak may lie between the points of the grid.
+    // A narrow peak may be located between the points of the grid.
     if (height > 1e3 && std::isfinite(height)) continue;
     const bool is_peak = leaves_a_peak(cuts);
     if (std::isfinite(height)) {
@@ -191,7 +191,7 @@ TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
   EXPECT_GE(checked, 20);
 }
 
-/// Returns a job of one cube corner with errors of angle, in a rotated zone.
+/// Returns a job of one cube corner with angle errors, in a rotated zone.
 Job one_corner(double aperture_mm, const std::array<double, 3>& errors_arcmin, double rotation_deg,
                const geometry::Vec2& apex_mm) {
   Job job = cube_job(true, aperture_mm);
@@ -234,7 +234,7 @@ TEST(RoundedCuts, RightCutsOfABluntNosePass) {
   }
 }
 
-/// Returns a job of one cube corner with a random tool, size, position and errors of angle.
+/// Returns a job of one cube corner with a random tool, size, position and angle errors.
 Job random_corner(std::mt19937& bits) {
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
   const double error = uniform(0.0, 40.0);

@@ -265,7 +265,7 @@ TEST(ZoneJobs, PosesTurnAsLittleAsTheyCan) {
     EXPECT_LT(plan.poses[k].rounded.c_deg, plan.poses[k - 1].rounded.c_deg);
     way_deg += plan.poses[k - 1].rounded.c_deg - plan.poses[k].rounded.c_deg;
   }
-  EXPECT_NEAR(way_deg, 360.0 - widest_deg, 1.0);  // errors of angle rotate facets by arc minutes
+  EXPECT_NEAR(way_deg, 360.0 - widest_deg, 1.0);  // tolerance: angle errors rotate facets by some arc minutes
   std::array<int, 3> last{};
   for (const CuttingPose& pose : plan.poses) {
     int& before = last[pose.facet.zone];

@@ -75,7 +75,7 @@ TEST(CornerMeans, NoneIsAPosition) {
     EXPECT_TRUE(met.contains(name)) << name << " no longer averages points: remove it from exempt()";
 }
 
-// Each text averages the corners of a polygon. The expressions are from earlier versions of source files.
+// Typical expressions that average the corners of a polygon. The search must find each of them.
 TEST(CornerMeans, AreFound) {
   for (const char* text :
        {"  Vec2 sum = Vec2::Zero();\n  for (const Vec2& p : polygon) sum += p;\n"

@@ -105,7 +105,7 @@ std::vector<double> numbers_in(const std::string& text) {
   return result;
 }
 
-/// Returns the moves of a program text. The first element is `start`.
+/// Returns the moves of a program text, parsed independently of retrace. The first element is `start`.
 std::vector<Knot> knots_in(const std::string& text, NcDialect dialect, const Knot& start) {
   std::vector<Knot> knots = {start};
   double clock_s = 0.0;

@@ -379,7 +379,7 @@ class PageIsQuick(LiveCase):
     """
 
     def drag(self, kind, steps, wait_ms):
-        """Moves a slider by that many steps, one each `wait_ms` at most. \\return times in ms"""
+        """Moves a slider by `steps` steps, at most one each `wait_ms`. Returns the response and frame times in ms."""
         self.script(self.DRAG, *SLIDERS[kind], steps, wait_ms)
         self.wait(lambda d: self.session("isDue") is not None and self.script("return window.dragged"))
         return self.session("measure.latencies_ms"), self.script("return window.frames_ms")

@@ -149,5 +149,5 @@ return faults;
 
 
 def leaks(driver, shared_style):
-    """Returns a line for each rule that is not in `shared_style` and that matches an element outside of the live section."""
+    """Returns a line for each rule that is not in `shared_style` and matches an element outside the live section."""
     return driver.execute_script(LEAKS, shared_style)
