@@ -127,8 +127,8 @@ TEST(IndexRecord, WhatIsWrongIsToldWithItsLine) {
   EXPECT_EQ(table("0.4 1.5\n      0.4 1.5\n      0.6 1.4"), "") << "equal rows count one time";
 }
 
-// For some numbers of coefficients, every term of a formula has all its coefficients. All other numbers of coefficients
-// are refused. The expected numbers are derived from the formulas of the database.
+// Only some numbers of coefficients give all coefficients of every term of a formula. All other numbers are refused.
+// The expected numbers are derived from the formulas of the database.
 TEST(IndexRecord, CutTermsAreRefused) {
   const auto is_whole = [](int number, int count) {
     switch (number) {
@@ -182,7 +182,7 @@ TEST(IndexRecord, BlemishesOfTheExtinctionAreWarnedOf) {
         EXPECT_EQ(absorption_per_mm(material, wavelength_nm), absorption_per_mm(right, wavelength_nm));
     }
   }
-  for (const std::string& row : good) {  // a row twice, anywhere
+  for (const std::string& row : good) {  // duplicates each row, at every position
     for (std::size_t at = 0; at <= good.size(); ++at) {
       std::vector<std::string> rows = good;
       rows.insert(rows.begin() + static_cast<std::ptrdiff_t>(at), row);

@@ -13,7 +13,7 @@ import retrace as rt
 BEAM = program.example("low_beam.ies")
 BRICK = program.example("rtp_brick_1mm.toml")
 PRISM = program.example("rtp_single_0p45mm.toml")
-# Some studies have a target error, which excludes a number of rays.
+# Some studies set a target error. A number of rays cannot be combined with it, so the target error is unset.
 SOME_RAYS = {
     "analysis.engine": "montecarlo",
     "analysis.samples": 64,

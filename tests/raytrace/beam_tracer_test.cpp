@@ -183,9 +183,9 @@ rc::Gen<RandomCase> random_case() {
   });
 }
 
-// Beams and rays share only the geometry and Fresnel's formulas. Rays agree with beams within their 95 % intervals in
-// 88 % of 200 designs. For fewer designs, `min_coverage` widens the distance from 95 % in proportion to the standard
-// error.
+// Beams and rays share only the geometry and Fresnel's formulas. In 88 % of 200 designs, the difference between
+// beams and rays is within the 95 % interval of the rays. For fewer designs, `min_coverage` lowers the required
+// fraction, because its standard error is larger.
 TEST(BeamTracer, AgreesWithMonteCarlo) {
   const std::size_t count = test::sample_size<std::size_t>(40, 200);
   const std::vector<RandomCase> cases =
@@ -214,8 +214,8 @@ TEST(BeamTracer, AgreesWithMonteCarlo) {
   }
   const double required = test::min_coverage(0.88, 200.0, static_cast<double>(count));
   EXPECT_GE(within, required * static_cast<double>(count));
-  // 40 % of the designs are infinite arrays, which have cells. The minimum is 2.9 standard errors of a binomial count
-  // lower: 60 of 200.
+  // 40 % of the designs are infinite arrays, which the cell engine can trace. The minimum of `cell_cases` is 2.9
+  // standard errors of a binomial count below this expected number: 60 of 200 designs.
   const double with_cells = 0.4 * static_cast<double>(count);
   EXPECT_GE(cell_cases, with_cells - 2.9 * std::sqrt(0.6 * with_cells));
   EXPECT_GE(cell_within, required * cell_cases);

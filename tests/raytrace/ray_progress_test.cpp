@@ -86,7 +86,7 @@ TEST(RayProgress, ARunUntilATargetErrorRisesToOne) {
   reports.expect_rise();
 }
 
-/// Many small cube corners, each of which the tracer follows by itself.
+/// Returns a part with many small cube corners. The exact engine traces each of them separately.
 geometry::Part many_cubes() {
   return geometry::build_part(finite(geometry::HexagonalCube{0.5}, geometry::Arrangement::honeycomb, 10.0, 10.0, 1.0));
 }
@@ -113,7 +113,7 @@ TEST(BeamProgress, RisesAndTheResultIsThatOfOneTraceWithoutPauses) {
 TEST(BeamProgress, WorkThatIsCancelledAtAReportEnds) {
   const geometry::Part part = many_cubes();
   BeamPolicy policy;
-  policy.cutoff = 1e-13;  // far more work than a test has time for
+  policy.cutoff = 1e-13;  // the complete trace would take much longer than the test
   Cancellation cancel;
   Reports reports;
   reports.cancel = &cancel;

@@ -129,9 +129,10 @@ Truth truth_of(const Question& question, const Optics& optics) {
   return {exact[Account::retroreflected] + 0.5 * exact[Account::truncated], 0.5 * exact[Account::truncated]};
 }
 
-/// Expects that rounds are unbiased and that 1.96 standard errors contain the true value in 90 % of 200 results. The
-/// rule that stops at a small standard error favours results that are accidentally close together. For fewer seeds,
-/// `min_coverage` widens the distance from 95 % in proportion to the standard error.
+/// Expects that rounds are unbiased and that 1.96 standard errors contain the true value in 90 % of 200 results.
+/// This is less than 95 %, because the run stops as soon as the standard error is small, which favours results
+/// whose replicates agree by chance. For fewer seeds, `min_coverage` lowers the required fraction, because its
+/// standard error is larger.
 void expect_truth(const Question& question, const Optics& optics, double target_error) {
   const Truth truth = truth_of(question, optics);
   double mean = 0.0;
@@ -141,8 +142,8 @@ void expect_truth(const Question& question, const Optics& optics, double target_
     mean += cone.rre / static_cast<double>(rounds.size());
     squares += std::pow((cone.rre - truth.rre) / static_cast<double>(rounds.size()), 2.0);
   }
-  // The deviations are taken from the true value, so the tails of this ratio are lighter than normal for any number of
-  // seeds, and the bound needs no change.
+  // Both sides of the inequality are computed from deviations from the true value. The ratio of both sides
+  // therefore has lighter tails than a normal distribution, and the bound is valid for any number of seeds.
   EXPECT_LE(std::abs(mean - truth.rre), normal_bound(5) * std::hypot(std::sqrt(squares), truth.error)) << question.name;
   int hits = 0;
   for (const ConeResult& cone : answers(question, optics, target_error, false))
@@ -178,7 +179,8 @@ TEST(StochasticBeams, IntervalsHoldWhereFewScatteredRaysReachTheCone) {
     const ConeResult cone = answer(2e-5, seed);
     hits += std::abs(cone.rre - truth) <= 1.96 * cone.std_error ? 1 : 0;
   }
-  // 90 of 100; for fewer seeds the distance from 95 % grows in proportion to the standard error.
+  // 90 of 100 seeds. For fewer seeds, `min_coverage` lowers the required fraction, because its standard error is
+  // larger.
   EXPECT_GE(hits, test::min_coverage(0.9, 100.0, seeds) * seeds);
 }
 

@@ -79,7 +79,7 @@ TEST(WeakBeams, AgreeWithBeamsAndBookAllPower) {
 }
 
 /// Expects that the mean is unbiased and that 1.96 standard errors contain the true value in 88 of 100 results. For
-/// fewer seeds, `min_coverage` widens the distance from 95 % in proportion to the standard error.
+/// fewer seeds, `min_coverage` lowers the required fraction, because its standard error is larger.
 TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
   const std::uint32_t seeds = test::sample_size(20U, 100U);
   for (const Question& question : questions()) {
@@ -100,8 +100,8 @@ TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
       squares += std::pow(off / seeds, 2.0);
       if (std::abs(off) <= 1.96 * one.std_error[0] + error) ++hits;
     }
-    // The deviations are taken from the true value, so the tails of this ratio are lighter than normal for any number
-    // of seeds, and the bound needs no change.
+    // Both sides of the inequality are computed from deviations from the true value. The ratio of both sides
+    // therefore has lighter tails than a normal distribution, and the bound is valid for any number of seeds.
     EXPECT_LE(std::abs(mean), normal_bound(4) * std::hypot(std::sqrt(squares), error)) << question.name;
     EXPECT_GE(hits, test::min_coverage(0.88, 100.0, seeds) * seeds) << question.name;
     ::testing::Test::RecordProperty(question.name + " of " + std::to_string(seeds), hits);

@@ -69,7 +69,7 @@ TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
 TEST(PhotometricFirstAnswer, CostsLess) {
   const PhotometryStudy by_beams(cubes(), request_by(Engine::automatic));
   EXPECT_LT(3 * by_beams.first_answer(kRayShare)->wavelengths_nm.size(), by_beams.run().wavelengths_nm.size());
-  // With 32 times fewer rays, the standard error is 5.7 times as large.
+  // With 1/32 of the rays, the expected standard error is sqrt(32) = 5.7 times as large.
   const PhotometryStudy by_rays(cubes(), request_by(Engine::montecarlo));
   const PhotometryResult result = by_rays.run();
   EXPECT_GT(by_rays.first_answer(kRayShare)->points[0].std_error_mcd_per_lx,
@@ -132,8 +132,7 @@ TEST(PhotometricFirstAnswer, StopsWithTheMeasurementThatItBelongsTo) {
   }
 }
 
-/// The time at which a user stops a run is arbitrary. Most of the time of a rough finite part is spent on its far
-/// fields.
+/// A user may stop a run at any time. A rough finite part is used because most of its time is spent on far fields.
 TEST(PhotometricFirstAnswer, MeasurementsStopAtAnyMoment) {
   using Clock = std::chrono::steady_clock;
   const Design rough = parse_design(

@@ -409,8 +409,8 @@ TEST(Photometry, WhatCannotPassIsToldWithTheBestThatWasTried) {
   EXPECT_NE(photometry_table(result).find("not enough"), std::string::npos);
 }
 
-// The default is that of the manual: 1e-5 of the power on an element; for resampled beams of N elements 5e-5, or 5e-7 N
-// if that is more.
+// The manual defines the default cut-off. It is 1e-5 of the power that enters one element. For resampled beams of a
+// part with N elements, it is the larger of 5e-5 and 5e-7 N.
 TEST(Photometry, ReportsItsCutoff) {
   PhotometryRequest request = request_of(points_at({0.2}, 1.0));
   const auto cutoff = [&](const geometry::PartSpec& part) {

@@ -99,7 +99,7 @@ class Reports : public Progress {
   std::vector<double> shares;
 };
 
-// The point of smooth facets is one of all points of the run.
+// The point with smooth facets counts in the progress like every other point of the run.
 TEST(RoughnessStudy, ReportsTheProgressOfTheSmoothPointAsWell) {
   for (const std::vector<double>& sa_nm : {std::vector{0.0}, std::vector{0.0, 4.0, 9.0, 20.0}}) {
     RoughnessRequest request = request_of(sa_nm);

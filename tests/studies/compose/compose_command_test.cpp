@@ -81,7 +81,7 @@ TEST(ComposeCommand, WritesThePartOfZones) {
   EXPECT_GE(inspected.at("design").at("zone").at(0).at("rectangles_mm").size(), 2U);
 }
 
-/// The same study, of errors of angle in place of cants.
+/// Returns a study whose parameter is the dihedral error instead of the cant.
 std::string study_of_errors() {
   std::string text = study("most_zones = 2\nrounds = 0\n");
   for (const auto& [from, to] :

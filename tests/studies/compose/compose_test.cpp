@@ -232,7 +232,8 @@ TEST(Compose, IsTheSameWhateverAKilledRunLeft) {
   ASSERT_GT(points.size(), 40U);
   std::mt19937 random(30);
   for (int kill = 0; kill < 20; ++kill) {
-    // Points are computed several at a time: some of the last ones before a kill may be missing.
+    // Up to eight points are computed in parallel. If a run is killed, some of its last eight points may be
+    // missing.
     const std::size_t begun = random() % points.size();
     ResultStore left("", compose_layout(study), IfExists::refuse);
     for (std::size_t k = 0; k < begun; ++k)

@@ -161,7 +161,8 @@ TEST_F(Image, WrongOptionsAreRefused) {
   }
 }
 
-/// Every option that belongs to some kinds of picture is refused with every other kind, whatever its value.
+/// Some options apply to certain kinds of picture only. They are refused for all other kinds, whatever their
+/// values.
 TEST_F(Image, OptionsOfAnotherKindOfPictureAreRefused) {
   const Arguments all = {"--detector", "--camera", "--road"};
   const std::vector<std::pair<Arguments, Arguments>> options = {
@@ -211,7 +212,7 @@ TEST_F(Image, WrongSheetsAreRefused) {
   }
 }
 
-/// A finite part is seen in its own size.
+/// A finite part is shown at its own size. Options for the size of a sheet are therefore refused.
 TEST_F(Image, FinitePartsTakeNoSheet) {
   const Arguments camera = {"image", example("rtp_brick_2mm.toml"), "--camera", "-o", "i", "--json", "i.json"};
   const auto names = folder_.names();

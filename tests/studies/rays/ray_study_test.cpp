@@ -429,7 +429,8 @@ TEST(RayStudy, WhatMakesNoSenseIsRefused) {
             "--rays: must be 1 to 1099511627776, got 18446744073709551615");
 }
 
-/// A direction has no length: from the smallest number to the largest, every multiple of it traces the same ray.
+/// Only the direction of a direction vector counts, not its length. The traced ray is the same for every multiple
+/// of the vector, from the smallest to the largest number.
 TEST(RayStudy, LengthsOfDirectionsAndAxesDoNotMatter) {
   const std::vector<double> origins = {4.1, 5.2, 9.0};
   const Vec3 direction = Vec3(0.3, -0.2, -0.9).normalized();

@@ -271,7 +271,7 @@ TEST(MeshPart, ImplausibleSizesGiveAWarningThatNamesTheScale) {
   EXPECT_NE(err.find("mm; if the unit of the file is the metre, set scale = 1000 in [part]"), std::string::npos) << err;
   EXPECT_NEAR(volume_mm3({"--set", "part.scale=1000"}, &err), 1600.0, 1e-2);
   EXPECT_EQ(err, "");
-  // The proposed scale replaces another one.
+  // The proposed scale is independent of the scale that is set, here 2.
   volume_mm3({"--set", "part.scale=2"}, &err);
   EXPECT_NE(err.find("is 0.08 mm; if the unit of the file is the metre, set scale = 1000"), std::string::npos) << err;
 }

@@ -174,7 +174,7 @@ TEST_F(Store, OtherFilesAreNoStores) {
   EXPECT_EQ(message(layout(), IfExists::resume), expected);
 }
 
-/// A store that is damaged in one way after another.
+/// Fixture with a store that the tests damage in several ways.
 class DamagedStore : public Store {
  protected:
   static constexpr std::uint64_t kPoints = 400;
@@ -206,7 +206,7 @@ class DamagedStore : public Store {
   }
   void write(const std::string& content) const { std::ofstream(file(), std::ios::binary) << content; }
 
-  /// Every file of the folder with its content.
+  /// Returns the contents of all files of the folder, by file name.
   std::map<std::string, std::string> files() const {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -217,7 +217,8 @@ class DamagedStore : public Store {
     return files;
   }
 
-  /// Expects a refusal that names the store and the remedy and writes nothing.
+  /// Expects that the store is refused, that the message names the store and the remedy, and that nothing is
+  /// written.
   void expect_refused(const std::string& what) const {
     fs::remove(file().string() + "-lock");
     const auto before = files();

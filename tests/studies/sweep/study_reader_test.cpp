@@ -228,7 +228,8 @@ TEST(StudyReader, WhatIsWrongIsSaidWithItsLine) {
   }
 }
 
-/// Rays of photometry have no cut-off. It is refused unless another quantity or another engine of the study uses it.
+/// Photometry by rays uses no cut-off. A cut-off is therefore refused unless another quantity or another engine of
+/// the study uses it.
 TEST(StudyReader, ACutoffThatNothingUsesIsRefused) {
   const std::string photometry =
       "[[quantity]]\nkind = \"photometry\"\nstandard = \"r150\"\nclass = \"IA\"\ncolour = \"red\"\narea_cm2 = 1\n";

@@ -122,7 +122,7 @@ TEST(SweepCommand, AHangUpThatIsIgnoredStaysIgnored) {
   EXPECT_EQ(folder.json("out/sweep.json")["complete"], true);
 }
 
-/// A command with a study that it takes, its store, and what in the store is wrong.
+/// A command, a study for it, the name of its store, and SQL statements each of which damages the store.
 struct Damage {
   std::string command;
   std::string study;
@@ -185,7 +185,7 @@ TEST(StudyCommands, RefuseDamagedStoresAndWriteNothing) {
   }
 }
 
-// A lack of memory passes: it must not stay in a store as the result of a point, and must not abort the program.
+// A lack of memory is temporary. It must not be stored as the result of a point, and it must not abort the program.
 TEST(SweepCommand, ALackOfMemoryEndsTheRunAndStoresNothing) {
   if (kIsSanitized) GTEST_SKIP() << "sanitizers reserve far more address space than a limit would allow";
   const TemporaryFolder folder;
@@ -203,7 +203,7 @@ TEST(SweepCommand, ALackOfMemoryEndsTheRunAndStoresNothing) {
   int lacks = 0;
   for (int kilobytes = 60'000; kilobytes < 2'000'000; kilobytes += kilobytes / 32) {
     SCOPED_TRACE(kilobytes);
-    // Below some limit the system cannot even load the program.
+    // If the memory limit is too low, the system cannot even load the program.
     if (limited(std::to_string(kilobytes), "--version").code != 0) continue;
     ++starts;
     const Outcome outcome = limited(std::to_string(kilobytes), "sweep study.toml -o out --resume --quiet");

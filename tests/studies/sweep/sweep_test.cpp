@@ -318,7 +318,7 @@ TEST(Sweep, ResultsDoNotDependOnWhatIsAlreadyThere) {
   EXPECT_EQ(sweep_csv(collect(sweep, store, true)), sweep_csv(swept(sweep)));
 }
 
-/// A quantity that reports half of the progress of its tracing. Quantities with equal `tracing()` share one tracing.
+/// A quantity that reports a progress of one half. Quantities with equal `tracing()` share one tracing.
 class HalfReported : public Quantity {
  public:
   HalfReported(std::string name, std::string tracing) : Quantity(std::move(name)), tracing_(std::move(tracing)) {}
@@ -351,7 +351,8 @@ TEST(Sweep, APointThatIsBeingComputedCountsInPart) {
     store.record(*compute_point(sweep.study(), point, sweep.values(point), nullptr));
   SharesOfSweep seen;
   EXPECT_TRUE(run_sweep(sweep, store, &seen, nullptr));
-  // The last point is a fifth of all points. It has two tracings, x and y, with half of its progress each.
+  // The last point is one fifth of all points. It has two tracings, x and y. Each of them is half of the progress
+  // of the point.
   const std::vector<double> expected = {0.8 + 0.2 * 0.25, 0.8 + 0.2 * 0.75, 1.0};
   ASSERT_EQ(seen.shares.size(), expected.size());
   for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(seen.shares[k], expected[k], 1e-12);
