@@ -19,7 +19,8 @@
 #include "tests/support/part_specs.h"
 #include "tests/support/refusals.h"
 
-// Elements on inclined, curved and freeform substrates: where they stand, and that the part stays a solid.
+// Tests of elements on inclined, curved and freeform substrates: positions of the elements, and whether the part is
+// a closed solid.
 
 namespace retrace::geometry::substrate_part_test {
 namespace {
@@ -60,7 +61,7 @@ std::vector<Substrate> substrates() {
           formula("0.1*x - 0.05*y + 0.01*x*y", ElementAxes::parallel)};
 }
 
-/// The height of the back surface over a place, and the slope of what is there.
+/// Returns the height and the slope of the back surface at a point of the xy plane.
 HeightPlane surface_at(const Part& part, const Vec2& p) {
   for (const Placement& placement : part.placements) {
     const SurfacePatch& patch = part.patches[placement.patch];
@@ -73,7 +74,7 @@ HeightPlane surface_at(const Part& part, const Vec2& p) {
         const Vec2 a = patch.vertices[patch.triangles[t][k]].head<2>();
         const Vec2 along = patch.vertices[patch.triangles[t][(k + 1) % 3]].head<2>() - a;
         const Vec2 to = local - a;
-        inside = inside && along.x() * to.y() - along.y() * to.x() <= 0.0;  // seen from above it runs clockwise
+        inside = inside && along.x() * to.y() - along.y() * to.x() <= 0.0;  // clockwise as seen from above
       }
       if (!inside) continue;
       HeightPlane plane;
@@ -86,8 +87,9 @@ HeightPlane surface_at(const Part& part, const Vec2& p) {
   return {};
 }
 
-/// Closed, with the volume that its surface encloses, and free of crossings. Where four cells meet on a curved
-/// substrate they may stand high and low by turns, so that the part touches itself along the line over their corner.
+/// Expects that the boundary is closed, encloses the volume of the part and does not intersect itself. On a curved
+/// substrate, the heights of the four cells at a corner may alternate between high and low. The part then touches
+/// itself along the vertical line through this corner, and its boundary is not a manifold.
 void expect_solid(const PartSpec& spec) {
   const Part part = build_part(spec);
   const BoundaryMesh mesh = closed_boundary(part);
@@ -108,7 +110,7 @@ void expect_same_surface(const Part& a, const Part& b, double tolerance) {
   EXPECT_EQ(a.elements_partial, b.elements_partial);
   EXPECT_NEAR(a.retro_facet_area_mm2, b.retro_facet_area_mm2, tolerance * a.retro_facet_area_mm2);
   for (int k = 1; k < 200; ++k) {
-    // Places that no symmetry of the arrays singles out.
+    // Points of a low-discrepancy sequence. None of them is on a symmetry line of the arrays.
     const Vec2 p(a.spec.array.x_length_mm * std::fmod(0.618033988749895 * k, 1.0),
                  a.spec.array.y_length_mm * std::fmod(0.754877666246693 * k, 1.0));
     const HeightPlane of_a = surface_at(a, p);
@@ -129,7 +131,7 @@ TEST(SubstratePart, OnEverySubstrateAndOfEveryKindIsAClosedSolid) {
     }
 }
 
-/// What place() says of elements is what the part has.
+/// Expects that the part has the elements whose positions place() returns.
 void expect_placed(const PartSpec& spec) {
   const Part part = build_part(spec);
   std::int64_t whole = 0;
@@ -178,7 +180,8 @@ TEST(SubstratePart, AHugeCylinderIsThePlanarArray) {
   }
 }
 
-// The closed forms of planes, cylinders and spheres against the integrals of a formula.
+// Planes, cylinders and spheres are computed by closed forms. A substrate that is given by a formula is integrated
+// numerically. Both must give the same part.
 TEST(SubstratePart, AFormulaIsTheShapeThatItDescribes) {
   for (PartSpec spec : arrays())
     for (const auto& [shape, text] :
@@ -197,7 +200,7 @@ TEST(SubstratePart, AFormulaIsTheShapeThatItDescribes) {
       }
 }
 
-/// The normals of an inclined part's facets are those of the planar one, turned.
+/// The normals of the facets of an inclined part are the normals of the planar part, rotated by the inclination.
 TEST(SubstratePart, AnInclinedArrayIsThePlanarOneTurnedAsOne) {
   for (PartSpec spec : arrays()) {
     spec.array.x_gap_mm = spec.array.y_gap_mm = 0.0;
@@ -219,12 +222,14 @@ TEST(SubstratePart, AnInclinedArrayIsThePlanarOneTurnedAsOne) {
       for (const Vec3& n : nominal) nearest = std::min(nearest, (n - facet.normal).norm());
       EXPECT_LT(nearest, 1e-12);
     }
-    // The substrate rises by tan 21 degrees towards 35 degrees; the part is as deep as it and an element.
+    // The substrate rises by tan(21 degrees) towards the azimuth of 35 degrees. The depth of the part is the
+    // height difference of the substrate plus the depth of an element.
     EXPECT_GT(inclined.element_depth_mm, std::tan(21.0 * kDeg) * spec.array.x_length_mm * std::cos(35.0 * kDeg));
   }
 }
 
-// Where neighbours stand at one angle and their rims meet on the substrate, nothing stands open between them.
+// If all neighbours have the same orientation and their rims meet on the substrate, there are no vertical walls
+// between them.
 TEST(SubstratePart, CubesOnAnInclineLeaveNoWalls) {
   for (PartSpec spec : {spec_of(HexagonalCube{0.8}, Arrangement::honeycomb, 3.3, 2.9),
                         spec_of(TriangularCube{0.8}, Arrangement::triangular, 3.3, 2.9),
@@ -238,7 +243,8 @@ TEST(SubstratePart, CubesOnAnInclineLeaveNoWalls) {
   }
 }
 
-/// Roots of prisms on a cylinder are one pitch of arc apart and a depth below it, and every prism stays right-angled.
+/// The roots of prisms on a cylinder are spaced by one pitch, measured along the arc. They are below the cylinder
+/// by the depth of an element, and every prism keeps its right angle.
 TEST(SubstratePart, PrismsOnACylinderAreSpacedByArcLengthAndStandNormal) {
   const double radius = 5.0;
   PartSpec spec = spec_of(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 4.2, 2.0);
@@ -248,9 +254,9 @@ TEST(SubstratePart, PrismsOnACylinderAreSpacedByArcLengthAndStandNormal) {
   const auto columns = static_cast<int>(std::floor(arc / 0.5));
   EXPECT_EQ(part.elements_full, columns * 4);
   for (int k = 0; k < columns; ++k) {
-    const double angle = (k - 0.5 * (columns - 1)) * 0.5 / radius;  // of the prism's normal
+    const double angle = (k - 0.5 * (columns - 1)) * 0.5 / radius;  // angle between the axis of the prism and z
     const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
-    const Vec3 root = Vec3(2.1, 0.9, -radius) + (radius - 0.25) * normal;  // z = 0 is the cylinder's highest line
+    const Vec3 root = Vec3(2.1, 0.9, -radius) + (radius - 0.25) * normal;  // z = 0 is the highest line of the cylinder
     const HeightPlane at = surface_at(part, root.head<2>() + Vec2(1e-9, 0.0));
     EXPECT_NEAR(at.at(Vec2(1e-9, 0.0)) - at.slope.x() * 1e-9, root.z(), 1e-8) << k;
     const HeightPlane left = surface_at(part, root.head<2>() - Vec2(0.01, 0.0));
@@ -270,8 +276,9 @@ PartSpec pins(double aperture_mm, int columns, int rows, const Substrate& substr
   return spec;
 }
 
-// Every pin stands out from its neighbour in direction psi by d tan(t) |cos(psi - p)|, d the distance of their axes;
-// the wall between them is as long as a side of the hexagon. A period has two pins, with three sides each to count.
+// Neighbouring pins have axes at the distance d, in the direction psi. On an incline with the angle t and the
+// azimuth p, the height difference of two neighbours is d tan(t) |cos(psi - p)|. The wall between them is as long as
+// a side of the hexagon. A period has two pins, and three sides count for each pin.
 TEST(PinBundle, PocketsHaveTheAreaOfTheirSteps) {
   const double aperture = 2.5;
   const double side = 0.5 * aperture;
@@ -285,7 +292,8 @@ TEST(PinBundle, PocketsHaveTheAreaOfTheirSteps) {
       double highest = 0.0;
       for (const double psi : {30.0, 90.0, 150.0}) {
         const double along = std::abs(std::cos((psi - azimuth) * kDeg));
-        // Twelve periods; those that run along x on the part's border are no walls.
+        // The part has twelve periods with two sides of each direction. The three sides along x on the
+        // border of the part are not inner walls.
         const int walls = psi == 90.0 ? 24 - 3 : 24;
         area += walls * side * distance * std::tan(t) * along;
         projected += walls * side * distance * std::tan(t) * along * std::sin(t) * along;
@@ -299,7 +307,8 @@ TEST(PinBundle, PocketsHaveTheAreaOfTheirSteps) {
     }
 }
 
-// Seed data: 200 um between rows of 3 mm pins, whose pitch is 2.25 mm, is an incline of 5.08 degrees.
+// A height difference of 200 um between rows of 3 mm pins corresponds to an inclination of 5.08 degrees, because the
+// pitch of the rows is 2.25 mm. These values are reference data.
 TEST(PinBundle, AStepOf200UmBetweenRowsOf3MmPinsIs5Degrees) {
   const double incline = std::atan(0.2 / 2.25) / kDeg;
   EXPECT_NEAR(incline, 5.08, 0.005);
@@ -338,7 +347,8 @@ TEST(SubstratePart, RoundsRootsAndRimsOfElementsThatStandNormal) {
   expect_solid(spec);
 }
 
-// A large array on an incline is made of few patches, one on a cylinder of those of its columns.
+// A large array on an incline consists of few patches. On a cylinder, a column needs few patches because the
+// substrate is constant along the axis.
 TEST(SubstratePart, RepeatsPatchesWhereTheSubstrateRepeats) {
   PartSpec spec = spec_of(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 100.0, 100.0);
   spec.thickness_mm = 60.0;
@@ -350,12 +360,12 @@ TEST(SubstratePart, RepeatsPatchesWhereTheSubstrateRepeats) {
   const Part cylinder = build_part(spec);
   std::size_t facets = 0;
   for (const SurfacePatch& patch : cylinder.patches) facets += patch.facets.size();
-  EXPECT_LT(facets, 16 * 3 * 200 * 10U);  // three bands of 16 rows at most, 200 columns
-  // Symmetry of the substrate: left and right.
+  EXPECT_LT(facets, 16 * 3 * 200 * 10U);  // at most three bands of 16 rows, 200 columns
+  // The substrate is constant along the axis of the cylinder.
   for (int k = 0; k < 10; ++k) {
     const Vec2 p(7.13 + 4.3 * k, 40.1);
     const HeightPlane left = surface_at(cylinder, p);
-    EXPECT_NEAR(left.height_mm, surface_at(cylinder, p + Vec2(0.0, 20.0)).height_mm, 1e-9);  // along the axis
+    EXPECT_NEAR(left.height_mm, surface_at(cylinder, p + Vec2(0.0, 20.0)).height_mm, 1e-9);  // 20 mm along the axis
   }
 }
 
@@ -377,7 +387,7 @@ TEST(SubstrateCheck, RefusesWhatCannotCarryTheElements) {
   EXPECT_NE(complaint(spec).find("is not finite"), std::string::npos);
   spec.substrate = Substrate{PlaneSubstrate{44.0, 0.0}, ElementAxes::normal};
   EXPECT_NE(complaint(spec).find("at most 88 degrees steep"), std::string::npos) << complaint(spec);
-  spec.substrate->shape = PlaneSubstrate{44.0, 90.0};  // along the roofs: acos(cos 45 cos 44)
+  spec.substrate->shape = PlaneSubstrate{44.0, 90.0};  // along the roof edges: acos(cos 45 cos 44)
   EXPECT_EQ(complaint(spec), "");
   EXPECT_NE(
       complaint(pins(3.0, 3, 3, {PlaneSubstrate{40.0, 90.0}, ElementAxes::parallel})).find("must keep pins in contact"),
@@ -389,10 +399,11 @@ TEST(SubstrateCheck, MeasuresASphere) {
   PartSpec spec = spec_of(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 6.0, 6.0);
   spec.substrate = Substrate{SphereSubstrate{10.0}, ElementAxes::normal};
   const SubstrateMeasures measures = check_substrate(spec);
-  EXPECT_NEAR(measures.least_radius_mm, 10.0, 1e-6);  // a root of a difference that is 0
+  EXPECT_NEAR(measures.least_radius_mm, 10.0, 1e-6);  // square root of a small difference
   EXPECT_NEAR(measures.highest_mm - measures.lowest_mm, 10.0 - std::sqrt(100.0 - 18.0), 1e-9);
   EXPECT_NEAR(measures.steepest_deg, std::asin(std::sqrt(18.0) / 10.0) / kDeg, 1e-9);
-  // The sphere over a square: integral of R / sqrt(R^2 - x^2 - y^2), by the midpoint rule and Richardson.
+  // Area of a sphere over a square: integral of R / sqrt(R^2 - x^2 - y^2), by the midpoint rule with Richardson
+  // extrapolation.
   const auto midpoint = [](int n) {
     double sum = 0.0;
     for (int i = 0; i < n; ++i)

@@ -1,5 +1,5 @@
-// Parts of zones: one zone is the part itself, rectangles are the parts that they would be alone, turned zones have the
-// turned facets, and every boundary is closed whatever meets at it.
+// Tests of parts with zones. A single zone equals the part without zones. Rectangular zones equal separate parts of
+// the same size. Rotated zones have rotated facets. The boundary of the part is closed for any combination of zones.
 
 #include "geometry/part/zones.h"
 
@@ -75,8 +75,9 @@ Part alone(PartSpec spec, const Vec2& size_mm) {
   return build_part(spec);
 }
 
-/// Where four cells of unlike heights meet, a part may touch itself along an upright edge, as arrays with errors of
-/// angle do; it is closed, and holds what it should, all the same.
+/// Expects that the boundary is closed and encloses the volume of the part. If four cells of different heights meet
+/// at a corner, the part may touch itself along the vertical line through this corner. The boundary is then not a
+/// manifold, which is allowed.
 void expect_closed(const Part& part) {
   const BoundaryMesh mesh = closed_boundary(part);
   const BoundaryReport report = check_boundary(mesh);
@@ -101,9 +102,9 @@ TEST(Zones, OneZoneIsThePartItself) {
     for (std::size_t f = 0; f < part.patches[0].facets.size(); ++f) {
       const PatchFacet& a = zoned.patches[0].facets[f];
       const PatchFacet& b = part.patches[0].facets[f];
-      // Whatever stands upright within the part is an inner wall of zones.
+      // A part with zones labels all vertical walls as inner walls, including those along the border.
       EXPECT_EQ(a.role, b.role == FacetRole::border_wall ? FacetRole::inner_wall : b.role);
-      EXPECT_LT((a.normal - b.normal).norm(), 1e-10);  // walls are as short as 1e-3 mm, of corners good to 1e-15
+      EXPECT_LT((a.normal - b.normal).norm(), 1e-10);  // short walls: 1e-3 mm, with an error of 1e-15
     }
   }
 }
@@ -131,7 +132,8 @@ TEST(Zones, RectanglesHoldWhatTheyWouldHoldAlone) {
   }
 }
 
-/// Area of the retro facets in plan of those whose normals are turned ones of others. \return the share of it
+/// Returns the fraction of the retro facets of `turned`, by area in plan, whose normal is a normal of `other`
+/// rotated by `deg` about z.
 double share_of_turned(const Part& turned, const Part& other, double deg) {
   const Eigen::AngleAxisd turn(deg * std::numbers::pi / 180.0, Vec3::UnitZ());
   double all = 0.0;
@@ -159,7 +161,8 @@ TEST(Zones, TurnedZonesHaveTheTurnedFacets) {
     }
 }
 
-// Prisms of which whole ones fill a square stand on the same squares when they are turned by 90 degrees.
+// A square is filled by whole square prisms. If the prisms are rotated by 90 degrees, they occupy the same squares
+// and remain whole.
 TEST(Zones, PrismsTurnedByARightAngleAreWhole) {
   const Part part = build_part(plate({2.0, 2.0}, {{{box(0, 0, 2, 2)}, 90.0, prisms(0.5, 0.5)}}));
   EXPECT_EQ(part.elements_full, 16);
@@ -174,7 +177,7 @@ TEST(Zones, WhateverMeetsIsClosed) {
   const auto any = [&] { return all[std::min(all.size() - 1, static_cast<std::size_t>(unit(random) * 10.0))]; };
   for (std::size_t trial = 0; trial < 12; ++trial) {
     SCOPED_TRACE(trial);
-    // Four triangles and quadrilaterals round a place.
+    // Four triangular zones around a random point, the hub.
     const Vec2 size(3.0 + unit(random), 2.5 + unit(random));
     const Vec2 hub = (Vec2(0.3, 0.3) + 0.4 * Vec2(unit(random), unit(random))).cwiseProduct(size);
     const Polygon corners = to_polygon({Vec2::Zero(), size});
@@ -190,7 +193,8 @@ TEST(Zones, WhateverMeetsIsClosed) {
   }
 }
 
-// Elements that the border of a zone would cut are land, and all facets are those of whole elements.
+// With PartialElements::omit, elements that the border of a zone would cut are replaced by land. All remaining
+// facets belong to whole elements.
 TEST(Zones, PartialElementsAreLeftOutIfTheyAreNotWanted) {
   PartSpec kind = hexagons(0.9);
   const auto build = [&] {
@@ -256,7 +260,8 @@ TEST(Zones, WholeElementsStandWhereThePartHasThem) {
   }
 }
 
-// Turned twice round a polygon turns left everywhere; a width is that across the nearest side.
+// A polygon that goes around twice is not convex, although it turns left at every corner. The width of a polygon is
+// measured across its narrowest direction.
 TEST(Zones, RegionsAreConvexPolygonsThatGoRoundOnce) {
   const Polygon once = {{0, 0}, {4, 0}, {4, 3}, {0, 3}};
   Polygon twice = once;
@@ -270,7 +275,8 @@ TEST(Zones, RegionsAreConvexPolygonsThatGoRoundOnce) {
   EXPECT_NEAR(width({{0, 0}, {4, 0}, {0, 3}}), 2.4, 1e-12);
 }
 
-/// A plate whose cells are dealt out in turn to zones of a kind each; the land is the first one's.
+/// Returns a plate whose elements are assigned to the zones in turn, one kind per zone. The land belongs to the
+/// first zone.
 ZonedSpec dealt_out(const Vec2& size_mm, const std::vector<PartZone>& kinds) {
   ZonedSpec spec = plate(size_mm, kinds);
   spec.is_by_cell = true;
@@ -280,7 +286,7 @@ ZonedSpec dealt_out(const Vec2& size_mm, const std::vector<PartZone>& kinds) {
   return spec;
 }
 
-// Alike all over, elements of two zones are the array.
+// If both zones have the same kind of element, the part equals the array without zones.
 TEST(Zones, AlikeElementsByCellAreTheArray) {
   const std::vector<PartSpec> all = kinds();
   const Vec2 size(5.3, 4.1);
@@ -316,13 +322,14 @@ TEST(Zones, WholeElementsByCellStandWhereThePartHasThem) {
   }
 }
 
-/// By how much an element is turned to its own outline.
+/// Returns a rotation, in degrees, that maps the outline of an element to itself.
 double turn_of(const PartSpec& kind) {
   if (std::holds_alternative<HexagonalCube>(kind.element)) return 60.0;
   return std::holds_alternative<TriangularCube>(kind.element) ? 120.0 : 180.0;
 }
 
-// Turned about their centroids elements have the turned facets, as many of each, and walls close what differs.
+// Elements are rotated about their centroids. The part then has the same number of elements, with rotated facets,
+// and its boundary is closed by walls.
 TEST(Zones, ElementsByCellAreTurnedInTheirPlaces) {
   for (PartSpec kind : kinds()) {
     if (kind.random_tilts.sigma_arcmin > 0.0) continue;
@@ -351,7 +358,8 @@ TEST(Zones, ElementsByCellAreTurnedInTheirPlaces) {
   }
 }
 
-// Unlike elements by cell hold what as many of each do in an array of their own, turned or not.
+// The volume of a part whose elements have different kinds is the sum over its elements. The volume of each element
+// is the mean volume in an array of its own kind, whether the element is rotated or not.
 TEST(Zones, UnlikeElementsByCellHoldWhatEachHoldsInItsArray) {
   const Vec2 size(5.3, 4.1);
   PartSpec upright = hexagons(0.9);
@@ -407,7 +415,8 @@ TEST(Zones, ThatDoNotCoverThePartAreFound) {
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2, 0, 4.001, 3)}), "1 reaches beyond the part");
   EXPECT_EQ(fault({box(0, 0, 2.1, 3)}, {box(2, 0, 4, 3)}), "1 overlaps zone 1");
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2, 0, 4, 2), box(2, 1, 4, 3)}), "1 overlaps itself");
-  // What is farther apart than corners that are welded is a gap, or an overlap.
+  // Corners that are closer than the welding distance count as equal. A larger distance between zones is a gap or
+  // an overlap.
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2 + 1e-8, 0, 4, 3)}).substr(0, 23), "1 and those before it l");
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2 - 1e-8, 0, 4, 3)}), "1 overlaps zone 1");
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2 + 1e-13, 0, 4, 3)}), "");

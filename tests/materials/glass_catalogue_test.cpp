@@ -1,4 +1,5 @@
-// Catalogues of glass: lines of the format, its dispersion formulas by hand, and what is wrong with files.
+// Tests of glass catalogues: lines of the format, dispersion formulas compared with independent calculations, and
+// faulty files.
 
 #include "materials/io/glass_catalogue.h"
 
@@ -26,7 +27,7 @@ double abbe_number(const Material& glass) {
   return (n(587.5618) - 1.0) / (n(486.1327) - n(656.2725));
 }
 
-/// n_d and V_d as the lines NM state them beside the coefficients.
+/// Compares n_d and V_d, computed from the coefficients, with the values in the records NM.
 TEST(GlassCatalogue, IndexAndAbbeNumberOfTheCatalogue) {
   struct Case {
     const char* name;
@@ -62,13 +63,13 @@ TEST(GlassCatalogue, NoThermoOpticCoefficientsAreNone) {
   EXPECT_EQ(catalogue.glass("CAF2").temperature_c, 20.0);
 }
 
-/// The index at 0.5 um of a glass with that formula and the coefficients 0.1, 0.02, 0.3, ... of CD.
+/// Returns the index at 0.5 um of a glass with this formula and the given coefficients of the record CD.
 double index_by(int formula, const std::string& coefficients) {
   const std::string text = "NM x " + std::to_string(formula) + " 0 1 1\nCD " + coefficients + "\nLD 0.4 0.7\n";
   return refractive_index(GlassCatalogue(text, "x.agf").glass("x").dispersion, 500.0);
 }
 
-// w = 1/2, w^2 = 1/4: every formula by hand.
+// Compares every formula with an independent calculation at w = 1/2 um, where w^2 = 1/4 um^2.
 TEST(GlassCatalogue, EveryFormulaByHand) {
   const double s = 0.25;
   const auto term = [&](double strength, double resonance) { return strength * s / (s - resonance); };
@@ -342,7 +343,7 @@ TEST(GlassCatalogue, ByteOrderMarkOfUtf8IsNoText) {
   EXPECT_EQ(GlassCatalogue("\xef\xbb\xbf" + text, "x.agf").names(), std::vector<std::string>{"x"});
 }
 
-// What one glass has wrong is no matter of the others.
+// Errors in the records of one glass do not affect other glasses.
 TEST(GlassCatalogue, OtherGlassesAreNoMatter) {
   const GlassCatalogue catalogue("NM y 99\nNM x 5 0 1 1\nCD 1.5\nLD 0.4 0.7\nNM z\n", "x.agf");
   EXPECT_EQ(refractive_index(catalogue.glass("x").dispersion, 500.0), 1.5);

@@ -1,4 +1,5 @@
-// Records of the refractiveindex.info database. tests/data/refractiveindex/N-BK7.yml is one as it is published (CC0).
+// Tests of records of the refractiveindex.info database. tests/data/refractiveindex/N-BK7.yml is a published record
+// (CC0).
 
 #include <gtest/gtest.h>
 
@@ -41,7 +42,7 @@ TEST(IndexRecord, IsTheGlassThatIsShipped) {
   EXPECT_EQ(read.temperature_c, 20.0);
   EXPECT_FALSE(read.relative_to_vacuum);
   EXPECT_TRUE(read.warnings.empty());
-  // As the record itself says.
+  // The record itself gives these values.
   const double n_d = index_at(read, 0.58756);
   EXPECT_NEAR(n_d, 1.5168, 1e-5);
   EXPECT_NEAR((n_d - 1.0) / (index_at(read, 0.48613) - index_at(read, 0.65627)), 64.17, 5e-3);

@@ -24,7 +24,8 @@ CieTable cie() {
   return read_cie_table(std::string(RETRACE_SOURCE_DIR) + "/data/cie_v_a_d65_5nm.csv");
 }
 
-/// sum S V f / sum S V over the table, as the CIE defines photometric means.
+/// Returns the luminous mean of a function f: sum S V f / sum S V over the table, as the CIE defines photometric
+/// means. S is the power of the lamp and V the luminous efficiency.
 double luminous_mean(const SpectralCurve& lamp, const std::function<double(double)>& f) {
   const CieTable table = cie();
   double sum = 0.0;
@@ -74,7 +75,7 @@ TEST(SpectralCurve, IsLinearBetweenItsSamplesAndZeroOutside) {
   EXPECT_EQ(curve.at(600.1), 0.0);
 }
 
-// The ends of the table, where the trapezium rule counts half, carry less than 2e-6 of the flux.
+// The trapezoidal rule gives the ends of the table half weight. They carry less than 2e-6 of the flux.
 TEST(Spectrum, LuminousCentroidsAreTheSumsOfTheTable) {
   const CieTable table = cie();
   for (const SpectralCurve* lamp : {&table.illuminant_a, &table.illuminant_d65}) {
@@ -110,7 +111,8 @@ TEST(Spectrum, WeightsAddToOneAndWavelengthsAscend) {
   }
 }
 
-// However unevenly the flux is spread, parts that share a sample keep its weight.
+// If the flux is distributed unevenly, one sample may extend over several spans of the spectrum. Together, these
+// spans must keep the weight of the sample.
 TEST(Spectrum, OneStrongSampleAmongManyKeepsItsShare) {
   SpectralCurve lamp;
   for (int k = 0; k < 61; ++k) {
@@ -140,8 +142,8 @@ TEST(Spectrum, GaussRuleIsExactForPolynomialsOfDegree2NodesLess1) {
   }
 }
 
-// n(w) of PMMA, its reflectance and a strongly absorbing band: what makes RRE depend on the wavelength where nothing
-// has a kink. The node count is good if twice as many change nothing that matters.
+// The index of PMMA, its reflectance and a strong absorption band are smooth functions of the wavelength. The number
+// of nodes is sufficient if twice as many nodes change the means by less than the tolerances.
 TEST(Spectrum, NodesAreEnoughForSmoothProperties) {
   const CieTable table = cie();
   const auto library = MaterialLibrary::read(std::string(RETRACE_SOURCE_DIR) + "/data/materials.toml");
@@ -162,7 +164,8 @@ TEST(Spectrum, NodesAreEnoughForSmoothProperties) {
     }
 }
 
-// A step in the wavelength, as where total reflection ends, and the square root with which reflectance leaves 1 there.
+// Total reflection ends like a step function of the wavelength. The reflectance falls from 1 like a square root. The
+// errors of both means are bounded.
 TEST(Spectrum, AStepCostsLessThanATenthOfIt) {
   const CieTable table = cie();
   for (const SpectralCurve* lamp : {&table.illuminant_a, &table.illuminant_d65}) {
@@ -189,7 +192,8 @@ TEST(Spectrum, LinesAreKeptAndWeighted) {
   EXPECT_EQ(traced_spectrum(radiant).weights, radiant.weights);
 }
 
-// A flat lamp has its centroid in the middle, however few samples describe it.
+// The centroid of a lamp with constant power is at the middle of its range, even if only two samples describe the
+// lamp.
 TEST(Spectrum, FewSamplesDescribeASmoothLamp) {
   const Spectrum flat = resolved_spectrum({{400.3, 699.7}, {2.0, 2.0}}, nullptr);
   EXPECT_NEAR(flat.centroid_nm(), 550.0, 1e-9);

@@ -1,5 +1,5 @@
-// Facets that miss their nominal angles: where light goes then, and that none of it is lost between cells whose rims
-// differ in height.
+// Tests of facets with errors of angle: directions of the returned light, and conservation of power if the rims of
+// neighbouring cells have different heights.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,8 @@ struct Case {
   PartSpec spec;
 };
 
-/// Errors so large that rims stand well above and below z = 0; last an array of many patches.
+/// Returns parts with errors so large that rims are well above and below z = 0. The last part is an array of many
+/// patches.
 std::vector<Case> cases() {
   const RtpElement prism{0.5, 0.5, 90.0};
   PartSpec spaced = finite(prism, Arrangement::checker, 2.2, 2.0, 0.3);
@@ -89,7 +90,7 @@ TEST(AngleErrors, AgreeWithTheReference) {
   }
 }
 
-// Random tilts: both engines agree, and the smaller the cone the more is missed.
+// Parts have random facet tilts. Both engines agree, and less light returns into smaller cones.
 TEST(RandomTilts, EnginesAgree) {
   for (PartSpec spec : {finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 2.1, 1.7, 0.4),
                         finite(HexagonalCube{0.7}, Arrangement::honeycomb, 2.1, 1.7, 0.4)}) {
@@ -111,7 +112,8 @@ TEST(RandomTilts, EnginesAgree) {
   }
 }
 
-// Six beams, each 4 sqrt(2/3) n times the error from the source (Chandler, J. Opt. Soc. Am. 50, 1203 (1960)).
+// A cube corner with equal dihedral errors returns six beams. Each beam deviates from the direction to the source by
+// 4 sqrt(2/3) n times the error (Chandler, J. Opt. Soc. Am. 50, 1203 (1960)).
 TEST(AngleErrors, EqualDihedralErrorsSendSixBeamsBack) {
   for (const double arcmin : {0.5, -0.5}) {
     const Part part = build_part(with(single(HexagonalCube{kCubeAperture}, 1.0), {{arcmin, arcmin, arcmin}, {}}));
@@ -131,7 +133,8 @@ TEST(AngleErrors, EqualDihedralErrorsSendSixBeamsBack) {
   }
 }
 
-// One angle alone: two beams on opposite sides, half as far.
+// A cube corner with one dihedral error returns two beams. They deviate in opposite directions, by half the angle
+// that three equal errors cause.
 TEST(AngleErrors, OneDihedralErrorSendsTwoBeamsBack) {
   for (const std::size_t edge : {0U, 1U, 2U}) {
     AngleErrors errors;
@@ -156,7 +159,8 @@ TEST(AngleErrors, OneDihedralErrorSendsTwoBeamsBack) {
   }
 }
 
-// Two reflections turn light by twice the angle between the facets: 2 n times the apex error in air.
+// Two reflections rotate light by twice the angle between the facets. In air, the deviation is therefore 2 n times
+// the error of the apex angle.
 TEST(AngleErrors, ApexErrorSplitsTheReturnOfAPrism) {
   const double arcmin = 3.0;
   const Part part = build_part(with(single(RtpElement{1.0, 1.0, 90.0}, 1.0), {{}, {2.0, 1.0, 0.0}}));

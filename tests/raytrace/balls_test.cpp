@@ -1,5 +1,5 @@
-// Balls with mirrors behind: the tracer of spheres against closed forms, and against sums over heights that know angles
-// in one plane alone and no vectors.
+// Tests of balls with mirrors behind them. The tracer of spheres is compared with closed forms, and with sums over
+// ray heights that use plane angles only instead of vectors.
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,8 @@ MonteCarloResult traced(const BallLayer& layer, const Optics& optics, const Illu
   return BallTracer(layer).trace(optics, illumination, {half_angle_deg}, sampling, {});
 }
 
-/// One ray of a single ball at a height over the radius: its power by cone.
+/// Traces one ray through a single ball and returns the power in each cone.
+/// \param height distance of the ray from the axis, divided by the radius
 std::vector<double> power_by_cone(const BallLayer& layer, const Optics& optics, double height,
                                   const std::vector<double>& cones_deg) {
   const LightSetup setup(geometry::Part{}, Vec2::Zero(), optics, at(0.0), cones_deg);
@@ -62,15 +63,18 @@ std::vector<double> power_by_cone(const BallLayer& layer, const Optics& optics, 
   return power;
 }
 
-/// Light of unit power at a height, in a plane through the axis and at `turn` from the tilt: what of it comes back
-/// within the cone, by angles round the centre alone. Ideal mirror on the ball's own back half.
+/// Returns the power that comes back within the cone for a ray of unit power. The calculation uses only angles
+/// about the center of the ball. The mirror is ideal and covers the back half of the ball.
+/// \param height distance of the ray from the axis, divided by the radius
+/// \param turn_rad angle between the plane of the ray and axis, and the plane of incidence
 double returned_by_angles(double height, double index, double turn_rad, double incidence_rad, double half_angle_rad) {
   const double i = std::asin(height);
   const double inside = std::asin(height / index);
   double r_s = std::sin(i - inside) / std::sin(i + inside);
   double r_p = std::tan(i - inside) / std::tan(i + inside);
   if (height < 1e-9) r_s = r_p = (index - 1.0) / (index + 1.0);
-  // z of a direction at angle `phi` from the source, in the plane of the ray: the source at the incidence from z.
+  // z component of the point of the ball at the angle `phi` from the source, in the plane of the ray. The angle
+  // between the source and z is `incidence_rad`.
   const double tilt = std::sin(incidence_rad) * std::cos(turn_rad);
   const auto z_at = [&](double phi) { return std::cos(phi) * std::cos(incidence_rad) - std::sin(phi) * tilt; };
   const auto is_back = [&](double phi) {
@@ -84,7 +88,7 @@ double returned_by_angles(double height, double index, double turn_rad, double i
     double phi = i;
     for (int k = 0; k < 200 && power > 1e-12; ++k) {
       phi += pi - 2.0 * inside;
-      if (z_at(phi) <= 0.0) continue;  // the mirror
+      if (z_at(phi) <= 0.0) continue;  // the point is on the mirror
       if (is_back(phi + i)) sum += power * (1.0 - reflectance);
       power *= reflectance;
     }
@@ -108,7 +112,7 @@ TEST(Balls, OfIndexTwoSendLightNearTheAxisBackParallel) {
   const double within_deg = 1e-9 * 180.0 / pi;
   for (const double height : {0.0, 1e-6, 1e-4, 1e-3, 1.5e-3})
     EXPECT_NEAR(power_by_cone(single(), ideal(2.0), height, {within_deg})[0], 1.0, 1e-12) << height;
-  // A quarter of the cube of the height is what the third order leaves.
+  // By third-order theory, the return error of a ball of index 2 is a quarter of the cube of the height.
   EXPECT_EQ(power_by_cone(single(), ideal(2.0), 2e-3, {within_deg})[0], 0.0);
   EXPECT_NEAR(return_error_rad(0.01, 2.0, 1.0, 1.0), 0.25e-6, 1e-10);
 }
@@ -126,7 +130,8 @@ TEST(Balls, SphericalAberrationIsTheClosedForm) {
     const double m = offset_mm > 0.0 ? spacer : 1.0;
     for (double height = 0.05; height < 0.96; height += 0.05) {
       const double error_deg = std::abs(return_error_rad(height, index, m, rho)) * 180.0 / pi;
-      const double little = 1e-10 + 1e-8 * error_deg;  // the edge of a cone is drawn to 1e-9 of its square
+      // Rounding error: the border of a cone is accurate to 1e-9 of its square.
+      const double little = 1e-10 + 1e-8 * error_deg;
       const auto power =
           power_by_cone(layer, optics, height, {std::max(error_deg - little, 1e-14), error_deg + little});
       EXPECT_NEAR(power[1], 1.0, 1e-12) << index << ' ' << offset_mm << ' ' << height;
@@ -135,13 +140,14 @@ TEST(Balls, SphericalAberrationIsTheClosedForm) {
 }
 
 TEST(Balls, ReturnErrorByDirectCount) {
-  // Snell's law ray by ray: -2 i at the front twice, 4 i' at the mirror; 60 degrees of incidence in n = sqrt 3 is 30.
+  // By Snell's law the return error is 4 i' - 2 i, where i is the angle of incidence and i' the angle inside. For
+  // n = sqrt(3) and i = 60 degrees, i' is 30 degrees and the error is 0.
   EXPECT_NEAR(return_error_rad(std::sin(pi / 3.0), std::sqrt(3.0), 1.0, 1.0), 0.0, 1e-15);
   EXPECT_NEAR(return_error_rad(1.0, 2.0, 1.0, 1.0), pi - 2.0 * pi / 3.0, 1e-15);
 }
 
 TEST(Balls, MirrorInFocus) {
-  // A ball of n = 1.5 focuses 1.5 radii behind its centre.
+  // A ball with n = 1.5 has its focus 1.5 radii behind the center of the ball.
   EXPECT_NEAR(*focal_offset_over_radius(1.5, 1.0), 0.5, 1e-15);
   EXPECT_FALSE(focal_offset_over_radius(2.0, 1.0));
   EXPECT_FALSE(focal_offset_over_radius(1.2, 1.6));
@@ -154,7 +160,8 @@ TEST(Balls, MirrorInFocus) {
 }
 
 TEST(Balls, ShareWithinAConeByAngles) {
-  // Points are stratified by height, so that an edge is off by less than one ray of a replicate.
+  // Rays are stratified by height. The error at the border of the cone is therefore less than one ray of a
+  // replicate.
   const std::uint64_t rays = 1U << 17;
   const double one_ray = static_cast<double>(MonteCarlo::kReplicates) / static_cast<double>(rays);
   for (const double index : {1.8, 1.9, 2.0, 2.1}) {
@@ -163,12 +170,13 @@ TEST(Balls, ShareWithinAConeByAngles) {
   }
 }
 
-/// The return error of a ray at a height over the radius in a coated ball: Snell's law and the law of reflection on
-/// vectors in its plane, from face to face. rad
+/// Returns the return error, in rad, of a ray in a coated ball. Snell's law and the law of reflection are applied
+/// to vectors in the plane of the ray.
+/// \param height distance of the ray from the axis, divided by the radius
 double traced_error_rad(double height, double index) {
   Vec2 place(height, std::sqrt(1.0 - height * height));
   Vec2 direction(0.0, -1.0);
-  const auto refract = [&](double ratio, const Vec2& normal) {  // which points to where the light is from
+  const auto refract = [&](double ratio, const Vec2& normal) {  // `normal` points to the source of the light
     const double along = -direction.dot(normal);
     direction = ratio * direction + (ratio * along - std::sqrt(1.0 - ratio * ratio * (1.0 - along * along))) * normal;
   };
@@ -180,8 +188,8 @@ double traced_error_rad(double height, double index) {
   return std::atan2(direction.x(), direction.y());
 }
 
-// The table of docs/theory/beads.md, in per cent of the aperture, by a ray trace that knows no closed form, by the
-// tracer of balls and by the closed form.
+// The percentages of the table of docs/theory/beads.md are compared with three results: a ray trace with plane
+// vectors, the tracer of balls, and the closed form.
 TEST(Balls, SharesOfTheApertureByIndex) {
   struct Case {
     double index, half_degree_percent, degree_percent;
@@ -201,7 +209,8 @@ TEST(Balls, SharesOfTheApertureByIndex) {
     }
 }
 
-// The third order alone lets 4 times the cone's angle pass as the cube of the height, all orders less.
+// By third-order theory, a ray is within the cone if the cube of its height is at most 4 times the angle of the
+// cone. The exact limit of the height is smaller.
 TEST(Balls, ThirdOrderOverstatesTheShareOfIndexTwo) {
   const double cone_rad = 0.5 * pi / 180.0;
   EXPECT_NEAR(std::pow(4.0 * cone_rad, 2.0 / 3.0), 0.107, 5e-4);
@@ -249,7 +258,8 @@ TEST(Balls, NothingButTheMirrorAndTheGlassAbsorbs) {
   EXPECT_NEAR(result.cones[0].ledger[Account::absorbed], 0.0, 1e-12);
 }
 
-/// Share of the plane between the balls that light at this incidence does not reach, by marching back to the source.
+/// Returns the fraction of the plane through the centers of the balls that light does not reach. For each point of
+/// the plane, the line towards the source is tested against all balls.
 double shaded_share(double pitch_mm, double radius_mm, double incidence_rad, double azimuth_rad) {
   const Vec3 to_source(std::sin(incidence_rad) * std::cos(azimuth_rad), std::sin(incidence_rad) * std::sin(azimuth_rad),
                        std::cos(incidence_rad));
@@ -266,14 +276,14 @@ double shaded_share(double pitch_mm, double radius_mm, double incidence_rad, dou
           const double towards = off.dot(to_source);
           const double half2 = radius_mm * radius_mm - off.squaredNorm() + towards * towards;
           is_shaded =
-              half2 > 0.0 && towards + std::sqrt(half2) > 0.0;  // its last point with a ball lies above the plane
+              half2 > 0.0 && towards + std::sqrt(half2) > 0.0;  // the far intersection with the ball is above the plane
         }
       if (is_shaded) ++shaded;
     }
   return static_cast<double>(shaded) / n / n;
 }
 
-/// What falls on the balls: all of it is absorbed, nothing reflected.
+/// Returns the fraction of the light that hits the balls. The balls absorb all light and reflect nothing.
 double share_on_balls(const BallLayer& layer, const Illumination& illumination) {
   Optics optics = ideal(1.0);
   optics.absorption_per_mm = 1e9;
@@ -293,7 +303,7 @@ TEST(Balls, FarApartHaveShadowsOfTheirOwn) {
   const BallLayer layer = packed(2.0);
   for (const double incidence_deg : {0.0, 30.0, 60.0}) {
     const double cosine = std::cos(incidence_deg * pi / 180.0);
-    // Half a disc and half an ellipse, seen along the light.
+    // In the projection along the light, the visible part of a ball consists of half a disc and half an ellipse.
     EXPECT_NEAR(share_on_balls(layer, at(incidence_deg, 11.0)), packing_share(layer) * 0.5 * (1.0 + 1.0 / cosine),
                 5e-4);
   }
@@ -324,7 +334,8 @@ TEST(Balls, SizeDoesNotMatterWithoutAbsorption) {
 }
 
 TEST(Balls, TheMirrorEndsWhereItIsToldTo) {
-  // Behind a mirror of half angle 20 degrees light in focus is caught to an incidence of 20 degrees, and not beyond.
+  // A mirror with a half-angle of 20 degrees, placed at the focus, reflects light with angles of incidence up to
+  // 20 degrees.
   BallLayer layer = single(1.0, *focal_offset_over_radius(1.5, 1.0) * 0.5);
   layer.mirror_half_angle_deg = 20.0;
   const double near_axis_deg = 0.5;

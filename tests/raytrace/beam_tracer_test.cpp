@@ -1,4 +1,4 @@
-// The exact engine: closed forms to rounding, symmetries, and the Monte-Carlo tracer.
+// Tests of the exact engine against closed forms, symmetries and the Monte Carlo tracer.
 #include "raytrace/exact/beam_tracer.h"
 
 #include <gtest/gtest.h>
@@ -76,8 +76,8 @@ TEST(BeamTracer, AbsorptionIsExact) {
   EXPECT_NEAR(ledger.total(), 1.0, 1e-12);
 }
 
-// sin t = n sin(54.74 deg - asin(1/n)): up to there a cube corner reflects totally at every azimuth. The light that
-// loses first is tilted towards a dihedral edge.
+// A cube corner reflects totally at every azimuth up to the angle of incidence t with sin t = n sin(54.74 deg -
+// asin(1/n)). Total reflection ends first for light that is tilted towards a dihedral edge.
 TEST(BeamTracer, TotalReflectionLimitOfCubeCorners) {
   struct Published {
     double index;
@@ -91,7 +91,7 @@ TEST(BeamTracer, TotalReflectionLimitOfCubeCorners) {
     optics.index = index;
     optics.lossless_entrance = true;
     BeamPolicy policy;
-    policy.cutoff = 1e-9;  // what wanders from cell to cell does not return to the source
+    policy.cutoff = 1e-9;  // light that passes from cell to cell does not return to the source
     for (const PartSpec& spec : {infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7),
                                  infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7)}) {
       const bool is_honeycomb = spec.array.arrangement == Arrangement::honeycomb;
@@ -107,12 +107,14 @@ TEST(BeamTracer, TotalReflectionLimitOfCubeCorners) {
   }
 }
 
-// Honeycomb: threefold and a mirror; triangular array: sixfold, since every second cell is turned.
+// A honeycomb has a threefold axis and a mirror plane. A triangular array has a sixfold axis, because every second
+// cell is rotated by 180 degrees.
 TEST(BeamTracer, Symmetries) {
   const Part honeycomb = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7));
   const Part triangular = build_part(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7));
   Optics optics = pmma();
-  optics.absorption_per_mm = 1.0;  // ends deep beams, of which rounding decides whether they are cut off
+  // Weakens beams with many reflections, which rounding errors could move above or below the cut-off.
+  optics.absorption_per_mm = 1.0;
   const auto rre = [&](const Part& part, double p) {
     return beams(part, optics, from(33.0, p), 0.5, 1e-9)[Account::retroreflected];
   };
@@ -170,7 +172,8 @@ rc::Gen<RandomCase> random_case() {
     } else if (*chance(0.5)) {
       c.spec.array.extent = Extent::infinite;
     } else {
-      // Few elements, to be quick; in one array of eight so many that the cell engine has an inner piece.
+      // Arrays have few elements, so that the test is fast. One array in eight has so many elements that the
+      // cell engine uses its inner region.
       const Vec2 size = bounding_box(element_cell(c.spec.element).outline).size();
       c.spec.array.x_length_mm = *between(2.9, 4.9) * (size.x() + c.spec.array.x_gap_mm);
       c.spec.array.y_length_mm = *between(3.1, 5.1) * size.y();
@@ -197,7 +200,7 @@ TEST(BeamTracer, AgreesWithMonteCarlo) {
   for (std::size_t k = 0; k < count; ++k) {
     const RandomCase& c = cases[k];
     const Part part = build_part(c.spec);
-    // What is cut off is below the Monte Carlo's own error in nearly all of them.
+    // The truncated power is smaller than the error of Monte Carlo in nearly all designs.
     const Ledger exact = beams(part, c.optics, c.illumination, 2.0, 5e-4);
     EXPECT_NEAR(exact.total(), 1.0, 1e-9) << k;
     EXPECT_GT(exact[Account::truncated], -1e-9) << k;
@@ -245,7 +248,8 @@ TEST(MeanTransmission, IsThatOfTheClosedForm) {
     }
 }
 
-// The mean of exp(-x) over a triangle against a fine subdivision, from none to strong absorption.
+// Compares the mean of exp(-x) over a triangle with a sum over a fine subdivision, from no absorption to strong
+// absorption.
 TEST(MeanTransmission, IsTheIntegral) {
   const Corners corners = {Vec3(0.1, 0.0, 0.0), Vec3(1.0, 0.2, 0.3), Vec3(0.4, 0.9, -0.2), Vec3(0.0, 0.5, -0.2)};
   const PathLength length{2.0, Vec3(1.0, -0.5, 0.3)};
