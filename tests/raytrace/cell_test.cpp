@@ -19,7 +19,7 @@ using namespace raytrace;
 constexpr std::uint64_t kCellRays = 1U << 17;
 constexpr std::uint64_t kEmbreeRays = 1U << 14;
 
-/// Four standard deviations of a share of power that plain random rays would estimate.
+/// Returns four standard deviations of a fraction of the power that is estimated from `count` independent random rays.
 double most_error(std::uint64_t count) {
   return 4.0 * 0.5 / std::sqrt(static_cast<double>(count));
 }
@@ -165,7 +165,8 @@ TEST_P(CellEngine, AgreesWithTheExactEngineAndWithEmbree) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, CellEngine, ::testing::Range(std::size_t{0}, cases().size()));
 
-// Without chance there is nothing to disagree about: the same rays, followed one by one or many at once.
+// With all branches followed, no random choice is left. Both engines then trace the same rays: one engine traces them
+// one by one, the other in SIMD lanes.
 TEST(CellKernel, SameRaysAsEmbreeWithoutChance) {
   PathPolicy all_branches;
   all_branches.split_power = 0.0;
@@ -178,8 +179,8 @@ TEST(CellKernel, SameRaysAsEmbreeWithoutChance) {
     };
     const Ledger cell = ledger(MonteCarlo::Engine::cell);
     const Ledger embree = ledger(MonteCarlo::Engine::embree);
-    // Rays that meet an edge within rounding may take either side of it, and where absorption takes a ray below the
-    // cut-off is looked at more often in the columns.
+    // Two effects cause small differences. Rays that hit an edge within rounding errors may take either side of the
+    // edge. With absorption, the lanes compare the power of a ray with the cut-off more often.
     const double slack = c.optics.absorption_per_mm > 0.0 ? 0.1 * embree[Account::truncated] : 0.0;
     for (std::size_t a = 0; a < kAccountCount; ++a)
       EXPECT_NEAR(cell.power[a], embree.power[a], 1e-7 + slack) << c.name << ", " << kAccountNames[a];
@@ -213,7 +214,8 @@ std::vector<RoughCase> rough_cases() {
 
 class CellEngineOfRough : public ::testing::TestWithParam<std::size_t> {};
 
-// Scatter has no exact engine: the two ways of finding facets must book alike what it leaves.
+// The exact engine does not trace all textures. Instead, the two engines that find facets in different ways must give
+// the same accounts.
 TEST_P(CellEngineOfRough, AgreesWithEmbree) {
   const RoughCase c = rough_cases()[GetParam()];
   const Part part = build_part(c.spec);

@@ -1,4 +1,4 @@
-// The tracer against closed forms, derived in docs/theory.
+// Tests of the tracer against closed forms, which are derived in docs/theory.
 #include "tests/support/closed_forms.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,8 @@ void expect_within(const ConeResult& result, double expected, double z, const st
       << what << ": got " << result.rre << " +- " << result.spread << ", expected " << expected;
 }
 
-// Hamilton et al. 2017, Table 1: printed to 0.01 %; and the closed form f + (1-f) 2R/(1+R) for full elements' share f.
+// The values of Hamilton et al. 2017, Table 1, are printed to 0.01 %. The closed form is f + (1-f) 2R/(1+R), where f is
+// the fraction of the area that full elements cover.
 TEST(ClosedForms, ArraySizeStudy) {
   const double fresnel = materials::reflectance(1.0 / kPmma, 1.0);
   std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/tests/data/rtp_array_rre.csv");
@@ -61,7 +62,7 @@ TEST(ClosedForms, SinglePrismIsEvenInTheAngle) {
   const std::vector<double> angles = {1, 2, 3, 4, 5, 10, 15, 20, 25, 30, 35, 40};
   const double z = student_bound(angles.size());
   for (const double t : angles) {
-    // Different seeds: the two sides are independent estimates.
+    // The seeds differ, so that the two estimates are independent.
     const ConeResult right = tracer.trace(pmma(), from(t), {0.5}, rays(1U << 17, 1), {}).cones[0];
     const ConeResult left = tracer.trace(pmma(), from(-t), {0.5}, rays(1U << 17, 2), {}).cones[0];
     EXPECT_LE(std::abs(right.rre - left.rre), z * std::hypot(right.spread, left.spread) + 1e-9) << t;
@@ -69,7 +70,8 @@ TEST(ClosedForms, SinglePrismIsEvenInTheAngle) {
   }
 }
 
-// sin t = n sin(45 deg - asin(1/n)): below it both facets reflect totally, above it one transmits.
+// The knee is at the angle of incidence t with sin t = n sin(45 deg - asin(1/n)). At smaller angles both facets reflect
+// totally; at larger angles one facet transmits light.
 TEST(ClosedForms, KneeOfTotalReflection) {
   const Part part = build_part(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   const MonteCarlo tracer(part);
@@ -89,7 +91,9 @@ struct Grid {
   std::vector<double> azimuth;
 };
 
-/// Cubes have three edges 120 degrees apart: an azimuth of every 15 degrees between them, in turn in each third.
+/// Returns a grid of incidence angles and azimuths. A cube corner has a threefold axis, so that azimuths can be reduced
+/// to a range of 120 degrees. The grid has a step of 15 degrees in this range and distributes its azimuths over all
+/// three thirds.
 Grid cube_grid() {
   Grid grid;
   for (double t = 0.0; t <= 60.0; t += 5.0) grid.incidence.push_back(t);
@@ -120,7 +124,7 @@ TEST(ClosedForms, EffectiveApertureOfATriangularArray) {
   check_ideal_array(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0), triangular_rre);
 }
 
-// Every path through a right-angled prism at normal incidence is 2 thickness + base long.
+// At normal incidence, every path through a right-angled prism has the length 2 thickness + base.
 TEST(ClosedForms, AbsorptionFollowsThePathLength) {
   const Part part = build_part(single(RtpElement{0.6, 0.4, 90.0}, 0.7));
   Optics optics = ideal();
@@ -130,7 +134,7 @@ TEST(ClosedForms, AbsorptionFollowsThePathLength) {
   EXPECT_NEAR(result.cones[0].ledger[Account::absorbed], 1.0 - result.cones[0].rre, 1e-12);
 }
 
-// A lossless mirror array keeps nothing: what enters leaves through the entrance.
+// In an array of lossless mirrors, all light that enters leaves through the entrance face.
 TEST(ClosedForms, ClosedLosslessBoxReturnsEverything) {
   for (const PartSpec& spec : {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0),
                                infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0),
@@ -144,7 +148,7 @@ TEST(ClosedForms, ClosedLosslessBoxReturnsEverything) {
   }
 }
 
-// With real entrance and mirrors behind, what does not reflect at first must come back in the end.
+// With mirrors behind a real entrance face, all light that enters must finally leave through the entrance face.
 TEST(ClosedForms, MirrorsBehindARealFaceReturnEverything) {
   const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0));
   Optics optics = pmma();
@@ -156,21 +160,22 @@ TEST(ClosedForms, MirrorsBehindARealFaceReturnEverything) {
               1.0, 1e-9);
 }
 
-// An RTP groove along its roof is a plain mirror: nothing comes back at an angle.
+// In the plane along its roof edge, a groove of prisms acts like a plane mirror. No light returns at oblique incidence.
 TEST(ClosedForms, AlignedGrooveAlongItsRoofIsAMirror) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0));
   const MonteCarloResult result = MonteCarlo(part).trace(pmma(), from(36.0, 90.0), {0.5}, rays(1U << 15), {});
   EXPECT_LT(result.cones[0].rre, 1e-9);
 }
 
-// The end walls of a brick array make cube corners with the facets: about 0.2 comes back at 36 degrees along the roof.
+// The end walls of brick rows form cube corners with the facets. At 36 degrees along the roof edge, the RRE is about
+// 0.2.
 TEST(ClosedForms, BrickRowsSendLightBackAlongTheRoof) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0));
   const MonteCarloResult result = MonteCarlo(part).trace(pmma(), from(36.0, 270.0), {0.5}, rays(1U << 17), {});
   EXPECT_NEAR(result.cones[0].rre, 0.2, 0.02);
 }
 
-// A wider cone never holds less, and one run serves all cones.
+// A wider cone never contains less light. One run computes all cones.
 TEST(ClosedForms, RreAgainstAcceptance) {
   const Part part = build_part(single(HexagonalCube{1.0}, 0.5));
   const MonteCarlo tracer(part);

@@ -1,4 +1,5 @@
-// Rounded and chamfered edges: dead widths by closed form, agreement of the engines, and no effect in the limit.
+// Tests of rounded and chamfered edges: closed forms of the ineffective widths, agreement of the engines, and no effect
+// in the limit of sharp edges.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +32,7 @@ double exact_rre(const PartSpec& spec, const Optics& optics, double incidence_de
       .ledgers[0][Account::retroreflected];
 }
 
-// At normal incidence a root or rim of radius r takes the width sqrt(2) r of a prism.
+// At normal incidence, a root or rim of radius r makes the width sqrt(2) r of a prism ineffective.
 TEST(Edges, RoundedEdgesOfAPrismTakeTheirWidth) {
   const double substrate = 0.5;
   const PartSpec sharp = infinite(RtpElement{substrate, 0.5, 90.0}, Arrangement::aligned, 1.0);
@@ -49,7 +50,7 @@ TEST(Edges, RoundedEdgesOfAPrismTakeTheirWidth) {
   }
 }
 
-// A flat across the root reflects as much as a plane does.
+// A flat across the root reflects like a plane surface.
 TEST(Edges, ChamferedRootOfAPrismIsAPlane) {
   const PartSpec spec = with_edges(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0), {0.0, 0.02, 0.0});
   Optics lossless = pmma();
@@ -58,8 +59,8 @@ TEST(Edges, ChamferedRootOfAPrismIsAPlane) {
   EXPECT_NEAR(exact_rre(spec, lossless), 1.0 - 0.04 * (1.0 - fresnel), 1e-9);
 }
 
-// Between a prism's rim and level land lies an arc of half the angle: tan(22.5 degrees) r of the land, and as much
-// along the facet. The land itself reflects as a plane does.
+// Between the rim of a prism and horizontal land, the rounded edge is an arc of 45 degrees. It covers the width
+// tan(22.5 degrees) r of the land, and the same length of the facet. The land itself reflects like a plane surface.
 TEST(Edges, RimsBesideLandTakeTheirWidth) {
   const double substrate = 0.5;
   const double gap = 0.1;
@@ -82,7 +83,7 @@ TEST(Edges, RimsBesideLandTakeTheirWidth) {
               (substrate - std::numbers::sqrt2 * leg + fresnel * (gap - 2.0 * leg)) / (substrate + gap), 1e-9);
 }
 
-// Where rims of neighbours meet their chamfer is level land.
+// The chamfer of two neighbouring rims is a horizontal plane.
 TEST(Edges, ChamferedRimsOfPrismsArePlanes) {
   const PartSpec spec =
       with_edges(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0), {0.0, 0.0, 0.0, 0.02});
@@ -92,9 +93,10 @@ TEST(Edges, ChamferedRimsOfPrismsArePlanes) {
   EXPECT_NEAR(exact_rre(spec, lossless), 1.0 - 0.04 * (1.0 - fresnel), 1e-9);
 }
 
-// At normal incidence light meets a rounded root of a cube of edge a where two of its three ways to the facets are of
-// nearly the same length: within r / sqrt(2) of six half-lines from the axis in plan. A rim takes the strip beside it,
-// and the strip by which that light would leave. What is left over is of second order.
+// At normal incidence, light hits a rounded root of a cube with the edge a if its distances to two of the three facets
+// are nearly equal. In plan, these points are within r / sqrt(2) of six half-lines from the axis. A rounded rim makes
+// two strips ineffective: the strip next to the rim, and the strip through which light from there would leave. The
+// remaining effects are of second order.
 TEST(Edges, RoundedEdgesOfCubesTakeTheirWidth) {
   struct Case {
     Element element;
@@ -140,7 +142,8 @@ std::vector<PartSpec> all_kinds(const EdgeShape& edges) {
           with_edges(wrong, edges)};
 }
 
-// Few chords, as every strip splits the exact engine's beams: what the two make of the same strips is the question.
+// The arcs have few chords, because each strip splits the beams of the exact engine. The test only compares both
+// engines for the same strips.
 TEST(Edges, EnginesAgree) {
   for (EdgeShape edges : {EdgeShape{0.02, 0.0, 0.01}, EdgeShape{0.0, 0.03, 0.0, 0.02}}) {
     edges.chords = 4;
@@ -148,7 +151,7 @@ TEST(Edges, EnginesAgree) {
   }
 }
 
-// The wider the edge the less comes back, and none of it at a radius of nothing.
+// The RRE decreases as the radius increases, and does not change in the limit of a vanishing radius.
 TEST(Edges, EffectGrowsFromNothing) {
   const auto rre = [](const PartSpec& spec) {
     const Part part = build_part(spec);
@@ -162,7 +165,7 @@ TEST(Edges, EffectGrowsFromNothing) {
     double before = exact[Account::retroreflected];
     const ConeResult faint = rre(all_kinds({1e-6, 0.0, 1e-6, 0.0, 8})[k]);
     EXPECT_NEAR(faint.rre, before, 4.0 * faint.spread + exact[Account::truncated] + 5e-5) << k;
-    if (before < 0.5) continue;  // angles so wrong that edges do no harm
+    if (before < 0.5) continue;  // with such large errors of angle, rounded edges do not reduce the RRE
     for (const double radius : {0.01, 0.03}) {
       const ConeResult worn = rre(all_kinds({radius, 0.0, radius, 0.0, 8})[k]);
       EXPECT_LT(worn.rre + 4.0 * worn.spread, before) << k << ": " << radius;

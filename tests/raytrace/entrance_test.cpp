@@ -1,5 +1,6 @@
-// Curved entrance surfaces: planes against the plane entrance face, lenses and wedges against rays by hand, closed
-// forms of slabs and of light that passes beside, exact surfaces against fine meshes of them, conservation.
+// Tests of curved entrance surfaces. A plane surface must equal the plane entrance face. Lenses and wedges are compared
+// with rays in closed form, slabs and light that passes the part with closed forms, and curved surfaces with fine
+// meshes. Power must be conserved.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -34,7 +35,7 @@ Optics mirrored_pmma() {
   return optics;
 }
 
-/// Follows every branch down to the cut-off: no random choice.
+/// Returns a policy that follows every branch down to the cut-off, without random choices.
 PathPolicy every_branch(double cutoff = 1e-13) {
   PathPolicy policy;
   policy.cutoff = cutoff;
@@ -53,7 +54,7 @@ void expect_same(const ConeResult& a, const ConeResult& b, double tolerance) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(a.stokes.values()[k], b.stokes.values()[k], tolerance) << k;
 }
 
-/// Light that leaves through the entrance surface.
+/// Records the light that leaves through the entrance surface.
 struct Exits : ExitObserver {
   struct Exit {
     Vec3 position;
@@ -70,12 +71,12 @@ struct Exits : ExitObserver {
   }
 };
 
-/// Where the light of one ray goes.
+/// Traces single rays through a part with a curved entrance surface.
 struct OneRay {
   OneRay(const Part& part, const Entrance& front, const Vec2& centre)
       : part_(part), centre_(centre), back_(part, centre), face_(make_entrance_face(front, part, centre)) {}
 
-  /// \param entry_mm in the plane that touches the entrance surface from above, from the centre
+  /// \param entry_mm entry point, relative to the center, in the plane that touches the entrance surface from above
   Exits follow(const Optics& optics, const Illumination& light, const Vec2& entry_mm) const {
     const PathSetup setup(part_, back_, centre_, optics, light, {0.5}, every_branch(1e-3), face_.get());
     Tally tally(1);
@@ -105,7 +106,8 @@ Vec3 towards_part(double incidence_deg, double azimuth_deg) {
   return -Vec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t));
 }
 
-// A plane, whether given as a surface or as two triangles, is the plane entrance face: the same rays, choices and sums.
+// A plane that is given as a surface or as two triangles is equivalent to the plane entrance face: rays, random choices
+// and sums are the same.
 TEST(Entrance, PlaneIsTheEntranceFace) {
   PartSpec spec = finite(RtpElement{0.5, 0.4, 88.0}, Arrangement::offset, 2.3, 1.9, 0.7);
   const Part part = build_part(spec);
@@ -127,8 +129,8 @@ TEST(Entrance, PlaneIsTheEntranceFace) {
   }
 }
 
-// Layers on a plane that is given as a surface are those on the entrance face: at normal incidence and obliquely,
-// whether they reflect nothing or absorb, with light of every polarisation.
+// Layers on a plane that is given as a surface act like layers on the entrance face. The cases include normal and
+// oblique incidence, layers that do not reflect or that absorb, and light of every polarisation.
 TEST(Entrance, LayersOnAPlaneAreThoseOfTheEntranceFace) {
   const Part part = build_part(finite(RtpElement{0.5, 0.4, 88.0}, Arrangement::offset, 2.3, 1.9, 0.7));
   const Entrance surface = plane_entrance(0.7);
@@ -146,7 +148,7 @@ TEST(Entrance, LayersOnAPlaneAreThoseOfTheEntranceFace) {
   }
 }
 
-// Behind layers that absorb, and on waves, all power is told.
+// For wavy surfaces with absorbing layers, the accounts of the ledger add up to 1.
 TEST(Entrance, LedgersOfCoatedWavesAddUpToOne) {
   const Part part = build_part(finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 2.3, 1.9, 0.7));
   const Entrance waves = egg_box_entrance(0.8, 0.03, 6.0);
@@ -162,7 +164,8 @@ TEST(Entrance, LedgersOfCoatedWavesAddUpToOne) {
   }
 }
 
-// A wedge over a mirror: refraction in, reflection, refraction out, with the power of both polarisations by hand.
+// A ray passes through a wedge over a mirror: refraction, reflection and refraction. The expected power of both
+// polarisations is computed independently.
 TEST(Entrance, WedgeRefractsBothPolarisationsAsByHand) {
   const Part plate = build_plate({2.0, 2.0}, 1.0);
   for (const double slope : {0.1, -0.3}) {
@@ -174,7 +177,8 @@ TEST(Entrance, WedgeRefractsBothPolarisationsAsByHand) {
       const Vec3 d2 = Vec3(d1.x(), d1.y(), -d1.z());
       const Vec3 d3 = snell(d2, n, kPmma, 1.0);
       for (const bool s_polarised : {true, false}) {
-        // Powers by Fresnel's formulas of angles (Born and Wolf, 1.5.2): the plane of incidence is that of x and z.
+        // Powers follow from Fresnel's formulas as functions of angles (Born and Wolf, 1.5.2). The plane of incidence
+        // is the xz plane.
         const auto transmitted = [&](const Vec3& before, const Vec3& after) {
           const double a = std::acos(std::abs(n.dot(before)));
           const double b = std::acos(std::abs(n.dot(after)));
@@ -183,7 +187,7 @@ TEST(Entrance, WedgeRefractsBothPolarisationsAsByHand) {
           return 1.0 - r * r;
         };
         Illumination light = from(incidence);
-        light.stokes = {1.0, s_polarised ? -1.0 : 1.0, 0.0, 0.0};  // the first axis lies in the plane of incidence
+        light.stokes = {1.0, s_polarised ? -1.0 : 1.0, 0.0, 0.0};  // first axis in the plane of incidence
         const Exits::Exit exit = tracer.follow(mirrored_pmma(), light, {0.05, 0.1}).strongest();
         EXPECT_LT((exit.direction - d3).norm(), 1e-13) << slope << " " << incidence;
         EXPECT_NEAR(exit.power, transmitted(d0, d1) * transmitted(d2, d3), 1e-11) << slope << " " << incidence;
@@ -192,7 +196,7 @@ TEST(Entrance, WedgeRefractsBothPolarisationsAsByHand) {
   }
 }
 
-/// A ray through a cap of a sphere to a mirror at z = 0 and out again, in closed forms; z from the mirror.
+/// A ray through a spherical cap to a mirror at z = 0 and back, in closed form. z is measured from the mirror.
 struct ByHand {
   Vec3 at;
   Vec3 direction;
@@ -213,8 +217,8 @@ ByHand through_sphere(double radius, double thickness, double n, const Vec3& fro
   return {out, snell(d2, (out - centre) / radius, n, 1.0)};
 }
 
-/// Share of power that a layer between two media lets through, as the sum over the ways to and fro in it (Airy): Hecht,
-/// Optics, 9.6.1, with the amplitudes of Fresnel for each polarisation.
+/// Returns the power transmittance of a layer between two media, as the sum over all paths with multiple reflections in
+/// the layer (Airy): Hecht, Optics, 9.6.1, with Fresnel's amplitudes for each polarisation.
 double through_layer(double n0, double n1, double n2, double thickness, double cos0, bool s_polarised) {
   const auto cos_in = [&](double n) { return std::sqrt(1.0 - std::pow(n0 / n, 2.0) * (1.0 - cos0 * cos0)); };
   const auto r = [&](double a, double b) {
@@ -227,7 +231,7 @@ double through_layer(double n0, double n1, double n2, double thickness, double c
   return 1.0 - std::norm(reflected);
 }
 
-// Layers on a lens over a mirror act by the incidence on its face where light meets it, going in and coming out.
+// The effect of layers on a lens depends on the local angle of incidence, both on entry and on exit.
 TEST(Entrance, LayersOnALensActByTheLocalIncidence) {
   const double radius = 3.0, thickness = 4.0;
   const Vec2 size(2.4, 2.0);
@@ -250,7 +254,7 @@ TEST(Entrance, LayersOnALensActByTheLocalIncidence) {
           Illumination light = from(incidence);
           light.stokes = {1.0, s_polarised ? -1.0 : 1.0, 0.0, 0.0};
           const Exits::Exit exit = tracer.follow(optics, light, {x, 0.0}).strongest();
-          // The way out is as good as the way in, by reciprocity.
+          // By reciprocity, the transmittance is the same in both directions.
           const double expected = through_layer(1.0, 1.3777, kPmma, layer, -d0.dot(normal), s_polarised) *
                                   through_layer(1.0, 1.3777, kPmma, layer, cos_out, s_polarised);
           EXPECT_LT((exit.direction - hand.direction).norm(), 1e-12);
@@ -272,7 +276,7 @@ TEST(Entrance, LensOverAMirrorFollowsRaysByHand) {
       for (const Vec2& entry : {Vec2(0.0, 0.0), Vec2(0.3, 0.2), Vec2(-0.7, 0.4), Vec2(0.9, -0.8)}) {
         const Vec3 d0 = towards_part(incidence, 20.0);
         const ByHand hand = through_sphere(radius, thickness, kPmma, {entry.x(), entry.y(), thickness}, d0);
-        if (std::abs(hand.at.x()) > 1.19 || std::abs(hand.at.y()) > 0.99) continue;  // it leaves through a side
+        if (std::abs(hand.at.x()) > 1.19 || std::abs(hand.at.y()) > 0.99) continue;  // leaves through a side
         const Exits::Exit exit = tracer.follow(mirrored_pmma(), from(incidence, 20.0), entry).strongest();
         EXPECT_LT((exit.direction - hand.direction).norm(), 1e-13) << incidence << " " << entry.transpose();
         EXPECT_LT((exit.position - hand.at).norm(), 1e-12) << incidence << " " << entry.transpose();
@@ -282,9 +286,11 @@ TEST(Entrance, LensOverAMirrorFollowsRaysByHand) {
   }
 }
 
-// The focus of a cap lies n R / (n - 1) below it: a mirror there sends light back parallel, but for the spherical
-// aberration, whose angle grows with the cube of the height, halved heights eighth it; out of focus it grows with the
-// height: the matrix of the cap, the way to the mirror and back, and the cap again (Hecht, Optics, 6.2.1).
+// The focus of a spherical cap is n R / (n - 1) below the cap. A mirror at the focus returns light parallel to the
+// incident light except for spherical aberration. The angle of this aberration is proportional to the cube of the ray
+// height, so half the height gives an eighth of the angle. Out of focus, the angle is proportional to the height. It
+// follows from ray matrices: refraction at the cap, the path to the mirror and back, and refraction at the cap (Hecht,
+// Optics, 6.2.1).
 TEST(Entrance, CatsEyeSendsLightBackInParallel) {
   const double radius = 2.0;
   const double focus = kPmma / (kPmma - 1.0) * radius;
@@ -301,13 +307,14 @@ TEST(Entrance, CatsEyeSendsLightBackInParallel) {
   EXPECT_NEAR(error(focus, 0.1) / error(focus, 0.05), 8.0, 0.05);
   const double thickness = 0.8 * focus;
   const double height = 1e-3;
-  const double in = -(kPmma - 1.0) / (kPmma * radius) * height;  // angle behind the cap, paraxial
+  const double in = -(kPmma - 1.0) / (kPmma * radius) * height;  // paraxial angle behind the cap
   const double arrives = height + in * 2.0 * thickness;
   const double out = kPmma * in - (kPmma - 1.0) / radius * arrives;
   EXPECT_NEAR(error(thickness, height), out, 1e-6 * std::abs(out));
 }
 
-// At normal incidence a slab reflects 2 R / (1 + R) and passes the rest, summed over all ways: an even power of R each.
+// At normal incidence, a slab reflects 2 R / (1 + R) and transmits the rest. This is the sum over all paths with
+// multiple reflections.
 TEST(Entrance, SlabAtNormalIncidence) {
   const Part plate = build_plate({1.0, 0.7}, 0.5);
   const Entrance front = plane_entrance(0.5);
@@ -318,8 +325,8 @@ TEST(Entrance, SlabAtNormalIncidence) {
   EXPECT_NEAR(slab.ledger.total(), 1.0, 1e-12);
 }
 
-// Over a wedge that rises by s towards the light's side, the beam crosses the plane through its upper edge. Rays within
-// L s tan t of the lower edge have passed it before they come down to the wedge.
+// The wedge rises by the slope s over the length L. The beam crosses the horizontal plane through the upper edge of the
+// wedge. Rays within L s tan t of the lower edge pass the wedge without meeting it.
 TEST(Entrance, WhatPassesBesideIsTransmitted) {
   const double slope = 0.25;
   const Part plate = build_plate({2.0, 1.0}, 1.0);
@@ -337,7 +344,8 @@ TEST(Entrance, WhatPassesBesideIsTransmitted) {
   EXPECT_EQ(traced(plate, &front, optics, from(0.0), 1024).cones[0].ledger[Account::transmitted], 0.0);
 }
 
-/// The first place where a ray crosses a surface, by small steps and bisection; infinity if it does not.
+/// Returns the distance to the first intersection of a ray with a surface, found by small steps and bisection. Returns
+/// infinity if there is no intersection.
 double crossing_by_steps(const EntranceSurface& surface, const Vec3& from, const Vec3& direction, double until,
                          bool inside) {
   const auto gap = [&](double t) {
@@ -358,7 +366,7 @@ double crossing_by_steps(const EntranceSurface& surface, const Vec3& from, const
   return kInfinity;
 }
 
-// Rays from anywhere above and below an egg box, and from its surface, at all slants.
+// Rays start at random positions above, below and on an egg-box surface, in random directions.
 TEST(Entrance, FindsTheFirstCrossing) {
   const Part plate = build_plate({2.0, 2.0}, 0.5);
   const Entrance front = egg_box_entrance(1.0, 0.1, 9.0);
@@ -372,7 +380,7 @@ TEST(Entrance, FindsTheFirstCrossing) {
     const bool inside = k % 2 == 0;
     const bool starts_on = k % 3 == 0;
     Vec3 from(1.0 + 0.9 * uniform(random), 1.0 + 0.9 * uniform(random), 0.0);
-    // On the borders of cells too, whatever their number.
+    // Some rays start on the borders of grid cells, for any number of cells.
     if (k % 5 == 0) from.x() = std::round(32.0 * from.x()) / 32.0;
     if (k % 7 == 0) from.y() = std::round(32.0 * from.y()) / 32.0;
     const EntranceSurface::Place place = surface.at(from.head<2>());
@@ -400,7 +408,7 @@ TEST(Entrance, FindsTheFirstCrossing) {
   EXPECT_GT(found_again, 20);
 }
 
-// Waves of a size that the first grids see nothing of: refused, or met everywhere.
+// The waves are too fine for the initial grids. The surface is either refused, or all rays find their intersections.
 TEST(Entrance, WavesFinerThanTheFirstGridAreNotPassedBy) {
   const Part plate = build_plate({2.0, 2.0}, 0.5);
   for (const double waves : {31.7, 32.0, 64.0}) {
@@ -423,22 +431,22 @@ TEST(Entrance, WavesFinerThanTheFirstGridAreNotPassedBy) {
   EXPECT_THROW(make_entrance_face(fine, plate, Vec2::Zero()), InputError);
 }
 
-// Steep lenslets in front of prisms: light goes from lenslet to lenslet and in again. All of it is booked, none is
-// lost, and a fine mesh of the same surface, met triangle by triangle, sends it to the same accounts.
+// Steep lenslets are in front of prisms, so that light may leave one lenslet and enter another. No power is lost, and a
+// fine mesh of the same surface gives the same accounts.
 TEST(Entrance, SurfaceAndItsMeshAgreeOverPrisms) {
   const Part part = build_part(finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0, 1.0, 0.6));
   const Entrance surface = egg_box_entrance(0.6, 0.08, 2.0 * std::numbers::pi / 0.4);
   const Entrance mesh = std::make_shared<const SurfacePatch>(
       entrance_of_mesh(meshed(*std::get<0>(surface), 1.0, 320), MeshSide::top, Vec3::Zero(), part.outline));
   PathPolicy policy;
-  policy.split_power = 1e-3;  // the same rays but for little that is left to chance
+  policy.split_power = 1e-3;  // hardly any random choices, so that both runs trace the same rays
   for (const double incidence : {0.0, 35.0, 70.0}) {
     const MonteCarloResult exact = traced(part, &surface, pmma(), from(incidence, 15.0), 1U << 13, policy, 20.0);
     EXPECT_NEAR(exact.cones[0].ledger.total(), 1.0, 1e-9);
     EXPECT_EQ(exact.misses, 0U);
     const MonteCarloResult by_mesh = traced(part, &mesh, pmma(), from(incidence, 15.0), 1U << 13, policy, 20.0);
     EXPECT_EQ(by_mesh.misses, 0U);
-    // Both are estimates; of the facets of the mesh 1e-3 is left.
+    // Both results are estimates. The facets of the mesh cause an additional error of up to 1e-3.
     const double bound = 4.0 * std::hypot(exact.cones[0].spread, by_mesh.cones[0].spread) + 1e-3;
     EXPECT_LT(bound, 0.02);
     for (std::size_t k = 0; k < kAccountCount; ++k)
@@ -446,7 +454,7 @@ TEST(Entrance, SurfaceAndItsMeshAgreeOverPrisms) {
   }
 }
 
-// An egg box over a plate looks alike from all four sides.
+// An egg-box surface over a plate has four equivalent azimuths.
 TEST(Entrance, SymmetricFrontsGiveSymmetricAnswers) {
   const Part plate = build_plate({1.2, 1.2}, 0.5);
   const Entrance front = egg_box_entrance(0.6, 0.05, 2.0 * std::numbers::pi / 0.4);

@@ -1,4 +1,5 @@
-// Light of equal elements, followed once: ledgers, far fields and resampled light are those of each by itself.
+// Tests of light that is traced only once for equal elements. Ledgers, far fields and resampled light must equal those
+// of elements that are traced separately.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +59,7 @@ Part columns(bool in_turn) {
   return build_part(spec);
 }
 
-/// Arrays whose borders differ from each other and from their middle.
+/// Returns arrays whose borders differ from each other and from the inner region.
 std::vector<Question> questions() {
   const RtpElement prism{0.5, 0.4, 90.0};
   PartSpec land = finite(prism, Arrangement::aligned, 4.3, 3.1, 1.0);
@@ -140,7 +141,7 @@ const ApertureKernel& discs() {
   return kernel;
 }
 
-/// Fields of cells too, wherever the light that they send back came in.
+/// The far field of each cell must also agree, whichever cell the light entered first.
 TEST(EqualPlaces, FarFieldsAreThoseOfEachByItself) {
   for (const Question& question : questions()) {
     const Part& part = question.part;
@@ -154,7 +155,7 @@ TEST(EqualPlaces, FarFieldsAreThoseOfEachByItself) {
   }
 }
 
-/// Light that enters either half of a period is the same.
+/// Light that enters the first half of a period is equivalent to light that enters the second half.
 TEST(EqualPlaces, HalvesOfAPeriodAreAlike) {
   PartSpec quarter = infinite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 1.0);
   quarter.array.overlap_percent = 25.0;
@@ -176,13 +177,13 @@ TEST(EqualPlaces, HalvesOfAPeriodAreAlike) {
     EXPECT_NEAR(shared.field.total_power(), alone.field.total_power(), 1e-4);
     for (const Vec3& direction : receivers(light)) {
       const double expected = alone.field.intensity(direction, discs()).per_sr;
-      // Of unlike beams those below the cut-off are missing.
+      // Both runs omit beams below the cut-off, but not the same beams.
       EXPECT_NEAR(shared.field.intensity(direction, discs()).per_sr, expected, 3e-3 * expected);
     }
   }
 }
 
-/// Beams that stand for several places count at each when they are resampled.
+/// A resampled beam that represents copies at several positions counts at each position.
 TEST(EqualPlaces, ResampledLightIsThatOfAllPlaces) {
   const std::vector<Question> all = questions();
   for (const Question& question :

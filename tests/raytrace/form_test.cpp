@@ -1,5 +1,5 @@
-// Facets with a form, by rays: where their frames are, tilts against the keys that tilt facets, sinks against closed
-// forms, and ledgers.
+// Tests of facets with a form, traced by rays: positions of the facet frames, slopes compared with tilted facets, sinks
+// compared with closed forms, and ledgers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ FacetForm paraboloid(double depth_mm, double radius_mm) {
   return form;
 }
 
-/// A form without symmetries, steep for one.
+/// Returns a form without symmetries and with large slopes.
 FacetForm rough_shape(double slope, double size_mm) {
   FacetForm form;
   form.add(0, 1, 0.3 * slope);
@@ -59,8 +59,8 @@ std::vector<FacetFrame> frames_of(const SurfacePatch& patch, const PatchCell& ce
   return frames;
 }
 
-// Whole or cut, turned, rounded, canted or on a base: the middles of the facets of one element are as far apart as
-// those of one that stands alone.
+// Elements are whole, cut, rotated, rounded, canted or on a base. The distances between the centroids of the facets
+// must be those of a single element.
 TEST(FormedFacets, MiddlesStayWithTheirElements) {
   const auto finite_of = [](Element element, Arrangement arrangement) {
     return finite(element, arrangement, 3.3, 2.9, 0.8);
@@ -109,7 +109,7 @@ struct Exits : ExitObserver {
   }
 };
 
-/// Where rays from some places of the entrance face go: one direction for each.
+/// Returns the directions in which rays from several points of the entrance face leave, one per ray.
 std::vector<Vec3> ways_of(const PartSpec& spec, const Optics& optics, const Illumination& light) {
   const Part part = build_part(spec);
   const Vec2 centre = bounding_box(part.outline).middle();
@@ -126,8 +126,8 @@ std::vector<Vec3> ways_of(const PartSpec& spec, const Optics& optics, const Illu
   return ways;
 }
 
-// A form that is a slope down every facet turns rays as the tilt of all facets does, whose planes have the same
-// normals.
+// A form that is a constant slope down every facet deviates rays like a tilt of all facets, because the normals are the
+// same.
 TEST(FormedFacets, SlopeIsTheTiltOfFacets) {
   constexpr double kTiltArcmin = 2.0;
   FacetForm slope;
@@ -148,14 +148,14 @@ TEST(FormedFacets, SlopeIsTheTiltOfFacets) {
     }
 }
 
-// Light along the normal meets both facets of a prism at places as far from their middles: x across the roof is sqrt 2
-// x down the facet. Its way is longer by W = P (2 x^2 + y^2), and rays leave along the gradient of W. Within a cone lie
-// those from an ellipse.
+// Light along the normal hits both facets of a prism at equal distances from their centroids. A distance x across the
+// roof edge is sqrt(2) x down the facet. The path is longer by W = P (2 x^2 + y^2), and rays leave along the gradient
+// of W. Rays within the cone come from an ellipse.
 TEST(FormedFacets, SinkOfAPrismSpreadsRaysAsItsSlopes) {
   constexpr double kBase = 0.5, kWidth = 0.5, kDepth = 5e-5;
   const double radius2 = kBase * kBase / 8.0 + kWidth * kWidth / 4.0;
   const double p = 4.0 * kPmma * std::sqrt(0.5) * kDepth / radius2;
-  const double cone_rad = 4.0 * p * 0.1;  // an ellipse of 0.1 by 0.2 mm
+  const double cone_rad = 4.0 * p * 0.1;  // from an ellipse of 0.1 mm by 0.2 mm
   const double share = pi * 0.1 * 0.2 / (0.5 * kBase * kWidth);
   const Part part = build_part(infinite(RtpElement{kBase, kWidth, 90.0}, Arrangement::aligned, 0.5));
   for (const auto engine : {MonteCarlo::Engine::embree, MonteCarlo::Engine::cell})
@@ -201,7 +201,7 @@ TEST(FormedFacets, LedgersCloseAndEnginesAgree) {
   }
 }
 
-// A form as small as rounding leaves what planes do, and one of no height is none.
+// A form with a height like rounding errors has the same effect as plane facets. A form of height 0 is a plane.
 TEST(FormedFacets, FormGoesToZero) {
   FacetForm none;
   none.add(2, 0, 0.0);

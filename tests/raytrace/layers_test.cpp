@@ -1,4 +1,4 @@
-// Parts with layers on their faces: closed forms, and ledgers that close in every engine.
+// Tests of parts with layers on their faces: closed forms, and ledgers that add up to 1 in every engine.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,12 +19,13 @@ using materials::FresnelCoefficients, materials::LayerStack, materials::StackSid
 
 const LayerStack kProtected{{{std::complex<double>(1.13, 6.85), 0.15}, {1.4585, 0.25}}};
 
-/// The powers of s and p that a stack neither reflects nor passes.
+/// Returns the absorbed power of s and p polarised light: 1 less the reflected and the transmitted power.
 std::array<double, 2> absorbed(const FresnelCoefficients& f) {
   return {1.0 - std::norm(f.r_s) - std::norm(f.t_s), 1.0 - std::norm(f.r_p) - std::norm(f.t_p)};
 }
 
-// Between a coated face and mirrors that send all light back along the normal: R + T^2 / (1 - R'), with R' from inside.
+// All light that enters is reflected along the normal by mirrors. Multiple reflections give the RRE R + T^2 / (1 - R'),
+// where R' is the reflectance of the coated face from inside.
 TEST(Layers, CoatedEntranceBeforeMirrors) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   for (const LayerStack& stack : {anti_reflection(), thin_aluminium(), LayerStack{{{2.3, 0.1}, {1.46, 0.2}}}}) {
@@ -47,7 +48,7 @@ TEST(Layers, CoatedEntranceBeforeMirrors) {
   }
 }
 
-// Two reflections at 45 degrees, and what the facets pass on the way meets no other one.
+// Light is reflected at 45 degrees by both facets. Light that a facet transmits does not meet another facet.
 TEST(Layers, CoatedFacetsOfAPrism) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   const LayerStack dielectric{{{2.1, 0.12}, {1.3777, 0.2}}};
@@ -68,21 +69,21 @@ TEST(Layers, CoatedFacetsOfAPrism) {
       EXPECT_NEAR(exact[Account::absorbed], taken, 1e-9);
       EXPECT_NEAR(exact[Account::transmitted], 1.0 - returned - taken, 1e-9);
       const ConeResult sampled = MonteCarlo(part).trace(optics, {}, {0.5}, rays(1U << 14), {}).cones[0];
-      // What passes a thick film is so little that no ray may take that way.
+      // A thick film transmits so little light that none of the rays may be transmitted.
       const double passed = 0.5 * (std::norm(f.t_s) + std::norm(f.t_p));
       const double unseen = passed < 1e-5 ? 2.0 * passed : 0.0;
       EXPECT_NEAR(sampled.rre, returned, 4.0 * sampled.spread + 1e-6 + unseen);
     }
 }
 
-// What the entrance face reflects at once, by the polarisation of the light.
+// Compares the light that the entrance face reflects externally with the reflectance for the polarisation of the light.
 TEST(Layers, FrontReflection) {
   const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0));
   for (const double degrees : {0.0, 30.0, 60.0, 80.0})
     for (const double q : {-1.0, 0.0, 1.0}) {
       Optics optics = pmma();
       optics.entrance_layers = thin_aluminium();
-      Illumination light = from(degrees, 90.0);  // +x lies across the plane of incidence: q > 0 is s
+      Illumination light = from(degrees, 90.0);  // +x is perpendicular to the plane of incidence, so that q > 0 is s
       light.stokes = {1.0, q, 0.0, 0.0};
       const FresnelCoefficients f =
           fresnel_layers(optics.entrance_layers, StackSide::outside, 1.0, kPmma, std::cos(light.incidence.rad()));
@@ -93,7 +94,7 @@ TEST(Layers, FrontReflection) {
     }
 }
 
-// All accounts of all light, and no more than it.
+// The accounts of every ledger add up to 1.
 TEST(Layers, LedgersClose) {
   const std::vector<PartSpec> parts = {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5),
                                        single(HexagonalCube{1.0}, 0.4),
@@ -121,7 +122,7 @@ TEST(Layers, LedgersClose) {
   }
 }
 
-// Layers without thickness change nothing that matters, in any engine.
+// Layers with a negligible thickness have no effect in any engine.
 TEST(Layers, NoThicknessIsABareFace) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5));
   Optics empty = pmma();

@@ -1,4 +1,4 @@
-// Which parts are their own mirror images, and that light of mirrored directions is mirrored at them.
+// Tests of the mirror symmetry of parts, and of light from mirrored directions.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -33,9 +33,10 @@ PartSpec bricks(PartSpec spec, double overlap_percent) {
   return spec;
 }
 
-/// Cubes are their own mirror images across y = 0, where one of their dihedral edges lies; errors of the other two must
-/// be alike. Triangles, of which half are turned by half a turn, and prisms are so both ways, unless rows are shifted
-/// by an odd share.
+/// Returns parts with the expected mirror symmetries. A hexagonal cube corner is symmetric across y = 0, which contains
+/// one of its dihedral edges, if the errors of the other two edges are equal. Arrays of triangular cube corners are
+/// symmetric across both axes, because every second cell is rotated by 180 degrees. Arrays of prisms are symmetric
+/// across both axes unless rows are shifted by a fraction other than 0 or a half.
 std::vector<Question> questions() {
   const HexagonalCube hexagon{1.0};
   const TriangularCube triangle{1.0};
@@ -81,8 +82,8 @@ FarField field_of(const Part& part, const Illumination& light) {
   return collector.finish();
 }
 
-/// What light does that meets several cells is decided by these and not by how its entrance is divided, which is no
-/// mirror image of itself.
+/// Light that passes through several cells interferes by the cells that it has met. It must not depend on how the
+/// entrance face is divided for tracing, because this division is not symmetric.
 TEST(MirrorSymmetry, MirroredLightHasTheMirroredFarField) {
   PartSpec cubes = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 3.1, 3.4, 1.0);
   cubes.angle_errors.dihedral_error_arcmin.fill(2.0);

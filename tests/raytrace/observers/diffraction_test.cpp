@@ -1,5 +1,5 @@
-// Diffraction against the patterns of Airy and of a rectangle, direct quadrature, and a pixelwise model of a cube
-// corner.
+// Tests of diffraction against the patterns of a disc (Airy) and of a rectangle, direct quadrature, and a pixel model
+// of a cube corner.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Polygon regular(std::size_t corners, double radius_mm, const Vec2& centre = Vec2
   return polygon;
 }
 
-/// A plane wave through a polygon back to the source at normal incidence.
+/// Returns the far field of a plane wave that leaves through a polygon. By default, the wave returns along the normal.
 FarField field_of(const Polygon& polygon, double wavelength_nm, const Vec3& direction = Vec3::UnitZ(),
                   FarFieldPolicy policy = {}) {
   const Part part = build_part(single(HexagonalCube{1.0}, 1.0));
@@ -54,7 +54,7 @@ Vec3 tilted(double x, double y = 0.0) {
   return {x, y, std::sqrt(1.0 - x * x - y * y)};
 }
 
-// Gauss rules over triangles: exact for all that is smooth.
+// Integrates over triangles by Gauss rules, which are accurate for smooth functions.
 Complex quadrature(const Polygon& polygon, const Vec2& kappa) {
   const GaussRule rule = gauss_legendre(24);
   Complex sum = 0.0;
@@ -98,8 +98,8 @@ TEST(PolygonTransform, IsSmoothWhereItsSeriesBegins) {
   EXPECT_EQ(hexagon.at(Vec2::Zero()), Complex(hexagon.area_mm2()));
 }
 
-/// Fields in lanes are those of single transforms, from the middle of the pattern to far outside; of polygons that two
-/// groups share the transform is worked out once, from whichever corner they are told.
+/// Fields that are computed in SIMD lanes equal single transforms, from the center of the pattern to far outside. If
+/// two groups share a polygon, its transform is computed only once, whichever corner its list starts with.
 TEST(ApertureField, AgreesWithSingleTransforms) {
   constexpr double kWavelength_mm = 550e-6;
   JonesMatrix amplitude;
@@ -132,8 +132,8 @@ TEST(ApertureField, AgreesWithSingleTransforms) {
   }
 }
 
-// The first dark ring of a disc of 1 mm at 550 nm: 1.2197 wavelengths over the diameter (first zero of J1 over pi), and
-// the peak area / wavelength^2.
+// For a disc of 1 mm at 550 nm, the first dark ring is at 1.2197 wavelengths over the diameter (the first zero of J1
+// divided by pi). The peak is area / wavelength^2.
 TEST(Diffraction, FirstNullOfADiscIsThatOfAiry) {
   constexpr double kWave = 550e-6;
   const FarField field = field_of(regular(2000, 0.5), 550.0);
@@ -150,7 +150,7 @@ TEST(Diffraction, FirstNullOfADiscIsThatOfAiry) {
   EXPECT_NEAR(angle / kWave, 1.21967, 2e-4);
   EXPECT_LT(least, 1e-8 * peak);
   EXPECT_NEAR(peak, 0.25 * pi / (kWave * kWave), 1e-5 * peak);
-  // The pattern [2 J1(x) / x]^2.
+  // The pattern is [2 J1(x) / x]^2.
   for (const double s : {0.3, 0.8, 1.6, 2.7}) {
     const double x = pi * s;
     const double airy = std::pow(2.0 * std::cyl_bessel_j(1.0, x) / x, 2.0);
@@ -172,7 +172,8 @@ TEST(Diffraction, SquareApertureIsSincSquared) {
     }
 }
 
-// Obliquely: over the cosines of directions the pattern is the same, so that per steradian it grows with the cosine.
+// As a function of the direction cosines, the pattern is the same at oblique incidence. The intensity per steradian is
+// therefore proportional to the cosine of the direction.
 TEST(Diffraction, ObliquePatternIsOneOverTheCosines) {
   const Polygon hexagon = regular(6, 0.5);
   const Vec3 oblique = tilted(0.05, 0.02);
@@ -186,7 +187,8 @@ TEST(Diffraction, ObliquePatternIsOneOverTheCosines) {
   }
 }
 
-// The window and its surroundings are integrated apart: a lattice inside, the tails outside.
+// The power within the window and the power outside the window are integrated separately: the former on a lattice, the
+// latter over the tails.
 TEST(Diffraction, WindowAndOutsideAddUpToThePower) {
   for (const double size : {0.05, 0.2, 1.0})
     for (const Polygon& shape : {regular(6, 0.5 * size), regular(3, 0.5 * size), regular(400, 0.5 * size)}) {
@@ -267,7 +269,8 @@ TEST(Diffraction, EntranceFaceOfAFinitePartIsAnAperture) {
   }
 }
 
-// The six sub-beams of a full cube corner, for mirrors and for total reflection, whose phases split the pattern.
+// A full cube corner returns six sub-beams. They are tested for mirrors and for total reflection, whose phases split
+// the pattern.
 TEST(Diffraction, SixSectorsOfACubeCornerAgreeWithAPixelModel) {
   constexpr double kAperture = 0.5;
   const Part part = build_part(single(HexagonalCube{kAperture}, 0.3));
@@ -303,13 +306,14 @@ TEST(Diffraction, SixSectorsOfACubeCornerAgreeWithAPixelModel) {
         EXPECT_NEAR(found, cube.at(q), 3e-3) << radius << " " << turn << " " << mirrors;
         most = std::max(most, found);
       }
-    // Total reflection takes the light out of the middle.
+    // With total reflection, there is little light at the center of the pattern.
     EXPECT_GT(most, mirrors ? 0.99 : 0.2);
     EXPECT_LT(field.diffracted_per_sr(Vec3::UnitZ()) / peak, mirrors ? 1.01 : 0.5);
   }
 }
 
-// Sums over many polygons take long: they end when they are asked to, before and after the field is made.
+// Sums over many polygons take long. They must stop when the computation is cancelled, before or after the field is
+// complete.
 TEST(FarField, IsNotSummedOnceItIsCancelled) {
   Cancellation cancellation;
   FarFieldPolicy policy;
@@ -321,7 +325,7 @@ TEST(FarField, IsNotSummedOnceItIsCancelled) {
   EXPECT_TRUE(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).groups().empty());
 }
 
-// Polygons beyond the budget stay rays, and their power is told.
+// Polygons beyond the limit are not diffracted, and their power is reported.
 TEST(FarField, TellsWhatTheBudgetOfPolygonsLeavesUndiffracted) {
   FarFieldPolicy policy;
   EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
@@ -329,7 +333,7 @@ TEST(FarField, TellsWhatTheBudgetOfPolygonsLeavesUndiffracted) {
   const FarField field = field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy);
   EXPECT_TRUE(field.groups().empty());
   EXPECT_NEAR(field.beyond_budget_power(), 1.0, 1e-12);
-  // What the discs hide is not missed.
+  // If the discs are larger than the finest detail, nothing is missing.
   policy.finest_detail_rad = 1.0;
   EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
 }

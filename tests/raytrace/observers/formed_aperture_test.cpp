@@ -1,5 +1,5 @@
-// Diffraction with the forms of facets: against a pixelwise model of a cube corner, Fresnel's integrals, tilted facets,
-// and rays.
+// Tests of diffraction with forms of facets: comparison with a pixel model of a cube corner, Fresnel integrals, tilted
+// facets, and rays.
 #include "raytrace/observers/formed_aperture.h"
 
 #include <gtest/gtest.h>
@@ -55,10 +55,10 @@ FacetForm paraboloid(double depth_mm, double radius_mm) {
   return form;
 }
 
-// A sink, and a form without any symmetry whose places, signs and axes all count.
+// The forms are a sink, and a form without symmetry that tests positions, signs and axes.
 TEST(FormedAperture, CubeCornerAgreesWithAPixelModel) {
   constexpr double kAperture = 0.5;
-  const double radius = 0.5 * kAperture / std::sqrt(4.0 / 3.0);  // half the diagonal of a square of the cube's edge
+  const double radius = 0.5 * kAperture / std::sqrt(4.0 / 3.0);  // half the diagonal of a square facet
   FacetForm skewed;
   skewed.add(1, 0, 2e-4);
   skewed.add(1, 1, -8e-5 / std::pow(radius, 2.0));
@@ -91,7 +91,7 @@ TEST(FormedAperture, CubeCornerAgreesWithAPixelModel) {
     }
 }
 
-/// Mean of exp(i c x^2) over |x| < a.
+/// Returns the mean of exp(i c x^2) over |x| < a.
 Complex fresnel_mean(double c, double a) {
   const GaussRule rule = gauss_legendre(64);
   Complex sum = 0.0;
@@ -100,8 +100,9 @@ Complex fresnel_mean(double c, double a) {
   return sum;
 }
 
-// Both ways through a prism are longer by P (2 x^2 + y^2), x across the roof from the middle of a facet in plan: the
-// axis has the product of two Fresnel integrals. For small heights 1 less the variance of the phase is left (Marechal).
+// Both paths through a prism are longer by P (2 x^2 + y^2), where x is the distance across the roof edge from the
+// centroid of a facet, in plan. The field on the axis is therefore a product of two Fresnel integrals. For small
+// heights, the relative intensity is 1 less the variance of the phase (Marechal).
 TEST(FormedAperture, SunkPrismHasTheProductOfTwoFresnelIntegrals) {
   constexpr double kBase = 0.5, kWidth = 0.4;
   const double radius2 = kBase * kBase / 8.0 + kWidth * kWidth / 4.0;
@@ -119,7 +120,8 @@ TEST(FormedAperture, SunkPrismHasTheProductOfTwoFresnelIntegrals) {
   }
 }
 
-// Down every facet a slope: the field of a cube whose facets are tilted, but for what is of second order.
+// A form is a constant slope down every facet. Except for terms of second order, its field is that of a cube corner
+// with tilted facets.
 TEST(FormedAperture, SlopeIsTheTiltOfFacets) {
   constexpr double kTiltArcmin = 0.7;
   FacetForm slope;
@@ -156,7 +158,7 @@ TEST(FormedAperture, PowerStaysAndNoHeightChangesNothing) {
   EXPECT_NEAR(area_mm2, area(aperture_outline(HexagonalCube{0.5})), 1e-12);
   const FarField::Split split = formed.split(frame_at({}), 0.03);
   EXPECT_NEAR(split.inside + split.outside, formed.total_power(), 2e-3);
-  // The same of heights that are none, and of those that are hardly any.
+  // Heights of 1e-300 have the same effect as plane facets.
   FacetForm none;
   none.add(2, 0, 1e-300);
   const FarField still = field_of(spec, ideal(), none);
@@ -165,8 +167,8 @@ TEST(FormedAperture, PowerStaysAndNoHeightChangesNothing) {
                 1e-9 * plane.diffracted_per_sr(Vec3::UnitZ()));
 }
 
-// Cells that are too wide to be diffracted send rays along the slopes of their forms: what discs see is what Monte
-// Carlo shows them, of askew light that passes from cell to cell.
+// Cells that are too wide to be diffracted send rays along the slopes of their forms. The intensities within the discs
+// must agree with Monte Carlo, for oblique light that passes from cell to cell.
 TEST(FormedAperture, WideCellsSendRaysWhereMonteCarloDoes) {
   const PartSpec spec = infinite(HexagonalCube{3.0}, Arrangement::honeycomb, 2.0);
   const double radius = 1.5 / std::sqrt(4.0 / 3.0);
