@@ -1,4 +1,4 @@
-// The tracer against an independent engine that shares only the closed boundary with it.
+// Tests of the tracer against an independent engine. Both engines share only the closed boundary of the part.
 #include "tests/support/reference_tracer.h"
 
 #include <gtest/gtest.h>
@@ -82,21 +82,21 @@ TEST_P(AgainstReference, EveryAccountAgrees) {
   optics.absorbing_walls = c.absorbing_walls;
   optics.facet_layers = c.facet_layers;
   optics.entrance_layers = c.entrance_layers;
-  // A wide cone puts power on both sides of its edge.
+  // The cone is wide, so that there is light inside and outside of it.
   const double cone_deg = 8.0;
   const ReferenceResult reference =
       reference_trace(part, optics, from(c.incidence_deg, c.azimuth_deg), cone_deg, 40000, 7);
   const MonteCarloResult traced =
       MonteCarlo(part).trace(optics, from(c.incidence_deg, c.azimuth_deg), {cone_deg}, rays(1U << 17), {});
   const Ledger& ledger = traced.cones[0].ledger;
-  // The program's own error is far below the reference's.
+  // The error of the tracer is much smaller than the error of the reference.
   ASSERT_LT(traced.cones[0].std_error, 5e-4);
   EXPECT_LT(reference.mean[Account::truncated], 2e-3) << c.name;
   expect_accounts_of(reference, ledger, cases().size() * kAccountCount, 2e-4, c.name);
 }
 
-// At normal incidence a prism's facets at 45 degrees reflect little in water: (R_s^2 + R_p^2) / 2 comes back, in both
-// engines.
+// In water, the facets of a prism at 45 degrees reflect little light at normal incidence. The returned power is (R_s^2
+// + R_p^2) / 2 in both engines.
 TEST(BackIndex, PrismInWater) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   Optics optics = pmma();
@@ -109,7 +109,7 @@ TEST(BackIndex, PrismInWater) {
   EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.spread + 1e-6);
 }
 
-// Two reflections by metal instead: the same in any surroundings, and the rest is absorbed.
+// With metal facets, light is reflected twice for any medium behind the part. The remaining light is absorbed.
 TEST(FacetCoating, AluminisedPrism) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   Optics optics = pmma();

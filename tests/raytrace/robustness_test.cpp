@@ -1,4 +1,4 @@
-// Leaks, far-away coordinates, large arrays, threads, interruption.
+// Tests of leaks, coordinates far from the origin, large arrays, threads and interruption.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -49,7 +49,7 @@ TEST_P(Leaks, NoSegmentLeaks) {
   std::uint32_t seed = 0;
   // Rounds are short, so that the last round exceeds the maximum number of segments only slightly.
   while (segments < max_segments) {
-    // Directions that hit edges head-on (0, 30, 90 degrees) and ones that avoid them.
+    // Some directions hit edges exactly (azimuths of 0, 30 and 90 degrees), and some avoid them.
     for (const auto& [t, p] : {std::pair{0.0, 0.0}, {35.0, 30.0}, {12.0, 90.0}, {61.0, 47.3}, {5.0, 211.7}}) {
       for (const MonteCarlo* tracer : {&finite_tracer, &infinite_tracer}) {
         const MonteCarloResult result = tracer->trace(pmma(), from(t, p), {0.5}, rays(1U << 13, ++seed), {});
@@ -65,7 +65,7 @@ TEST_P(Leaks, NoSegmentLeaks) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Leaks, ::testing::Values(0U, 1U, 2U));
 
-// 100 mm from the origin, and 100 mm from the middle of a large part, an element sends back what it does at the origin.
+// An element returns the same light at the origin and at a distance of 100 mm from the origin.
 TEST(Robustness, FarFromTheOrigin) {
   for (const Kind& kind : kinds()) {
     const Part near = build_part(kind.finite_spec);
@@ -77,14 +77,15 @@ TEST(Robustness, FarFromTheOrigin) {
 }
 
 TEST(Robustness, ElementsFarFromTheMiddleOfALargeArray) {
-  // Infinite against 200 mm wide with many pieces: the border's share is known to be below the difference allowed.
+  // An infinite array is compared with an array of 200 mm. The effect of the border is smaller than the allowed
+  // difference.
   for (const auto& [element, arrangement] :
        {std::pair<Element, Arrangement>{HexagonalCube{0.8}, Arrangement::honeycomb},
         {TriangularCube{0.8}, Arrangement::triangular},
         {RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned}}) {
     const Part large = build_part(finite(element, arrangement, 200.0, 200.0, 0.5));
     const Part endless = build_part(infinite(element, arrangement, 0.5));
-    // More rays would not tell more: what the border may take is most of the bound.
+    // More rays would not improve the test, because the border determines most of the allowed difference.
     const ConeResult a = MonteCarlo(large).trace(ideal(), from(10.0, 20.0), {0.5}, rays(1U << 17), {}).cones[0];
     const ConeResult b = MonteCarlo(endless).trace(ideal(), from(10.0, 20.0), {0.5}, rays(1U << 17), {}).cones[0];
     const double border = 4.0 * 2.0 / 200.0 * 0.8;

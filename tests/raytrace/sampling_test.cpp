@@ -1,4 +1,4 @@
-// Sampling: stratification, evenness over the entrance, and an error estimate that is true.
+// Tests of sampling: stratification, uniform distribution over the entrance face, and correct standard errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ TEST(ReplicateMeans, TheStokesParameterOfPowerIsTheEfficiency) {
   }
 }
 
-// A scrambled (0, m, 2)-net: every elementary interval of area 2^-m holds exactly one of 2^m points.
+// A scrambled (0, m, 2)-net has 2^m points. Every elementary interval with the area 2^-m contains exactly one point.
 TEST(SobolSquare, IsAStratifiedNet) {
   constexpr int kBits = 10;
   for (const std::uint32_t seed : {0U, 1U, 0xdeadbeefU, 0x80000001U}) {
@@ -53,7 +53,8 @@ TEST(SobolSquare, IsAStratifiedNet) {
   }
 }
 
-// Over scrambles every point is uniform: means and covariance of the first points.
+// Over many scrambles, each point is uniformly distributed. The test compares the means and the covariance of the first
+// points.
 TEST(SobolSquare, ScramblesAreUnbiased) {
   constexpr std::uint32_t kScrambles = 20000;
   for (const std::uint32_t index : {0U, 1U, 5U, 1023U}) {
@@ -76,7 +77,7 @@ TEST(SobolSquare, ScramblesAreUnbiased) {
   }
 }
 
-// Equal areas of the entrance get equal shares of the points.
+// Equal areas of the entrance face contain equal fractions of the points.
 TEST(EntranceSampler, IsEvenOverTheFace) {
   for (const Element element :
        {Element(RtpElement{0.7, 0.4, 90.0}), Element(HexagonalCube{1.0}), Element(TriangularCube{1.0})}) {
@@ -84,7 +85,7 @@ TEST(EntranceSampler, IsEvenOverTheFace) {
     const EntranceSampler sampler(part);
     Vec2 mean = Vec2::Zero();
     double second = 0.0;
-    constexpr int kSide = 1200;  // the fan of the hexagon divides it evenly
+    constexpr int kSide = 1200;  // the number of cells divides evenly over the triangle fan of the hexagon
     for (int i = 0; i < kSide; ++i)
       for (int j = 0; j < kSide; ++j) {
         const Vec2 p = sampler({(i + 0.5) / kSide, (j + 0.5) / kSide}) + sampler.centre_mm();
@@ -93,7 +94,8 @@ TEST(EntranceSampler, IsEvenOverTheFace) {
         second += (p - centroid(part.outline)).squaredNorm() / (kSide * kSide);
       }
     EXPECT_LT((mean - centroid(part.outline)).norm(), 1e-4);
-    // Polar second moment over area: (b^2 + w^2)/12, 5 s^2/12 (hexagon of side s), s^2/12 (triangle of side s).
+    // Mean square distance from the centroid: (b^2 + w^2)/12 for a rectangle, 5 s^2/12 for a hexagon with the side s,
+    // and s^2/12 for a triangle with the side s.
     double expected = (0.49 + 0.16) / 12.0;
     if (std::holds_alternative<HexagonalCube>(element)) expected = 5.0 * 0.25 / 12.0;
     if (std::holds_alternative<TriangularCube>(element)) expected = 0.75 / 12.0;
@@ -161,7 +163,7 @@ TEST(EntranceSampler, StartsWithinAnyOutline) {
   }
 }
 
-// Over 200 seeds, 95 % intervals hold the true value in 90 to 99 % of runs.
+// A design with its true RRE. Over 200 seeds, 95 % intervals must contain the true value in 90 to 99 % of the runs.
 struct Truth {
   PartSpec spec;
   Optics optics;
@@ -174,7 +176,7 @@ TEST(StandardError, IsTrue) {
   PartSpec bricks = finite(RtpElement{2.0, 2.0, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
   bricks.array.shifted_rows = RowParity::odd;
   const double share = 22.0 * 4.0 / 100.0;
-  // The exact engine settles what has no closed form.
+  // There is no closed form for the hexagon, so the exact engine computes its true RRE.
   const Part hexagon = build_part(single(HexagonalCube{1.0}, 0.5));
   BeamPolicy exactly;
   exactly.truncated_goal = 1e-7;

@@ -1,4 +1,4 @@
-// Rough facets and absorbing walls in the tracers.
+// Tests of rough facets and absorbing walls in the tracers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,8 +22,8 @@ Optics rough(Optics optics, double sq_nm, double correlation_length_um = 5.0) {
   return optics;
 }
 
-// A prism at incidence t meets facets at 45 degrees -+ t' inside: their specular shares multiply. The cone is too
-// narrow for what scatters.
+// Light with the angle of incidence t hits the facets of a prism at 45 degrees -+ t', where t' is the angle inside. The
+// specular fractions of both facets are multiplied. The cone is so narrow that it contains no scattered light.
 TEST(RoughFacets, SpecularSharesOfTwoFacetsMultiply) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   Optics smooth = pmma();
@@ -48,7 +48,8 @@ TEST(RoughFacets, SpecularSharesOfTwoFacetsMultiply) {
   }
 }
 
-// The exact engine follows what stays specular: the smooth share times those of the two facets, without noise.
+// The exact engine traces the specular light. The result is the RRE with smooth facets times the specular fractions of
+// both facets, without noise.
 TEST(MeanField, OfAPrismIsTheSmoothReturnTimesTheSpecularShares) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   const BeamTracer tracer(part);
@@ -65,7 +66,8 @@ TEST(MeanField, OfAPrismIsTheSmoothReturnTimesTheSpecularShares) {
   EXPECT_NEAR(ledger.total(), 1.0, 1e-9);
 }
 
-// Into a cone too narrow for what scatters rays bring the mean field, and in no model less.
+// In a cone that is too narrow for scattered light, rays return the mean field. In all models, rays return at least
+// this power.
 TEST(MeanField, IsNowhereMoreThanRaysBring) {
   const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.5));
   const surface_models::ScatterModel gaussian = HarveyShack({15.0, 20.0, 20.0, 300.0});
@@ -90,7 +92,8 @@ TEST(MeanField, IsNowhereMoreThanRaysBring) {
   }
 }
 
-// As the roughness goes to zero so does its effect, in every kind of array; more of it never helps.
+// In every kind of array, the effect of roughness vanishes as the roughness goes to 0. More roughness never increases
+// the RRE.
 TEST(RoughFacets, EffectGrowsFromNothing) {
   for (const PartSpec& spec : {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5),
                                finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.2, 2.0, 0.5),
@@ -130,7 +133,7 @@ TEST(RoughFacets, EveryModelClosesTheLedger) {
   }
 }
 
-// Absorbing walls take what would leave or be reflected there, alike in both engines.
+// Absorbing walls absorb all light that would leave or be reflected there. Both engines must agree.
 TEST(AbsorbingWalls, EnginesAgree) {
   const Part part = build_part(finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 1.9, 1.4, 0.3));
   Optics optics = pmma();

@@ -1,4 +1,4 @@
-// Stochastic beams: without bias, with intervals that hold, and with all power in the ledger.
+// Tests of stochastic beams: unbiased results, correct confidence intervals, and conservation of power.
 #include "raytrace/exact/stochastic_beams.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ struct Question {
   Illumination light;
 };
 
-/// Arrays that trap light, so that weak beams matter.
+/// Returns arrays that trap light, so that weak beams are important.
 std::vector<Question> questions() {
   PartSpec finite_cubes = finite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 8.0, 8.0, 1.0);
   return {
@@ -58,7 +58,7 @@ std::vector<Question> questions() {
       {"finite cubes", build_part(finite_cubes), from(15, 40)}};
 }
 
-/// Elements that are alike may be followed once: the same light.
+/// Equal elements may be traced only once, which must not change the result.
 TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
   Optics optics = pmma();
   optics.absorption_per_mm = 0.01;
@@ -79,7 +79,8 @@ TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
             << question.name;
         EXPECT_NEAR(own.ledger.total(), 1.0, 1e-13) << question.name;
         EXPECT_NEAR(own.ledger[Account::truncated], 0.0, 1e-12) << question.name;
-        // No other account has more than a few times the error of RRE, and here it is a matter of bias, not of noise.
+        // The errors of the other accounts are at most a few times the error of the RRE. This test looks for bias, not
+        // for noise.
         for (const Account account : {Account::transmitted, Account::absorbed, Account::side_exit})
           EXPECT_NEAR(own.ledger[account], exact.ledgers[cone][account], 3e-4)
               << question.name << ", " << static_cast<int>(account);
@@ -197,7 +198,8 @@ TEST(StochasticBeams, SameAtAnyNumberOfThreads) {
   }
 }
 
-/// What rough facets take from beams goes on as rays: in every cone and account as when all light is rays.
+/// The light that rough facets scatter out of beams is traced as rays. All cones and accounts must agree with a run by
+/// rays only.
 TEST(StochasticBeams, RoughFacetsAgreeWithRays) {
   const std::vector<double> cones = {0.5, 3.0, 60.0};
   const std::vector<Optics> textures = {rough(60.0, 1.0), rough(10.0, 5.0), rough(20.0, 1.0), rough(10.0, 0.5)};
@@ -259,8 +261,8 @@ TEST(StochasticBeams, PrismsScatterIntoNarrowConesAsFirstOrderSays) {
   EXPECT_NEAR((result.cones[1].rre - result.cones[0].rre) / expected, 1.0, 0.03);
 }
 
-/// What beams follow to their end needs no sampling and has no error: prisms at normal incidence send all back but what
-/// the entrance face reflects.
+/// If all beams are traced to their end, nothing is sampled and the standard error is 0. At normal incidence, prisms
+/// return all light except the light that the entrance face reflects.
 TEST(StochasticBeams, NothingIsLeftToChanceWhereBeamsEnd) {
   const Part part = build_part(single(RtpElement{0.6, 0.4, 90.0}, 0.7));
   const BeamTracer tracer(part);

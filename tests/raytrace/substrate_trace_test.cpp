@@ -1,5 +1,5 @@
-// Light in parts whose elements stand on substrates: nothing is lost, the engines agree, and what theory says of
-// planes, turned cubes and pins holds.
+// Tests of light in parts whose elements are on substrates: conservation of power, agreement of the engines, and closed
+// forms for planes, rotated cubes and pins.
 
 #include <gtest/gtest.h>
 
@@ -93,7 +93,7 @@ std::vector<PartSpec> planar() {
           finite(TriangularCube{1.0}, Arrangement::triangular, 2.4, 2.3, 2.0)};
 }
 
-// The same seed: the same rays, hit by hit.
+// With the same seed, both parts trace the same rays.
 TEST(PlaneAsFormula, SendsBackWhatThePlanarArrayDoes) {
   for (const PartSpec& plain : planar())
     for (const double t : {0.0, 7.0, 30.0}) {
@@ -121,8 +121,8 @@ TEST(HugeCylinder, SendsBackWhatThePlanarArrayDoes) {
   }
 }
 
-// Light along a pin's axis stays in the column over its hexagon, whatever its neighbours do: the three reflections of a
-// full cube lie in it, and the walls stand along the light.
+// Light along the axis of a pin stays above the hexagon of the pin, whatever the heights of its neighbours. All three
+// reflections of a full cube are within the hexagon, and the walls are parallel to the light.
 TEST(PinBundle, SendsBackLightAlongThePinsWhateverTheIncline) {
   PartSpec pins = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 6.2, 5.3, 2.0);
   pins.is_pin_bundle = true;
@@ -137,12 +137,13 @@ TEST(PinBundle, SendsBackLightAlongThePinsWhateverTheIncline) {
   for (const double incline : {5.0, 17.0, 30.0}) {
     const Part part = build_part(on({PlaneSubstrate{incline, 33.0}, ElementAxes::parallel}, pins));
     const Ledger ledger = BeamTracer(part).trace(ideal(), from(0.0), {0.5}, policy).ledgers[0];
-    // Omitted pins leave level land: under an inclined bundle it is level too, and sends back what it did.
+    // Omitted pins are replaced by horizontal land. The land remains horizontal if the bundle is inclined, and reflects
+    // the same light.
     EXPECT_NEAR(ledger[Account::retroreflected], level, 1e-9) << incline;
   }
 }
 
-// Light from the side: walls come between by and by, and RRE falls without a jump.
+// For oblique light, walls shade more and more light as the incline grows. The RRE decreases continuously.
 TEST(PinBundle, LosesLightContinuouslyAsTheInclineGrows) {
   PartSpec pins = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 12.0, 12.0, 2.0);
   pins.is_pin_bundle = true;
@@ -161,9 +162,10 @@ TEST(PinBundle, LosesLightContinuouslyAsTheInclineGrows) {
   EXPECT_LT(before, first - 0.05);
 }
 
-// Closed form of the effective aperture of triangular cubes (Eckhardt, Appl. Opt. 10, 1559 (1971)): of mirrors under a
-// lossless face that falls on them at t' inside, 2 - (4/3) / cos^2 t' comes back. On an incline light along the part's
-// normal falls on them at the incline. Border elements cost in proportion to the border: two sizes tell how much.
+// Closed form of the effective aperture of triangular cubes (Eckhardt, Appl. Opt. 10, 1559 (1971)). For mirrors behind
+// a lossless entrance face, the RRE is 2 - (4/3) / cos^2 t', where t' is the angle of incidence on the cubes inside the
+// part. On an incline, light along the normal of the part has the angle of the incline. The effect of border elements
+// is proportional to the length of the border, so that it is eliminated with two sizes of the part.
 TEST(InclinedArray, HasTheApertureOfCubesAtThatAngle) {
   const auto rre = [](double size_mm, double incline_deg) {
     const PartSpec spec = on({PlaneSubstrate{incline_deg, 90.0}, ElementAxes::normal},
@@ -180,7 +182,7 @@ TEST(InclinedArray, HasTheApertureOfCubesAtThatAngle) {
   }
 }
 
-// A cylinder with prisms across it is its own mirror image.
+// A cylinder with prisms across its axis is symmetric.
 TEST(Cylinder, SendsBackAlikeFromBothSides) {
   const Part part = build_part(
       on({CylinderSubstrate{5.0, false}, ElementAxes::normal}, finite(kPrism, Arrangement::aligned, 3.0, 2.0, 1.5)));
@@ -194,7 +196,7 @@ TEST(Cylinder, SendsBackAlikeFromBothSides) {
   }
 }
 
-// Patches that stand at different heights are the same surface as one patch.
+// Several patches at different heights form one continuous surface.
 TEST(Placements, AtDifferentHeightsAreOneSurface) {
   const PartSpec spec =
       on({PlaneSubstrate{10.0, 20.0}, ElementAxes::normal}, finite(kPrism, Arrangement::aligned, 30.0, 30.0, 8.0));
@@ -203,7 +205,8 @@ TEST(Placements, AtDifferentHeightsAreOneSurface) {
   const MonteCarloResult result = MonteCarlo(part).trace(pmma(), from(8.0, 20.0), {0.5}, rays(1U << 16), {});
   EXPECT_EQ(result.misses, 0U);
   EXPECT_NEAR(result.cones[0].ledger.total(), 1.0, 1e-9);
-  // A part of one patch has four times the border; inside both are alike: what falls between is the border's.
+  // A smaller part consists of a single patch. Both parts have the same inner region, and the allowed difference covers
+  // the effect of the different borders.
   PartSpec small = spec;
   small.array.x_length_mm = small.array.y_length_mm = 15.0;
   const Part one = build_part(small);

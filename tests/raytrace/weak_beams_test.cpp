@@ -1,5 +1,5 @@
-// Beams of the exact engine whose weak ones are resampled: without bias, with intervals that hold, with all power in
-// the ledger, and in far fields.
+// Tests of the exact engine with resampled weak beams: unbiased results, correct confidence intervals, conservation of
+// power, and far fields.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Question {
   Illumination light;
 };
 
-/// Arrays that trap light, so that weak beams matter.
+/// Returns arrays that trap light, so that weak beams are important.
 std::vector<Question> questions() {
   PartSpec finite_cubes = finite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 8.0, 8.0, 1.0);
   finite_cubes.angle_errors.dihedral_error_arcmin.fill(3.0);
@@ -48,7 +48,7 @@ BeamPolicy resampled(double cutoff, double thinning, std::uint32_t seed = 1) {
   return policy;
 }
 
-/// Followed exactly until next to nothing is left.
+/// Returns the ledger of a trace in which the truncated power is negligible.
 Ledger reference(const Question& question, const Optics& optics, double cone_deg) {
   BeamPolicy policy;
   policy.truncated_goal = 1e-5;
@@ -108,8 +108,8 @@ TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
   }
 }
 
-/// Beams above the cut-off are those of a run that gives up the others, and what replicates send back adds up to the
-/// ledger.
+/// The beams above the cut-off are the same as in a run that truncates weak beams. The light that the replicates return
+/// is the returned light of the ledger.
 TEST(WeakBeams, LeaveStrongBeamsAsTheyAre) {
   for (const Question& question : questions()) {
     const BeamTracer tracer(question.part);
@@ -147,7 +147,7 @@ TEST(WeakBeams, LeaveStrongBeamsAsTheyAre) {
   }
 }
 
-/// What needs no resampling has no error.
+/// If no beam is resampled, the standard error is 0.
 TEST(WeakBeams, NothingIsLeftToChanceWhereBeamsEnd) {
   const Part part = build_part(single(RtpElement{0.6, 0.4, 90.0}, 0.7));
   const BeamResult result = BeamTracer(part).trace(ideal(), from(0.0), {0.5}, resampled(1e-3, 32.0));
@@ -181,7 +181,7 @@ Seen seen(const Question& question, const BeamPolicy& beams, FarFieldPolicy poli
   return seen;
 }
 
-/// Towards receivers round the light.
+/// Returns directions of receivers around the direction to the light.
 std::vector<Vec3> receivers(const Illumination& light) {
   const ReturnFrame frame = frame_at(light);
   std::vector<Vec3> directions;
@@ -198,8 +198,8 @@ Question wide_cubes() {
   return {"wide cubes", build_part(spec), from(20, 10)};
 }
 
-/// Without interference intensities have no bias: over seeds their mean is that of beams that are followed much
-/// further, and their errors are those that the spread shows.
+/// Without interference, intensities are unbiased: their mean over many seeds is that of a trace with a lower cut-off.
+/// The reported errors agree with the spread over the seeds.
 TEST(WeakBeams, FarFieldIsUnbiased) {
   constexpr std::uint32_t kSeeds = 60;
   const Question question = wide_cubes();
@@ -231,12 +231,13 @@ TEST(WeakBeams, FarFieldIsUnbiased) {
     }
     const double left = kernel.per_sr(0.0) * truth.result.ledgers[0][Account::truncated];
     EXPECT_LE(std::abs(mean), normal_bound(9) * std::sqrt(squares / kSeeds) + left) << at;
-    // Errors are told 9 % wide, as they are of 16 replicates alone.
+    // Reported errors from 16 replicates are 9 % larger than the standard deviation, because of Student's t
+    // distribution.
     EXPECT_NEAR(std::sqrt(told), std::sqrt(squares), 0.35 * std::sqrt(squares) + left) << at;
   }
 }
 
-/// Diffracted, the light that interferes no longer counts for little.
+/// Resampled light does not interfere with other light. In the diffracted far field, the effect of this is small.
 TEST(WeakBeams, DiffractedFarFieldAgreesWithBeams) {
   const ApertureKernel kernel({Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)});
   const Question question = wide_cubes();
@@ -258,7 +259,7 @@ TEST(WeakBeams, DiffractedFarFieldAgreesWithBeams) {
   }
 }
 
-/// The same resampled light in the sums over directions: bins, and power in a cone and outside.
+/// Sums over directions contain the same resampled light: sums over bins, and the power inside and outside of a cone.
 TEST(WeakBeams, SumsOverDirectionsHoldAllReplicates) {
   const Question question = wide_cubes();
   const BeamPolicy beams = resampled(1e-4, 32.0);

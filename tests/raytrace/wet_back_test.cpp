@@ -1,4 +1,4 @@
-// Another medium behind some elements: which elements those are, and that each returns what its own back lets it.
+// Tests of parts with another medium behind some elements: selection of these elements, and their returned light.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using namespace raytrace;
 
 constexpr double kWater = 1.333;
 
-/// Light meets another index behind the elements of a choice, whether or not these are all.
+/// Returns optics with another index behind the chosen elements. The choice may include all elements.
 Optics wet_behind(Optics optics, const Part& part, const ElementChoice& choice, double index) {
   Optics wet = optics;
   wet.back_index = index;
@@ -34,7 +34,7 @@ PartSpec prisms(Arrangement arrangement = Arrangement::aligned) {
   return finite(RtpElement{0.5, 0.5, 90.0}, arrangement, 8.0, 8.0, 0.4);
 }
 
-/// Cut elements, land, margins, and every kind.
+/// Returns arrays of all kinds, with cut elements, land and margins.
 std::vector<PartSpec> arrays() {
   std::vector<PartSpec> all = {finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 2.5, 2.6, 0.4),
                                finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 2.5, 2.0, 0.4),
@@ -47,11 +47,11 @@ std::vector<PartSpec> arrays() {
   return all;
 }
 
-/// Of light that falls in along the normal, by a 90 degree prism behind a plate: both facets are met at 45 degrees, and
-/// the plate's face sends what it reflects round again.
+/// Returns the fraction of light along the normal that a 90 degree prism behind a plate returns. Both facets are hit at
+/// 45 degrees, and the entrance face causes multiple reflections.
 double returned_by_prism(double index, double back_index) {
   const double sine = index / back_index * std::sqrt(0.5);
-  double facets = 1.0;  // power, unpolarised
+  double facets = 1.0;  // power of unpolarised light
   const double face = std::pow((index - 1.0) / (index + 1.0), 2.0);
   const auto through_plate = [&](double reflectance) {
     const double both = reflectance * reflectance;
@@ -61,16 +61,16 @@ double returned_by_prism(double index, double back_index) {
   const double cosine = std::sqrt(1.0 - sine * sine), c = std::sqrt(0.5);
   const double s = std::pow((index * c - back_index * cosine) / (index * c + back_index * cosine), 2.0);
   const double p = std::pow((back_index * c - index * cosine) / (back_index * c + index * cosine), 2.0);
-  // A face between two of its own reflections keeps s and p apart.
+  // Reflections at the entrance face keep s and p polarisation separate.
   return 0.5 * (through_plate(s) + through_plate(p));
 }
 
 TEST(ChosenElements, ARegionHasTheElementsWhoseMiddlesLieInIt) {
-  const Part part = build_part(prisms());  // 16 x 16, middles at 0.25 + 0.5 k
+  const Part part = build_part(prisms());  // 16 x 16 elements, with centers at 0.25 + 0.5 k
   const auto count = [&](const ElementChoice& choice) { return ChosenElements(part, choice).count(); };
   EXPECT_EQ(ChosenElements(part, Disc{{0.0, 0.0}, 1.0}).of_all(), 256);
   EXPECT_EQ(count(Rectangle{{0.0, 0.0}, {8.0, 8.0}}), 256);
-  EXPECT_EQ(count(Rectangle{{0.2, 0.3}, {1.3, 0.8}}), 3);  // 0.25, 0.75, 1.25 of row 2
+  EXPECT_EQ(count(Rectangle{{0.2, 0.3}, {1.3, 0.8}}), 3);  // x = 0.25, 0.75 and 1.25 in row 2
   EXPECT_EQ(count(Disc{{0.25, 0.25}, 0.6}), 3);
   EXPECT_EQ(count(Disc{{20.0, 0.0}, 1.0}), 0);
   EXPECT_EQ(count(geometry::HalfPlane{{4.0, 0.0}, 0.0}), 128);
@@ -100,7 +100,7 @@ TEST(ChosenElements, EverythingAndNothingAreKnown) {
   }
 }
 
-// Every element has the same chance, whatever the seed; seeds choose apart from each other.
+// For every seed, each element is chosen with the same probability. Different seeds give independent choices.
 TEST(ChosenElements, ASharesCountIsThatOfIndependentChances) {
   const Part part = build_part(prisms());
   for (const double share : {0.1, 0.5, 0.9}) {
@@ -121,7 +121,7 @@ bool is_wall(const PatchFacet& facet) {
   return facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
 }
 
-// An element is wet as a whole: facets, and the outer walls at its end.
+// An element is either wet or dry as a whole, including its facets and the outer walls at its ends.
 TEST(ChosenElements, FacetsOfAnElementAreChosenTogether) {
   const Part part = build_part(prisms(Arrangement::offset));
   const ChosenElements chosen(part, RandomShare{0.5, 3});
@@ -132,7 +132,7 @@ TEST(ChosenElements, FacetsOfAnElementAreChosenTogether) {
         EXPECT_EQ(chosen.has(p, cell.first_facet), chosen.has(p, cell.first_facet + f));
       }
   std::int64_t wet = 0;
-  for (int k = 0; k < 16; ++k) {  // along y = 0, row 1
+  for (int k = 0; k < 16; ++k) {  // elements along y = 0, in row 1
     const bool is_wet = chosen.has_wall_at({0.5 * k + 0.1, 0.0});
     EXPECT_EQ(is_wet, chosen.has_wall_at({0.5 * k + 0.4, 0.0}));
     if (is_wet) ++wet;
@@ -213,10 +213,10 @@ TEST(WetBack, OfAllElementsAndOfNoneAreTheBacksOwn) {
   }
 }
 
-// At normal incidence what a dry prism returns never leaves it. Light that a wet one lets out enters its neighbours and
-// comes back through a third if that is wet as well; of wet prisms among dry ones, and of columns of them, nothing
-// does. Sobol points fall on 16 x 16 elements alike: the mean over the elements is exact but for 2e-9 that finds its
-// way all the same.
+// At normal incidence, the light that a dry prism returns never leaves this prism. Light that leaves a wet prism enters
+// its neighbours. It returns only through a third prism that is also wet, which a single wet prism or a single column
+// of wet prisms does not have. Sobol points are distributed equally over the 16 x 16 elements. The mean over the
+// elements is therefore exact except for 2e-9 that returns by other paths.
 TEST(WetBack, PrismsReturnTheMeanOverTheirElements) {
   const Part part = build_part(prisms());
   const double dry = returned_by_prism(kPmma, 1.0);
@@ -235,11 +235,11 @@ TEST(WetBack, PrismsReturnTheMeanOverTheirElements) {
   }
 }
 
-// Light that falls in across the roof edges stays in its row, so that wet rows among dry ones do in every account what
-// they do by themselves.
+// Light in the plane across the roof edges stays in its row. In every account, wet rows among dry rows therefore have
+// the same power as in a completely wet part.
 TEST(WetBack, WetRowsAmongDryOnes) {
   const Part part = build_part(prisms());
-  const Rectangle rows{{0.0, 3.0}, {8.0, 7.0}};  // 8 of 16
+  const Rectangle rows{{0.0, 3.0}, {8.0, 7.0}};  // 8 of 16 rows
   for (const double index : {1.1, kWater})
     for (const double incidence_deg : {0.0, 12.0, 40.0}) {
       const Illumination at = from(incidence_deg, 0.0);

@@ -1,4 +1,4 @@
-// Designs of balls: what is read and refused, and what rre, photometry and inspect make of them.
+// Tests of designs with balls: reading, refused values, and the results of rre, photometry and inspect.
 
 #include <gtest/gtest.h>
 
@@ -186,7 +186,8 @@ PhotometryRequest request_of(double receiver_deg) {
 }
 
 TEST(BallStudies, CoefficientOfAWideReceiverIsItsShareOfThePower) {
-  // What a receiver of 1 degree round the source sees is what comes back within half a degree, over its solid angle.
+  // A receiver with a diameter of 1 degree around the source receives the light that returns within half a degree. Its
+  // R_A is this power divided by the solid angle.
   const Design design = balls();
   const PhotometryResult result = PhotometryStudy(design, request_of(1.0)).run();
   EXPECT_EQ(result.engine, "balls");

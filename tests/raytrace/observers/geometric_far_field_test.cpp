@@ -1,4 +1,5 @@
-// Far fields of traced parts: the ledger, closed forms, engines against each other, lambertian and mirror.
+// Tests of the far fields of traced parts: sums of the ledger, closed forms, agreement of the engines, a Lambertian
+// surface and a mirror.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -85,7 +86,7 @@ TEST(GeometricFarField, HemisphereSumsToTheLedger) {
   }
 }
 
-// With diffraction the power inside and that outside of the window are integrated apart.
+// With diffraction, the power within the window and the power outside the window are integrated separately.
 TEST(DiffractedFarField, WindowAndOutsideAddUpToTheLedger) {
   for (const auto& [spec, t, p] : {std::tuple{cubes(3.0), 0.0, 0.0},
                                    {cubes(), 12.0, 30.0},
@@ -99,7 +100,7 @@ TEST(DiffractedFarField, WindowAndOutsideAddUpToTheLedger) {
   }
 }
 
-// Bins of a grid and their solid angles: those of a disc add up to 2 pi (1 - cos).
+// The solid angles of the bins of a circular grid add up to 2 pi (1 - cos).
 TEST(DirectionGrid, SolidAnglesAddUp) {
   const DirectionGrid polar(DirectionGrid::Layout::polar, 0.7, 13, 7);
   double sum = 0.0;
@@ -120,7 +121,8 @@ TEST(DirectionGrid, SolidAnglesAddUp) {
   EXPECT_FALSE(polar.bin_of({0.71, 0.0}));
 }
 
-// All three dihedral errors e: six spots at (8 / sqrt 6) n e. 2.46 arcmin at n = 1.49 are 0.2 degrees.
+// If all three dihedral errors are e, the light returns in six spots at the angle (8 / sqrt 6) n e. For 2.46 arcmin and
+// n = 1.49, this angle is 0.2 degrees.
 TEST(GeometricFarField, SixSpotsOfDihedralErrors) {
   for (const auto& [index, error_arcmin, expected_deg] :
        {std::tuple{1.49, 2.46, 0.2}, {1.585, 1.0, 8.0 / std::sqrt(6.0) * 1.585 / 60.0}}) {
@@ -128,14 +130,14 @@ TEST(GeometricFarField, SixSpotsOfDihedralErrors) {
     optics.index = index;
     const Traced traced = trace(build_part(cubes(error_arcmin)), optics, {}, geometric(), 1e-6);
     const double radius = 8.0 / std::sqrt(6.0) * index * error_arcmin / 60.0;
-    // The published pair is rounded to three digits.
+    // The published values are rounded to three digits.
     EXPECT_NEAR(radius, expected_deg, 3e-3 * expected_deg);
     int spots = 0;
     std::array<int, 6> sixths{};
     for (const FarFieldRay& ray : traced.field.rays()) {
       if (ray.power < 0.01) continue;
       const Vec2 at = ReturnFrame{}.angles_rad(ray.direction) / kDeg;
-      if (at.norm() < 0.01) continue;  // the front
+      if (at.norm() < 0.01) continue;  // reflection of the entrance face
       ++spots;
       EXPECT_NEAR(at.norm(), radius, 2e-3 * radius);
       const double turn = std::atan2(at.y(), at.x()) / (pi / 3.0) + 6.0;
@@ -146,7 +148,7 @@ TEST(GeometricFarField, SixSpotsOfDihedralErrors) {
   }
 }
 
-// The matrices of Jones carry the same power as the Stokes parameters, for any polarisation.
+// For any polarisation, the power of the field from Jones matrices equals the power from Stokes parameters.
 TEST(DiffractedFarField, FieldsCarryThePowerOfTheStokesParameters) {
   const Part part = build_part(infinite(TriangularCube{0.7}, Arrangement::triangular, 0.6));
   for (const Stokes& s : {Stokes{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 0, 1, 0}, {1, 0, 0, 1}, {1, 0.5, -0.4, 0.6}}) {
@@ -170,7 +172,7 @@ TEST(DiffractedFarField, FieldsCarryThePowerOfTheStokesParameters) {
   }
 }
 
-// The six ways through a cube corner are equally long, and as long as the way down to the apex and back.
+// The six paths through a cube corner have equal lengths: twice the path from the entrance face to the apex.
 TEST(DiffractedFarField, PathsThroughACubeCornerAreEquallyLong) {
   const Part part = build_part(single(HexagonalCube{kCubeAperture}, 0.4));
   const double inner = std::asin(std::sin(12.0 * kDeg) / kPmma);
@@ -180,7 +182,7 @@ TEST(DiffractedFarField, PathsThroughACubeCornerAreEquallyLong) {
   BeamTracer(part).trace(pmma(), from(12.0, 40.0), {0.5}, policy, nullptr, [&](const ReturnedBeam& beam) {
     if (beam.depth != 4 || beam.cone != 0) return;
     ++count;
-    // A wave through the apex, which lies over the origin: down along the inner direction and straight back.
+    // A wave through the apex, which is at x = y = 0, travels down along the inner direction and straight back.
     const double depth = part.thickness_mm + part.element_depth_mm;
     const double expected = 2.0 * kPmma * depth * std::cos(inner);
     EXPECT_NEAR(beam.phase_mm, expected, 1e-12);
@@ -188,8 +190,8 @@ TEST(DiffractedFarField, PathsThroughACubeCornerAreEquallyLong) {
   EXPECT_GE(count, 6);
 }
 
-// At normal incidence light stays within its cell: an endless array sends back the pattern of one cube, and a finite
-// one with cells all over it counts them.
+// At normal incidence, light stays within its cell. An infinite array of equal cells has the far field of one cell. A
+// finite array counts equal cells (EqualCellsOfAFiniteArrayAreCounted).
 TEST(DiffractedFarField, EndlessArrayShowsThePatternOfOneCell) {
   const Optics optics = ideal();
   const FarField one = trace(build_part(single(HexagonalCube{0.6}, 0.5)), optics, {}, {}).field;
@@ -215,7 +217,8 @@ TEST(DiffractedFarField, EqualCellsOfAFiniteArrayAreCounted) {
   EXPECT_NEAR(traced.field.diffracted_power(), 1.0, 1e-6);
 }
 
-// The kernel of two discs: unit integral, and the mean of a function over points drawn in both discs.
+// The kernel of two discs has the integral 1. It equals the probability density of the difference between random points
+// of both discs.
 TEST(ApertureKernel, IsTheDensityOfTheDifferenceOfTwoDiscs) {
   const ApertureKernel kernel({Angle::from_rad(0.03), Angle::from_rad(0.02)});
   const auto nodes = kernel.nodes(0.002);
@@ -226,7 +229,7 @@ TEST(ApertureKernel, IsTheDensityOfTheDifferenceOfTwoDiscs) {
     square += node.weight * node.offset_rad.squaredNorm();
   }
   EXPECT_NEAR(sum, 1.0, 1e-12);
-  // Mean squares of radii of two discs add.
+  // The mean squares of the distances in both discs add up.
   EXPECT_NEAR(square, 0.5 * (0.015 * 0.015 + 0.01 * 0.01), 1e-6 * square);
   double integral = 0.0;
   for (int k = 0; k < 100000; ++k) {
@@ -236,7 +239,7 @@ TEST(ApertureKernel, IsTheDensityOfTheDifferenceOfTwoDiscs) {
   EXPECT_NEAR(integral, 1.0, 1e-7);
 }
 
-// A lambertian surface: R_A = rho cos(beta) cos(nu) / pi, R_L = rho cos(beta) / pi.
+// A Lambertian surface has R_A = rho cos(beta) cos(nu) / pi and R_L = rho cos(beta) / pi.
 TEST(Coefficients, LambertianGivesTheCosines) {
   constexpr double kRho = 0.8;
   PhotometricGeometry geometry{Angle::from_deg(1.0), Angle::from_deg(30.0), Angle::from_deg(-15.0), Angle()};
@@ -262,8 +265,8 @@ TEST(Coefficients, LambertianGivesTheCosines) {
               3e-3 * expected);
 }
 
-// A mirror shows the receiver the lamp: R_L = rho / Omega_source, whatever the receiver within its image. The front
-// face of a plate is one, of reflectance ((n - 1) / (n + 1))^2.
+// In a mirror, the receiver sees an image of the lamp: R_L = rho / Omega_source for any receiver within this image. The
+// front face of a plate is a mirror with the reflectance rho = ((n - 1) / (n + 1))^2.
 TEST(Coefficients, MirrorShowsTheLamp) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.0));
   const Traced traced = trace(part, pmma(), from(0.02, 90.0), geometric());
@@ -281,7 +284,8 @@ TEST(Coefficients, MirrorShowsTheLamp) {
   EXPECT_EQ(kernel.per_sr(0.12 * kDeg), 0.0);
 }
 
-// Monte Carlo, with either way to find what rays meet, sees the spots of the exact engine through the same discs.
+// The Monte Carlo engines, with both methods of finding hit points, give the same spots as the exact engine with the
+// same discs.
 TEST(GeometricFarField, MonteCarloAgreesWithTheExactEngine) {
   const Part part = build_part(cubes(3.0));
   const Illumination light = from(8.0, 25.0);
@@ -311,7 +315,7 @@ TEST(GeometricFarField, MonteCarloAgreesWithTheExactEngine) {
   }
 }
 
-// Rough facets: what the score holds is what the ledger says, and the accounts of scatter are in it.
+// With rough facets, the scores must add up to the accounts of the ledger, including the accounts of scattered light.
 TEST(GeometricFarField, ScatteredLightSumsToTheLedger) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0));
   Optics optics = pmma();

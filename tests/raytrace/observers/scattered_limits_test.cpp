@@ -1,5 +1,5 @@
-// Limits of diffraction with roughness: rays in wide cones, the fringes of opposite paths in closed form, and nothing
-// where heights end.
+// Tests of limits of diffraction with roughness: agreement with rays in wide cones, a closed form for the fringes of
+// opposite paths, and no effect of vanishing heights.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -22,8 +22,9 @@ std::array<Element, 2> endless(double size_mm) {
            {"cubes", infinite(HexagonalCube{size_mm}, Arrangement::honeycomb, 0.3)}}};
 }
 
-// In cones that are wide against diffraction the far field brings what rays bring that scatter at each facet by
-// chance, whatever part of it is specular; what edges diffract out of them is that of smooth elements.
+// If cones are much wider than the diffraction pattern, the far field agrees with rays that are scattered randomly at
+// each facet. This holds for any specular fraction. The allowed difference includes the light that smooth elements
+// diffract out of the cone.
 TEST(DiffractionWithRoughness, TendsToRaysInWideCones) {
   const std::vector<double> cones_deg = {0.5, 1.0, 2.0, 3.5, 5.0};
   for (const Element& element : endless(1.0)) {
@@ -46,9 +47,11 @@ TEST(DiffractionWithRoughness, TendsToRaysInWideCones) {
   }
 }
 
-/// Power that low heights on the facets of one prism scatter, by cosines across the roof edge: its two paths, x and -x,
-/// meet the same points of both facets, so that the phase at x is that at -x. With facets at 45 degrees heights that
-/// are l long along the facet are l / sqrt(2) long in x. \param variance of the phase
+/// Returns the power that small heights on the facets of one prism scatter, per unit of direction cosine across the
+/// roof edge. The two paths, x and -x, hit the same points of both facets, so that the phases at x and -x are equal.
+/// The facets are inclined by 45 degrees. Heights with the correlation length l along the facet therefore have the
+/// correlation length l / sqrt(2) in x.
+/// \param variance variance of the phase
 double scattered_by_prism(double size_mm, double length_mm, double variance, double cosine) {
   constexpr int kSteps = 600;
   const double step = size_mm / kSteps;
@@ -65,16 +68,16 @@ double scattered_by_prism(double size_mm, double length_mm, double variance, dou
   return variance * x * y * std::pow(step, 4.0) / (size_mm * size_mm * kWave * kWave);
 }
 
-// Within a quarter of the wavelength over the prism of the way back scatter is twice what single paths make of it;
-// beyond are fringes. Heights of 1 nm scatter once. What the far field makes of places that are their own partners is
-// off by l / size.
+// Within a quarter of wavelength / (prism size) of the return direction, the scattered light is twice that of single
+// paths. Fringes follow at larger angles. Heights of 1 nm scatter light only once. Near points whose partner is the
+// point itself, the far field is accurate to l / size.
 TEST(DiffractionWithRoughness, OppositePathsOfAPrismDoubleTheScatterAboutTheReturn) {
   constexpr double kSize_mm = 0.45, kLength_um = 10.0, kSq_nm = 1.0;
   const Part part = build_part(single(RtpElement{kSize_mm, kSize_mm}, 0.3));
   const FarField field = engine_field(part, optics_of(rough(kSq_nm, kLength_um), true));
   const double phase = 4.0 * pi * kPmma * std::sqrt(0.5) * kSq_nm / kWaveNm;
   const FarField smooth = engine_field(part, optics_of({}, true));
-  const auto by_engine = [&](double cosine) {  // all but the mean field
+  const auto by_engine = [&](double cosine) {  // without the mean field
     const Vec3 d(cosine, 0.0, std::sqrt(1.0 - cosine * cosine));
     return (field.diffracted_per_sr(d) + field.scattered_per_sr(d) -
             std::exp(-2.0 * phase * phase) * smooth.diffracted_per_sr(d)) /
@@ -86,12 +89,14 @@ TEST(DiffractionWithRoughness, OppositePathsOfAPrismDoubleTheScatterAboutTheRetu
   const double width = kWave / (2.0 * kSize_mm);
   for (const double in_widths : {0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 8.0})
     EXPECT_NEAR(by_engine(in_widths * width) / by_sum(in_widths * width), 1.0, 0.02) << in_widths;
-  // Far from the return and from fringes the lobe of single paths is left: its height at the return is half.
+  // Far from the return direction and from fringes, only the lobe of single paths remains. It is half as high as the
+  // peak at the return direction.
   const double lobe = std::exp(-0.5 * std::pow(pi * 1e-3 * kLength_um * 8.0 * width / kWave, 2.0));
   EXPECT_NEAR(by_engine(0.0) * lobe / by_engine(8.0 * width), 2.0, 0.15);
 }
 
-// Low heights take and scatter power in proportion to their square: as Sq goes to 0 the far field is the smooth one.
+// The scattered power is proportional to the square of small heights. As Sq goes to 0, the far field approaches that of
+// smooth facets.
 TEST(DiffractionWithRoughness, GoesToTheSmoothFieldWithTheSquareOfTheHeights) {
   for (const Element& element : endless(0.45)) {
     const Part part = build_part(element.spec);

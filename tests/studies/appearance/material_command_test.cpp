@@ -9,22 +9,25 @@
 #include "tests/app/program.h"
 #include "tests/studies/appearance/material_readers.h"
 
-// `retrace export` of materials: what the files say, by readers of their own, against what `retrace photometry` and
-// `retrace rre` say of the design.
+// Tests of `retrace export` for materials. The files are read by independent readers and compared with the results of
+// `retrace photometry` and `retrace rre` for the same design.
 
 namespace retrace::test::material_command_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Cube corners with six spots. \param aperture_mm 0.5 diffracts; of 20 mm the discs hide it
+/// Returns a design with cube corners whose errors of angle cause six spots.
+/// \param aperture_mm size of the elements: 0.5 causes visible diffraction; with 20, diffraction is negligible compared
+/// with the discs
 std::string cubes(const std::string& aperture_mm) {
   return "[element]\nkind = \"hexagonal_icc\"\naperture_mm = " + aperture_mm +
          "\n[array]\narrangement = \"honeycomb\"\nextent = \"infinite\"\n[body]\nthickness_mm = 1\n"
          "refractive_index = 1.4917\n[surface]\ndihedral_error_arcmin = 2.2\n";
 }
 
-/// \param window_deg wide enough for what the discs make of the spots
+/// Returns the arguments of an export.
+/// \param window_deg half-width of the window; it must include the spots, widened by the discs
 Arguments export_of(const std::string& file, const std::string& window_deg = "0.4", const std::string& error = "0.02") {
   return {"export",   "d.toml",
           file,       "--entrance-deg",
@@ -36,13 +39,14 @@ Arguments export_of(const std::string& file, const std::string& window_deg = "0.
           error,      "--quiet"};
 }
 
-/// A geometry of a goniometer, and what was read there.
+/// A geometry of a goniometer, with the R_A that was read there.
 struct Reading {
   double observation_deg, v_deg, h_deg, turn_deg;
   double r_a = 0.0;
 };
 
-/// Random ones, ten to a turn, beside the mirror image, read by `retrace photometry`.
+/// Returns readings of `retrace photometry` in random geometries away from the mirror image, ten for each rotation of
+/// the part.
 std::vector<Reading> readings(const TemporaryFolder& folder) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(0.0, 1.0);
@@ -77,7 +81,7 @@ double rad(double deg) {
   return deg * kPi / 180.0;
 }
 
-/// Presentation, entrance and orientation angle by the relations of CIE 54.2.
+/// Returns the presentation angle, entrance angle and orientation angle by the relations of CIE 54.2.
 Triple intrinsic_deg(const Reading& at) {
   const double beta1 = rad(-at.v_deg);
   const double beta2 = rad(-at.h_deg);
@@ -87,21 +91,21 @@ Triple intrinsic_deg(const Reading& at) {
   return {gamma / rad(1.0), beta / rad(1.0), omega / rad(1.0)};
 }
 
-/// Turned by -turn about +z, as the part turns by it.
+/// Rotates a vector by -turn_deg about +z, from the frame of the goniometer into the part frame.
 Triple turned_back(const Triple& v, double turn_deg) {
   const double c = std::cos(rad(turn_deg));
   const double s = std::sin(rad(turn_deg));
   return {c * v[0] + s * v[1], -s * v[0] + c * v[1], v[2]};
 }
 
-/// In the part frame, at V + `up_deg`.
+/// Returns the direction to the source in the part frame, with V increased by `up_deg`.
 Triple at_v(const Reading& at, double up_deg) {
   const double v = rad(at.v_deg + up_deg);
   const double h = rad(at.h_deg);
   return turned_back({std::sin(h) * std::cos(v), std::sin(v), std::cos(h) * std::cos(v)}, at.turn_deg);
 }
 
-/// Relative errors, of values below 1 % of the greatest of that; sorted.
+/// Returns the sorted relative errors. Errors of values below 1 % of the maximum are relative to 1 % of the maximum.
 std::vector<double> errors_of(const std::vector<Reading>& truth, const std::vector<double>& told) {
   double most = 0.0;
   for (const Reading& at : truth) most = std::max(most, at.r_a);
@@ -112,7 +116,7 @@ std::vector<double> errors_of(const std::vector<Reading>& truth, const std::vect
   return errors;
 }
 
-/// What a table says of geometries, by the reader of the examples.
+/// Returns the values of a table for given geometries, read by the script of the examples.
 std::vector<Triple> read_by_example(const TemporaryFolder& folder, const std::vector<Reading>& at) {
   std::ostringstream geometries;
   geometries.precision(12);
@@ -190,8 +194,9 @@ TEST(Material, PrismsAreToldWhereTheySendTheLight) {
   EXPECT_LT(errors_of(truth, told).back(), 0.02);
 }
 
-/// Parts of coloured bodies: chromaticity from red, green and blue by the primaries of sRGB (IEC 61966-2-1), against
-/// the colour that the photometer tells. The second is so red that it lies outside of what sRGB shows.
+/// The bodies are coloured. Chromaticities are computed from red, green and blue with the primaries of sRGB (IEC
+/// 61966-2-1), and compared with the colour of photometry. The second body is so red that its colour is outside of
+/// sRGB.
 TEST(Material, ColoursAreThoseOfPhotometry) {
   for (const char* absorption : {"[[380, 0.4], [480, 0.2], [560, 0.05], [780, 0.02]]",
                                  "[[380, 3], [560, 2.5], [600, 0.3], [640, 0.01], [780, 0]]"}) {
@@ -224,7 +229,7 @@ TEST(Material, ColoursAreThoseOfPhotometry) {
   }
 }
 
-/// By the compiler of Khronos, for desktops and browsers.
+/// The shader is compiled by the compiler of Khronos, for desktops and browsers.
 TEST(Material, TheShaderCompiles) {
   const TemporaryFolder folder;
   folder.write("d.toml", cubes("0.5"));
@@ -253,7 +258,7 @@ TEST(Material, LobesOfAShaderAreAsFarOffAsTheySay) {
   }
   const std::vector<double> errors = errors_of(truth, told);
   EXPECT_LT(errors[errors.size() * 95 / 100], 0.05);
-  // Over its own random geometries, which reach farther out.
+  // These errors are measured at other random geometries, which extend to larger angles.
   EXPECT_LT(errors[errors.size() / 2], 2.0 * json.at("error_of_lobes").at("median").get<double>());
   EXPECT_GT(json.at("error_of_lobes").at("greatest"), json.at("error").at("greatest"));
 }
@@ -272,7 +277,7 @@ TEST(Material, EveryFormatKeepsThePower) {
 
   ASSERT_EQ(retrace(folder, export_of("m.json", "0.6", "0.1")).code, 0);
   const Json header = folder.json("m.json");
-  // The grid of the direction that lies nearest, summed by the values' own file.
+  // Sums the grid of the nearest direction of light over the values of the CSV file.
   std::size_t nearest = 0;
   const auto distance = [&](std::size_t k) {
     const Json& at = header.at("directions").at(k);
@@ -315,7 +320,7 @@ TEST(Material, EveryFormatKeepsThePower) {
   ASSERT_EQ(retrace(folder, export_of("m.xml", "0.6", "0.1")).code, 0);
   const RadianceFile bsdf(folder.read("m.xml"));
   EXPECT_NEAR(bsdf.reflected(to_source), rre, 0.01 * rre);
-  // It goes back to where it came from, and nowhere else.
+  // The light returns to the source and nowhere else.
   const double projected_sr = kPi * bsdf.least_leaf() * bsdf.least_leaf();
   double about = 0.0;
   for (int j = -4; j <= 4; ++j)
