@@ -1,4 +1,4 @@
-// What designs say of layers on faces, and what becomes of it: documents, optics at each wavelength, inspection.
+// Tests of designs with layers on faces: documents, optical properties at each wavelength, and inspection.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -97,7 +97,7 @@ TEST(Coating, WhatWouldNotCountIsRefused) {
                    {"idealisation.entrance=lossless",
                     "d.toml:13: coating.entrance: not allowed together with idealisation.entrance = \"lossless\""},
                    {"body.facet_coating=none", ""}});
-  // Of balls a mirror alone.
+  // Balls can only have a mirror.
   const std::string balls = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[coating]\n";
   EXPECT_NE(complaint(balls + kProtected).find("coating.facets: must have a layer without thickness_nm for kind"),
             std::string::npos);
@@ -129,13 +129,13 @@ TEST(Coating, DesignsAreWrittenAsTheyWereRead) {
     EXPECT_EQ(again.surface.coating.facets, design.surface.coating.facets);
     EXPECT_EQ(again.surface.coating.entrance, design.surface.coating.entrance);
   }
-  // Aluminium alone has one way to be said.
+  // A single layer of aluminium is always written with the key facet_coating.
   const std::string text = design_text(read("facets = [{ material = \"aluminium\" }]\n" + kCoated));
   EXPECT_NE(text.find("facet_coating = \"aluminium\""), std::string::npos) << text;
   EXPECT_EQ(text.find("facets = "), std::string::npos) << text;
 }
 
-// The same numbers, whichever way the aluminium is said.
+// Both ways to specify aluminium give the same results.
 TEST(Coating, AnOpaqueLayerOfAluminiumIsTheFacetCoating) {
   const auto rre = [](const Design& design) {
     RreRequest request;
@@ -151,7 +151,7 @@ TEST(Coating, AnOpaqueLayerOfAluminiumIsTheFacetCoating) {
   }
 }
 
-// Indices and thicknesses are those of each wavelength, against the air around the part.
+// Indices and thicknesses are converted for each wavelength, relative to the air around the part.
 TEST(Coating, OpticsAreThoseOfEachWavelength) {
   const OpticalModel model =
       make_light_model(read(kProtected + kCoated, {"light.spectrum=[[450, 1], [650, 1]]"}), library());
@@ -174,8 +174,8 @@ TEST(Coating, OpticsAreThoseOfEachWavelength) {
       kInfinity);
 }
 
-// Ten wavelengths stand for a lamp as well behind a thin layer as without: against the mean over 4000. A hard coat has
-// more fringes than they resolve, which is told.
+// Ten wavelengths represent a lamp as accurately with a thin layer as without a layer. The reference is a mean over a
+// fine spectrum. A thick hard coat has more fringes than ten wavelengths can resolve, which causes a warning.
 TEST(Coating, SpectraOfThinAndThickLayers) {
   const auto reflectance = [](const raytrace::Optics& optics) {
     return std::norm(
@@ -213,7 +213,7 @@ TEST(Coating, InspectionTellsTheStack) {
   const Inspection seen = inspect(read(kProtected + kCoated), library());
   ASSERT_TRUE(seen.coating.entrance && seen.coating.facets);
   const CoatingReport& entrance = *seen.coating.entrance;
-  // A layer of 99.8 nm, by the closed form of one layer.
+  // The reflectance of a layer of 99.8 nm follows from the closed form for a single layer.
   const double n1 = 1.3777439516901744;
   const double air = materials::refractive_index(library().air().dispersion, 587.56);
   const double body = seen.refractive_index;
@@ -238,7 +238,7 @@ TEST(Coating, InspectionTellsTheStack) {
   EXPECT_EQ(json["coating"]["facets"]["layers"].size(), 2U);
   EXPECT_EQ(json["coating"]["entrance"]["reflectance"].get<double>(), entrance.reflectance);
   EXPECT_EQ(json["design"]["coating"]["entrance"][0]["material"], "MgF2");
-  // What aluminised facets are is told by their key.
+  // Aluminised facets are already described by their key, so there is no report of layers.
   EXPECT_FALSE(inspect(set({"body.facet_coating=aluminium"}), library()).coating.facets);
 }
 

@@ -290,7 +290,8 @@ TEST(DesignReader, MessagesShowControlCharactersEscapedAndStayShort) {
             "d.toml:2: element.kind: must be \"rtp\", \"hexagonal_icc\", \"triangular_icc\" or \"ball\", got "
             "\"a\\nb\\x1bc\\xc2\\x85\"");
   EXPECT_LT(complaint(with_line(2, "kind = \"" + std::string(5000, 'x') + "\"")).size(), 250U);
-  EXPECT_LT(complaint(with_line(3, std::string(5000, 'x') + " = 1")).size(), 300U);  // with the keys there are
+  // The message also lists the allowed keys.
+  EXPECT_LT(complaint(with_line(3, std::string(5000, 'x') + " = 1")).size(), 300U);
 }
 
 TEST(DesignReader, OverridesTakePrecedenceAndTheLastOneWins) {
@@ -419,7 +420,7 @@ TEST(DesignReader, UnreadablePathsAreRefused) {
     EXPECT_EQ(refused(device), device + ": cannot be read: it is no regular file");
 }
 
-/// Stands in for standard input while it lives.
+/// Replaces the standard input during its lifetime.
 class StandardInput {
  public:
   explicit StandardInput(const std::string& text) : stream_(text), before_(std::cin.rdbuf(stream_.rdbuf())) {}
@@ -456,7 +457,7 @@ TEST(DesignReader, EveryExampleIsValid) {
     std::ifstream stream(entry.path());
     std::stringstream text;
     text << stream.rdbuf();
-    // Studies and jobs live in the same folder; a design says so or says nothing.
+    // The folder also contains studies and jobs. Designs are recognized by their schema.
     if (text.str().find("schema = \"retrace.design/1\"") == std::string::npos) continue;
     ++count;
     EXPECT_NO_THROW(read_design(entry.path())) << entry.path();
@@ -465,7 +466,7 @@ TEST(DesignReader, EveryExampleIsValid) {
   EXPECT_GE(count, 9);
 }
 
-/// Whatever the text is, the reader returns or throws an InputError of one line; anything else fails the test.
+/// Expects that the reader accepts the text or throws an InputError whose message is one line.
 void expect_graceful(const std::string& text, const std::vector<std::string>& overrides) {
   try {
     parse_design(text, "d.toml", overrides);

@@ -1,4 +1,4 @@
-// Designs whose entrance face is not clean: keys, what is refused, which engines take them, and what inspect tells.
+// Tests of designs with a contaminated entrance face: keys, refused values, engines, and the report of inspect.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -123,7 +123,7 @@ TEST(EntranceState, OpticsAreThoseOfTheKeys) {
   EXPECT_NEAR(face.haze.spread, sine(5.0), 1e-15);
   EXPECT_NEAR(face.scratches.spread, sine(6.0), 1e-15);
   EXPECT_NEAR(*face.scratches.azimuth_rad, std::numbers::pi / 6.0, 1e-15);
-  // A table alone, and shares of 0, are a clean face.
+  // An empty table [entrance], or fractions of 0, describe a clean face.
   EXPECT_TRUE(make_light_model(read("dust_coverage = 0\ndust_albedo = 0.5\n"), library()).optics.keeps_beams());
   EXPECT_TRUE(make_light_model(read(""), library()).optics.has_bare_entrance());
 }
@@ -136,7 +136,8 @@ RreResult rre(const Design& design, Engine engine = Engine::automatic) {
   return RreStudy({design}, request).run();
 }
 
-// What keeps beams is traced exactly, the rest by rays; auto chooses, and exact refuses by name.
+// If no light is scattered, the exact engine can be used. Otherwise, `auto` selects rays, and `exact` is refused with
+// the name of the key.
 TEST(EntranceState, EnginesThatServe) {
   const std::string infinite =
       "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"offset\"\nextent = "
@@ -150,7 +151,7 @@ TEST(EntranceState, EnginesThatServe) {
   EXPECT_EQ(refusal_of([&] { rre(design(kHaze), Engine::exact); }),
             "d.toml:11: entrance.haze: entrance faces that scatter split a beam into infinitely many: use --engine "
             "montecarlo, without --footprint, --far-field and --derivatives");
-  // Photometry takes rays, and says that diffraction is left out and why.
+  // Photometry uses rays, and reports that diffraction is left out and why.
   PhotometryRequest request;
   request.programme.points.push_back(
       {0.2, 0.0, 0.0, 1.0, PhotometricUnit::cd_per_lx_per_m2, LimitStatus::confirmed, 2});
@@ -164,7 +165,7 @@ TEST(EntranceState, EnginesThatServe) {
       << photometry.reason;
 }
 
-// Closed forms of a film and of dust.
+// The report is compared with closed forms for a film and for dust.
 TEST(EntranceState, InspectionTellsTheFace) {
   const Inspection seen = inspect(read(kDust + "film_coverage = 1\n"), library());
   ASSERT_TRUE(seen.entrance_state);
@@ -178,8 +179,8 @@ TEST(EntranceState, InspectionTellsTheFace) {
   EXPECT_NEAR(face.clean_share, 0.9, 1e-15);
   EXPECT_NEAR(face.specular_transmittance, 0.9 * face.transmittance, 1e-12);
   EXPECT_EQ(face.absorptance, 0.0);
-  // rho / pi by the sums over reflections; without film the face's mean reflectance for Lambertian light is Fresnel's
-  // formulas integrated in closed form.
+  // The expected R_A is rho / pi, where rho includes multiple reflections between dust and face. Without a film, the
+  // mean reflectance of the face for Lambertian light is the integral of Fresnel's formulas in closed form.
   const Inspection dry = inspect(read(kDust), library());
   const double m = n * n;
   const double mean = 0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0)) +

@@ -1,4 +1,4 @@
-// The [form] of a design: what it says, what is refused, and what studies make of it.
+// Tests of [form] in designs: keys, refused values, and results of studies.
 #include "studies/design/form_of_design.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ std::string refused(const std::string& text) {
   return refusal_of([&] { form_of(text); });
 }
 
-// The slope of a polynomial is what its heights say.
+// The slope of a polynomial is the derivative of its height.
 TEST(FacetForm, SlopeIsTheDerivativeOfTheHeight) {
   FacetForm form;
   for (int i = 0; i <= FacetForm::kMostDegree; ++i)
@@ -71,8 +71,8 @@ TEST(FacetForm, SlopeIsTheDerivativeOfTheHeight) {
   }
 }
 
-// A sink of a square is a paraboloid whose middle lies the sink below its corners, about a mean of 0: a third of the
-// way up from the middle, with 2 / 45 of the square of the sink as its variance.
+// The sink of a square facet is a paraboloid with the mean height 0. Its center is one sink below its corners. The
+// center is a third of the sink below the mean, and the variance is 2 / 45 of the square of the sink.
 TEST(FormOfDesign, SinkIsAParaboloidAboutItsMean) {
   const FormReport report = report_of(kCubes + "[form]\nsink_um = 0.1\n");
   EXPECT_NEAR(report.radius_mm, 0.5 / (2.0 * std::sqrt(2.0 / 3.0)) / std::sqrt(2.0), 1e-12);
@@ -81,9 +81,9 @@ TEST(FormOfDesign, SinkIsAParaboloidAboutItsMean) {
   EXPECT_NEAR(report.rms_um, 0.05 * std::sqrt(8.0 / 45.0), 1e-12);
   EXPECT_NEAR(report.tilt_mrad, 0.0, 1e-12);
   EXPECT_NEAR(report.steepest_mrad, 0.2 / report.radius_mm, 1e-9);
-  // A bulge is the reverse.
+  // A negative sink is a bulge.
   EXPECT_NEAR(report_of(kCubes + "[form]\nsink_um = -0.1\n").highest_um, 0.1 / 3.0, 1e-12);
-  // What has no such symmetry is about its best plane as well.
+  // Without this symmetry, the form is also relative to its best-fitting plane.
   const std::string triangles =
       "[element]\nkind = \"triangular_icc\"\naperture_mm = 0.5\n[array]\narrangement = "
       "\"triangular\"\nextent = \"infinite\"\n[body]\nthickness_mm = 1.5\n";
@@ -107,7 +107,8 @@ TEST(FormOfDesign, TermsAreInUnitsOfTheRadiusAndAddUp) {
               0.2 / radius, 1e-9);
 }
 
-/// A folder with a map of 41 x 35 points, 12 um apart unless told, of heights in nm by places from its middle in um.
+/// A temporary folder with a height map of 41 x 35 points, 12 um apart by default. `height` returns the height in nm as
+/// a function of the position relative to the center, in um.
 class MapFolder {
  public:
   template <class Height>
@@ -132,7 +133,8 @@ class MapFolder {
   std::filesystem::path path_;
 };
 
-// A map that is a polynomial gives that polynomial, less its best plane: of odd and even powers, along both axes.
+// If a map is a polynomial, the form is this polynomial without its best-fitting plane. The test has odd and even
+// powers along both axes.
 TEST(FormOfDesign, MapGivesItsPolynomial) {
   const MapFolder folder([](double x_um, double y_um) {
     return 30.0 + 0.2 * x_um - 0.1 * y_um + 5e-3 * x_um * x_um - 3e-3 * x_um * y_um + 4e-5 * y_um * y_um * y_um;
@@ -143,7 +145,7 @@ TEST(FormOfDesign, MapGivesItsPolynomial) {
   expected.add(0, 3, 4e-2);
   for (const int degree : {3, 4, 6}) {
     const FacetForm form = form_of(folder.text("map_degree = " + std::to_string(degree) + "\n"));
-    // Second differences know no planes.
+    // Second differences do not depend on planes.
     const auto bend = [](const FacetForm& f, const Vec2& p, const Vec2& step) {
       return f.height_mm(p + step) - 2.0 * f.height_mm(p) + f.height_mm(p - step);
     };
@@ -152,7 +154,7 @@ TEST(FormOfDesign, MapGivesItsPolynomial) {
         EXPECT_NEAR(bend(form, p, step), bend(expected, p, step), 1e-12);
   }
   EXPECT_NEAR(report_of(folder.text("")).tilt_mrad, 0.0, 1e-9);
-  // The other axis level: what lay along y lies along x.
+  // If the y axis of the map is horizontal, the heights along y of the map are along x of the facet.
   const FacetForm turned = form_of(folder.text("map_level_axis = \"y\"\n"));
   const auto second = [&](const Vec2& step) {
     return turned.height_mm(step) - 2.0 * turned.height_mm({0.0, 0.0}) + turned.height_mm(-step);
@@ -180,7 +182,7 @@ TEST(FormOfDesign, WrongFormsAreRefused) {
   EXPECT_NE(refused(small.text("")).find("must cover the facet, 433.0 um level and 433.0 um down it"),
             std::string::npos)
       << refused(small.text(""));
-  // What has no facets of elements has no form.
+  // Parts without elements have no facets that could have a form.
   for (const std::string& part : {std::string("[element]\nkind = \"ball\"\ndiameter_mm = 1\n"),
                                   std::string("[part]\nplate_mm = [1, 1]\n[body]\nthickness_mm = 1\n")})
     EXPECT_NE(complaint(part + "[form]\nsink_um = 1\n").find("form"), std::string::npos) << part;
@@ -220,7 +222,8 @@ TEST(FormOfDesign, InspectTellsIt) {
             std::string::npos);
 }
 
-// Beams stay plane at plane facets alone: rays are taken, and exact engines refused by name.
+// A facet with a form does not reflect a beam as a plane wave. Rays are used by default, and exact engines are refused
+// with the name of the key.
 TEST(FormOfDesign, ExactEnginesAreForPlanes) {
   const Design sunk = parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml");
   const auto refusal = [&](const auto& change) {
@@ -242,12 +245,12 @@ TEST(FormOfDesign, ExactEnginesAreForPlanes) {
 
 using namespace photometric_requests;
 
-// As the sink goes to 0 so does what it does; a tenth of a micrometre is far from that.
+// As the sink goes to 0, its effect vanishes. A sink of 0.1 um has a large effect.
 TEST(FormOfDesign, PhotometryIsContinuousInTheSink) {
   Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
   PhotometryRequest request = request_of(points_at({0.2}, 100.0));
   request.diffraction = true;
-  request.engine = Engine::exact;  // facets with a form have weak beams given up, and so must plane ones
+  request.engine = Engine::exact;  // truncates weak beams of plane facets, as for facets with a form
   const auto r_a = [&](double sink_um) {
     design.surface.form.sink_um = sink_um;
     const Photometer photometer(design, request, 1);

@@ -1,4 +1,4 @@
-// Designs whose material is a glass of a maker's catalogue.
+// Tests of designs whose material is a glass of a manufacturer's catalogue.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(GlassOfDesign, IsTheShippedGlassOfThatName) {
     shipped.push_back("body.material=N-BK7");
     EXPECT_EQ(inspected(with_glass("n-bk7", more)).refractive_index, inspected(shipped).refractive_index);
   }
-  // n_d of the line NM.
+  // n_d of the record NM.
   EXPECT_NEAR(inspected(with_glass("BASF5")).refractive_index, 1.603233, 2e-6);
   EXPECT_EQ(inspected(with_glass("BASF5", {"light.wavelength_nm=300"})).warnings.at(0),
             "d.toml: the data of BASF5 reach from 334 to 2325 nm; its index at 300 nm is extrapolated");
@@ -121,7 +121,7 @@ TEST(GlassOfDesign, DoubtsAreWarnings) {
   fs::remove_all(folder);
 }
 
-// A name is taken from the folder of the design.
+// The path of a catalogue is relative to the folder of the design.
 TEST(GlassOfDesign, LiesBesideTheDesign) {
   const fs::path folder = fs::temp_directory_path() / "retrace_glass_of_design";
   fs::create_directories(folder);

@@ -17,9 +17,9 @@
 #include "tests/support/prism_jobs.h"
 #include "tests/support/seen_parts.h"
 
-// Machines that err in all that a set-up leaves uncertain cut test parts in the verifier, which shares nothing with the
-// derivatives that calibration uses; from what the verifier finds of the facets, with noise, calibration must find the
-// machine.
+// Tests of the calibration of machines. A machine has errors in all quantities that a set-up leaves uncertain. The
+// verifier cuts test parts with this machine; it does not use the derivatives of the calibration. From the tilts and
+// distances of the facets, with noise, the calibration must determine the errors.
 
 namespace retrace::studies::calibration_test {
 namespace {
@@ -27,14 +27,15 @@ namespace {
 using namespace fabrication;
 using test::hidden_errors, test::measured_of, test::planned, test::prism_job, test::programs_of;
 
-/// Facets at C = 0, 90, 180 and 270, at the A of their apex angle, on prisms 10 mm apart.
+/// Returns a job with prisms 10 mm apart. Their facets are cut at C = 0, 90, 180 and 270, and at the A of their apex
+/// angle.
 std::string job_text(double apex_angle_deg) {
   return prism_job({apex_angle_deg, 9.5, 30.0, 1});
 }
 
 const std::vector<double> kApexAngles = {90.0, 70.0, 105.0};
 
-/// The three jobs with their programs as control files.
+/// The three jobs, with the contents of their programs.
 struct TestCuts {
   std::vector<FabricationResult> plans;
   std::vector<std::vector<NcProgram>> programs;
@@ -52,12 +53,13 @@ const TestCuts& test_cuts() {
   return cuts;
 }
 
-/// Standard uncertainties of who measures.
+/// Returns the standard uncertainty of a measurement, in nm or arcsec.
 double uncertainty_of(FacetQuantity what) {
   return what == FacetQuantity::distance ? 5.0 : 1.0;
 }
 
-/// What is measured on a machine, each part lying askew by 50 arcsec or so and 10 um off.
+/// Returns measurements of parts that the machine has cut. Each part is rotated by about 50 arcsec and shifted by about
+/// 10 um.
 MeasuredParts measured_on(const Machine& real, std::mt19937& bits) {
   std::normal_distribution<double> normal;
   const TestCuts& cuts = test_cuts();
@@ -92,14 +94,16 @@ std::vector<std::string> told(const Calibration& found) {
   return keys;
 }
 
-/// Facets tell all but what moves the edge along itself or in its facet, the clearance, and a shift of everything.
+/// Facets cannot determine errors that move the edge along itself or in the plane of the facet, nor the clearance, nor
+/// a common shift of all axes.
 TEST(Calibration, SaysWhatFacetsDoNotTell) {
   std::mt19937 bits(1);
   const Calibration found = calibrate(measured_on(test_cuts().plans.front().machine, bits));
   EXPECT_EQ(told(found), (std::vector<std::string>{"c_lean_y_arcsec", "a_z_um", "tool_turn_z_arcsec"}));
 }
 
-/// Each interval of 95 % holds the hidden truth of what is told in 90 to 99 of 100 machines.
+/// For quantities that can be determined, 95 % intervals contain the true values in 90 to 99 % of all cases, over 100
+/// machines.
 TEST(Calibration, IntervalsHoldWhatIsHidden) {
   constexpr int kMachines = 100;
   std::size_t within = 0;
@@ -122,7 +126,8 @@ TEST(Calibration, IntervalsHoldWhatIsHidden) {
   EXPECT_LE(with_outliers, kMachines / 20) << "right measurements are rarely taken for wrong ones";
 }
 
-/// How far facets are turned against each other at most: tilts less those of a part that lies askew as a whole.
+/// Returns the largest tilt of the facets relative to each other. The best-fitting rotation of the whole part is
+/// subtracted.
 double largest_tilt_arcsec(const FabricationResult& plan, const Machine& real) {
   const Verification v = verify_programs(plan.job, real, programs_of(plan), {}, {});
   const std::vector<Groove> grooves = designed_grooves(plan.job);
@@ -142,7 +147,8 @@ double largest_tilt_arcsec(const FabricationResult& plan, const Machine& real) {
   return (all - turns * turns.colPivHouseholderQr().solve(all)).cwiseAbs().maxCoeff();
 }
 
-/// Programs for the calibrated machine leave facets whose tilts are a twentieth of those before, or what was measured.
+/// The first programs are planned for the nominal machine, the second for the calibrated machine. The second facets
+/// have tilts of at most a twentieth of the first tilts, or of 2 arcsec.
 TEST(Calibration, TheSecondCutIsRight) {
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     std::mt19937 bits(seed);
@@ -164,7 +170,7 @@ TEST(Calibration, NamesWhatTheOthersContradict) {
   ASSERT_EQ(found.outliers.size(), 1U);
   EXPECT_EQ(found.outliers[0].measurement.line, parts.measurements[10].line);
   EXPECT_GT(found.outliers[0].deviations, 20.0);
-  // A third of them wrong: which, cannot be told.
+  // If a third of the measurements is wrong, the calibration cannot find out which ones.
   std::normal_distribution<double> normal;
   for (std::size_t k = 0; k < parts.measurements.size(); k += 3)
     parts.measurements[k].value += 1e4 * normal(bits) * parts.measurements[k].uncertainty;
@@ -230,7 +236,8 @@ TEST(Calibration, TiltsAlongTheRootArePositiveWhereTheWordsSay) {
     }
 }
 
-/// Where cuts end is what the verifier finds left at the root, or cut into the other facet.
+/// The measurement `end` is the position at which a cut ends. It must equal the material that the verifier finds at the
+/// root, or the depth of the cut into the other facet.
 TEST(Calibration, WhereCutsEndIsWhatTheVerifierFinds) {
   const FabricationResult& plan = test_cuts().plans.front();
   const SetupQuantity& quantity = *setup_quantity(Tilt::table, "tool_z_um");
@@ -252,7 +259,7 @@ TEST(Calibration, WhereCutsEndIsWhatTheVerifierFinds) {
   }
 }
 
-/// Angles are those of the two tilts, depths those of the two heights.
+/// Angles follow from the tilts of both facets, and depths from the distances of both facets.
 TEST(Calibration, AnglesAndDepthsFollowFromFacets) {
   std::mt19937 bits(5);
   const FabricationResult& plan = test_cuts().plans.front();
@@ -265,7 +272,8 @@ TEST(Calibration, AnglesAndDepthsFollowFromFacets) {
     const Measurement angle{0, {element, 0}, FacetQuantity::angle, 0.0, 1.0, FacetPlace{element, 1}, 0.0, 0};
     EXPECT_NEAR(part.predicted(angle, real, {}), -measured(0, FacetQuantity::up) - measured(1, FacetQuantity::up),
                 0.02);
-    // The middle of a facet lies half its length up: heights at the root are those less the tilts' share of it.
+    // Distances are measured at the center of a facet, which is half the length of the facet above the root. To get the
+    // distances at the root, the effect of the tilts is subtracted.
     const double half_nm = 0.5e6 * std::sqrt(0.125) / kArcsecPerRad;
     const double sum = measured(0, FacetQuantity::distance) + measured(1, FacetQuantity::distance) -
                        half_nm * (measured(0, FacetQuantity::up) + measured(1, FacetQuantity::up));
@@ -273,7 +281,7 @@ TEST(Calibration, AnglesAndDepthsFollowFromFacets) {
   }
 }
 
-/// What is wrong with a table, and what is said of it.
+/// Tests the messages for wrong tables.
 TEST(Calibration, RefusesTables) {
   const FileTexts texts = {{"a.toml", job_text(90.0)}, {"b.toml", job_text(90.0)}};
   const std::string columns = "job,element,facet,what,value,uncertainty,from_element,from_facet,at\n";

@@ -15,8 +15,9 @@
 #include "studies/calibration/io/time_files.h"
 #include "studies/calibration/time_programs.h"
 
-// Machines that speed up and settle otherwise than their file says are timed move by move, by a clock of the test's
-// own; from the times of programs, with noise, the calibration must find the machine.
+// Tests of the calibration of times. The accelerations and settling times of a machine differ from its file. The test
+// computes the time of each move independently. From the times of programs, with noise, the calibration must determine
+// the machine.
 
 namespace retrace::studies::time_calibration_test {
 namespace {
@@ -27,7 +28,7 @@ Machine nominal() {
   return load_machine("thesis", {});
 }
 
-/// What the file does not know. The same for X, Y and Z, and for A and C.
+/// The values of the real machine, which its file does not contain. X, Y and Z have equal values, and so do A and C.
 struct Hidden {
   double settling_s = 0.0;
   double acceleration = 500.0;
@@ -35,7 +36,7 @@ struct Hidden {
   double rotary_acceleration = 50.0;
 };
 
-/// From rest to rest, by bisection on the greatest speed.
+/// Returns the time of a move from rest to rest. The maximum speed is found by bisection.
 double clock_s(double distance, double speed, double acceleration, double ramp_s) {
   const double jerk = acceleration / ramp_s;
   const auto speeding_s = [&](double v) {
@@ -51,7 +52,7 @@ double clock_s(double distance, double speed, double acceleration, double ramp_s
   return 2.0 * speeding_s(low);
 }
 
-/// Of the planned moves, one after the other.
+/// Returns the time of a program as the sum of the times of its moves.
 double clock_s(const Program& program, const Hidden& hidden) {
   const Machine file = nominal();
   constexpr double kAlmostNoRampS = 1e-9;
@@ -102,8 +103,9 @@ const Timed& timed() {
   return programs;
 }
 
-/// Acceleration x ramp is above the 1 mm/s of short steps and below half of the rapid speed of 33 mm/s: otherwise
-/// settling and ramps, or ramps and accelerations, are not told apart.
+/// Returns a random machine. Acceleration times ramp time is above 1 mm/s, the speed of short steps. Otherwise,
+/// settling times and ramps could not be distinguished. It is below half of the rapid speed of 33 mm/s. Otherwise,
+/// ramps and accelerations could not be distinguished.
 Hidden drawn(std::uint32_t seed) {
   std::mt19937 bits(seed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(bits); };
@@ -152,7 +154,8 @@ TEST(TimeCalibration, WhatTheFileSaysStaysWhereItIsRight) {
 }
 
 TEST(TimeCalibration, SaysWhatProgramsDoNotTell) {
-  // Without the turns; and with the steps alone, whose time is settling and ramps together.
+  // First without the program that rotates axes; then with the program of short steps only, whose time depends on the
+  // sum of settling and ramps.
   const TimeCalibration without_turns = timed().calibrate(timed().table(drawn(3), 0.5, 3, 3));
   ASSERT_EQ(without_turns.untold.size(), 1U);
   EXPECT_EQ(without_turns.untold[0], "rotary_acceleration_factor");
@@ -165,7 +168,8 @@ TEST(TimeCalibration, SaysWhatProgramsDoNotTell) {
 }
 
 TEST(TimeCalibration, JerkAloneIsToldWhereAccelerationIsNeverReached) {
-  // Half of the way to the rapid speed jerk turns round at 31 mm/s / 0.06 s < 1000 mm/s2.
+  // At half of the rapid speed, the acceleration is at most 31 mm/s / 0.06 s, which is less than 1000 mm/s2. The
+  // acceleration limit is therefore never reached, and only the jerk has an effect.
   const Hidden hidden{0.02, 1000.0, 0.06, 30.0};
   const TimeCalibration found = timed().calibrate(timed().table(hidden, 0.5, 3));
   EXPECT_TRUE(found.quantities[0].is_told);
@@ -177,14 +181,14 @@ TEST(TimeCalibration, JerkAloneIsToldWhereAccelerationIsNeverReached) {
 }
 
 TEST(TimeCalibration, BlockTimesOfALogTellAsMuch) {
-  // All programs, each line by itself as a log has it, without their setting up.
+  // Every line of every program has its own time, as in a log. The lines of the set-up are left out.
   const Hidden hidden = drawn(11);
   std::string text = "program,from_line,to_line,seconds,uncertainty\n";
   for (const Program& program : timed().programs) {
     Program prefix = program;
     prefix.items.clear();
     double before_s = 0.0;
-    int line = 10;  // behind the preparation
+    int line = 10;  // first line after the preparation
     const std::string& written = timed().texts.at(program.name + ".ngc");
     line = static_cast<int>(
                std::count(written.begin(), written.begin() + static_cast<std::ptrdiff_t>(written.find("G0 Z")), '\n')) +

@@ -1,5 +1,5 @@
-// `retrace compose` as users meet it: what it writes, read again by other commands; runs that go on, say no or are
-// refused.
+// Tests of the command `retrace compose`: files that it writes and that other commands read, resumed runs, and refused
+// inputs.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::array<int, 4> kAzimuthsDeg = {0, 60, 120, 210};
 
-/// Canted cube corners that stand turned in the part, and the light that they send back from steep directions.
+/// Returns a study of canted, rotated cube corners. The goals are the RRE at large angles of incidence.
 std::string study(const std::string& keys, const std::string& cutoff = "1e-2") {
   return "design = \"" + example("honeycomb_infinite.toml") +
          "\"\n"
@@ -50,7 +50,8 @@ TEST(ComposeCommand, WritesZonesThatMakeThePart) {
   const std::vector<std::string> names = folder.names();
   for (const std::string name : {"composition.csv", "composition.svg", "composition.png", "composition.sqlite"})
     EXPECT_EQ(std::ranges::count(names, "out/" + name), 1) << name;
-  // Each zone's design, traced by another command in the part's directions, in the shares that are told.
+  // Traces the design of each zone by another command, with the light's direction in the frame of the zone. The
+  // weighted sum must equal the goal of the part.
   for (std::size_t goal = 0; goal < kAzimuthsDeg.size(); ++goal) {
     double part = 0.0;
     for (std::size_t z = 0; z < zones.size(); ++z) {
@@ -77,7 +78,7 @@ TEST(ComposeCommand, WritesThePartOfZones) {
   for (std::size_t z = 0; z < 2; ++z)
     EXPECT_NEAR(inspected.at("zones").at(z).at("area_mm2").get<double>(), 16200.0 * zones[z].at("share").get<double>(),
                 1e-6);
-  // Two or more rows of each, of which the narrower ones are eight elements high.
+  // Each zone has at least two rows. The narrower rows are eight elements high.
   EXPECT_GE(inspected.at("design").at("zone").at(0).at("rectangles_mm").size(), 2U);
 }
 
@@ -166,7 +167,7 @@ TEST(ComposeCommand, GoesOnWithItsStore) {
   ASSERT_EQ(retrace(folder, compose()).code, 0);
   const Json first = folder.json("out/composition.json");
   EXPECT_EQ(retrace(folder, compose()).code, 2) << "an existing store needs a word";
-  // Other rules for the mixture take all cells that are there.
+  // A study with other rules for the mixture uses all stored cells.
   folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
   ASSERT_EQ(retrace(folder, compose({"--resume"})).code, 0);
   const Json second = folder.json("out/composition.json");

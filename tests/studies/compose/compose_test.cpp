@@ -1,4 +1,5 @@
-// Compositions of analytic families against closed forms, brute force and `optimise`; what is read, said and stored.
+// Tests of compositions of analytic cells, compared with closed forms, exhaustive search and `optimise`. Reading,
+// messages and storage are also tested.
 
 #include "studies/compose/compose.h"
 
@@ -25,7 +26,8 @@ using namespace studies;
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
 
-/// A function of the plate's thickness and of what lies behind the facets, in place of something that is traced.
+/// A quantity that is a function of the thickness of the plate and the index behind the facets. It replaces a traced
+/// quantity.
 class Analytic : public Quantity {
  public:
   using Function = std::function<double(double x, double y)>;
@@ -40,7 +42,7 @@ class Analytic : public Quantity {
 
 using Functions = std::vector<std::pair<std::string, Analytic::Function>>;
 
-/// A lobe whose middle is x, seen at a point; the more y, the narrower and the higher.
+/// Returns the value at a point of a lobe with its center at x. The lobe is narrower and higher for larger y.
 Analytic::Function lobe_at(double point) {
   return [point](double x, double y) { return y * std::exp(-std::pow(y * (x - point), 2.0)); };
 }
@@ -78,7 +80,7 @@ double number(const ParameterValue& value) {
 constexpr const char* kMaximize = "[compose]\nmaximize = \"g\"\n";
 
 TEST(Compose, OfTwoLobesHasTheSharesAndPricesOfTheClosedForm) {
-  // Two cells and three points, of which the outer ones bind.
+  // There are two cells and three goals. The first and the last goal limit the result.
   const Study study = analytic_study(kMaximize, kThreePoints,
                                      "[[parameter]]\nkey = \"body.thickness_mm\"\nname = \"x\"\nvalues = [1.1, 2.1]\n");
   const Composition composition = composed(study).composition;
@@ -120,8 +122,9 @@ TEST(Compose, IsNeverWorseThanThreeZonesOnAGrid) {
 }
 
 TEST(Compose, FindsTheBestOfAContinuousFamily) {
-  // Three points far apart against the width of lobes: a narrow lobe on each, with equal shares, is best, and no cell
-  // is worth more at its prices than a third of the height, but for what its neighbours' tails give.
+  // The distances of the three points are large compared with the widths of the lobes. The best composition has one
+  // narrow lobe at each point, with equal fractions. Each goal is then a third of the height of a lobe, plus small
+  // contributions of the other lobes.
   const Functions far = {{"g.1", lobe_at(0.5)}, {"g.2", lobe_at(1.75)}, {"g.3", lobe_at(3.0)}};
   const Composition composition = composed(analytic_study(kMaximize, far)).composition;
   ASSERT_TRUE(composition.best.has_value());
@@ -145,7 +148,8 @@ TEST(Compose, WithOneZoneFindsWhatOptimiseFinds) {
   ASSERT_EQ(composition.best->zones.size(), 1U);
   EXPECT_EQ(composition.best->zones[0].share, 1.0);
   EXPECT_GE(composition.best->mixture.least, *optimum.best->objective);
-  // The top of a least is a kink, which a search without slopes comes near to.
+  // The minimum of two functions has a kink at its maximum. An optimizer without derivatives only approximates this
+  // maximum.
   EXPECT_NEAR(composition.best->mixture.least, *optimum.best->objective, 2e-3);
   ASSERT_TRUE(composition.single.has_value());
   EXPECT_EQ(std::min(composition.single->mixed.goals[0], composition.single->mixed.goals[1]), *optimum.best->objective);
@@ -292,7 +296,7 @@ TEST(Compose, DocumentsHoldWhatWasFound) {
   EXPECT_NE(composition_text(made.study, made.request, made.composition).find("binding: "), std::string::npos);
 }
 
-/// What reading a study with these keys says.
+/// Returns the message with which a study with these keys is refused.
 std::string refusal(const std::string& keys, const std::string& parameters = kIntervals) {
   try {
     read_compose(analytic_study(keys, kThreePoints, parameters));

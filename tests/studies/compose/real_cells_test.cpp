@@ -1,5 +1,5 @@
-// Parts of zones of cells that are traced: against brute force over a grid, against `optimise`, and the designs that
-// are written of zones, traced again.
+// Tests of compositions of traced cells: comparison with an exhaustive search over a grid and with `optimise`, and
+// traces of the designs that are written for the zones.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using namespace studies;
 constexpr std::size_t kGoals = 4;
 using Goals = std::array<double, kGoals>;
 
-/// Canted cube corners that stand turned in the part, and the light that they send back from steep directions.
+/// Returns a study of canted, rotated cube corners. The goals are the RRE at large angles of incidence.
 Study study_of_corners(const std::string& keys) {
   return parse_study(
       "design = \"../honeycomb_infinite.toml\"\n"
@@ -47,7 +47,7 @@ Goals goals_of(const Study& study, const Candidate& candidate) {
   return goals;
 }
 
-/// Of three cells in twentieths of the area, the largest least goal.
+/// Returns the maximum of the smallest goal over all mixtures of three cells, in steps of a twentieth of the area.
 double best_in_twentieths(const Goals& a, const Goals& b, const Goals& c) {
   double best = 0.0;
   for (int i = 0; i <= 20; ++i)
@@ -102,7 +102,7 @@ TEST(RealCells, OfOneZoneAreWhatOptimiseFinds) {
   const Composition composition = composed(study);
   ASSERT_TRUE(composition.best && composition.single);
   ASSERT_EQ(composition.best->zones.size(), 1U);
-  // `optimize` with the least of the same directions as a quantity of its own.
+  // `optimize` maximizes the minimum RRE of the same directions, which is defined as a single quantity.
   const Study least = study_of_corners(
       "[[quantity]]\nkind = \"rre\"\nname = \"least\"\nover_directions = \"least\"\nincidence_deg = 35\n"
       "azimuth_deg = [0, 60, 120, 210]\n[optimize]\nmaximize = \"least\"\n");
@@ -152,7 +152,8 @@ TEST(RealCells, AreWrittenAsOnePartOfZones) {
   }
 }
 
-// Traced whole the part has what endless arrays of its zones have, weighted by their shares, but for what borders take.
+// If the part is traced as a whole, its RRE is that of infinite arrays of the zones, weighted by their fractions of the
+// area. Borders cause a small difference.
 TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
   const Study& study = three_zones().study;
   const Composition& composition = three_zones().composition;

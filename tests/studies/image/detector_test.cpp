@@ -1,4 +1,4 @@
-// Maps of a detector: closed forms, the ledger, engines against each other.
+// Tests of detector maps: closed forms, the ledger, and agreement of the engines.
 #include "raytrace/observers/detector.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,8 @@ TEST(DetectorMaps, MeansAreRre) {
       const DetectorMaps maps = exact(part, pmma(), from(incidence), setting);
       BeamPolicy policy;
       policy.truncated_goal = kTruncated;
-      // Beams that are observed are followed to the cut-off that the same goal asked for: not all stop at the same one.
+      // If beams are observed, all beams are traced down to the same cut-off. Without an observer, the cut-off may
+      // differ between beams.
       const auto ignored = [](const ReturnedBeam&) {};
       const BeamResult whole = BeamTracer(part).trace(pmma(), from(incidence), {0.5}, policy, nullptr, ignored);
       const double rre = whole.ledgers.front()[Account::retroreflected];
@@ -68,8 +69,9 @@ TEST(DetectorMaps, MeansAreRre) {
     }
 }
 
-/// At normal incidence the triangle of a cube corner sends back what its point reflection about the apex covers: a
-/// hexagon of two thirds of its area, evenly (Eckhardt 1971); the three corners are dead.
+/// At normal incidence, a triangular cube corner returns light in the overlap of the triangle and its point reflection
+/// about the apex. This overlap is a hexagon with two thirds of the area and uniform irradiance (Eckhardt 1971). The
+/// three corners return nothing.
 TEST(DetectorMaps, TriangleIsAliveInItsHexagonAlone) {
   const Part part = build_part(single(TriangularCube{kCubeAperture}, 1.0));
   const DetectorSetting setting = setting_of(part, 120, 104);
@@ -91,7 +93,7 @@ TEST(DetectorMaps, TriangleIsAliveInItsHexagonAlone) {
       const Rectangle pixel = setting.face.pixel_mm(column, row);
       const Vec2 p = 0.5 * (pixel.lower + pixel.upper);
       const double inside = std::min(depth_in_triangle(p), depth_in_triangle(2.0 * apex - p));
-      if (std::abs(inside) < pixel.size().norm()) continue;  // on its edge
+      if (std::abs(inside) < pixel.size().norm()) continue;  // on the edge of the hexagon
       ++judged;
       const double expected = inside > 0.0 ? 1.0 : 0.0;
       const std::size_t k = row * setting.face.columns() + column;
@@ -101,8 +103,8 @@ TEST(DetectorMaps, TriangleIsAliveInItsHexagonAlone) {
   EXPECT_GT(judged, 9000U);
 }
 
-/// Light leaves a prism where the mirror image of its entry about the roof lies: halves that return nothing there and
-/// halves that were never lit.
+/// Light leaves a prism at the mirror image of its entry point about the roof edge. Some halves of prisms therefore
+/// return nothing, and other halves are not illuminated.
 TEST(DetectorMaps, PathsAndBeamsRecordTheSame) {
   const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 1.0));
   for (const double incidence : {0.0, 4.0}) {
@@ -118,7 +120,7 @@ TEST(DetectorMaps, PathsAndBeamsRecordTheSame) {
          {std::pair{&paths.leaving, &beams.leaving}, std::pair{&paths.entering, &beams.entering}})
       for (std::size_t k = 0; k < mine->value.size(); ++k) {
         ++compared;
-        // Pixels that few rays meet have no error to speak of.
+        // The standard errors of pixels with few rays are unreliable, so 1e-4 is added.
         most = std::max(most, std::abs(mine->value[k] - theirs->value[k]) / (mine->std_error[k] + 1e-4));
       }
     EXPECT_LT(most, student_bound(2 * compared)) << "at incidence " << incidence;
@@ -141,7 +143,8 @@ TEST(DetectorMaps, AreTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(one.per_sr.value, five.per_sr.value);
 }
 
-/// Table 1 of Hamilton et al. 2017: the dead spots of brick rows along two borders take away what RRE misses.
+/// Table 1 of Hamilton et al. 2017: brick rows have spots along two borders that return no light. They explain the loss
+/// of RRE.
 TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
   studies::Design design;
   design.part() = finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0);
@@ -158,14 +161,15 @@ TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
   double sum = 0.0;
   for (const double e : result.maps.leaving.value) sum += e;
   EXPECT_NEAR(sum / 2500.0, rre, 2e-5);
-  // The halves of elements at both ends of the shifted rows send all light straight on to the border wall. What comes
-  // back is what a plate reflects: R + T^2 R / (1 - R^2) = 2 R / (1 + R).
+  // At both ends of the shifted rows there are halves of elements. They send all light to the border wall. Only the
+  // light that a plate reflects returns: R + T^2 R / (1 - R^2) = 2 R / (1 + R).
   const double r = std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0);
   EXPECT_NEAR(result.maps.entering.value[45 * 50 + 1], 2.0 * r / (1.0 + r), 1e-4);
   EXPECT_GT(result.maps.entering.value[25 * 50 + 25], 0.9);
 }
 
-// Before an entrance face that scatters maps hold what it sends back at once, too: all light that leaves the face.
+// If the entrance face scatters, the maps also contain the light that the face reflects or scatters without entering.
+// The maps then contain all light that leaves the face.
 TEST(DetectorMaps, OfASoiledEntrance) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5}, Arrangement::offset, 0.5));
   Optics optics = pmma();

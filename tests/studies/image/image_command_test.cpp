@@ -1,4 +1,4 @@
-// retrace image: its files, and what it refuses.
+// Tests of the command `retrace image`: its files, and refused options.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,7 +69,7 @@ TEST_F(Image, CameraTakesALampOfAFile) {
     return retrace_json(folder_, {"image", "brick.toml", "--camera", "--passes=2", "--pixels=8x6", "--distance-m=20",
                                   "--lamp=" + example("low_beam.ies"), "--lamp-aim-deg=" + aim, "-o", "out"});
   };
-  // What the file has in the row of X = 0 at Y = -1 and Y = 1, in cd.
+  // The expected intensities, in cd, are in the row X = 0 of the file, at Y = -1 and Y = 1.
   EXPECT_NEAR(lit("-1")["illuminance_lx"].get<double>() * 400.0, 26637.0, 3000.0);
   EXPECT_LT(lit("1")["illuminance_lx"].get<double>() * 400.0, 300.0);
   EXPECT_EQ(lit("1")["lamp"]["aim_deg"], 1);

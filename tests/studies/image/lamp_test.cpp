@@ -1,4 +1,4 @@
-// Lamps from photometric files: intensity by direction, flux, and what is refused.
+// Tests of lamps from photometric files: intensity as a function of the direction, flux, and refused files.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,8 @@ std::string words(const std::vector<double>& values) {
 
 using Candela = std::function<double(double plane_deg, double angle_deg)>;
 
-/// An IES file of these planes and angles, which a plane is a line of. \param type 1: C, 2: B, 3: A
+/// Returns an IES file with these planes and angles. Each plane is one line.
+/// \param type 1: planes C, 2: planes B, 3: planes A
 std::string ies(int type, const std::vector<double>& planes, const std::vector<double>& angles, const Candela& cd,
                 const std::string& first = "IESNA:LM-63-2002\n", const std::string& factors = "1 1 60") {
   std::string text = first + "[LUMINAIRE] A lamp\nTILT=NONE\n1 1000 2 " + std::to_string(angles.size()) + " " +
@@ -47,7 +48,7 @@ std::string ies(int type, const std::vector<double>& planes, const std::vector<d
                      words(angles) + words(planes);
   for (const double plane : planes) {
     std::vector<double> row;
-    for (const double angle : angles) row.push_back(0.5 * cd(plane, angle));  // the file's factor is 2
+    for (const double angle : angles) row.push_back(0.5 * cd(plane, angle));  // the factor in the file is 2
     text += words(row);
   }
   return text;
@@ -64,7 +65,8 @@ std::string ldt(int symmetry, double step_c_deg, const std::vector<double>& angl
   for (const double plane : planes) text += shortest(plane) + "\n";
   for (const double angle : angles) text += shortest(angle) + "\n";
   for (const double plane : written_planes)
-    for (const double angle : angles) text += shortest(cd(plane, angle) / 2.0) + "\n";  // of 2000 lm, per 1000
+    // Cd per 1000 lm; the lamp has 2000 lm.
+    for (const double angle : angles) text += shortest(cd(plane, angle) / 2.0) + "\n";
   return text;
 }
 
@@ -73,7 +75,7 @@ Vec3 random_direction(std::mt19937& random) {
   return Vec3(normal(random), normal(random), normal(random)).normalized();
 }
 
-/// The same intensity in so many random directions.
+/// Expects equal intensities in 500 random directions, and equal flux.
 void expect_same(const LuminousIntensity& a, const LuminousIntensity& b) {
   std::mt19937 random(1);
   for (int k = 0; k < 500; ++k) {
@@ -91,7 +93,8 @@ TEST(Lamp, EvenOnesHaveTheFluxOfASphere) {
   EXPECT_NEAR(parse_ies(ies(1, steps(0, 360, 30), whole, kPlain), "a.ies").intensity.lumens(), 400.0 * pi, 1e-9);
   EXPECT_NEAR(parse_ies(ies(3, steps(-180, 180, 30), steps(-90, 90, 10), kPlain), "a.ies").intensity.lumens(),
               400.0 * pi, 1e-9);
-  // Planes of B from -90 to 90 are the half of space ahead; its file has the planes' angles as vertical ones.
+  // Planes B from -90 to 90 degrees cover the half space ahead. The file gives the angles of these planes as vertical
+  // angles.
   EXPECT_NEAR(parse_ies(ies(2, steps(-90, 90, 30), steps(-90, 90, 10), kPlain), "a.ies").intensity.lumens(), 200.0 * pi,
               1e-9);
   EXPECT_NEAR(parse_ldt(ldt(1, 30, whole, kPlain, {0}), "a.ldt").intensity.lumens(), 400.0 * pi, 1e-9);
@@ -108,7 +111,7 @@ TEST(Lamp, FluxIsTheIntegralOfItsIntensity) {
     if (kind == Planes::c)
       std::copy_n(cd.begin(), angles.size(), cd.end() - static_cast<std::ptrdiff_t>(angles.size()));
     const LuminousIntensity lamp(kind, planes, angles, cd);
-    // Directions of a spiral, which are even over the sphere.
+    // The directions are on a spiral that is uniformly distributed over the sphere.
     constexpr int kDirections = 400'000;
     const double golden = pi * (3.0 - std::sqrt(5.0));
     double mean = 0.0;
@@ -122,7 +125,7 @@ TEST(Lamp, FluxIsTheIntegralOfItsIntensity) {
 }
 
 TEST(Lamp, DirectionsAreThoseOfItsPlanes) {
-  const auto towards = [](double right_deg, double up_deg) {  // azimuth, then elevation
+  const auto towards = [](double right_deg, double up_deg) {  // azimuth and elevation
     return Vec3(std::cos(up_deg * kRadPerDeg) * std::sin(right_deg * kRadPerDeg), std::sin(up_deg * kRadPerDeg),
                 -std::cos(up_deg * kRadPerDeg) * std::cos(right_deg * kRadPerDeg));
   };
@@ -133,7 +136,7 @@ TEST(Lamp, DirectionsAreThoseOfItsPlanes) {
   EXPECT_EQ(a.cd(towards(61, 0)), 0.0);
   EXPECT_EQ(a.cd(towards(0, 51)), 0.0);
   EXPECT_EQ(a.cd(towards(180, 0)), 0.0);
-  // Of B the file's horizontal angle, here the plane of its rows, is the one within the planes.
+  // For planes B, the horizontal angle of the file is the angle within a plane. In this test file, it selects the row.
   const auto b = parse_ies(ies(2, steps(-60, 60, 10), steps(-50, 50, 10), sum), "a.ies").intensity;
   EXPECT_NEAR(b.cd(towards(0, 5)), 1005.0, 1e-9);
   EXPECT_NEAR(b.cd(towards(20, 0)), 1200.0, 1e-9);
@@ -145,11 +148,11 @@ TEST(Lamp, DirectionsAreThoseOfItsPlanes) {
                     [](double plane, double angle) { return std::fmod(plane, 360.0) + 1000.0 * (angle / 90.0); }),
                 "a.ies")
           .intensity;
-  EXPECT_NEAR(c.cd(towards(90, 0)), 1000.0, 1e-9);        // C = 0: right
+  EXPECT_NEAR(c.cd(towards(90, 0)), 1000.0, 1e-9);  // C = 0: right
   EXPECT_NEAR(c.cd(towards(0, 45)), 90.0 + 500.0, 1e-9);  // C = 90: up
   EXPECT_NEAR(c.cd(towards(-45, 0)), 180.0 + 500.0, 1e-9);
   EXPECT_NEAR(c.cd(towards(0, -45)), 270.0 + 500.0, 1e-9);
-  // An axis that points 10 degrees down meets what lies 10 degrees below the horizon.
+  // If the axis of the lamp points 10 degrees down, the direction 10 degrees below the horizon is on the axis.
   EXPECT_NEAR(a.cd(from_aimed(towards(0, -10), 10.0)), a.cd(towards(0, 0)), 1e-9);
   EXPECT_NEAR(a.cd(from_aimed(towards(0, 0), 10.0)), a.cd(towards(0, 10)), 1e-9);
 }
@@ -162,7 +165,7 @@ TEST(Lamp, SymmetriesSayTheSame) {
   const Candela left_right = [](double plane, double angle) {  // symmetric about C90 - C270
     return 500.0 + 300.0 * std::sin(plane * kRadPerDeg) * std::sin(angle * kRadPerDeg);
   };
-  const Candela up_down = [](double plane, double angle) {  // about C0 - C180
+  const Candela up_down = [](double plane, double angle) {  // symmetric about C0 - C180
     return 500.0 + 300.0 * std::cos(plane * kRadPerDeg) * std::sin(angle * kRadPerDeg);
   };
   const auto of_ies = [&](const std::vector<double>& planes, const Candela& cd) {
@@ -191,8 +194,8 @@ TEST(Lamp, FactorsCountAsTheFilesEditionSays) {
     return parse_ies(ies(1, {0}, {0, 90}, kPlain, first, factors), "a.ies").intensity.largest_cd();
   };
   EXPECT_NEAR(largest("IESNA:LM-63-2002\n", "0.9 1 60"), 90.0, 1e-9);
-  EXPECT_NEAR(largest("IES:LM-63-2019\n", "0.9 1.10000 60"), 90.0, 1e-9);  // how the file was made, no factor
-  EXPECT_NEAR(largest("", "0.9 0.5 60"), 45.0, 1e-9);                      // LM-63-86
+  EXPECT_NEAR(largest("IES:LM-63-2019\n", "0.9 1.10000 60"), 90.0, 1e-9);  // this field is no factor in LM-63-2019
+  EXPECT_NEAR(largest("", "0.9 0.5 60"), 45.0, 1e-9);  // LM-63-86
   const PhotometricLamp lamp = parse_ies(ies(1, {0}, {0, 90}, kPlain), "a.ies");
   EXPECT_EQ(lamp.printed_lumens, 1000.0);
   EXPECT_EQ(lamp.title, "A lamp");
@@ -263,9 +266,10 @@ TEST(Lamp, CutOffIsSeenOnTheRoad) {
   const auto ahead = [&](double right_deg, double up_deg) {
     return beam.cd(Vec3(std::tan(right_deg * kRadPerDeg), std::tan(up_deg * kRadPerDeg), -1.0));
   };
-  EXPECT_GT(ahead(-2, -0.9), 30.0 * ahead(-2, -0.2));  // a cut-off on the side of those who come
-  EXPECT_GT(ahead(4, 0.2), 10.0 * ahead(-4, 0.2));     // which rises on the other
-  // The rear of a car 30 m ahead: lit below, dark above, until the lamps are turned up.
+  EXPECT_GT(ahead(-2, -0.9), 30.0 * ahead(-2, -0.2));  // cut-off on the side of oncoming traffic
+  EXPECT_GT(ahead(4, 0.2), 10.0 * ahead(-4, 0.2));  // on the other side, the cut-off is higher
+  // The scene shows the rear of a car at 30 m. The lower part is illuminated and the upper part is dark, until the
+  // lamps are aimed higher.
   const auto picture = [&](double aim_deg) {
     request.lamp_aim_deg = aim_deg;
     RoadView view;
@@ -280,7 +284,7 @@ TEST(Lamp, CutOffIsSeenOnTheRoad) {
   };
   const std::vector<double> dipped = picture(0.0);
   const std::vector<double> raised = picture(-3.0);
-  // The horizon lies at 0.42 of the rows; the car's roof just above it.
+  // The horizon is at 0.42 of the rows. The roof of the car is just above the horizon.
   const std::size_t roof =
       static_cast<std::size_t>(0.415 * static_cast<double>(request.rows)) * request.columns + request.columns / 2;
   EXPECT_GT(raised[roof], 5.0 * dipped[roof]);
