@@ -1,5 +1,5 @@
-// The colour of the light that comes back: closed forms, dyes, dispersion and diffraction against sums over the table,
-// errors.
+// Tests of the colour of returned light: closed forms; sums over the table of the CIE for dyes, dispersion and
+// diffraction; and errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ using namespace testing;
 
 const std::string kData = RETRACE_SOURCE_DIR "/data/";
 
-/// In the light of an illuminant, with the colour.
+/// Returns a request for the colour in the light of an illuminant.
 PhotometryRequest colour_request(PhotometricLight light = PhotometricLight::illuminant_a,
                                  double observation_deg = 0.05) {
   PhotometryRequest request = request_of(points_at({observation_deg}, 1.0));
@@ -41,12 +41,13 @@ ColourBoundary at_most(double of_x, double of_y, double most) {
   return boundary;
 }
 
-/// Mirrors behind a face without losses, of one index.
+/// Returns a design whose RRE is the same at all wavelengths: mirrors behind a lossless entrance face, with a constant
+/// index.
 Design colourless(double base_mm = 0.5) {
   return design_of(infinite(geometry::RtpElement{base_mm, base_mm, 90.0}, geometry::Arrangement::aligned, 2.0), true);
 }
 
-// What treats all wavelengths alike sends the lamp's own colour back.
+// A part that treats all wavelengths equally returns the colour of the lamp.
 TEST(PhotometricColour, OfAColourlessPartIsThatOfTheLamp) {
   const materials::Chromaticity a = colour_of(colourless(), colour_request());
   EXPECT_NEAR(a.x, 0.44757, 2e-5);
@@ -56,7 +57,8 @@ TEST(PhotometricColour, OfAColourlessPartIsThatOfTheLamp) {
   EXPECT_NEAR(d65.y, 0.32902, 2e-5);
 }
 
-// A dye takes exp(-a L), L = 2 (plate + depth): the sums of the CIE over the table.
+// The transmittance of a dye is exp(-a L) with L = 2 (plate + depth). The expected colour is a sum over the table of
+// the CIE.
 TEST(PhotometricColour, OfADyedPartIsTheSumOverTheTable) {
   const double way_mm = 2.0 * 2.25;
   const materials::CieTable cie = materials::read_cie_table(kData + "cie_v_a_d65_5nm.csv");
@@ -73,7 +75,7 @@ TEST(PhotometricColour, OfADyedPartIsTheSumOverTheTable) {
     EXPECT_NEAR(found.x, expected.x, 1e-5) << name;
     EXPECT_NEAR(found.y, expected.y, 1e-5) << name;
     EXPECT_NEAR(found.z(), expected.z(), 1e-5) << name;
-    // The same absorption as the design's own.
+    // The design's own key gives the same absorption.
     Design coloured = colourless();
     std::vector<SpectralAbsorption> own;
     for (std::size_t k = 0; k < dye.values.size(); ++k) own.push_back({dye.wavelengths_nm[k], dye.values[k]});
@@ -84,14 +86,15 @@ TEST(PhotometricColour, OfADyedPartIsTheSumOverTheTable) {
   }
 }
 
-// Dispersion of PMMA, Fresnel's faces and diffraction of half a millimetre: runs of one wavelength every 10 nm.
+// The part has the dispersion of PMMA, Fresnel reflection, and diffraction of cells of half a millimetre. The reference
+// is a set of runs with one wavelength every 10 nm.
 TEST(PhotometricColour, WithDispersionAndDiffractionIsThatOfItsSpectrum) {
   Design design = design_of(honeycomb(0.75, 0.5));
   design.substance.refractive_index.reset();
   design.substance.material = "PMMA";
   PhotometryRequest request = colour_request(PhotometricLight::illuminant_a, 1.0 / 3.0);
   request.diffraction = true;
-  request.engine = Engine::exact;  // without the noise of weak beams
+  request.engine = Engine::exact;  // without the noise of resampled weak beams
   const materials::Chromaticity found = colour_of(design, request);
   const materials::ColourMatching functions = materials::read_colour_matching(kData + "cie_xyz_1931_5nm.csv");
   materials::SpectralCurve back = materials::read_cie_table(kData + "cie_v_a_d65_5nm.csv").illuminant_a;
@@ -168,12 +171,13 @@ TEST(PhotometricColour, HasTheErrorOfItsRays) {
     chi_squared += std::pow((colour.chromaticity->x - exact.x) / colour.std_error.x, 2.0);
     chi_squared += std::pow((colour.chromaticity->y - exact.y) / colour.std_error.y, 2.0);
   }
-  // x and y share what they are made of: 12 to 24 degrees of freedom; 51 is the 99.9 % point of 24.
+  // x and y are correlated, so that the sum has 12 to 24 degrees of freedom. 51 is the 99.9 % quantile for 24 degrees
+  // of freedom.
   EXPECT_LT(chi_squared, 51.0);
 }
 
 TEST(PhotometricColour, VerdictIsThatOfTheBoundaries) {
-  const Design wide = colourless(20.0);  // by rays, without diffraction that counts
+  const Design wide = colourless(20.0);  // traced by rays; diffraction is negligible
   PhotometryRequest request = colour_request();
   const auto verdict = [&](std::vector<ColourBoundary> boundaries) {
     request.programme.boundaries = std::move(boundaries);
@@ -201,7 +205,7 @@ TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
   EXPECT_EQ(colour.verdict(), Verdict::fail);
   colour.lacks_diffraction = true;
   EXPECT_EQ(colour.verdict(), Verdict::undetermined);
-  // Cells of half a millimetre by rays.
+  // Cells of half a millimetre are traced by rays, without diffraction.
   PhotometryRequest request = colour_request();
   request.programme.boundaries = {at_most(1.0, 0.0, 0.9)};
   request.engine = Engine::montecarlo;
@@ -212,7 +216,7 @@ TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
   EXPECT_NE(photometry_table(result).find("colour: undetermined - x "), std::string::npos);
 }
 
-// Perfect cubes send no ray aside.
+// Perfect cube corners return no light at an observation angle of 1 degree.
 TEST(PhotometricColour, OfNoLightIsUndetermined) {
   PhotometryRequest request = colour_request(PhotometricLight::illuminant_a, 1.0);
   request.programme.boundaries = {at_most(1.0, 0.0, 0.9)};
@@ -224,7 +228,7 @@ TEST(PhotometricColour, OfNoLightIsUndetermined) {
   EXPECT_EQ(photometry_json(result).find("\"x\""), std::string::npos);
 }
 
-// Of the places beside the mirror image, the one that is worse.
+// The colour is measured at V = 5 and V = -5, away from the mirror image. The worse value counts.
 TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
   PhotometryRequest request = colour_request();
   request.programme.boundaries = {at_most(1.0, 0.0, 0.448)};

@@ -1,4 +1,5 @@
-// Photometry of whole designs: closed forms, retrace rre at the same directions, dyes, what to change.
+// Tests of the photometry of designs: closed forms, agreement with `retrace rre` at the same directions, dyes, and
+// advice on what to change.
 #include "studies/photometry/photometry.h"
 
 #include <gtest/gtest.h>
@@ -28,9 +29,9 @@ using namespace photometric_requests;
 using geometry::Arrangement;
 using std::numbers::pi;
 
-// Perfect cubes with all dihedral errors 2.46 arcmin at n = 1.49 put six spots of a sixth at 0.2 degrees: a receiver
-// there, smaller than the source, sees the lamp in one of them, R_A = 1 / (6 Omega_source); turned by 30 degrees it
-// sees between two.
+// Cube corners with all dihedral errors of 2.46 arcmin and n = 1.49 return six equal spots at 0.2 degrees. A receiver
+// at 0.2 degrees that is smaller than the source sees the lamp in one spot, so that R_A = 1 / (6 Omega_source). If the
+// part is rotated by 30 degrees, the receiver is between two spots.
 TEST(Photometry, ReceiverSeesOneOfSixSpots) {
   Design design = design_of(honeycomb(2.46), true);
   design.substance.refractive_index = 1.49;
@@ -51,14 +52,14 @@ TEST(Photometry, ReceiverSeesOneOfSixSpots) {
   EXPECT_EQ(*std::min_element(seen.begin(), seen.end()), 0.0);
   EXPECT_NEAR(seen[0], seen[2], 1e-9 * most) << "a sixth of a turn";
   EXPECT_NEAR(seen[1], seen[3], 1e-9 * most);
-  // Over several turns the least counts.
+  // If several rotations are measured, the smallest value counts.
   request.rotation_deg = {0.0, 30.0, 60.0, 90.0};
   const PhotometricPoint all = run(design, request).points[0];
   EXPECT_EQ(all.r_a, 0.0);
   EXPECT_EQ(all.rotation_deg, seen[0] > 0.0 ? 30.0 : 0.0);
 }
 
-// The directions of V and H, turned into incidence and azimuth: RRE there is that of retrace rre.
+// The directions V and H are converted to incidence and azimuth. The RRE must equal that of `retrace rre`.
 TEST(Photometry, VhGridAgreesWithRre) {
   for (const geometry::PartSpec& spec :
        {honeycomb(), infinite(geometry::TriangularCube{1.0}, Arrangement::triangular, 1.0)}) {
@@ -82,14 +83,15 @@ TEST(Photometry, VhGridAgreesWithRre) {
   }
 }
 
-// UN R3: where the face sends the mirror image of the lamp back, the least of the values at V = 5 and -5 counts.
+// UN R3: if the entrance face returns the mirror image of the lamp, the smaller of the values at V = 5 and V = -5
+// counts.
 TEST(Photometry, IsMeasuredBesideTheMirrorImage) {
   TestProgramme beside = points_at({0.2}, 1.0);
   beside.points[0].v_beside_deg = {5.0, -5.0};
   TestProgramme both = points_at({0.2, 0.2}, 1.0);
   both.points[0].v_deg = 5.0;
   both.points[1].v_deg = -5.0;
-  // Unlike errors, so that both signs differ.
+  // The dihedral errors are unequal, so that V = 5 and V = -5 give different values.
   geometry::PartSpec spec = honeycomb();
   spec.angle_errors.dihedral_error_arcmin = {2.0, 1.0, 3.0};
   const PhotometryResult found = run(design_of(spec), request_of(beside));
@@ -101,14 +103,14 @@ TEST(Photometry, IsMeasuredBesideTheMirrorImage) {
   EXPECT_EQ(found.points[0].v_deg, up.r_a < down.r_a ? 5.0 : -5.0);
   EXPECT_EQ(found.points[0].asked.v_deg, 0.0);
   EXPECT_NE(photometry_table(found).find("away from the mirror image of the lamp"), std::string::npos);
-  // A face that reflects nothing has no mirror image.
+  // A face without reflection has no mirror image.
   const PhotometryResult lossless = run(design_of(spec, true), request_of(beside));
   EXPECT_EQ(lossless.points[0].v_deg, 0.0);
   EXPECT_EQ(lossless.points[0].r_a, run(design_of(spec, true), request_of(points_at({0.2}, 1.0))).points[0].r_a);
 }
 
-// Directions that share their light, as turns at normal incidence and mirror images do, have the values that each has
-// by itself.
+// Some directions share one trace: rotations at normal incidence, and mirrored directions. Their values must equal
+// those of separate traces.
 TEST(Photometry, DirectionsThatShareTheirLightHaveTheirOwnValues) {
   TestProgramme all = points_at({0.2, 0.33, 0.33, 0.33}, 1.0);
   const std::vector<std::pair<double, double>> v_and_h = {{0.0, 0.0}, {5.0, 20.0}, {-5.0, 20.0}, {-5.0, -20.0}};
@@ -133,7 +135,7 @@ TEST(Photometry, DirectionsThatShareTheirLightHaveTheirOwnValues) {
   }
 }
 
-/// Diffracted, at 20 degrees, where light is trapped.
+/// Returns a request with diffraction at an angle of 20 degrees, at which light is trapped in the part.
 PhotometryRequest diffracted(Engine engine) {
   TestProgramme programme = points_at({0.0, 0.2, 0.33, 0.5}, 1.0);
   for (TestPoint& point : programme.points) point.h_deg = 20.0;
@@ -143,8 +145,8 @@ PhotometryRequest diffracted(Engine engine) {
   return request;
 }
 
-// Beams below the cut-off are resampled, so that nothing is given up and the error of points is known; the exact engine
-// gives them up.
+// Beams below the cut-off are resampled. No light is then truncated, and the standard errors of the points are known.
+// The exact engine truncates these beams.
 TEST(Photometry, ResamplesWeakBeams) {
   geometry::PartSpec small = finite(geometry::HexagonalCube{1.0}, Arrangement::honeycomb, 4.0, 4.0, 1.0);
   small.angle_errors.dihedral_error_arcmin.fill(2.0);
@@ -261,7 +263,7 @@ TEST(Photometry, ResampledBeamsDependOnTheSeedAndNotOnThreads) {
   }
 }
 
-// However bright it is, a part of another size is not one of its class, and no change of its cells mends that.
+// A part with an area outside the limits of its class fails, however bright it is. No change of its elements can help.
 TEST(Photometry, APartOfTheWrongAreaFails) {
   PhotometryRequest request = request_of(points_at({0.1}, 1.0));
   LimitArea most;
@@ -280,7 +282,7 @@ TEST(Photometry, APartOfTheWrongAreaFails) {
   EXPECT_EQ(run(design, request).verdict, Verdict::pass);
 }
 
-// A grey dye takes exp(-a L) of every direction at normal incidence, L = 2 (plate + depth) in a perfect prism array.
+// A grey dye transmits exp(-a L) at normal incidence, where L = 2 (plate + depth) in a perfect array of prisms.
 TEST(Photometry, DyeTakesItsShareOfTheFlux) {
   const Design design = design_of(infinite(geometry::RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 2.0), true);
   PhotometryRequest request = request_of(points_at({0.05}, 1.0));
@@ -289,7 +291,7 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
   const double way_mm = 2.0 * 2.25;
   request.dye_absorption_per_mm = {{380.0, 780.0}, {0.2, 0.2}};
   EXPECT_NEAR(run(design, request).points[0].r_a / clear, std::exp(-0.2 * way_mm), 1e-9);
-  // The shipped ones: the sum over the table of the lamp and the eye.
+  // The shipped dyes are compared with the sum over the table of lamp and luminous efficiency.
   const materials::CieTable cie =
       materials::read_cie_table(std::string(RETRACE_SOURCE_DIR) + "/data/cie_v_a_d65_5nm.csv");
   for (const std::string name : {"red", "amber"}) {
@@ -305,7 +307,7 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
     }
     const double dyed = run(design, request).points[0].r_a;
     EXPECT_NEAR(dyed / clear, behind / all, 2e-3 * behind / all) << name;
-    // The same in the design's own words.
+    // The design's own key gives the same absorption.
     Design coloured = design;
     std::vector<SpectralAbsorption> curve;
     for (std::size_t k = 0; k < request.dye_absorption_per_mm.values.size(); ++k)
@@ -319,7 +321,7 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
   }
 }
 
-// Monte Carlo through the same discs, within its own error.
+// Monte Carlo with the same discs agrees within its standard error.
 TEST(Photometry, MonteCarloAgreesWithTheExactEngine) {
   const Design design = design_of(honeycomb(4.0));
   PhotometryRequest request = request_of(r150("IA", "red"));
@@ -339,7 +341,7 @@ TEST(Photometry, MonteCarloAgreesWithTheExactEngine) {
   }
 }
 
-// Diffraction fills the place between the spots, and what leaves the window is told.
+// Diffracted light reaches the region between the spots. The power outside of the window is reported.
 TEST(Photometry, DiffractionReachesWhereRaysDoNot) {
   const Design design = design_of(honeycomb(0.0, 0.4));
   PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 1.0));
@@ -355,13 +357,14 @@ TEST(Photometry, DiffractionReachesWhereRaysDoNot) {
   EXPECT_GT(split.outside, 5e-3);
 }
 
-// Flawless cubes send nothing to a driver above the lamps; the program finds the error that does, and its table is that
-// of the changed design.
+// Perfect cube corners return no light to a driver above the lamps. The program finds the dihedral error that does, and
+// reports the table of the changed design.
 TEST(Photometry, FindsTheAngleErrorThatPasses) {
   const Design design = design_of(honeycomb(0.0, 10.0), true);
   PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 300.0));
   request.rotation_deg = {0.0, 30.0};
-  // Half a degree of receiver, so that one ring of six spots serves both turns.
+  // The source has an angular diameter of half a degree, so that one ring of six spots is sufficient for both
+  // rotations.
   request.apertures = {Angle::from_deg(0.5), Angle::from_deg(0.1)};
   request.advice = true;
   const PhotometryResult result = run(design, request);
@@ -380,7 +383,7 @@ TEST(Photometry, FindsTheAngleErrorThatPasses) {
   EXPECT_EQ(again.verdict, Verdict::pass);
 }
 
-/// Interrupts when all of the table has been measured.
+/// Cancels the run when the whole table has been measured.
 struct InterruptAfterTheTable : Progress {
   Cancellation cancellation;
   void at(double share) override {

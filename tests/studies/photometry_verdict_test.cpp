@@ -1,4 +1,4 @@
-// Verdicts of photometry where diffraction is left out, errors are large, or facets are rough.
+// Tests of verdicts of photometry if diffraction is left out, if errors are large, or if facets are rough.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,7 +60,8 @@ Design rough(Design design, double sq_nm) {
   return design;
 }
 
-/// Scattered a share of the light, alike at every facet: pi a ln(1 + 4 / b) up to direction cosines of 2.
+/// With these parameters, every facet scatters the fraction pi a ln(1 + 4 / b) of the light. The fraction includes
+/// direction cosines up to 2.
 constexpr double kAbgA = 1e-3, kAbgB = 1e-3;
 
 Design scattering_by_abg(Design design, double a = kAbgA) {
@@ -68,7 +69,8 @@ Design scattering_by_abg(Design design, double a = kAbgA) {
   return design;
 }
 
-/// Two points of the lamp's light, with diffraction; limits that smooth cubes of 0.75 arcmin hold.
+/// Returns a request for two points with diffraction. Smooth cube corners with errors of 0.75 arcmin reach these
+/// limits.
 PhotometryRequest diffracted_request(double share_of_limits) {
   PhotometryRequest request = request_of(r150("IA", "red"));
   request.programme.points.resize(2);
@@ -80,11 +82,11 @@ PhotometryRequest diffracted_request(double share_of_limits) {
   return request;
 }
 
-// A tenth of a nanometre of roughness changes nothing that a laboratory could see.
+// A roughness of 0.1 nm must not change the readings measurably.
 TEST(PhotometryVerdict, IsContinuousInTheRoughness) {
   const Design smooth = design_of(honeycomb(0.75, 0.5));
   PhotometryRequest request = diffracted_request(0.5);
-  request.engine = Engine::exact;  // rough facets have weak beams given up, and so must smooth ones
+  request.engine = Engine::exact;  // truncates weak beams of smooth facets, as for rough facets
   request.rays.reset();
   const PhotometryResult before = run(smooth, request);
   const PhotometryResult after = run(rough(smooth, 0.1), request);
@@ -98,7 +100,7 @@ TEST(PhotometryVerdict, IsContinuousInTheRoughness) {
   }
 }
 
-// Parts as they are cut and moulded have a value of their own, and so a verdict: pass, or fail.
+// Machined and moulded parts have a diffracted value of their own, and therefore a verdict of pass or fail.
 TEST(PhotometryVerdict, RoughPartsPassAndFailByTheirDiffractedValue) {
   const Design part = rough(design_of(honeycomb(0.75, 0.5)), 20.0);
   for (const auto& [share_of_limits, verdict] : {std::pair{0.5, Verdict::pass}, {1e3, Verdict::fail}}) {
@@ -113,8 +115,8 @@ TEST(PhotometryVerdict, RoughPartsPassAndFailByTheirDiffractedValue) {
   }
 }
 
-// In a flawless cube corner of mirrors at normal incidence every way meets three facets at 54.74 degrees: the mean
-// field is the smooth one times the specular shares, whatever the direction, and scattered light is added to it.
+// In a perfect cube corner of mirrors at normal incidence, every path hits three facets at 54.74 degrees. In every
+// direction, the mean field is the field of smooth facets times the specular fractions. Scattered light is added to it.
 TEST(PhotometryVerdict, RoughPartsShowTheirSpecularShareAndWhatTheyScatter) {
   const Design smooth = design_of(honeycomb(0.0, 0.5), true);
   PhotometryRequest request = request_of(points_at({0.05}, 1e-3));
@@ -125,13 +127,14 @@ TEST(PhotometryVerdict, RoughPartsShowTheirSpecularShareAndWhatTheyScatter) {
   const double phase = 4.0 * pi * kPmma * sq_nm * std::sqrt(1.0 / 3.0) / smooth.light.wavelength_nm();
   const double specular = std::exp(-3.0 * phase * phase);
   EXPECT_GT(after.points[0].r_a, specular * before.points[0].r_a);
-  // A lobe of Gaussian heights of 20 um holds at its middle, by theory (docs/theory/scatter.md) and without an edge, up
-  // to (1 - specular) times pi l^2 cos t / w^2 per steradian.
+  // For Gaussian heights with a correlation length of 20 um, the maximum of the scattered lobe is at most (1 -
+  // specular) pi l^2 cos t / w^2 per steradian. This follows from docs/theory/scatter.md, without diffraction at the
+  // edges.
   const double middle_per_sr = (1.0 - specular) * pi * std::pow(20e-3 / (1e-6 * smooth.light.wavelength_nm()), 2.0);
   EXPECT_LT(after.points[0].r_a, specular * before.points[0].r_a + 2.0 * middle_per_sr);
 }
 
-// Rays and the mean field are for textures that say nothing of phases.
+// For textures without information on phases, rays and the mean field are used.
 TEST(PhotometryVerdict, MeanFieldIsTheSmoothPatternTimesTheSpecularShares) {
   const Design smooth = design_of(honeycomb(0.0, 0.5), true);
   PhotometryRequest request = request_of(points_at({0.1, 1.0 / 3.0}, 1e-3));
@@ -177,8 +180,8 @@ TEST(PhotometryVerdict, DiffractionThatIsLeftOutIsNamedWhyEver) {
   EXPECT_NE(reason(smooth).find("as it was not asked for"), std::string::npos);
 }
 
-// Discs of 10' hide what diffraction does to cells of 64 wavelengths over them, 12.9 mm; 13 mm cubes fail and pass by
-// rays.
+// With discs of 10', diffraction is negligible for cells of at least 64 wavelengths divided by 10', which is 12.9 mm.
+// Cube corners of 13 mm therefore pass or fail by rays.
 TEST(PhotometryVerdict, WideCellsNeedNoDiffraction) {
   for (const auto& [aperture_mm, limit, verdict] :
        {std::tuple{13.0, 1e9, Verdict::fail}, {13.0, 1.0, Verdict::pass}, {12.8, 1e9, Verdict::undetermined}}) {
@@ -189,7 +192,7 @@ TEST(PhotometryVerdict, WideCellsNeedNoDiffraction) {
   }
 }
 
-// Few rays see nothing between the spots, which does not say that nothing is there.
+// A few rays do not reach the region between the spots. This does not prove that there is no light.
 TEST(PhotometryVerdict, AReceiverThatNoRayMetHasTheErrorOfOne) {
   PhotometryRequest request = request_of(points_at({1.0}, 100.0));
   request.engine = Engine::montecarlo;

@@ -1,4 +1,4 @@
-// Footprints and far fields of whole studies, against closed forms and the ledger.
+// Tests of footprints and far fields of studies against closed forms and the ledger.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,7 +55,8 @@ geometry::PartSpec bricks() {
   return spec;
 }
 
-// Mirror cubes under a lossless face: each active point sends everything back, and they fill the effective aperture.
+// Cube corners of mirrors are behind a lossless entrance face. Each active point returns all light, and the active
+// points form the effective aperture.
 TEST(Footprint, OfIdealCubesIsTheEffectiveAperture) {
   const RreResult result = run(design_of(honeycomb(), true), {0.0, 12.0, 25.0, 40.0}, {0.0, 25.0});
   ASSERT_EQ(result.returned.size(), 8U);
@@ -67,8 +68,8 @@ TEST(Footprint, OfIdealCubesIsTheEffectiveAperture) {
   }
 }
 
-// The honeycomb has the symmetry of its cubes: footprints turn with the cant and the light by 120 degrees, and are
-// their own mirror image where cant and light lie in the mirror plane.
+// The honeycomb has the symmetry of its cube corners. If the cant and the light are rotated by 120 degrees, the
+// footprint is rotated as well. If they are mirrored, the footprint is mirrored.
 TEST(Footprint, OfCantedCubesTurnsWithThem) {
   const auto footprint = [](double cant_azimuth_deg, double incidence_deg, double azimuth_deg) {
     const geometry::HexagonalCube cube{kCubeAperture, {8.0, cant_azimuth_deg}};
@@ -97,8 +98,8 @@ TEST(Footprint, OfPrismsAtNormalIncidenceIsTheWholeFace) {
   }
 }
 
-// docs/theory/closed_forms.md, 1: a full element sends back all that enters; half an element what its border wall
-// reflects, the entrance and the wall being parallel faces.
+// docs/theory/closed_forms.md, 1: a full element returns all light that enters. A half element returns the light that
+// its border wall reflects, because the wall and the entrance face are parallel.
 TEST(Footprint, ShowsTheHalvesOfABrickArray) {
   const Footprint footprint = *run(design_of(bricks()), {0.0}).returned.at(0).footprint;
   const double r = std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0);
@@ -110,11 +111,11 @@ TEST(Footprint, ShowsTheHalvesOfABrickArray) {
   }
 }
 
-// A little off the normal what the border walls send back leaves the cone: the halves are the dead spots.
+// At oblique incidence, the light that the border walls reflect is outside of the cone. The halves then return nothing.
 TEST(Footprint, HalvesAreDeadOffTheNormal) {
   const double t = 1.0;
   const Footprint footprint = *run(design_of(bricks()), {t}).returned.at(0).footprint;
-  // Where light that enters at the middle of a half comes to the elements.
+  // The light reaches the elements at a distance of `shift` from its entry point.
   const double shift = 3.0 * std::tan(std::asin(std::sin(t * kDeg) / kPmma));
   const auto covers = [&](double x, double y) {
     for (const ActiveRegion& region : footprint.regions) {
@@ -132,7 +133,7 @@ TEST(Footprint, HalvesAreDeadOffTheNormal) {
   EXPECT_GT(footprint.active_share(), 0.85);
 }
 
-/// The efficiency at a place of the face.
+/// Returns the efficiency at a point of the entrance face.
 double efficiency_at(const Footprint& footprint, const geometry::Vec2& at) {
   for (const ActiveRegion& region : footprint.regions) {
     bool is_inside = true;
@@ -147,7 +148,8 @@ double efficiency_at(const Footprint& footprint, const geometry::Vec2& at) {
   return 0.0;
 }
 
-// Elements that are alike are followed once, and shown at all their places: those of an endless part within its period.
+// Equal elements are traced only once, but shown at all their positions. For an infinite part, these are all positions
+// within a period.
 TEST(Footprint, OfElementsFollowedOnceIsThatOfAll) {
   using Elements = raytrace::BeamTracer::Elements;
   const std::vector<geometry::PartSpec> specs = {
@@ -168,7 +170,7 @@ TEST(Footprint, OfElementsFollowedOnceIsThatOfAll) {
     if (part.period_mm) {
       EXPECT_LT(once.traced.beams, 0.7 * static_cast<double>(each.traced.beams));
     }
-    // Beams are cut off elsewhere, as light comes in in other pieces.
+    // The two runs truncate different beams, because the light enters in different polygons.
     const auto truncated = [](const BeamAnswer& of) { return of.traced.ledgers[0][raytrace::Account::truncated]; };
     const double left = truncated(once) + truncated(each);
     EXPECT_LT(left, 2e-3);
@@ -240,7 +242,7 @@ TEST(FootprintFiles, AreClosedRingsAndOneEntryADirection) {
   }
 }
 
-// Everything that leaves the entrance face is in the table, at any incidence.
+// At any incidence, the far field contains all light that leaves the entrance face.
 TEST(FarField, AddsUpToTheLedger) {
   const RreResult result = run(design_of(bricks()), {0.0, 7.0, 30.0}, {0.0, 35.0}, 1e-6);
   ASSERT_EQ(result.returned.size(), 6U);
@@ -265,19 +267,21 @@ TEST(FarField, AddsUpToTheLedger) {
   }
 }
 
-// The face alone sends light to the mirror direction: twice the incidence away, on the far side of the normal.
+// The entrance face reflects light into the mirror direction. This direction is on the other side of the normal, and
+// its angle to the source is twice the angle of incidence.
 TEST(FarField, KnowsWhereTheFaceReflectsTo) {
   const double t = 10.0;
   const RreResult result = run(design_of(bricks()), {t}, {90.0});
   for (const FarFieldSpot& spot : result.returned.at(0).far_field->spots) {
     if (spot.least_depth != 0) continue;
     EXPECT_NEAR(spot.deviation.deg(), 2.0 * t, 1e-9);
-    // The source lies over +y; its first axis is +x, the second points away from +y.
+    // The source is above +y. The first axis of its frame is +x, and the second axis points away from +y.
     EXPECT_NEAR(std::abs(spot.orientation.deg()), 90.0, 1e-9);
   }
 }
 
-// A prism of another angle: all light that two facets turn is deviated by 2 n (A - 90 deg) and more, to either side.
+// The apex angle A of a prism is not 90 degrees. The light that both facets reflect is deviated by 2 n (A - 90 deg) or
+// more, to either side.
 TEST(FarField, OfAWrongPrismAngleHasTwoSpots) {
   const double error_deg = 0.1;
   const RreResult result =

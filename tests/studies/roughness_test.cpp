@@ -1,4 +1,4 @@
-// RRE against the roughness of facets: the shipped tables, the study against closed forms, what is refused.
+// Tests of the RRE as a function of the roughness of facets: shipped tables, closed forms, and refused values.
 #include "studies/roughness/roughness.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@
 namespace retrace::studies::roughness_test {
 namespace {
 
-/// A prism of mirrors under a lossless face with a cone too narrow for what scatters: RRE is the specular share.
+/// A prism of mirrors behind a lossless entrance face. The cone is so narrow that it contains no scattered light, so
+/// that the RRE is the specular fraction.
 const std::string kPrism =
     "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"single\"\n"
     "[body]\nthickness_mm = 0.5\n[idealisation]\nentrance = \"lossless\"\nfacets = \"mirror\"\n"
@@ -69,7 +70,8 @@ double phase2(double index, double sa_nm) {
   return std::pow(4.0 * pi * index * std::sqrt(0.5 * pi) * sa_nm * std::cos(0.25 * pi) / 587.56, 2);
 }
 
-// Two reflections at 45 degrees, each of which leaves exp(-g) of closed form 7; Sq = sqrt(pi / 2) Sa.
+// Light is reflected twice at 45 degrees. The specular fraction of each reflection is exp(-g), closed form 7, with Sq =
+// sqrt(pi / 2) Sa.
 TEST(RoughnessStudy, SpecularShareIsTheClosedFormOfSa) {
   const Design design = parse_design(kPrism, "d.toml");
   const double index = make_model(design, materials::MaterialLibrary::shipped()).optics.index;
@@ -83,7 +85,7 @@ TEST(RoughnessStudy, SpecularShareIsTheClosedFormOfSa) {
   ASSERT_EQ(result.points.size(), 5U);
   EXPECT_EQ(result.smooth_std_error, 0.0) << "of the exact engine";
   EXPECT_EQ(result.points[0].rre, result.smooth_rre);
-  // The share that stays specular is followed to the end, so that rounding may be all the difference.
+  // The specular light is traced without sampling, so that the only difference may be rounding errors.
   constexpr double kRounding = 1e-12;
   for (std::size_t k = 1; k < 4; ++k)
     EXPECT_NEAR(result.points[k].rre, result.smooth_rre * std::exp(-2.0 * phase2(index, request.sa_nm[k])),
@@ -113,7 +115,8 @@ TEST(RoughnessStudy, ReportsTheProgressOfTheSmoothPointAsWell) {
   }
 }
 
-// Longer roughness scatters into narrower lobes, more of them inside the cone: Sa alone does not fix RRE.
+// Roughness with a longer correlation length scatters into narrower lobes, and more scattered light is inside the cone.
+// Sa by itself therefore does not determine the RRE.
 TEST(RoughnessStudy, FallsWithSaAndRisesWithTheCorrelationLength) {
   RoughnessRequest request = request_of({0.0, 5.0, 10.0, 20.0, 40.0});
   request.correlation_length_um = {2.0, 20.0, 60.0};

@@ -65,7 +65,7 @@ std::string ldt(int symmetry, double step_c_deg, const std::vector<double>& angl
   for (const double plane : planes) text += shortest(plane) + "\n";
   for (const double angle : angles) text += shortest(angle) + "\n";
   for (const double plane : written_planes)
-    // Cd per 1000 lm; the lamp has 2000 lm.
+    // The file gives cd per 1000 lm, and the lamp has 2000 lm.
     for (const double angle : angles) text += shortest(cd(plane, angle) / 2.0) + "\n";
   return text;
 }

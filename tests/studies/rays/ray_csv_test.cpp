@@ -1,4 +1,4 @@
-// Tables of rays: what is written is read again, and what is wrong is refused with line and column.
+// Tests of tables of rays: written tables are read again, and wrong tables are refused with line and column.
 #include "studies/rays/io/ray_csv.h"
 
 #include <gtest/gtest.h>

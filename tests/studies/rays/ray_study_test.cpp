@@ -1,4 +1,5 @@
-// Rays of a set at a part: places, wavelengths, polarisation and accounts, against closed forms and beams.
+// Tests of rays of a set at a part. Positions, wavelengths, polarisation and accounts are compared with closed forms
+// and with beams.
 #include "studies/rays/ray_study.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ namespace {
 using namespace studies;
 using raytrace::Account;
 
-/// Rays in memory.
+/// A source of rays that are given in memory.
 class Given : public RaySource {
  public:
   Given(RaySetInfo info, std::vector<SetRay> rays) : info_(std::move(info)), rays_(std::move(rays)) {}
@@ -49,7 +50,8 @@ struct Kept : RaySink {
   void finish() override { is_finished = true; }
 };
 
-/// A plate of 10 mm x 10 mm x 2 mm. \param more lines of [body], then other sections
+/// Returns a design of a plate of 10 mm x 10 mm x 2 mm.
+/// \param more lines of [body], followed by other sections
 Design plate(const std::string& more = "refractive_index = 1.5\n") {
   return parse_design("[part]\nplate_mm = [10, 10]\n[body]\nthickness_mm = 2\n" + more, "plate.toml");
 }
@@ -73,7 +75,8 @@ TEST(RayStudy, APlateSplitsLightAsItsSeriesSays) {
   Kept kept;
   const RayResult result = traced(plate(), request, Given({}, {down_at(4, 5)}), kept);
   const double r = 0.04;  // (0.5 / 2.5)^2
-  // Up: r, then (1 - r)^2 r^(2k - 1); down: (1 - r)^2 r^(2k).
+  // The powers that leave upwards are r and then (1 - r)^2 r^(2k - 1). The powers that leave downwards are (1 - r)^2
+  // r^(2k).
   ASSERT_GE(kept.rays.size(), 4U);
   double up = 0.0;
   double down = 0.0;
@@ -84,7 +87,7 @@ TEST(RayStudy, APlateSplitsLightAsItsSeriesSays) {
   }
   EXPECT_NEAR(up, 3.0 * (r + (1 - r) * (1 - r) * r / (1 - r * r)), 1e-7);
   EXPECT_NEAR(down, 3.0 * (1 - r) * (1 - r) / (1 - r * r), 1e-7);
-  // Straight back is within the cone.
+  // The reflected light returns to the source, which is within the cone.
   EXPECT_NEAR(result.ledger.ledger[Account::retroreflected], up, 1e-12);
   EXPECT_NEAR(result.ledger.ledger[Account::transmitted], down, 1e-12);
   EXPECT_NEAR(result.ledger.ledger.total(), 3.0, 1e-9);
@@ -113,7 +116,7 @@ TEST(RayStudy, APlateShiftsObliqueLightAndPolarisesIt) {
   const double p = std::pow(1.0 - r_p, 2.0);
   EXPECT_NEAR(straight->radiant_w, 0.5 * (s + p), 1e-12);
   EXPECT_TRUE(kept.layout.info.has_stokes);
-  // More of p passes: the long axis lies in the plane of incidence.
+  // More p-polarised light is transmitted. The long axis of the polarisation is therefore in the plane of incidence.
   EXPECT_NEAR(straight->stokes[0], (p - s) / (p + s), 1e-12);
   EXPECT_NEAR(std::abs(straight->axis.y()), 0.0, 1e-9);
 }
@@ -128,7 +131,8 @@ TEST(RayStudy, StokesParametersOfTheSetGoIn) {
   ray.radiant_w = 1.0;
   RaySetInfo info;
   info.has_stokes = true;
-  // In the plane of incidence nothing is reflected; at 45 degrees to it half as much as of what lies across.
+  // Light polarised in the plane of incidence is not reflected. At 45 degrees to this plane, the reflectance is half
+  // that of perpendicular polarisation.
   for (const double turn : {0.0, 0.25 * std::numbers::pi, 0.5 * std::numbers::pi}) {
     const Vec3 in_plane(std::cos(brewster), 0.0, std::sin(brewster));
     ray.axis = std::cos(turn) * in_plane + std::sin(turn) * Vec3::UnitY();
@@ -167,7 +171,7 @@ TEST(RayStudy, OneRayInIsOneOutUnlessItIsSplit) {
   EXPECT_NEAR(result.ledger.std_error(), std::sqrt(through * (1 - through) / 20000), 2e-5);
 }
 
-/// Where a ray leaves that comes in obliquely: by its index.
+/// Returns the refractive index of the plate, computed from the position at which an oblique ray leaves.
 double index_from(const AccountedRay& ray, double t) {
   const double tan_inside = (ray.position_mm.x() - 2.0) / 2.0;
   return std::sin(t) / std::sin(std::atan(tan_inside));
@@ -243,7 +247,7 @@ TEST(RayStudy, LightOfTheDesignIsTakenWhereTheSetTellsNone) {
   EXPECT_TRUE(kept.layout.tells_wavelengths);
   double sum = 0.0;
   for (const AccountedRay& ray : kept.rays) sum += ray.wavelength_nm / static_cast<double>(kept.rays.size());
-  EXPECT_NEAR(sum, 572.0, 3.0);  // the centroid of A weighed by the eye
+  EXPECT_NEAR(sum, 572.0, 3.0);  // luminous centroid of illuminant A
 }
 
 TEST(RayStudy, BothFluxesAndTristimulusValuesShrinkAlike) {
@@ -264,7 +268,7 @@ TEST(RayStudy, BothFluxesAndTristimulusValuesShrinkAlike) {
   }
 }
 
-// The light of an emitter that is all but a beam has the accounts of the beam; what passes the face is missed.
+// A collimated emitter has the same accounts as the beam of `retrace rre`. Rays that do not hit the part are missed.
 TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
   const Design design = parse_design(
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"offset\"\nx_length_mm = "
@@ -284,8 +288,8 @@ TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
   beam.azimuth_deg = {30.0};
   const RrePoint known = RreStudy({design}, beam).run(nullptr, nullptr).points.at(0);
   const double met = result.ledger.incident - result.ledger.missed;
-  // Of the circle round the face: the face as it looks from there, with the lit sides of the plate and of the prisms,
-  // whose shifted rows end on half a prism.
+  // The emitter illuminates a disc around the part. The illuminated area is the projection of the entrance face, plus
+  // the illuminated sides of the plate and of the prisms. Shifted rows end with half a prism.
   const double rad = std::numbers::pi / 180.0;
   const double at_x_mm2 = 4.0 * 0.02 + 2.0 * 0.5;
   const double at_y_mm2 = 6.0 * 0.02 + 6.0 * 0.25;
@@ -293,7 +297,8 @@ TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
                          std::sin(20.0 * rad) * (at_x_mm2 * std::cos(30.0 * rad) + at_y_mm2 * std::sin(30.0 * rad));
   EXPECT_NEAR(result.ledger.missed, 1.0 - lit_mm2 / (13.0 * std::numbers::pi), 0.008);  // four standard errors
   for (std::size_t k = 0; k < raytrace::kAccountCount; ++k) {
-    // Sides, which rays meet and the beam does not, take some of the light: a plate of 0.02 mm.
+    // Rays also hit the sides of the plate, which the beam does not. This effect is small, because the plate is only
+    // 0.02 mm thick.
     EXPECT_NEAR(result.ledger.ledger.power[k] / met, known.ledger.power[k], 0.02) << raytrace::kAccountNames[k];
   }
 }
@@ -374,7 +379,7 @@ TEST(RayStudy, SourcesAreMovedAndTurned) {
   aimed.run(source, &kept, nullptr, nullptr);
   ASSERT_EQ(kept.rays.size(), 1U);
   const Vec3 way = Vec3(3.0, 3.0, -10.0).normalized();
-  // Down through the plate, or back up: as long as it is on its way, along or against the turned axis.
+  // The ray leaves through the bottom or is reflected upwards. In both cases its direction is along the rotated axis.
   EXPECT_NEAR(std::abs(kept.rays[0].direction.z()), std::abs(way.z()), 1e-12);
   EXPECT_NEAR((kept.rays[0].direction - way).head<2>().norm(), 0.0, 1e-12);
   const RayPlacement placement = placement_of(request.placement, aimed.part());

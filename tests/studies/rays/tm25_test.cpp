@@ -1,4 +1,5 @@
-// Ray files of TM-25: every item is read where it stands, and what is wrong is refused with its byte.
+// Tests of TM-25 ray files: every item is read from its position, and wrong files are refused with the position of the
+// byte.
 #include "studies/rays/io/tm25.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ namespace {
 using namespace studies;
 using tm25_bytes::File;
 
-constexpr std::size_t kTables = 36288;  // where they begin
+constexpr std::size_t kTables = 36288;  // start of the spectral tables
 
 Tm25Source source_of(const std::string& bytes) {
   return {{std::make_unique<std::istringstream>(bytes), bytes.size()}, "led.tm25ray"};
@@ -30,7 +31,7 @@ std::vector<SetRay> rays_of(Tm25Source& source) {
   return all;
 }
 
-/// Three rays with radiant flux alone.
+/// Returns a file with three rays that have radiant flux only.
 File plain() {
   File file;
   file.radiant = 6.0F;
@@ -38,7 +39,7 @@ File plain() {
   return file;
 }
 
-/// One ray with everything that a set of spectra may hold.
+/// Returns a file with one ray and with everything that a set of spectra may contain.
 File full() {
   File file;
   file.radiant = 2.0F;
@@ -116,7 +117,7 @@ TEST(Tm25, WavelengthsOfEachRayAreRead) {
 TEST(Tm25, WhatDoesNotAddUpIsTold) {
   File file = plain();
   file.radiant = 7.0F;
-  file.values[1][4] = 0.7F;  // no unit vector
+  file.values[1][4] = 0.7F;  // not a unit vector
   Tm25Source source = source_of(bytes_of(file));
   EXPECT_NEAR(rays_of(source).at(1).direction.norm(), 1.0, 1e-15);
   const std::vector<std::string> told = source.warnings();
@@ -203,7 +204,7 @@ TEST(Tm25, WrongRaysAreRefusedWithTheirByte) {
             "led.tm25ray: byte 36356: a direction must not be 0");
   EXPECT_EQ(complaint(plain(), [](File& f) { f.values[2][6] = -3.0F; }),
             "led.tm25ray: byte 36368: the radiant flux of a ray must be >= 0, got -3");
-  const auto last = [](std::size_t column) {  // of the one ray of full()
+  const auto last = [](std::size_t column) {  // byte position in the only ray of full()
     return std::to_string(bytes_of(full()).size() - 60 + 4 * column);
   };
   EXPECT_EQ(complaint(full(), [](File& f) { f.values[0][7] = 1.0F; }),

@@ -15,7 +15,8 @@
 #include "studies/setup/setup_sheet.h"
 #include "tests/support/prism_jobs.h"
 
-// The sheet for who sets up a machine: what an error costs is what the verifier finds of it, and the page says it all.
+// Tests of the sheet for setting up a machine. The effects of errors must equal those that the verifier finds, and the
+// page must be complete.
 
 namespace retrace::studies::setup_sheet_test {
 namespace {
@@ -33,7 +34,7 @@ const Sensitivity& row_of(const SetupSheet& sheet, const std::string& key) {
   return *std::find_if(rows.begin(), rows.end(), [&](const Sensitivity& row) { return row.quantity->key == key; });
 }
 
-/// What the job's programs leave on a machine that errs.
+/// Returns the result of the job's programs on a machine with errors.
 Verification cut_on(const FabricationResult& result, const Machine& real) {
   return verify_programs(result.job, real, test::programs_of(result), {}, {});
 }
@@ -43,7 +44,8 @@ TEST(SetupSheet, TheLargestErrorsComeFirst) {
   ASSERT_EQ(sheet.sensitivities.kinds.size(), 4U);
   for (std::size_t k = 1; k < sheet.sensitivities.rows.size(); ++k)
     EXPECT_GE(sheet.sensitivities.rows[k - 1].largest_nm(), sheet.sensitivities.rows[k].largest_nm());
-  // A um of the centre shifts facet 2 in parallel, and those of turned elements that face the other way.
+  // An error of 1 um of the center of C shifts facet 2. It also shifts the facets of rotated elements that face in the
+  // opposite direction.
   const Sensitivity& centre = row_of(sheet, "c_y_um");
   EXPECT_NEAR(centre.facets[0].distance_nm, 0.0, 1e-9);
   EXPECT_NEAR(centre.facets[1].distance_nm, 1000.0 * std::numbers::sqrt2, 1e-9);
@@ -51,7 +53,8 @@ TEST(SetupSheet, TheLargestErrorsComeFirst) {
   EXPECT_FALSE(sheet.light.has_value());
 }
 
-/// Where facets stay and the edge does not: it stops short of the other facet, or goes below it.
+/// An error of the tool along Z moves the edge but not the facets. The edge stops before it reaches the other facet, or
+/// cuts into it.
 TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
   const FabricationResult result = made();
   const SetupSheet sheet = setup_sheet(result, false);
@@ -68,7 +71,7 @@ TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
       }
     EXPECT_NEAR(amount > 0.0 ? left_nm : cut_nm, row.root_left_nm, 0.03 * row.root_left_nm);
   }
-  // An edge that is not level stands with one end high and one low.
+  // A tilted edge has one higher end and one lower end.
   const Sensitivity& level = row_of(sheet, "tool_turn_y_arcsec");
   const double end_nm = 0.25e6 * std::numbers::pi / 648000.0;
   EXPECT_NEAR(level.root_left_nm, end_nm, 1e-6);
@@ -92,7 +95,8 @@ TEST(SetupSheet, WallsAreWhatTheVerifierFinds) {
   EXPECT_NEAR(row_of(sheet, "tool_z_um").wall_nm, 0.0, 1e-6);
 }
 
-/// Roughing ploughs facet 2 in the pose of facet 1, and its first finishing cut takes what an error of A leaves there.
+/// Roughing ploughs facet 2 in the pose of facet 1. An error of A leaves material on facet 2, which the first finishing
+/// cut then removes.
 TEST(SetupSheet, ChipsAreWhatTheVerifierFinds) {
   std::string job = kJob;
   const std::string roughing = "roughing_depth_um = 50";
@@ -117,14 +121,14 @@ TEST(SetupSheet, SaysWhereTheProgramsGo) {
     EXPECT_LE(axis.low, axis.high);
     EXPECT_TRUE(axis.limits.contains(axis.low) && axis.limits.contains(axis.high)) << axis.axis;
   }
-  // The table turns below the tool: at that radius a face comes up to just where the clearance begins.
+  // The table rotates below the tool. At this radius, the face rises exactly to the limit of the clearance.
   const double radius = sheet.blank.free_radius_mm;
   const double up = radius * std::sin(Angle::from_deg(45.0).rad());
   EXPECT_NEAR(up + result.job.process.rotary_clearance_mm, result.plan.safe_z_mm, 1e-3);
   EXPECT_EQ(*sheet.blank.fixture_height_mm, 15.0);
 }
 
-/// After each stage: what is left on its facets, and where the root then is.
+/// The sheet gives the remaining stock on the facets after each stage, and the depth of the root at that time.
 TEST(SetupSheet, SaysWhatToMeasureWhen) {
   const SetupSheet sheet = setup_sheet(made(), false);
   ASSERT_EQ(sheet.checks.front().stage, "roughing");
@@ -135,7 +139,8 @@ TEST(SetupSheet, SaysWhatToMeasureWhen) {
   for (std::size_t k = 1; k < sheet.checks.size(); ++k) EXPECT_GT(sheet.checks[k].ends_s, sheet.checks[k - 1].ends_s);
 }
 
-/// RRE of perfect prisms falls with a wall between facets that do not meet; what moves no facet changes nothing.
+/// If facets of perfect prisms do not meet, there is a wall between them and the RRE decreases. Errors that move no
+/// facet have no effect.
 TEST(SetupSheet, LightChangesWhereFacetsMove) {
   const FabricationResult result = made();
   const SetupSheet sheet = setup_sheet(result);
@@ -144,7 +149,7 @@ TEST(SetupSheet, LightChangesWhereFacetsMove) {
   EXPECT_NEAR(sheet.light->nominal.rre.front(), 1.0, 1e-5) << "words are rounded to a nanometre";
   EXPECT_GT(sheet.light->nominal.r_a, 0.0);
   const PartLight& centre = *sheet.change_of_light(*row_of(sheet, "c_y_um").quantity, Tilt::table);
-  // 1 um of 500: the rims of facet 2 stand over those of its neighbours by it.
+  // The base is 500 um. With an error of 1 um, the rims of facet 2 are 1 um higher than the rims of the neighbours.
   EXPECT_LT(centre.rre.front(), -1e-3);
   EXPECT_GT(centre.rre.front(), -1e-2);
   const PartLight& clearance = *sheet.change_of_light(*row_of(sheet, "tool_turn_x_arcsec").quantity, Tilt::table);
@@ -165,7 +170,7 @@ TEST(SetupSheet, StopsAreTold) {
   job.insert(job.find("[process]\n") + 10, "stop_before_finishing = true\n");
   job.insert(job.find("[tool]\n") + 7, "edge_life_mm = 1e6\n");
   const FabricationResult result = made(job);
-  ASSERT_EQ(result.plan.stops.size(), 2U);  // turned prisms are roughed for themselves
+  ASSERT_EQ(result.plan.stops.size(), 2U);  // rotated prisms have their own roughing stage
   const SetupSheet sheet = setup_sheet(result, false);
   const nlohmann::ordered_json stops = setup_json(result, sheet)["stops"];
   ASSERT_EQ(stops.size(), 2U);
@@ -180,7 +185,7 @@ TEST(SetupSheet, StopsAreTold) {
   EXPECT_EQ(report::setup_html(report::setup_page(made(), sheet, {})).find("stops.csv"), std::string::npos);
 }
 
-/// The page is whole, and needs no script.
+/// The page contains all sections and no scripts.
 TEST(SetupSheet, ThePageSaysItAll) {
   const FabricationResult result = made();
   const SetupSheet sheet = setup_sheet(result);

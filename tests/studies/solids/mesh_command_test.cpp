@@ -10,7 +10,7 @@
 
 #include "tests/app/program.h"
 
-// An STL as the part to trace, as users meet it.
+// Tests of commands on parts that are given as STL files.
 
 namespace retrace::test::mesh_command_test {
 namespace {
@@ -36,7 +36,8 @@ std::vector<double> rre(const TemporaryFolder& folder, Arguments arguments) {
   return values;
 }
 
-/// The part and the mesh of it send back the same, by the exact engine but for what single precision of the STL moves.
+/// A part and its mesh return the same light with the exact engine, except for the effect of the single precision of
+/// STL.
 TEST(MeshPart, SendsBackWhatTheDesignItWasMadeOfDoes) {
   const TemporaryFolder folder;
   export_part(folder, kArray);
@@ -55,7 +56,7 @@ TEST(MeshPart, SendsBackWhatTheDesignItWasMadeOfDoes) {
   const auto found = rre(folder, mesh);
   ASSERT_EQ(found.size(), expected.size());
   ASSERT_EQ(found.size(), 4U);  // two directions, two cones
-  // Pieces of triangles are fainter than whole facets: each may leave the cut-off behind.
+  // Beams at single triangles are weaker than beams at whole facets. Different beams are therefore below the cut-off.
   for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 2e-4);
 }
 
@@ -142,7 +143,7 @@ TEST(MeshPart, IsInspectedAndExportedAgain) {
   EXPECT_EQ(retrace(folder, {"inspect", "mesh.toml"}).code, 0);
 }
 
-/// The part without one of its triangles.
+/// Writes the part without one of its triangles.
 void write_open(const TemporaryFolder& folder) {
   std::string stl = folder.read("part.stl");
   stl.resize(stl.size() - 50);

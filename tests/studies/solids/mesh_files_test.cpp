@@ -47,7 +47,7 @@ TEST(Stl, WhatIsWrittenIsReadBackClosedWithItsVolume) {
   const BoundaryMesh back = as_boundary(parse_stl(text, "a.stl"));
   EXPECT_EQ(back.triangles.size(), mesh.triangles.size());
   EXPECT_TRUE(is_closed_manifold(back));
-  // Single precision.
+  // The coordinates of the file are in single precision.
   EXPECT_NEAR(volume_mm3(back), volume_mm3(mesh), 1e-6 * volume_mm3(mesh));
 }
 
@@ -149,11 +149,11 @@ TEST(Obj, HoldsEveryVertexAndTriangleByRole) {
   }
   EXPECT_EQ(vertices, mesh.vertices.size());
   EXPECT_EQ(faces, mesh.triangles.size());
-  EXPECT_EQ(groups, 4U);  // entrance, facets, gables on the border, sides
+  EXPECT_EQ(groups, 4U);  // entrance face, facets, end walls on the border, sides
   EXPECT_NE(text.find("g facets\n"), std::string::npos);
 }
 
-/// A glTF file as its two chunks. Shares nothing with the writer.
+/// A glTF file, divided into its two chunks. This code is independent of the writer.
 struct Glb {
   nlohmann::json head;
   std::string binary;
@@ -197,7 +197,7 @@ TEST(Gltf, HoldsEveryVertexAndTriangleByRole) {
       EXPECT_GE(value, accessors[0]["min"][axis].get<float>());
       EXPECT_LE(value, accessors[0]["max"][axis].get<float>());
     }
-  // Every triangle is in the mesh that its role names, in the order that it had.
+  // Every triangle is in the mesh with the name of its role, in the original order.
   std::size_t triangles = 0;
   for (const auto& [role, name] : kFaceGroups) {
     std::vector<std::uint32_t> expected;
@@ -229,7 +229,7 @@ TEST(Gltf, TurnsZUpAndMillimetresToMetres) {
 TEST(Gltf, TellsWhatTheSolidIsOf) {
   const auto clear = read_glb(gltf_text(prism(), "prism", 1.49, 0.02)).head["materials"][0]["extensions"];
   EXPECT_EQ(clear["KHR_materials_ior"]["ior"], 1.49);
-  // Beer's law over 7 mm, from the file's own numbers.
+  // Beer's law over 7 mm, computed with the numbers of the file.
   const auto& volume = clear["KHR_materials_volume"];
   EXPECT_NEAR(std::pow(volume["attenuationColor"][0].get<double>(), 7e-3 / volume["attenuationDistance"].get<double>()),
               std::exp(-7 * 0.02), 1e-12);
