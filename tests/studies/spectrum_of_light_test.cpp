@@ -1,4 +1,5 @@
-// Light of a spectrum: what is traced is a mean of single wavelengths, and near enough to that over the whole spectrum.
+// Tests of light with a spectrum. A result is a mean over single wavelengths, which must be close to the mean over the
+// whole spectrum.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -62,7 +63,7 @@ std::string complaint(const Design& given, const RreRequest& request) {
   return refusal_of([&] { RreStudy({given}, request); });
 }
 
-/// Lines of one power at every wavelength of the CIE's table, as a design has them.
+/// Returns an override with lines of equal power at every wavelength of the table of the CIE.
 std::string lines_of_the_table(const materials::CieTable& cie) {
   std::string text = "light.spectrum=[";
   for (const double wavelength_nm : cie.illuminant_a.wavelengths_nm)
@@ -70,7 +71,7 @@ std::string lines_of_the_table(const materials::CieTable& cie) {
   return text + "]";
 }
 
-/// sum S V f / sum S V over the table, as the CIE defines luminous means.
+/// Returns the luminous mean of the RRE: sum S V f / sum S V over the table, as the CIE defines luminous means.
 double luminous_mean(const materials::SpectralCurve& lamp, const materials::SpectralCurve& efficiency,
                      const std::vector<SpectralRre>& points) {
   double sum = 0.0;
@@ -82,8 +83,9 @@ double luminous_mean(const materials::SpectralCurve& lamp, const materials::Spec
   return sum / flux;
 }
 
-/// How far the mean over `nodes` may be from the sum over the table: the integral of the difference of the cumulated
-/// weights over the change of RRE, taken as monotonic between neighbours of the table.
+/// Returns an upper bound of the difference between the mean over `nodes` and the sum over the table. It is the
+/// integral of the difference of the cumulated weights over the change of the RRE. The RRE is assumed to be monotonic
+/// between neighbours of the table.
 double koksma_bound(const materials::SpectralCurve& lamp, const materials::SpectralCurve& efficiency,
                     const std::vector<SpectralRre>& table, const std::vector<SpectralRre>& nodes) {
   const auto below = [&](double wavelength_nm) {
@@ -197,7 +199,7 @@ TEST(SpectrumOfLight, AGivenIndexKnowsNoDispersion) {
       << "without a given index there is dispersion to be seen";
 }
 
-// Blue and red of two lines: the share of each is its power, or its power times V.
+// The spectrum has a blue and a red line. The weight of each line is its power, or its power times V.
 TEST(SpectrumOfLight, WeightingIsOfTheEyeOrOfPower) {
   const std::string lines = "light.spectrum=[[450, 3], [650, 1]]";
   const RrePoint seen = point({lines}, exactly(10.0));
@@ -209,8 +211,9 @@ TEST(SpectrumOfLight, WeightingIsOfTheEyeOrOfPower) {
   EXPECT_GT(std::abs(seen.rre - radiant.rre), 1e-4);
 }
 
-// The ten wavelengths against sums over all 81 of the table. At normal incidence RRE is smooth. At 10 degrees total
-// reflection ends within the spectrum, and the bound is that of any monotonic steps between neighbours of the table.
+// The mean over ten wavelengths is compared with the sum over all 81 wavelengths of the table. At normal incidence, the
+// RRE is a smooth function of the wavelength. At 10 degrees, total reflection ends within the spectrum. The bound
+// allows for any monotonic change between neighbours of the table.
 TEST(SpectrumOfLight, TenWavelengthsStandForTheWholeTable) {
   const materials::CieTable cie = materials::shipped_cie_table();
   for (const double incidence_deg : {0.0, 10.0}) {
@@ -259,8 +262,9 @@ TEST(SpectrumOfLight, TargetErrorIsThatOfTheMean) {
   EXPECT_TRUE(lit.warnings.empty());
 }
 
-// Mirror facets under a lossless face, light along the normal: down, across and up again it goes 2 (2 + 0.25) mm. An
-// amber plate, a(w) linear from 0.2 per mm at 380 nm to 0 at 780 nm; the sum over the table is that of exp(-a(w) L).
+// Facets are mirrors, the entrance face is lossless, and light falls along the normal. Each path has the length 2 (2 +
+// 0.25) mm. The absorption a(w) of an amber plate falls linearly from 0.2 per mm at 380 nm to 0 at 780 nm. The expected
+// RRE is the mean of exp(-a(w) L) over the table.
 TEST(SpectrumOfLight, AColouredPlateKeepsTheMeanOfItsTransmittance) {
   const double path_mm = 4.5;
   const auto absorption_per_mm = [](double wavelength_nm) { return 0.2 * (780.0 - wavelength_nm) / 400.0; };
@@ -348,7 +352,8 @@ TEST(SpectrumOfLight, ExtrapolatedIndicesAreTold) {
             "wavelengths from 405 to 410 nm");
 }
 
-// Of aluminium as of the material, which is not asked where an index is given.
+// A warning is given if the data of aluminium are extrapolated. The data of the material of the body are not used,
+// because the index is given.
 TEST(SpectrumOfLight, ExtrapolatedMetalsAreTold) {
   const std::vector<std::string> metal = {"body.facet_coating=aluminium", "body.refractive_index=1.5",
                                           "light.wavelength_nm=50"};
@@ -392,7 +397,7 @@ TEST(InspectSpectrum, LimitOfTotalReflectionIsThatOfTheLeastIndex) {
   EXPECT_TRUE(lit.warnings.empty());
 }
 
-// Behind the facets an index at which sqrt(2) of it lies between those of red and blue.
+// The index behind the facets is chosen such that total reflection ends between the red and the blue wavelengths.
 TEST(InspectSpectrum, WarnsWherePartOfTheLightIsNotTotallyReflected) {
   const auto library = materials::MaterialLibrary::shipped();
   const double index = inspect(design({"light.wavelength_nm=560"}), library).refractive_index;

@@ -11,7 +11,7 @@
 #include "studies/design/io/design_reader.h"
 #include "tests/support/refusals.h"
 
-// `[base]`: what it may say, and that what cannot carry the elements is refused at the key that says so.
+// Tests of the table [base]: allowed values, and errors at the key of a base that cannot carry the elements.
 
 namespace retrace::studies::substrate_reader_test {
 namespace {

@@ -1,4 +1,4 @@
-// The temperature of a part: its index, and that it is the same index in whatever asks for it.
+// Tests of the temperature of a part: its refractive index, and equal use of this index in all studies.
 
 #include <gtest/gtest.h>
 
@@ -35,14 +35,15 @@ Inspection inspected(const Overrides& overrides, const std::string& text = kPris
   return inspect(design(overrides, text), materials::MaterialLibrary::shipped());
 }
 
-/// By hand: the index against vacuum grows by the coefficient D0 alone, and n - 1 of the air goes as its density.
+/// Returns the index at a temperature in closed form. The index relative to vacuum changes by the coefficient D0 only.
+/// For air, n - 1 is proportional to its density.
 double warm_index(double n, double d0_per_k, double air_at_15, double temperature_c) {
   const auto air = [&](double c) { return 1.0 + (air_at_15 - 1.0) * (1.0 + 0.00367 * 15.0) / (1.0 + 0.00367 * c); };
   const double grown = (n * n - 1.0) / (2.0 * n) * d0_per_k * (temperature_c - 20.0);
   return (n * air(20.0) + grown) / air(temperature_c);
 }
 
-// Air of Ciddor 1996 at 587.56 nm: 1.000277175 at 15 degrees C.
+// By Ciddor 1996, the index of air at 587.56 nm and 15 degrees C is 1.000277175.
 TEST(Temperature, IndexOfPmmaIsTheClosedForm) {
   const double n = inspected({}).refractive_index;
   for (const double temperature_c : {-40.0, 0.0, 35.0, 80.0})
@@ -59,7 +60,7 @@ TEST(Temperature, OfTheDataIsTheDefault) {
   EXPECT_EQ(to_json(design({"body.temperature_c=60"}))["body"]["temperature_c"], 60.0);
 }
 
-// An index that is given must do what the same index from a temperature does, to the last bit.
+// A given index must have exactly the same effect as an equal index that follows from a temperature.
 TEST(Temperature, IsTheSameIndexInEveryEngine) {
   struct Case {
     const std::string& text;
@@ -96,15 +97,15 @@ TEST(Temperature, IsTheSameIndexInPhotometry) {
   EXPECT_NE(r_a(warm), r_a({"surface.dihedral_error_arcmin=3"}));
 }
 
-// Light of a spectrum: each of its wavelengths has the index at that temperature.
+// With a spectrum, the index at each wavelength depends on the temperature.
 TEST(Temperature, MovesTheIndexOfEveryWavelength) {
   const Inspection cold = inspected({"light.spectrum=A", "body.material=N-BK7"});
   const Inspection warm = inspected({"light.spectrum=A", "body.material=N-BK7", "body.temperature_c=70"});
   ASSERT_EQ(cold.light.size(), warm.light.size());
   for (std::size_t k = 0; k < cold.light.size(); ++k) {
     const double per_k = (warm.light[k].optics.index - cold.light[k].optics.index) / 50.0;
-    EXPECT_GT(per_k, 2.4e-6);  // of the data sheet, from 1060 nm
-    EXPECT_LT(per_k, 3.7e-6);  // to 436 nm
+    EXPECT_GT(per_k, 2.4e-6);  // data sheet: value at 1060 nm
+    EXPECT_LT(per_k, 3.7e-6);  // data sheet: value at 436 nm
   }
 }
 

@@ -1,4 +1,4 @@
-// Textured and rounded facets as a design file asks for them: closed forms, limits, order.
+// Tests of textured and rounded facets of designs: closed forms, limits, and monotonic changes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ using surface_models::HeightMap;
 constexpr double kPi = std::numbers::pi;
 constexpr double kWavelengthNm = 587.56;
 
-/// A prism under a lossless face, so that RRE is what the facets leave.
+/// A prism behind a lossless entrance face, so that the RRE depends on the facets only.
 const std::string kPrism =
     "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"single\"\n"
     "[body]\nthickness_mm = 0.5\n[idealisation]\nentrance = \"lossless\"\n";
@@ -39,11 +39,11 @@ const std::string kCubes =
 const std::string kTriangles =
     "[element]\nkind = \"triangular_icc\"\naperture_mm = 1.0\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = "
     "0.5\n";
-/// Cuts less off than any test here can see, where cube corners split light into very many beams.
+/// A cut-off whose truncated power is negligible in these tests. Cube corners divide light into very many beams.
 constexpr double kExactCutoff = 1e-7;
-/// So narrow that nothing that scatters returns into it.
+/// The cone is so narrow that it contains no scattered light.
 const std::string kNarrow = "detector.acceptance_half_angle_deg=0.001";
-/// For which the phase alone decides, at any length of the heights.
+/// With mirrors, only the phase of the reflected light counts, for any correlation length of the heights.
 const std::string kMirrors = "idealisation.facets=mirror";
 
 class Folder {
@@ -94,10 +94,10 @@ double index_of(const std::string& design) {
   return make_model(parse_design(design, "d.toml"), materials::MaterialLibrary::shipped()).optics.index;
 }
 
-/// Where light that stays specular is followed to the end, nothing is left to chance but rounding.
+/// Allowed rounding error of specular light, which is traced without sampling.
 constexpr double kRounding = 1e-12;
 
-/// Closed form 7 for the two facets that light meets one after the other.
+/// Returns the specular fraction of two successive facets by closed form 7.
 double specular_share_of_two(double index, double sq_nm, double incidence_deg) {
   const double inside = std::asin(std::sin(incidence_deg * kPi / 180.0) / index);
   double phase2 = 0.0;
@@ -106,7 +106,7 @@ double specular_share_of_two(double index, double sq_nm, double incidence_deg) {
   return std::exp(-phase2);
 }
 
-// Waves too low to act by their slopes diffract: 63 % stay specular at each total reflection, of PMMA at the d line.
+// Low waviness diffracts light. In PMMA at the d line, 63 % of the light remains specular at each total reflection.
 TEST(DesignTexture, WavinessOf30NmLeaves63PercentAtEachTotalReflection) {
   const double share = specular_share_of_two(index_of(kPrism), 30.0, 0.0);
   EXPECT_NEAR(std::sqrt(share), 0.63, 0.005);
@@ -117,13 +117,14 @@ TEST(DesignTexture, WavinessOf30NmLeaves63PercentAtEachTotalReflection) {
   const RrePoint wavy = rre_of(kPrism, mirrors, {});
   EXPECT_NEAR(wavy.rre, all * share, testing::student_bound(2) * wavy.std_error + kRounding);
   EXPECT_LT(wavy.std_error, 2e-3);
-  // At total reflection the amplitude turns within the lobe: waves of 100 um are that short by some 1e-4 of the phase.
+  // At total reflection, the amplitude depends on the angle within the lobe. For waves of 100 um, this changes the
+  // specular fraction by about 1e-4.
   const RrePoint real = rre_of(kPrism, waves, {});
   EXPECT_NEAR(real.rre / all, share, testing::student_bound(2) * real.std_error + 2e-4);
 }
 
-// Roughness as short as a wave scatters less than its phase says, half of it at 0.39 um, and a tenth of that out
-// through the facets (docs/theory/scatter.md).
+// If the correlation length is about the wavelength, roughness scatters less light than its phase predicts. At 0.39 um,
+// it scatters about half. A tenth of the scattered light leaves through the facets (docs/theory/scatter.md).
 TEST(DesignTexture, ShortRoughnessScattersLessAtTotalReflection) {
   const double all = exact(kPrism, {kNarrow}).rre;
   const RrePoint traced =
@@ -136,7 +137,7 @@ TEST(DesignTexture, ShortRoughnessScattersLessAtTotalReflection) {
   EXPECT_GT(traced.ledger[raytrace::Account::transmitted], 0.1 * (1.0 - kept));
 }
 
-// From g = 10 on no light is specular: facets tilt it, and the ledger calls it scattered.
+// For g above 10, no light remains specular. The waviness tilts the facets, and the light counts as scattered.
 TEST(DesignTexture, HighWavinessLeavesNothingSpecular) {
   const double sq_nm = std::sqrt(10.1) * kWavelengthNm / (4.0 * kPi * index_of(kPrism) * std::cos(0.25 * kPi));
   const RrePoint wavy =
@@ -149,7 +150,7 @@ TEST(DesignTexture, SpecularSharesOfTwoFacetsMultiply) {
   const Folder folder;
   const double index = index_of(kPrism);
   HeightMap map = testing::gaussian_surface(192, 192, 12.0, 12.0, 5);
-  map.x_pixel_um = map.y_pixel_um = 0.25;  // a correlation length of 3 um, and half a wavelength resolved
+  map.x_pixel_um = map.y_pixel_um = 0.25;  // correlation length of 3 um; resolves half a wavelength
   folder.write("map.txt", map);
   const double map_sq_nm = surface_models::height_parameters(surface_models::without_form(map, 1).heights_nm).sq_nm;
   const std::string source = (folder.path() / "d.toml").string();
@@ -166,8 +167,9 @@ TEST(DesignTexture, SpecularSharesOfTwoFacetsMultiply) {
   }
 }
 
-// Waves along the roof edge turn light by w / L out of the plane of incidence, waves across it by w / L over the
-// cosine of 45 degrees within it: a cone between both tells how the map lies.
+// Waves along the roof edge deviate light by w / L out of the plane of incidence. Waves across the edge deviate it by w
+// / (L cos 45 degrees) within this plane. The half-angle of the cone is between both values, so that the RRE shows the
+// orientation of the map.
 TEST(DesignTexture, LevelAxisOfTheMapLiesAlongTheRoofEdge) {
   const Folder folder;
   const double period_um = 20.0;
@@ -187,9 +189,10 @@ TEST(DesignTexture, LevelAxisOfTheMapLiesAlongTheRoofEdge) {
   EXPECT_LT(rre("y"), specular + 0.1 * (1.0 - specular));
 }
 
-// Roughness with a lay, short along the roof edge, turns light by up to w / (sqrt(2) pi l) out of the plane of
-// incidence; short down the facets, by as much over the cosine of 45 degrees within it. A cone of one deviation holds
-// erf of either.
+// Roughness with a lay has different correlation lengths in two directions. If the length along the roof edge is short,
+// the standard deviation of the angles is w / (sqrt(2) pi l), out of the plane of incidence. If the length down the
+// facets is short, it is this value divided by cos 45 degrees, within the plane. The half-angle of the cone is the
+// first value. The fractions in the cone follow from the error function.
 TEST(DesignTexture, LayLiesAsItsKeysSay) {
   const double level_rad = 1e-3 * kWavelengthNm / (std::sqrt(2.0) * kPi * 10.0);
   const std::string cone = "detector.acceptance_half_angle_deg=" + shortest(level_rad * 180.0 / kPi);
@@ -208,8 +211,8 @@ TEST(DesignTexture, LayLiesAsItsKeysSay) {
   EXPECT_EQ(rre_of(kPrism, one).rre, rre_of(kPrism, both).rre);
 }
 
-// A map of a surface with Gaussian autocorrelation does what harvey_shack says of its two numbers, where both are
-// phases.
+// A map of a surface with Gaussian autocorrelation has the same effect as `harvey_shack` with the Sq and the
+// correlation length of the map.
 TEST(DesignTexture, MapAndStatisticsOfOneSurfaceAgree) {
   const Folder folder;
   HeightMap map = testing::gaussian_surface(384, 384, 14.0, 8.0, 9);
@@ -225,7 +228,8 @@ TEST(DesignTexture, MapAndStatisticsOfOneSurfaceAgree) {
       {cone, kMirrors, "surface.roughness_sq_nm=" + shortest(measured_sq_nm), "surface.correlation_length_um=2"}, {});
   EXPECT_GT(stated.rre, 0.84);
   EXPECT_LT(stated.rre, 0.92);
-  // The spectrum of so small a sample scatters by some percent; the cone holds about half of what scatters.
+  // The map is small, so that its spectrum differs by a few percent. The cone contains about half of the scattered
+  // light.
   EXPECT_NEAR(mapped.rre, stated.rre, 0.01);
 }
 
@@ -265,10 +269,11 @@ TEST(DesignTexture, VanishingRoughnessGivesTheExactAnswer) {
   }
 }
 
-/// The narrowest step in the two tests below is some ten of its standard errors, and more rays would show none better.
+/// Settings of the two tests below. The smallest change between two values is about ten standard errors, so that more
+/// rays are not necessary.
 const Question kSteps{0.0, Engine::montecarlo, 1U << 14};
 
-// Steps wide enough that sampling cannot hide one.
+// The values of Sa differ so much that the RRE changes by more than the statistical error.
 TEST(DesignTexture, RreFallsMonotonicallyWithSa) {
   for (const std::string& design : {kArray, kCubes, kTriangles}) {
     double before = exact(design, {}).rre;
@@ -282,7 +287,7 @@ TEST(DesignTexture, RreFallsMonotonicallyWithSa) {
   }
 }
 
-/// Designs and the keys of the radii of their edges.
+/// Returns designs, each with the key of a radius of its edges.
 std::vector<std::pair<std::string, std::string>> edges() {
   std::vector<std::pair<std::string, std::string>> all;
   for (const std::string& design : {kArray, kCubes, kTriangles})
@@ -305,13 +310,13 @@ TEST(DesignTexture, RreFallsMonotonicallyWithTheRadiusOfEdges) {
 TEST(DesignTexture, VanishingRadiusGivesTheExactAnswer) {
   for (const auto& [design, key] : edges()) {
     const double sharp = exact(design, {}).rre;
-    // A thousandth of a micrometre takes 3e-6 of the smallest element.
+    // A radius of 0.001 um makes 3e-6 of the smallest element ineffective.
     const RrePoint round = rre_of(design, {"surface." + key + "=0.001"}, {0.0, Engine::montecarlo, 1U << 18});
     EXPECT_NEAR(round.rre, sharp, testing::student_bound(6) * round.std_error + 2e-5) << key;
   }
 }
 
-// The flat of a chamfered root is level all round, and has its roof edge all the same.
+// The flat of a chamfered root is horizontal, but it still needs the direction of the roof edge for its texture.
 TEST(DesignTexture, WavyFacetsWithAChamferCloseTheLedger) {
   const RrePoint point =
       rre_of(kArray,

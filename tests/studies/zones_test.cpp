@@ -1,4 +1,4 @@
-// Designs of parts of zones: what is read and refused, written and inspected, and what such parts send back.
+// Tests of designs with zones: reading, refused values, writing, inspection, and the returned light.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ const std::string kHalves = "[[zone]]\nshare = 0.5\n[[zone]]\nshare = 0.5\n";
 
 std::string zoned(const std::string& zones, const std::string& element = kHexagonal,
                   const std::string& array = "x_length_mm = 20; y_length_mm = 10") {
-  return design_of(element, array) + zones;  // zones from line 9 on
+  return design_of(element, array) + zones;  // zones start at line 9
 }
 
 Design read(const std::string& zones, const std::string& element = kHexagonal,
@@ -202,7 +202,7 @@ TEST(ZonedDesign, ZonesOfSingleElementsAreWrittenAsTheyWereRead) {
   EXPECT_EQ(design_text(design_of_json(to_json(design))), text);
 }
 
-/// A folder of its own, with a picture of dark and light halves, of a text for each row.
+/// A temporary folder with mask images in PGM format. The images have dark and light halves.
 class MaskFolder {
  public:
   MaskFolder() {
@@ -240,7 +240,7 @@ TEST(ZonedDesign, MasksChooseTheElementsUnderTheirDarkPixels) {
   const std::string rest = "[[zone]]\nrest = true\nrotation_deg = 180\n";
   const auto left = zones("[[zone]]\nmask = \"left.pgm\"\n" + rest);
   const auto right = zones("[[zone]]\nmask = \"left.pgm\"\n[[zone]]\nmask = \"right.pgm\"\n");
-  // Columns of elements stand on either side of the middle; those in it are of its right.
+  // No column of elements is cut. The column at the middle belongs to the right half.
   EXPECT_NEAR(left[0].area_mm2, 100.0, 10.0);
   EXPECT_NEAR(left[0].area_mm2 + left[1].area_mm2, 200.0, 1e-9);
   EXPECT_EQ(right[0].full, left[0].full);
@@ -315,7 +315,8 @@ RreResult rre(const Design& design, Engine engine, double incidence_deg, std::op
   return RreStudy({design}, request).run();
 }
 
-// Whole prisms on either side of a border: along the normal light goes from facet to facet of one prism.
+// There are whole prisms on both sides of the border. Light along the normal goes from one facet to the other facet of
+// the same prism.
 TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   const std::string lengths = "x_length_mm = 8; y_length_mm = 4";
   const Design plain = parse_design(design_of(kRtp, lengths), "d.toml");
@@ -324,12 +325,13 @@ TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   const Inspection inspection = inspect(turned, materials::MaterialLibrary::shipped());
   EXPECT_EQ(inspection.elements_full, 32);
   EXPECT_EQ(inspection.zones->crossings[0].share, 0.0);
-  // From facet to facet over the roof edge, by twice the distance from it: half the base on the mean.
+  // Light moves across the roof edge by twice its distance from the edge. The mean of this distance is half of the
+  // base.
   for (const ZoneReport& zone : inspection.zones->zones) EXPECT_NEAR(zone.wander_mm.value(), 0.5, 0.01);
 }
 
-// Unlike cube corners under light askew: the engines agree on the part, which is what its zones are alone but for what
-// happens at the borders of either.
+// Cube corners of two kinds, with light at oblique incidence. Both engines agree on the whole part. The RRE of the part
+// is the mean of both zones except for effects of the borders.
 TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
   const std::string set = "set = [\"element.cant_deg=8\", \"element.cant_azimuth_deg=40\"]\n";
   const std::string one = "[[zone]]\nshare = 1\n";
@@ -347,8 +349,9 @@ TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
   EXPECT_GT(std::abs(left - right), 0.05 * exact);
 }
 
-// Columns of alike elements in turn are the array. Turned about its middle, a part of an odd number of columns, every
-// other of which is turned, is that of which the others are turned.
+// If all columns have equal elements, the part equals the array. In the other designs, every second column is rotated
+// by 180 degrees. If a part with an odd number of columns is rotated about its center, the columns that were rotated
+// become the others.
 TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
   const std::string lengths = "x_length_mm = 20; y_length_mm = 20";
   const std::string canted = "; cant_deg = 8; cant_azimuth_deg = 40";
@@ -368,8 +371,8 @@ TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
   EXPECT_NEAR(rest_turned.rre, odd_turned.rre, 4.0 * std::hypot(rest_turned.std_error, odd_turned.std_error));
 }
 
-// Light of triangular arrays goes through neighbours, so that some of it meets two zones: the more the narrower they
-// are.
+// In triangular arrays, light passes through neighbouring cells. Some of it meets two zones, and this fraction is
+// larger for narrow zones.
 TEST(ZonedDesign, TellHowMuchLightMeetsTwoOfThem) {
   const auto share = [](const std::string& zones) {
     return inspect(read(zones, kTriangular), materials::MaterialLibrary::shipped()).zones->crossings[1].share;

@@ -106,7 +106,7 @@ TEST(PointList, FindsTheGrid) {
   EXPECT_EQ(map.columns, 8U);
   EXPECT_NEAR(map.x_pixel_um, 2.0, 1e-9);
   EXPECT_NEAR(map.y_pixel_um, 3.0, 1e-9);
-  // y falls with the row that was written, so the rows come turned round.
+  // In the file, y decreases from row to row. The rows of the map are therefore in reversed order.
   expect_heights(map, {9, 10, 11, kNaN, 13, 14, 15, 16, 1, 2, 3, 4, 5, 6, 7, 8});
   const HeightMap profile =
       parse_height_map(

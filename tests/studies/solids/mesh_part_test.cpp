@@ -46,7 +46,7 @@ double box_top(const TriangleMesh& mesh) {
   return top;
 }
 
-/// What was exported is the part again: areas, depth, roles.
+/// An exported part is read as an equal part: areas, depth and roles of faces are the same.
 TEST(MeshPart, ExportedPartsComeBack) {
   PartSpec prisms = test::array_part(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 3.0, 2.0);
   prisms.array.x_gap_mm = 0.05;
@@ -183,7 +183,7 @@ TEST(MeshPart, ShapesThatAreNoPartAreRefused) {
   for (Vec3& p : wide.vertices)
     if (p.z() < 0.5) p.head<2>() *= 1.2;
   EXPECT_TRUE(complaint([&] { part_of_mesh(wide); }).starts_with("the mesh must lie below its entrance face"));
-  // A box: its back is level; and one without a plate.
+  // This mesh has no plate.
   const TriangleMesh tetrahedron = parse_stl(
       "solid\nfacet normal 0 0 0 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n"
       "facet normal 0 0 0 outer loop vertex 1 0 0 vertex 0 0 0 vertex 0.3 0.3 -1 endloop endfacet\n"

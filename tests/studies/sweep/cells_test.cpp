@@ -1,4 +1,5 @@
-// Which cell sends most light back at which incidence: the example studies against figures found by brute force.
+// Tests of example studies that compare the RRE of different cells over the angle of incidence. The reference values
+// were computed independently with many rays.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,8 @@ namespace {
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
 
-/// A quantity of an example study over incidence, by incidence. \param only this value of the first parameter, if given
+/// Returns a quantity of an example study as a function of the angle of incidence.
+/// \param only if given, only points with this value of the first parameter
 std::map<double, StoredOutput> curve(const std::string& file, std::size_t quantity,
                                      const std::vector<std::string>& overrides = {}, const std::string& only = "",
                                      const std::vector<double>& incidence_deg = {}) {
@@ -37,8 +39,8 @@ std::map<double, StoredOutput> curve(const std::string& file, std::size_t quanti
   return values;
 }
 
-/// By incidence: n = 1.4917, acceptance 0.5 degrees, plate 1 mm, endless arrays; traced by brute force elsewhere, each
-/// figure to half its last digit and no better than 5e-3.
+/// Reference values of the RRE for n = 1.4917, an acceptance of 0.5 degrees, a plate of 1 mm and infinite arrays. They
+/// were traced by a different program with many rays, and have errors of half of the last digit and up to 5e-3.
 struct Reference {
   double incidence_deg, rtp, full_cube, triangle;
 };
@@ -56,7 +58,8 @@ TEST(Cells, FullCubes) {
 
 TEST(Cells, Triangles) {
   auto rre = curve("cells_triangular.toml", 0);
-  // At normal incidence azimuths are all one and light is split least: without noise, up to 2e-4 cut off.
+  // At normal incidence all azimuths are equal, and light is divided into few beams. The exact engine gives this value
+  // without noise; up to 2e-4 of the power is truncated.
   rre[0.0] = curve("cells_triangular.toml", 0,
                    {"analysis.engine=exact", "analysis.cutoff=1e-7", "analysis.target_error="}, "", {0.0})
                  .at(0.0);
@@ -89,14 +92,15 @@ TEST(Cells, PrismsOverAllAzimuthsLiveByTheirEndWalls) {
   const double across = curve("cells_rtp.toml", 0, few, "absorbing", {t}).at(t).value.value();
   const double dull = curve("cells_rtp.toml", 1, few, "absorbing", {t}).at(t).value.value();
   const double smooth = curve("cells_rtp.toml", 1, few, "smooth", {t}).at(t).value.value();
-  // A roof sends light back across its edge and mirrors it along: the return misses the source by twice the angle along
-  // the edge, so that of the 180 azimuths of the mean only those up to asin(sin 0.25 / sin t) = 0.73 degrees count.
+  // A prism reverses the light component across its roof edge and keeps the component along it. The returned light
+  // deviates from the source by twice the angle along the edge. Of the 180 azimuths of the mean, only those up to
+  // asin(sin 0.25 / sin t) = 0.73 degrees are therefore within the cone.
   constexpr double deg = std::numbers::pi / 180.0;
   const double widest_deg = std::asin(std::sin(0.25 * deg) / std::sin(t * deg)) / deg;
-  const double azimuths = std::floor(widest_deg / 0.5 + 0.5);  // 0.25, 0.75, ...
+  const double azimuths = std::floor(widest_deg / 0.5 + 0.5);  // azimuths are 0.25, 0.75, ...
   EXPECT_EQ(azimuths, 1.0);
   EXPECT_NEAR(dull, across * azimuths / 180.0, 0.05 * dull);
-  // Smooth end walls and roof facets make cube corners of their own.
+  // Smooth end walls form cube corners with the facets.
   EXPECT_GT(smooth, 20.0 * dull);
 }
 

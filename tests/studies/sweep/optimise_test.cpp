@@ -20,7 +20,8 @@ namespace {
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
 
-/// A function of the plate's thickness and of what lies behind the facets, in place of something that is traced.
+/// A quantity that is a function of the thickness of the plate and the index behind the facets. It replaces a traced
+/// quantity.
 class Analytic : public Quantity {
  public:
   using Function = std::function<double(double x, double y)>;
@@ -33,7 +34,9 @@ class Analytic : public Quantity {
   Function f_;
 };
 
-/// A study of x = thickness in 0.5..3 and y = index behind in 1..3, with these keys of the optimisation.
+/// Returns a study with the parameters x, the thickness, from 0.5 to 3, and y, the index behind the facets, from 1 to
+/// 3.
+/// \param keys keys of the optimization
 Study analytic_study(const std::string& keys,
                      const std::vector<std::pair<std::string, Analytic::Function>>& functions) {
   std::string text =
@@ -96,7 +99,7 @@ TEST(Optimise, ReportsTheProgressOfEachGroupOfDesigns) {
   EXPECT_TRUE(again.sizes.empty()) << "designs of the store are not computed";
 }
 
-/// A quantity that knows its slope by the thickness, and counts how often it is asked.
+/// A quantity with a known derivative with respect to the thickness. It counts how often the derivative is requested.
 class WithSlope : public Quantity {
  public:
   using Function = std::function<double(double thickness_mm)>;
@@ -131,7 +134,8 @@ TEST(Optimise, SlopesServeWhereThereAreAny) {
   ResultStore store("", optimise_layout(study), IfExists::refuse);
   const OptimiseRequest request = read_optimise(study);
   optimise(study, request, store, nullptr, nullptr);
-  // What was looked at along slopes comes to the top itself; the chosen design is the roundest that is as good.
+  // The designs that were evaluated with derivatives reach the maximum itself. The chosen design has rounder values and
+  // is equally good within the tolerance.
   double nearest_mm = 1.0;
   for (const StoredPoint& point : store.points())
     nearest_mm = std::min(nearest_mm, std::abs(std::get<double>(point.inputs[0]) - top_mm));
@@ -139,8 +143,8 @@ TEST(Optimise, SlopesServeWhereThereAreAny) {
   EXPECT_NEAR(number(optimum.best->values[0]), top_mm, 1e-3);
 }
 
-/// RRE at normal incidence rises with the index by the light that the faces of half elements return: it goes to its
-/// end, along slopes of the exact engine.
+/// At normal incidence, the RRE increases with the index, because of the light that half elements reflect. The optimum
+/// is therefore at the end of the interval. It is found with the derivatives of the exact engine.
 TEST(Optimise, SlopesOfTheExactEngineServe) {
   const Study study = parse_study(
       "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.refractive_index\"\nfrom = 1.45\nto = 1.6\n"
@@ -155,7 +159,7 @@ TEST(Optimise, SlopesOfTheExactEngineServe) {
 }
 
 TEST(Optimise, ReachesAnOptimumOnAConstraint) {
-  // The nearest point of x + y <= 3 to (2, 2).
+  // The optimum is the point with x + y <= 3 that is closest to (2, 2).
   const Study study =
       analytic_study("[optimize]\nminimize = \"f\"\n[[constraint]]\nquantity = \"g\"\nmax = 3\n",
                      {{"f", [](double x, double y) { return std::pow(x - 2.0, 2) + std::pow(y - 2.0, 2); }},
@@ -182,7 +186,7 @@ TEST(Optimise, TheFrontHasNoDominatedPoint) {
   const auto g = [](const Variant& v) { return *v.outputs[1].value; };
   for (const Variant& a : optimum.front)
     for (const Variant& b : optimum.front) EXPECT_FALSE(f(a) >= f(b) && g(a) <= g(b) && (f(a) > f(b) || g(a) < g(b)));
-  // A weighted sum is at its best on the front.
+  // The maximum of a weighted sum is on the Pareto front.
   for (const Variant& v : optimum.front) EXPECT_GE(*optimum.best->objective, f(v) - 0.5 * g(v) - 1e-5);
 }
 
@@ -245,7 +249,7 @@ TEST(Optimise, IsTheSameWhateverAKilledRunLeft) {
   }
 }
 
-/// The example, with fewer sizes that the tool cannot cut.
+/// The example study, with fewer sizes that are too small for the tool.
 TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByTheLens) {
   const Study whole = read_study(kFolder + "element_size.toml", std::vector<std::string>{});
   Study study = whole;
@@ -260,8 +264,9 @@ TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByT
   const Rejected& single = optimum.rejected.at(0);
   EXPECT_EQ(single.role, "best but for its constraints");
   EXPECT_EQ(number(single.variant.values[0]), 10.0);
-  // Light that the entrance face sends round a second time, R (1 - R) of it, misses the source by 4 n e and leaves the
-  // acceptance of 0.5 degrees first.
+  // The entrance face reflects the fraction R (1 - R) of the light back into the part, which then returns after a
+  // second round trip. This light deviates from the source by 4 n e, and it is the first light that leaves the
+  // acceptance of 0.5 degrees.
   ASSERT_EQ(optimum.bands.size(), 1U);
   EXPECT_NEAR(optimum.bands[0].up.value(), 60.0 * 0.5 / (4.0 * 1.4917), 2e-3);
   EXPECT_NEAR(optimum.bands[0].down.value(), 60.0 * 0.5 / (4.0 * 1.4917), 2e-3);

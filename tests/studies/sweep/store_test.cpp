@@ -84,7 +84,7 @@ TEST_F(Store, TheFirstResultOfAPointStays) {
 }
 
 TEST_F(Store, TwoProcessesNeverTakeOnePoint) {
-  // Locks belong to an open file: two stores in one process stand for two processes.
+  // A lock belongs to an open file. Two stores in one process therefore act like two processes.
   ResultStore first(file(), layout(), IfExists::refuse);
   {
     ResultStore second(file(), layout(), IfExists::resume);

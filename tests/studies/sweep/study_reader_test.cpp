@@ -25,7 +25,7 @@ Sweep sweep_of(const std::string& text, const std::vector<std::string>& override
   return read_sweep(parse_study(text, kFolder + "study.toml", overrides));
 }
 
-/// The message that a study is refused with, without the folder.
+/// Returns the message with which a study is refused, without the folder.
 std::string message(const std::string& text, const std::vector<std::string>& overrides = {}) {
   try {
     sweep_of(text, overrides);
@@ -115,7 +115,7 @@ TEST(StudyReader, AnalysisMachiningAndWordsCanBeVaried) {
   std::vector<std::string> overrides = sweep.study().overrides;
   Study study = sweep.study();
   std::erase(study.overrides, "array.shifted_rows=odd");
-  // The base design shifts rows, which an aligned array does not.
+  // The design shifts rows, which is not allowed for an aligned array.
   EXPECT_THROW(make_candidate(study, sweep.values(0)), InputError);
   PointValues values = sweep.values(0);
   values[2].toml = "\"offset\"";
@@ -271,7 +271,7 @@ TEST(StudyReader, AnOverrideOfAVariedKeyIsRefused) {
             "--set element.base_mm=3: the study varies this key");
 }
 
-/// A store is of another study once a file that its design names has changed.
+/// If a file that the design names has changed, a store does not match the study.
 TEST(StudyReader, PlanesOfFacetsArePartOfTheStudy) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("retrace_study_" + std::to_string(::getpid()));
@@ -294,7 +294,7 @@ TEST(StudyReader, ReadsEveryExample) {
     if (entry.path().extension() != ".toml") continue;
     std::ifstream file(entry.path());
     const std::string text(std::istreambuf_iterator<char>(file), {});
-    // Optimisations, tolerances and compositions have readers and tests of their own.
+    // Optimizations, tolerances and compositions have their own readers and tests.
     if (text.find("retrace.study/1") == std::string::npos || text.find("[optimize]") != std::string::npos ||
         text.find("[tolerance]") != std::string::npos || text.find("[compose]") != std::string::npos)
       continue;

@@ -1,4 +1,4 @@
-// `retrace sweep` as users meet it: killed, interrupted, shared between processes, on a full disk.
+// Tests of the command `retrace sweep`: killed and interrupted runs, several processes, and a full disk.
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
@@ -41,14 +41,15 @@ TEST(SweepCommand, TwentyKillsLoseNoPointAndRepeatNone) {
   for (int kill = 0; kill < kills; ++kill) {
     {
       const Child child(folder.path(), sweep_arguments("killed", true));
-      // A random moment after the run has got somewhere: how fast the machine is does not matter.
+      // The run is killed at a random time after some points are stored. The test does not depend on the speed of the
+      // computer.
       const std::size_t goal = before.size() + random() % 8;
       const auto deadline = std::chrono::steady_clock::now() + patient(60);
       while (stored_points(folder.path() / "killed/sweep.sqlite").size() < goal &&
              std::chrono::steady_clock::now() < deadline)
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
       std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
-    }  // the child dies by SIGKILL here
+    }  // the destructor kills the child with SIGKILL
     const std::map<int, double> after = stored_points(folder.path() / "killed/sweep.sqlite");
     for (const auto& [point, elapsed_s] : before) {
       ASSERT_TRUE(after.contains(point)) << "lost by kill " << kill;
@@ -258,7 +259,8 @@ TEST(SweepCommand, AFullDiskLosesNothing) {
   const TemporaryFolder folder;
   folder.write("study.toml", sweep_study(300, 1000));
   const std::string expected = whole_run(folder);
-  // A limit on the size of files stands for the disk; 256 blocks of 512 or 1024 bytes, a few times an empty store.
+  // A limit on the size of files simulates a full disk. It is 256 blocks of 512 or 1024 bytes, a few times the size of
+  // an empty store.
   const Outcome outcome = Child(folder.path(), {"/bin/sh", "-c",
                                                 std::string("trap '' XFSZ; ulimit -f 256; exec '") + RETRACE_PROGRAM +
                                                     "' sweep study.toml -o full --quiet"})
@@ -346,7 +348,8 @@ TEST(SweepCommand, NoIsTheAnswerIfEveryPointFailed) {
   EXPECT_EQ(one.err, "");
 }
 
-// What a study names is what it is: a file that has changed makes another study, be it named by a parameter.
+// Files that a study names are part of the study. If such a file has changed, it is a different study, even if a
+// parameter names the file.
 TEST(SweepCommand, FilesThatParametersNameBelongToTheStudy) {
   const TemporaryFolder folder;
   const std::string map = read_text(example("facet_height_map.txt"));

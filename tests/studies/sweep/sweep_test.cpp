@@ -39,8 +39,8 @@ double output(const SweepResult& result, std::size_t point, const std::string& q
   throw std::runtime_error("no " + quantity);
 }
 
-/// Closed form of a flat brick array at normal incidence: half elements act as plane plates whose border walls return
-/// R.
+/// Returns the RRE of a flat brick array at normal incidence in closed form. Half elements act like plane plates whose
+/// border walls have the reflectance R.
 double brick_rre(double full_share) {
   constexpr double n = 1.4917;
   const double r = std::pow((n - 1.0) / (n + 1.0), 2);
@@ -133,7 +133,8 @@ TEST(Sweep, TheLedgerAddsUpAndTheFarFieldIsWhatWiderConesBring) {
   EXPECT_NEAR(output(result, 0, "far_field"), output(result, 0, "wide") - output(result, 0, "rre"), 1e-9);
 }
 
-/// Cubes lit by one wavelength, without diffraction: quick, and with light at every test point of the limits.
+/// A design of cube corners with one wavelength, without diffraction. It is traced quickly and returns light at every
+/// test point.
 const std::string kCubes =
     "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 0.5\n[array]\nextent = \"infinite\"\n[body]\n"
     "thickness_mm = 1.5\nrefractive_index = 1.4917\n[light]\nwavelength_nm = 600\n";
@@ -141,7 +142,7 @@ const std::string kLimits =
     "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n"
     "S,,red,0.2,0,0,1000,mcd/lx,read\nS,,red,0.2,10,0,1000,mcd/lx,read\nS,,red,0.2,0,20,10,mcd/lx,read\n";
 
-/// A folder with those two files.
+/// Fixture with a folder that contains both files.
 class PhotometricStudy : public ::testing::Test {
  protected:
   PhotometricStudy()
@@ -186,7 +187,7 @@ TEST_F(PhotometricStudy, QuantitiesAreThoseOfTheTable) {
       "name = \"worst\"\n|name = \"m\"\npoints = \"each\"\n|name = \"second\"\npoints = 2\nfigure = "
       "\"r_i_mcd_per_lx\"\n|name = \"r_a\"\npoints = 2\nfigure = \"r_a\"\n");
   ASSERT_FALSE(result.points.at(0).failed) << result.points[0].reason;
-  // What `retrace photometry` measures of the same design.
+  // The reference is the result of `retrace photometry` for the same design.
   PhotometryRequest request = photometry_request({(folder_ / "l.csv").string(), {}, {}});
   request.area_cm2 = 30.0;
   request.light = PhotometricLight::of_design;
@@ -204,12 +205,13 @@ TEST_F(PhotometricStudy, QuantitiesAreThoseOfTheTable) {
   EXPECT_EQ(output(result, 0, "worst"), worst);
   EXPECT_EQ(output(result, 0, "second"), table.points[1].r_i_mcd_per_lx);
   EXPECT_GT(output(result, 0, "second"), 0.0);
-  // R_A times the area is R_I.
+  // R_I is R_A times the area.
   EXPECT_NEAR(output(result, 0, "r_a") * 30e-4 * 1e3, output(result, 0, "second"), 1e-9 * output(result, 0, "second"));
   EXPECT_EQ(result.sweep.layout().outputs.size(), 6U);
 }
 
-// A margin of rays where diffraction counts would be taken for a verdict; R_A is a figure of its own.
+// If diffraction is important, a margin computed by rays could be mistaken for a verdict, so the point fails. R_A by
+// rays is allowed.
 TEST_F(PhotometricStudy, AnUndeterminedMarginIsNone) {
   const auto swept_with = [&](const std::string& quantity) {
     std::string study = text(quantity) + "[analysis]\nengine = \"montecarlo\"\nsamples = 1024\n";
@@ -228,7 +230,7 @@ TEST_F(PhotometricStudy, AnUndeterminedMarginIsNone) {
   EXPECT_FALSE(swept_with("name = \"r_a\"\nfigure = \"r_a\"\n").points.at(0).failed);
 }
 
-/// The worst margin as an objective: of some angle errors the one whose worst point is best.
+/// The objective is the smallest margin over all test points. The study chooses the best of several dihedral errors.
 TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
   std::string keys = text("name = \"worst\"\n|name = \"m\"\npoints = \"each\"\n");
   keys.replace(keys.find("values = [1]"), 12, "values = [0, 0.5, 1, 2, 3]");
@@ -266,7 +268,8 @@ TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
                   .starts_with("study.toml:12: quantity[1].width: unknown key (allowed: kind, name, "));
 }
 
-/// What cutting leaves comes into the design; what the study says itself counts more.
+/// The surface that the machining process leaves is inserted into the design. Values that the study sets itself take
+/// precedence.
 TEST(MachiningLoop, SurfacesAreThoseThatTheStrategyLeaves) {
   const auto design = [](const std::string& machining, const std::vector<std::string>& overrides = {}) {
     const Study study = parse_study(
@@ -282,7 +285,7 @@ TEST(MachiningLoop, SurfacesAreThoseThatTheStrategyLeaves) {
   EXPECT_EQ(drawn.part().edges.root_radius_mm, 0.0);
   const Design cut = design("edge_radius_um = 3\nsurface = \"as_cut\"\n");
   EXPECT_NEAR(cut.part().edges.root_radius_mm, 3e-3, 1e-15);
-  // 48.9 nm as finished, of which 19.7 are roughness; Sq of Gaussian heights is sqrt(pi / 2) Sa.
+  // The finished surface has Sa = 48.9 nm, of which 19.7 nm are roughness. For Gaussian heights, Sq is sqrt(pi / 2) Sa.
   EXPECT_NEAR(texture_of(cut).roughness_sq_nm, 19.7 * std::sqrt(M_PI / 2.0), 1e-9);
   EXPECT_NEAR(texture_of(cut).waviness_sq_nm, 29.9 * std::sqrt(M_PI / 2.0), 1e-9);
   const Design rough = design("strategy = \"unidirectional\"\nsurface = \"as_cut\"\n");
@@ -291,7 +294,7 @@ TEST(MachiningLoop, SurfacesAreThoseThatTheStrategyLeaves) {
   EXPECT_EQ(texture_of(design("surface = \"as_cut\"\n", smoother)).roughness_sq_nm, 7.0);
 }
 
-/// A process that leaves too much is excluded by what it leaves.
+/// The roughness of the process is a quantity, so that processes with too much roughness can be excluded.
 TEST(MachiningLoop, TheProcessIsAQuantity) {
   const Sweep sweep = read_sweep(parse_study(
       "design = \"rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"machining.strategy\"\nvalues = [\"two-step\", "
@@ -303,7 +306,7 @@ TEST(MachiningLoop, TheProcessIsAQuantity) {
   ASSERT_FALSE(result.points[0].failed) << result.points[0].reason;
   ASSERT_FALSE(result.points[1].failed) << result.points[1].reason;
   EXPECT_NEAR(output(result, 0, "process_sa_nm"), 48.9, 1e-9);
-  // Half of the facets are ploughed and half plunged, at 468 and 115 nm.
+  // Half of the facets are ploughed with 468 nm, and half are plunged with 115 nm.
   EXPECT_NEAR(output(result, 1, "process_sa_nm"), std::sqrt(0.5 * (468.0 * 468.0 + 115.0 * 115.0)), 1e-9);
   EXPECT_LT(output(result, 1, "machining_time_h"), output(result, 0, "machining_time_h")) << "nothing is finished";
   EXPECT_NEAR(output(result, 0, "root_radius_um"), 2.0, 1e-12);
