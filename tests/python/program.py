@@ -1,4 +1,4 @@
-"""The program and its examples, for tests that hold the package to them."""
+"""Functions that run the program on its examples. Tests compare the results with the package."""
 
 import os
 import pathlib
@@ -17,7 +17,7 @@ def example(name):
 
 
 def files_of(schema, folder=""):
-    """Every file below examples/ with that schema."""
+    """Returns every TOML file below examples/ with this schema."""
     found = [
         file
         for file in sorted((EXAMPLES / folder).rglob("*.toml"))
@@ -33,17 +33,20 @@ def designs():
 
 
 def some_designs(first):
-    """Returns every third design below examples/, from number `first` on. A long run returns all of them."""
+    """Returns every third design below examples/, from number `first` on.
+
+    A long run returns all designs.
+    """
     return designs() if os.environ.get("RETRACE_LONG_TESTS") == "1" else designs()[first::3]
 
 
 def same(text):
-    """A document without what differs from run to run."""
+    """Returns a document with the run times set to 0, because they differ from run to run."""
     return re.sub(r'"elapsed_s": [-+.e0-9]+', '"elapsed_s": 0', text)
 
 
 def run(*arguments, folder=None):
-    """What the program returns, prints, and says is wrong."""
+    """Runs the program and returns its exit code, standard output and standard error."""
     ended = subprocess.run(
         [PROGRAM, *map(str, arguments), "--quiet"], capture_output=True, cwd=folder, timeout=600
     )
@@ -51,17 +54,17 @@ def run(*arguments, folder=None):
 
 
 def document(*arguments, folder=None):
-    """The document of a command, or None and the error that the package is to raise."""
+    """Returns the document of a command, or None and the message that the package must raise."""
     code, out, err = run(*arguments, "--json", "-", folder=folder)
     if code in (0, 1) and out:
         return same(out), ""
-    # Options are keywords there.
+    # InputError replaces the names of options by the names of the package's keywords.
     text = err.strip().removeprefix("retrace: ")
     return None, rt.InputError(text).message if code == 2 else text
 
 
 def answer(call, *arguments, **keywords):
-    """The same of a call of the package."""
+    """Returns the document of a call of the package, or None and the message that it raises."""
     try:
         return same(call(*arguments, **keywords).json), ""
     except rt.Error as error:

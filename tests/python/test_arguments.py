@@ -1,5 +1,5 @@
-"""Bad input: the message names the argument, or file, line and key, and says what is allowed; never
-a crash."""
+"""Tests of wrong inputs. The message names the argument, or the file, line and key, and gives the
+allowed values. The package never crashes."""
 
 import math
 import os
@@ -15,7 +15,7 @@ PRISM = program.example("rtp_single_0p45mm.toml")
 BRICK = program.example("rtp_brick_5mm.toml")
 R150 = {"standard": "r150", "class_": "IA", "colour": "red", "area_cm2": 30}
 
-# Function, arguments, keywords; what is wrong; what is said of it.
+# Function, arguments, keywords, name of the wrong argument, and part of the message.
 TABLE = [
     (rt.rre, [PRISM], {"incidence_deg": "ten"}, "incidence_deg", "number or a list of numbers"),
     (rt.rre, [PRISM], {"incidence_deg": [1, "2"]}, "incidence_deg", "number or a list of numbers"),
@@ -213,7 +213,7 @@ class Arguments(unittest.TestCase):
 
 
 def anything(random_, depth=0):
-    """A value that might be found in a dict."""
+    """Returns a random value, as it may occur in a dictionary."""
     kinds = [
         lambda: random_.choice(
             [
@@ -271,7 +271,7 @@ def key(random_):
 
 class Fuzz(unittest.TestCase):
     def test_reader_of_dicts(self):
-        """Whatever is in a dict: a design, or an InputError."""
+        """Any dictionary gives either a design or an InputError."""
         random_ = random.Random(1)
         tables = [
             "element",

@@ -1,4 +1,4 @@
-"""The Python lines of documents, run as they stand there beside the examples."""
+"""Runs the Python code of the documentation, in the folder of the examples."""
 
 import os
 import pathlib

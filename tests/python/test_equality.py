@@ -1,5 +1,5 @@
-"""Every number is that of the program: the same document, byte for byte, for every example and
-command; or the same error."""
+"""Tests that the package gives the same document as the program, byte for byte, or the same error,
+for every example and command."""
 
 import json
 import os
@@ -17,7 +17,7 @@ class Equality(unittest.TestCase):
     maxDiff = 2000
 
     def walk(self, files, of_program, of_package, least):
-        """least: so many are to have an answer."""
+        """Compares program and package for all files; at least `least` files must have a result."""
         answers = 0
         for file in files:
             with self.subTest(file=os.path.relpath(file, program.EXAMPLES)):
@@ -191,7 +191,7 @@ class Equality(unittest.TestCase):
 
     @staticmethod
     def content(file):
-        """Of a file, which is removed."""
+        """Returns the content of a file and removes the file."""
         if not os.path.exists(file):
             return b""
         with open(file, "rb") as stream:
@@ -219,7 +219,8 @@ class Equality(unittest.TestCase):
                         job_file = os.path.join(folder, "job.toml")
                         program.run("job", file, *options, "-o", job_file)
                         with open(job_file, encoding="utf-8") as text:
-                            # A text that lies nowhere yet names its design by the file alone.
+                            # The job of the package has no file yet, so its text contains no
+                            # folder of the design.
                             told = re.sub(r'(?m)^design = ".*/', 'design = "', text.read())
                         self.assertEqual(job.text, told)
                         with open(job_file, "w", encoding="utf-8") as text:
@@ -249,7 +250,7 @@ class Equality(unittest.TestCase):
             self.assertEqual((program.same(verified.json), ""), expected)
             with open(left, encoding="utf-8") as file:
                 self.assertEqual(verified.as_machined.text, file.read())
-            # A block that goes deeper is found, with its line.
+            # If a block cuts too deep, there is a finding with the line of this block.
             deeper = {name: text.replace("Z-", "Z-1", 1)}
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(deeper[name])

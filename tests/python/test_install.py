@@ -1,4 +1,4 @@
-"""The package as it is installed: it finds its library and data wherever the whole was put."""
+"""Tests of the installed package: it finds its library and data in any folder."""
 
 import os
 import pathlib

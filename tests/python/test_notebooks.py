@@ -1,4 +1,4 @@
-"""The notebooks of examples/, executed as a reader would."""
+"""Executes the notebooks of examples/."""
 
 import json
 import os
@@ -25,7 +25,7 @@ class Notebooks(unittest.TestCase):
     def test_they_run(self):
         for notebook in NOTEBOOKS:
             with self.subTest(notebook=notebook.name), tempfile.TemporaryDirectory() as folder:
-                # What a kernel keeps goes there too.
+                # The files of the kernel are also written to this folder.
                 environment = {
                     **os.environ,
                     "HOME": folder,

@@ -1,4 +1,5 @@
-"""Rays in memory and in files: the numbers are those of the program, and wrong arrays are refused by name."""
+"""Tests of rays in memory and in files: results equal those of the program, and wrong arrays are
+refused by name."""
 
 import csv
 import os
@@ -14,7 +15,7 @@ BRICKS = program.example("rtp_brick_1mm.toml")
 
 
 def some_rays(count, seed=5):
-    """Rays from all around the middle of the part."""
+    """Returns rays from all directions to the center of the part."""
     random = np.random.default_rng(seed)
     directions = random.normal(size=(count, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
@@ -88,7 +89,7 @@ class Trace(unittest.TestCase):
         straight = found.power_out > 0.8
         np.testing.assert_array_equal(found.wavelength_nm[straight], colours)
         shift = found.origins[straight, 0] - 3
-        self.assertTrue((np.diff(shift) > 0).all())  # less is refracted of what is redder
+        self.assertTrue((np.diff(shift) > 0).all())  # red light is refracted less
         in_plane = np.cross(way, [0, 1, 0])
         reflected = {
             name: rt.trace(plate, origins[:1], way[None], (1, 1, 0, 0), axes=axis[None], split=0).ledger[
@@ -119,7 +120,7 @@ class Trace(unittest.TestCase):
                 arguments = {"origins": origins, "directions": directions, **changes}
                 with self.assertRaisesRegex(rt.InputError, text) as caught:
                     rt.trace(BRICKS, **arguments)
-                if key != "axes":  # found where polarisation is settled
+                if key != "axes":  # errors in axes have no key
                     self.assertEqual(caught.exception.key, key)
 
 

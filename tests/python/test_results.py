@@ -1,4 +1,4 @@
-"""What results are in Python: arrays, tables, drawings, one line; designs and solids."""
+"""Tests of results in Python: arrays, tables, drawings, short texts, designs and solids."""
 
 import json
 import os
@@ -106,7 +106,7 @@ class Results(unittest.TestCase):
         self.assertEqual(copy.rre.tolist(), self.result.rre.tolist())
         self.assertIsNone(copy._repr_svg_())
         self.assertIn("incidence", copy._repr_html_())
-        self.result._repr_svg_()  # what was made goes with it
+        self.result._repr_svg_()  # the drawing is pickled with the result
         self.assertEqual(
             pickle.loads(pickle.dumps(self.result))._repr_svg_(), self.result._repr_svg_()
         )
@@ -156,7 +156,7 @@ class Designs(unittest.TestCase):
         self.assertNotEqual(design.replace({"title": "yours"}), design)
 
     def test_keys_are_unset(self):
-        """None unsets a key, and a warning names a key without effect and the key that takes precedence over it."""
+        """None unsets a key. A warning names a key without effect and the key that takes precedence."""
         plain = rt.Design.load(PRISM).replace({"body.refractive_index": None})
         given = plain.replace({"body.refractive_index": 1.6, "body.material": "PC"})
         self.assertEqual(plain.warnings, [])
@@ -169,7 +169,7 @@ class Designs(unittest.TestCase):
         self.assertEqual(unset.json, plain.replace({"body.material": "PC"}).json)
 
     def test_every_example_of_its_keys(self):
-        """A design as results quote it, without what is filled in, is that design."""
+        """A design that is made of the keys of an example equals the design of the file."""
         import tomllib
 
         for file in program.designs():
@@ -212,9 +212,9 @@ class Designs(unittest.TestCase):
         self.assertTrue(np.all(vertices[faces[labels == rt.FaceKind.ENTRANCE]][..., 2] == 2))
         for array in made:
             self.assertFalse(array.flags.writeable)
-            self.assertFalse(array.flags.owndata)  # no copy
+            self.assertFalse(array.flags.owndata)  # the array is no copy
         del made
-        self.assertGreater(vertices.max(), 0)  # still there
+        self.assertGreater(vertices.max(), 0)  # the array stays valid
 
     def test_as_machined(self):
         job = rt.job(program.example("rtp_brick_5mm.toml"), tool_width_mm=1)

@@ -1,4 +1,4 @@
-"""How work runs: progress, Ctrl-C, threads, processes, memory, time."""
+"""Tests of progress, Ctrl-C, threads, processes, memory and run times."""
 
 import concurrent.futures
 import gc
@@ -91,7 +91,7 @@ class Interrupt(unittest.TestCase):
         word, when = child.stdout.readline().split()
         self.assertEqual(word, "interrupted")
         self.assertLess(float(when) - sent, 1)
-        self.assertEqual(child.stdout.readline(), "1\n")  # and works again
+        self.assertEqual(child.stdout.readline(), "1\n")  # the next call works
         self.assertEqual(child.wait(timeout=10), 0)
 
 
@@ -166,8 +166,9 @@ class Costs(unittest.TestCase):
         self.assertLess(grown, 4)
 
     def test_a_call_costs_little_beside_the_librarys(self):
-        """Its arrays included: the least of many, as other work makes both longer, and a ratio, as
-        machines differ (a prism's one direction takes the library half a millisecond)."""
+        """Compares the time of a call, including its arrays, with the time of the library. Minima of
+        many calls are used, because other processes delay some calls. The limit is a ratio, because
+        machines differ. The library takes half a millisecond for one direction of a prism."""
         design = rt.Design.load(PRISM)
         request = _core.RreRequest()
         of_python, of_library = [], []
@@ -181,7 +182,7 @@ class Costs(unittest.TestCase):
         self.assertLess(more, 4 * min(of_library))
 
     def test_import(self):
-        """By the processor's time, beside that of numpy, which it needs, as machines differ."""
+        """Compares the processor time of the import with that of numpy, because machines differ."""
         code = (
             "import sys, time\n"
             "begin = time.process_time()\n"

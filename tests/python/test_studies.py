@@ -1,4 +1,5 @@
-"""Sweeps, tolerances, optima, surfaces, pictures and pages: the program's documents, and what Python adds."""
+"""Tests of sweeps, tolerances, optima, surfaces, pictures and pages: documents as from the program,
+and additions of Python."""
 
 import json
 import os
@@ -13,7 +14,8 @@ import retrace as rt
 BEAM = program.example("low_beam.ies")
 BRICK = program.example("rtp_brick_1mm.toml")
 PRISM = program.example("rtp_single_0p45mm.toml")
-# Some studies set a target error. A number of rays cannot be combined with it, so the target error is unset.
+# Some studies set a target error. A number of rays cannot be combined with it, so the target error
+# is unset.
 SOME_RAYS = {
     "analysis.engine": "montecarlo",
     "analysis.samples": 64,
@@ -284,7 +286,7 @@ class Studies(unittest.TestCase):
 
 
 class _Depth:
-    """What the objective looks at."""
+    """Values that the objective function uses."""
 
     def __init__(self, inspection, design):
         self.element_depth_mm = inspection.element_depth_mm

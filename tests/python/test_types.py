@@ -1,4 +1,4 @@
-"""Type hints: of the package, of its stubs against what is there, and of a program that uses it."""
+"""Tests of type hints: of the package, of its stubs, and of a program that uses the package."""
 
 import os
 import pathlib
@@ -50,7 +50,7 @@ WRONG = {
 
 
 def mypy(*arguments, folder):
-    """In a folder of its own, so that it keeps nothing beside the sources."""
+    """Runs mypy in a separate folder, so that it writes no cache next to the sources."""
     return subprocess.run(
         [sys.executable, "-m", *arguments],
         capture_output=True,

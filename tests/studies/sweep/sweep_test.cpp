@@ -142,7 +142,7 @@ const std::string kLimits =
     "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n"
     "S,,red,0.2,0,0,1000,mcd/lx,read\nS,,red,0.2,10,0,1000,mcd/lx,read\nS,,red,0.2,0,20,10,mcd/lx,read\n";
 
-/// Fixture with a folder that contains both files.
+/// Fixture with a folder that contains the design and its limits.
 class PhotometricStudy : public ::testing::Test {
  protected:
   PhotometricStudy()
