@@ -66,7 +66,7 @@ std::vector<double> power_by_cone(const BallLayer& layer, const Optics& optics, 
 /// Returns the power that comes back within the cone for a ray of unit power. The calculation uses only angles
 /// about the center of the ball. The mirror is ideal and covers the back half of the ball.
 /// \param height distance of the ray from the axis, divided by the radius
-/// \param turn_rad angle between the plane of the ray and axis, and the plane of incidence
+/// \param turn_rad azimuth of the ray about the axis, from the plane of incidence
 double returned_by_angles(double height, double index, double turn_rad, double incidence_rad, double half_angle_rad) {
   const double i = std::asin(height);
   const double inside = std::asin(height / index);

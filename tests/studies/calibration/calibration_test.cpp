@@ -94,8 +94,9 @@ std::vector<std::string> told(const Calibration& found) {
   return keys;
 }
 
-/// Facets cannot determine errors that move the edge along itself or in the plane of the facet, nor the clearance, nor
-/// a common shift of all axes.
+/// Facets determine only three quantities by themselves. The other quantities are known only in combinations, or not at
+/// all. Examples are errors that move the edge along itself or in the plane of the facet, the clearance, and a common
+/// shift of all axes.
 TEST(Calibration, SaysWhatFacetsDoNotTell) {
   std::mt19937 bits(1);
   const Calibration found = calibrate(measured_on(test_cuts().plans.front().machine, bits));
