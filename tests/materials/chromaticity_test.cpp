@@ -9,7 +9,7 @@
 #include "materials/io/spectrum_reader.h"
 #include "tests/support/refusals.h"
 
-// The colour matching functions and what the CIE publishes of its illuminants.
+// Tests of the colour matching functions against published values of the CIE for its illuminants.
 
 namespace retrace::materials::chromaticity_test {
 namespace {
@@ -28,7 +28,8 @@ SpectralCurve equal_energy() {
   return {{380.0, 780.0}, {1.0, 1.0}};
 }
 
-// CIE 015:2018: A 0.44757, 0.40745 and D65 0.31271, 0.32902 at 1 nm; at 5 nm the fifth digit differs.
+// CIE 015:2018 gives x, y = 0.44757, 0.40745 for A and 0.31271, 0.32902 for D65, with a table in steps of 1 nm. With
+// steps of 5 nm, the fifth digit differs.
 TEST(Chromaticity, OfIlluminantsIsThatOfTheCie) {
   const CieTable cie = read_cie_table(kData + "cie_v_a_d65_5nm.csv");
   constexpr double digit = 1.5e-5;
@@ -55,7 +56,7 @@ TEST(Chromaticity, OfAMixtureLiesBetweenItsParts) {
   EXPECT_NEAR(both.y, std::lerp(chromaticity(b).y, chromaticity(r).y, share), 1e-12);
 }
 
-// The function of y is V, which is another table.
+// The colour matching function of y equals the luminous efficiency V, which is in another table.
 TEST(ColourMatching, OfYIsTheLuminousEfficiency) {
   const SpectralCurve v = read_cie_table(kData + "cie_v_a_d65_5nm.csv").photopic_efficiency;
   const SpectralCurve y = functions()[1];
@@ -63,7 +64,8 @@ TEST(ColourMatching, OfYIsTheLuminousEfficiency) {
   EXPECT_EQ(y.values, v.values);
 }
 
-/// Sum of Gaussians that are as wide as `below` left of their middle and `above` right of it.
+/// A Gaussian with different widths on both sides of its center. `below_per_nm` and `above_per_nm` are the reciprocal
+/// widths.
 struct Lobe {
   double height, middle_nm, below_per_nm, above_per_nm;
 };
@@ -78,8 +80,8 @@ double at(const std::vector<Lobe>& lobes, double wavelength_nm) {
   return sum;
 }
 
-// C. Wyman, P.-P. Sloan and P. Shirley, JCGT 2 (2), 1 (2013): fits of several lobes, which leave the functions by 0.022
-// at most.
+// C. Wyman, P.-P. Sloan and P. Shirley, JCGT 2 (2), 1 (2013): fits by several lobes, which differ from the functions by
+// at most 0.022.
 TEST(ColourMatching, AgreesWithAPublishedFit) {
   const std::array<std::vector<Lobe>, 3> fit = {{
       {{0.362, 442.0, 0.0624, 0.0374}, {1.056, 599.8, 0.0264, 0.0323}, {-0.065, 501.1, 0.0490, 0.0382}},

@@ -20,7 +20,7 @@ MaterialLibrary shipped() {
   return MaterialLibrary::read(std::string(RETRACE_SOURCE_DIR) + "/data/materials.toml");
 }
 
-// Published indices at the d line.
+// Compares the indices at the d line with published values.
 TEST(Dispersion, IndexAtTheDLine) {
   const MaterialLibrary library = shipped();
   const auto n = [&](const char* name) { return index_relative_to_air(library.find(name), library.air(), 587.56); };
@@ -32,7 +32,7 @@ TEST(Dispersion, IndexAtTheDLine) {
   EXPECT_NEAR(n("MgF2"), 1.3777, 5e-5);
 }
 
-// As its source has it: n itself, not its square, by powers of the wavelength.
+// The formula of the source gives n itself, not its square, in powers of the wavelength.
 TEST(Dispersion, HafniumOxideOfAlKuhaili2004) {
   for (double w_um = 0.3; w_um <= 2.0; w_um += 0.1)
     EXPECT_NEAR(refractive_index(shipped().find("HfO2").dispersion, 1e3 * w_um),
@@ -44,7 +44,8 @@ double n_at(const char* name, double wavelength_nm) {
   return index_relative_to_air(library.find(name), library.air(), wavelength_nm);
 }
 
-// n_d and V_d = (n_d - 1) / (n_F - n_C) as the makers, or the catalogues, state them beside their coefficients.
+// Compares n_d and V_d = (n_d - 1) / (n_F - n_C) with the values that manufacturers or catalogues publish next to their
+// coefficients.
 TEST(Dispersion, IndexAndAbbeNumberAsPublished) {
   struct Case {
     const char* name;
@@ -57,14 +58,15 @@ TEST(Dispersion, IndexAndAbbeNumberAsPublished) {
         Case{"COC", 1.533202, 1e-3, 56.150461, 0.2},        // TOPAS catalogue, 5013LS-01
         Case{"PC", 1.58547, 1e-6, 29.909185, 1e-4},         // Zemax MISC
         Case{"PC", 1.585, 1e-3, 29.1, 1.0},                 // Sultanova 2009, measured to 1e-3
-        Case{"PMMA", 1.491, 2e-3, 59.2, 0.5}}) {            // the same
+        Case{"PMMA", 1.491, 2e-3, 59.2, 0.5}}) {            // Sultanova 2009
     EXPECT_NEAR(n_at(name, 587.5618), n_d, half_digit) << name;
     EXPECT_NEAR((n_at(name, 587.5618) - 1.0) / (n_at(name, 486.1327) - n_at(name, 656.2725)), abbe, abbe_within)
         << name;
   }
 }
 
-// Measured to 1e-3: Sultanova, Kasarova, Nikolov, Acta Physica Polonica A 116, 585 (2009), table of indices.
+// The indices were measured to 1e-3: Sultanova, Kasarova, Nikolov, Acta Physica Polonica A 116, 585 (2009), table of
+// indices.
 TEST(Dispersion, PolymersAsMeasured) {
   struct Row {
     double wavelength_nm, pmma, pc;
@@ -83,8 +85,8 @@ TEST(Dispersion, PolymersAsMeasured) {
   }
 }
 
-// Schott's data sheet of N-BK7: means over 20 degrees of dn/dT in 1e-6 per K, at 1060.0 nm and at the lines e and g,
-// beside air and in vacuum.
+// Schott's data sheet of N-BK7 gives dn/dT in 1e-6 per K, as means over 20 degrees, at 1060.0 nm and at the lines e and
+// g. The values are relative to air and to vacuum.
 TEST(Temperature, NBK7AsItsDataSheetHasIt) {
   const MaterialLibrary library = shipped();
   const Material& glass = library.find("N-BK7");
@@ -98,7 +100,7 @@ TEST(Temperature, NBK7AsItsDataSheetHasIt) {
         Row{60.0, 80.0, {2.5, 3.1, 3.7}, {1.5, 2.1, 2.7}}})
     for (std::size_t k = 0; k < 3; ++k) {
       const auto n = [&](double c) { return index_relative_to_air(glass, library.air(), lines_nm[k], c); };
-      const auto air = [&, w = lines_nm[k]](double c) {  // Kohlrausch's expansion of air, from 15 degrees
+      const auto air = [&, w = lines_nm[k]](double c) {  // expansion of air by Kohlrausch, from 15 degrees
         return 1.0 + (refractive_index(library.air().dispersion, w) - 1.0) / (1.0 + 3.4785e-3 * (c - 15.0));
       };
       const double per_k = 1e6 / (to_c - from_c);
@@ -108,8 +110,7 @@ TEST(Temperature, NBK7AsItsDataSheetHasIt) {
     }
 }
 
-// dn/dT of polymers in 1e-5 per K as Osaka Gas Chemicals tables it for PMMA and polycarbonate, by an Abbe
-// refractometer.
+// Osaka Gas Chemicals publishes dn/dT of PMMA and polycarbonate in 1e-5 per K, measured with an Abbe refractometer.
 TEST(Temperature, PolymersAsTabled) {
   const MaterialLibrary library = shipped();
   for (const auto& [name, per_k] : {std::pair("PMMA", -10e-5), {"PC", -12e-5}}) {
@@ -120,7 +121,8 @@ TEST(Temperature, PolymersAsTabled) {
   }
 }
 
-// The formula by hand, with every coefficient, for a material of index 1.5 beside air that is as good as vacuum.
+// Compares the formula, with every coefficient, with an independent calculation for n = 1.5. The air is replaced by
+// vacuum.
 TEST(Temperature, IsTheClosedForm) {
   Material m;
   m.name = "m";
@@ -140,8 +142,8 @@ TEST(Temperature, IsTheClosedForm) {
       1.5 + (2.25 - 1.0) / 3.0 * (1e-5 * t + 2e-8 * t * t - 3e-10 * t * t * t + (4e-7 * t + 5e-10 * t * t) / 0.32);
   EXPECT_NEAR(index_relative_to_air(m, air, 600.0, 65.0), expected, 1e-15);
   EXPECT_EQ(index_relative_to_air(m, air, 600.0, 25.0), 1.5);
-  // Warmer air is thinner: beside it the same body is denser. (n - 1) T / p is constant, so 1.0003 at 0 degrees C is
-  // 1 + 0.0003 / 1.367 at 100.
+  // Warmer air has a lower density, so that the index of the body relative to air is larger. (n - 1) T / p is constant.
+  // The index 1.0003 at 0 degrees C therefore becomes 1 + 0.0003 / 1.367 at 100 degrees C.
   air.dispersion = ConstantIndex{1.0003};
   air.temperature_c = 0.0;
   m.temperature_c = 0.0;
@@ -152,7 +154,7 @@ TEST(Temperature, IsTheClosedForm) {
   EXPECT_THROW(static_cast<void>(index_relative_to_air(m, air, 600.0, 1.0)), InputError);
 }
 
-// Internal transmittance of 10 mm by the extinction coefficients of the source, exp(-4 pi k 10 mm / w).
+// The internal transmittance of 10 mm follows from the extinction coefficients of the source: exp(-4 pi k 10 mm / w).
 TEST(Absorption, OfNBK7IsThatOfItsExtinction) {
   const Material glass = shipped().find("N-BK7");
   for (const auto& [wavelength_nm, k] :
@@ -165,7 +167,7 @@ TEST(Absorption, OfNBK7IsThatOfItsExtinction) {
   EXPECT_EQ(absorption_per_mm(shipped().find("PMMA"), 550.0), 0.0);
 }
 
-// Edlen 1953, the older formula for standard air, agrees with Ciddor's to a few 1e-8.
+// Edlen's older formula (1953) for standard air agrees with Ciddor's formula to a few 1e-8.
 TEST(Dispersion, AirAgreesWithEdlen) {
   for (double w_um = 0.4; w_um <= 0.8; w_um += 0.05) {
     const double s2 = 1.0 / (w_um * w_um);
@@ -185,7 +187,8 @@ TEST(Dispersion, NoRealIndexIsAnError) {
   EXPECT_THROW(refractive_index(Sellmeier{{{1.0, 1.0}}}, 999.0), InputError);
 }
 
-// Rows of the table that refractiveindex.info (public domain, CC0) computed from the same paper.
+// The values are rows of the table of refractiveindex.info (public domain, CC0), which was computed from the same
+// paper.
 TEST(Metal, SilverOfRakic1998) {
   const LorentzDrude model = shipped().find_metal("silver").model;
   for (const auto& [wavelength_nm, n, k] : {std::array{397.46, 0.16007, 1.7990}, std::array{503.21, 0.13208, 2.7927},
@@ -205,7 +208,7 @@ TEST(FresnelMetal, NormalIncidenceAndLimits) {
     const FresnelCoefficients f = fresnel_metal(1.49 / metal, c);
     EXPECT_LE(std::norm(f.r_s), 1.0);
     EXPECT_LE(std::norm(f.r_p), std::norm(f.r_s) + 1e-15);
-    // Without absorption it is glass; phases of total reflection included.
+    // Without absorption, the formulas of metals give the results of glass, including the phases of total reflection.
     for (const double ratio : {0.7, 1.49}) {
       const FresnelCoefficients glass = fresnel(ratio, c);
       const FresnelCoefficients limit = fresnel_metal(ratio / std::complex<double>(1.0, 1e-12), c);
@@ -289,7 +292,8 @@ TEST(Fresnel, NormalIncidenceAndBrewster) {
   EXPECT_NEAR(std::abs(fresnel(1.0 / n, 1.0).r_s + fresnel(1.0 / n, 1.0).r_p), 0.0, 1e-15);
 }
 
-// Stokes' relations: a ray and its reverse see opposite amplitudes of reflection and the same transmission.
+// Stokes' relations: for a ray and the reversed ray, the amplitudes of reflection have opposite signs, and the
+// transmittance is the same.
 TEST(Fresnel, Reversible) {
   const double n = 1.585;
   for (double c = 0.05; c <= 1.0; c += 0.05) {
@@ -302,13 +306,14 @@ TEST(Fresnel, Reversible) {
   }
 }
 
-// Phase between p and s at total reflection: tan(d/2) = cos t sqrt(sin^2 t - 1/n^2) / sin^2 t (Born and Wolf, 1.5.4).
+// The phase d between p and s at total reflection is given by tan(d/2) = cos t sqrt(sin^2 t - 1/n^2) / sin^2 t (Born
+// and Wolf, 1.5.4).
 TEST(Fresnel, PhaseOfTotalReflection) {
   const double n = 1.4917;
   for (double t = 0.75; t < 1.5; t += 0.05) {
     const FresnelCoefficients f = fresnel(n, std::cos(t));
     ASSERT_TRUE(f.total_reflection);
-    // r_p = -r_s at normal incidence in this basis: the phase is counted from there.
+    // In this basis, r_p = -r_s at normal incidence. The phase is relative to this value.
     const double phase = std::arg(-f.r_p / f.r_s);
     const double s2 = std::sin(t) * std::sin(t);
     const double expected = 2.0 * std::atan(std::cos(t) * std::sqrt(s2 - 1.0 / (n * n)) / s2);

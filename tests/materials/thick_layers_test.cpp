@@ -1,4 +1,5 @@
-// Layers whose reflections add by power: closed forms, and means of coherent layers over their fringes.
+// Tests of incoherent layers, whose reflections add by power: closed forms, and means of coherent layers over their
+// fringes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -40,13 +41,13 @@ void expect_equal(const Means& one, const Means& other, double within) {
   EXPECT_NEAR(std::abs(one.t_cross - other.t_cross), 0.0, within);
 }
 
-/// Cosine of incidence in a layer, of light that comes from a medium.
+/// Returns the cosine of the angle of incidence inside a layer for light from a medium.
 double cosine_in(double index, double from_index, double cosine) {
   return std::sqrt(1.0 - std::pow(from_index / index, 2.0) * (1.0 - cosine * cosine));
 }
 
-// A thick layer is a coherent one whose phase takes all values: means over whole fringes, on bare bodies and on thin
-// layers, from both sides, beyond the critical angle of the air too.
+// A thick layer is the mean of coherent layers over all phases. Means over whole fringes are tested on bare bodies and
+// on thin layers, from both sides, and also beyond the critical angle of air.
 TEST(ThickLayers, MeansOverFringesOfCoherentLayers) {
   constexpr int kPoints = 64;
   const LayerStack quarter{{{1.3777, 0.25 / 1.3777}}};
@@ -71,7 +72,7 @@ TEST(ThickLayers, MeansOverFringesOfCoherentLayers) {
         }
 }
 
-// Several layers: power that walks from face to face until none is left.
+// The power in several layers is propagated from face to face until none remains.
 TEST(ThickLayers, PowerThatWalksFromFaceToFace) {
   const std::vector<ThickLayer> layers = {{1.6, 0.4, 0.7}, {1.45, 0.2, 0.0}, {kWater, 0.5, 0.3}};
   const std::vector<double> indices = {kBody, 1.6, 1.45, kWater, 1.0};
@@ -117,7 +118,7 @@ TEST(ThickLayers, PowerThatWalksFromFaceToFace) {
     }
 }
 
-// A plate: R1 + T1^2 R2 a^2 / (1 - R1 R2 a^2), T1 T2 a / (1 - R1 R2 a^2).
+// The reflectance of a plate is R1 + T1^2 R2 a^2 / (1 - R1 R2 a^2). Its transmittance is T1 T2 a / (1 - R1 R2 a^2).
 TEST(ThickLayers, APlateThatAbsorbs) {
   const std::vector<ThickLayer> plate = {{1.6, 0.5, 0.8}};
   for (const double cosine : {1.0, 0.8, 0.4}) {
@@ -158,7 +159,7 @@ TEST(ThickLayers, PowerIsConservedAndReversible) {
       else
         EXPECT_NEAR(left, 0.0, 1e-13);
     }
-    // Beyond the critical angle of the air all light comes back that layers do not take.
+    // Beyond the critical angle of air, all light is reflected except the light that layers absorb.
     const FresnelCoefficients total = fresnel_thick_layers({}, layers, StackSide::body, kBody, 1.0, 0.5);
     EXPECT_TRUE(total.total_reflection);
     EXPECT_EQ(std::norm(total.t_s) + std::norm(total.t_p), 0.0);
@@ -166,7 +167,7 @@ TEST(ThickLayers, PowerIsConservedAndReversible) {
   }
 }
 
-// A layer of the body's index, or of the air's, is not there; neither is half of it.
+// A layer with the index of the body or of the air has no effect, and neither has a part of it.
 TEST(ThickLayers, MatchedLayersAreAbsent) {
   for (const StackSide side : {StackSide::body, StackSide::outside})
     for (const double cosine : {1.0, 0.9, 0.6}) {

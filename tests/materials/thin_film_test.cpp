@@ -1,4 +1,4 @@
-// Layers on faces against closed forms, the laws they must obey, and the sum over their multiple reflections.
+// Tests of layers on faces against closed forms, conservation laws, and sums over multiple reflections.
 #include "materials/thin_film.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ double reflectance_of(const LayerStack& stack, StackSide from, double from_index
   return std::norm(fresnel_layers(stack, from, from_index, to_index, 1.0).r_s);
 }
 
-/// The component that a wave has along the normal, decaying if it does not go on.
+/// Returns the component of a wave vector along the normal. Evanescent waves decay.
 Complex along_normal(Complex index, double from_index, double ci) {
   const Complex w = std::sqrt(index * index - from_index * from_index * (1.0 - ci * ci));
   return w.imag() < 0.0 ? -w : w;
@@ -36,16 +36,17 @@ struct Amplitudes {
   Complex r, t;
 };
 
-/// Of one interface between media of these indices and normal components. t is scaled as that of the field E for s, of
-/// H for p.
+/// Returns the amplitudes of an interface between media with these indices and normal components. t is the ratio of the
+/// field E for s, and of H for p.
 Amplitudes interface(Complex n1, Complex w1, Complex n2, Complex w2, bool is_p) {
   const Complex a = is_p ? w1 * n2 * n2 : w1;
   const Complex b = is_p ? w2 * n1 * n1 : w2;
   return {(a - b) / (a + b), 2.0 * a / (a + b)};
 }
 
-/// By recursion over the layers from the last one on (Rouard; Parratt), with nothing but interfaces and phases: no
-/// matrices. \param layers as the wave meets them
+/// Computes the amplitudes by recursion from the last layer (Rouard; Parratt), with interfaces and phases only and
+/// without matrices.
+/// \param layers in the order in which the wave meets them
 Amplitudes by_recursion(const std::vector<ThinLayer>& layers, double from_index, Complex last, double ci, bool is_p) {
   const auto w = [&](Complex n) { return along_normal(n, from_index, ci); };
   const auto n = [&](std::size_t k) { return k == 0 ? Complex(from_index) : layers[k - 1].index; };
@@ -59,13 +60,13 @@ Amplitudes by_recursion(const std::vector<ThinLayer>& layers, double from_index,
   return sum;
 }
 
-/// The share of power that an amplitude of E or H stands for behind the stack.
+/// Returns the power behind the stack that corresponds to an amplitude of E or H, as a fraction of the incident power.
 double passed(const Amplitudes& a, double from_index, double to_index, double ci, bool is_p) {
   const double far = along_normal(to_index, from_index, ci).real() / (is_p ? to_index * to_index : 1.0);
   return std::norm(a.t) * far / (is_p ? ci / from_index : from_index * ci);
 }
 
-/// Of 1 to 12 layers up to two wavelengths thick.
+/// Returns a stack of 1 to 12 layers with thicknesses of up to two wavelengths.
 LayerStack random_stack(std::mt19937_64& generator, bool is_absorbing) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   LayerStack stack;
@@ -78,7 +79,8 @@ LayerStack random_stack(std::mt19937_64& generator, bool is_absorbing) {
   return stack;
 }
 
-// ((n0 ns - n1^2) / (n0 ns + n1^2))^2: a quarter wave turns the admittance ns into n1^2 / ns.
+// The reflectance is ((n0 ns - n1^2) / (n0 ns + n1^2))^2, because a quarter-wave layer changes the admittance ns into
+// n1^2 / ns.
 TEST(ThinFilm, QuarterWaveOfOneLayer) {
   for (const double body : {1.3, kGlass, 1.585, 1.9, 2.4}) {
     const double expected = std::pow((body - kMgF2 * kMgF2) / (body + kMgF2 * kMgF2), 2.0);
@@ -86,17 +88,17 @@ TEST(ThinFilm, QuarterWaveOfOneLayer) {
     EXPECT_NEAR(reflectance_of(coat, StackSide::outside, 1.0, body), expected, 1e-15);
     EXPECT_NEAR(reflectance_of(coat, StackSide::body, body, 1.0), expected, 1e-15);
   }
-  // None at all where n1 is the mean of its neighbours.
+  // If n1 is the geometric mean of the neighbouring indices, nothing is reflected.
   EXPECT_NEAR(reflectance_of({{quarter_wave(std::sqrt(kGlass))}}, StackSide::outside, 1.0, kGlass), 0.0, 1e-30);
 }
 
-// N pairs turn it into (n_H / n_L)^(2N) ns.
+// N pairs of quarter-wave layers change the admittance into (n_H / n_L)^(2N) ns.
 TEST(ThinFilm, QuarterWavePairs) {
   const double high = 2.3;
   const double low = 1.46;
   LayerStack stack;
   for (int pairs = 1; pairs <= 12; ++pairs) {
-    stack.layers.push_back(quarter_wave(low));  // on the body, so that light from outside meets H first
+    stack.layers.push_back(quarter_wave(low));  // next to the body, so that light from outside meets H first
     stack.layers.push_back(quarter_wave(high));
     const double admittance = std::pow(high / low, 2.0 * pairs) * kGlass;
     const double expected = std::pow((1.0 - admittance) / (1.0 + admittance), 2.0);
@@ -105,14 +107,15 @@ TEST(ThinFilm, QuarterWavePairs) {
   }
 }
 
-// Half waves are as if they were not there.
+// Half-wave layers have no effect.
 TEST(ThinFilm, HalfWavesAreAbsent) {
   for (const double n : {1.2, kMgF2, 2.3})
     EXPECT_NEAR(reflectance_of({{ThinLayer{n, 0.5 / n}}}, StackSide::body, kGlass, 1.0), reflectance(kGlass, 1.0),
                 1e-15);
 }
 
-// A layer without thickness, of whatever, leaves the bare face: total reflection and its phases included.
+// Layers without thickness have no effect for any index. The face is a bare face, including total reflection and its
+// phases.
 TEST(ThinFilm, NoThicknessIsTheBareFace) {
   const LayerStack stack{{{2.3, 0.0}, {kAluminium, 0.0}, {1.0, 0.0}}};
   for (const double ratio : {kGlass, 1.0 / kGlass, 1.2})
@@ -130,7 +133,8 @@ TEST(ThinFilm, NoThicknessIsTheBareFace) {
       }
 }
 
-// No layers are the face's own formulas, and a metal alone is the metal's, bit for bit.
+// Without layers, the results equal those of the bare face exactly. With a metal layer only, they equal those of the
+// metal exactly.
 TEST(ThinFilm, NothingAndMetalAloneAreTheirOwnFormulas) {
   const LayerStack metal{{{kAluminium, kInfinity}}};
   for (double ci = 0.0; ci <= 1.0; ci += 1.0 / 64.0) {
@@ -147,7 +151,7 @@ TEST(ThinFilm, NothingAndMetalAloneAreTheirOwnFormulas) {
   }
 }
 
-// A metal of 300 nm lets nothing through, and what lies behind it is not seen; what lies in front is.
+// A metal layer of 300 nm transmits nothing. The layers behind it have no effect, but the layers in front of it do.
 TEST(ThinFilm, ThickMetalIsOpaque) {
   const LayerStack thick{{{1.46, 0.3}, {kAluminium, 0.51}, {1.6, 2.0}}};
   const LayerStack opaque{{{1.46, 0.3}, {kAluminium, kInfinity}, {1.6, 2.0}}};
@@ -160,7 +164,7 @@ TEST(ThinFilm, ThickMetalIsOpaque) {
       EXPECT_NEAR(std::abs(a.r_p - b.r_p), 0.0, 1e-9);
       EXPECT_LT(std::norm(a.t_s) + std::norm(a.t_p), 1e-15);
     }
-  // However thick, amplitudes stay numbers.
+  // For any thickness, the amplitudes remain finite.
   const FresnelCoefficients f = fresnel_layers({{{kAluminium, 1e6}}}, StackSide::body, kGlass, 1.0, 0.5);
   EXPECT_NEAR(std::abs(f.r_s - fresnel_metal(kGlass / kAluminium, 0.5).r_s), 0.0, 1e-14);
   EXPECT_EQ(f.t_s, Complex());
@@ -185,8 +189,9 @@ TEST(ThinFilm, PowerIsConserved) {
     }
 }
 
-// Reciprocity: the same passes either way, phase included, also where layers absorb. Of those that do not the
-// amplitudes of reflection follow from each other: r' = -conj(r) t / conj(t), Stokes' relations with time reversed.
+// Reciprocity: the transmission amplitude is the same in both directions, including its phase, also with absorption.
+// Without absorption, the reflection amplitudes of both directions follow from each other: r' = -conj(r) t / conj(t).
+// These are Stokes' relations with reversed time.
 TEST(ThinFilm, Reversible) {
   std::mt19937_64 generator(2);
   for (int k = 0; k < 200; ++k)
@@ -205,7 +210,7 @@ TEST(ThinFilm, Reversible) {
     }
 }
 
-// One layer: the light that goes to and fro in it, added up one reflection after the other.
+// The result for a single layer is the sum over its multiple reflections (Airy).
 TEST(ThinFilm, SumOfAiry) {
   for (const Complex index : {Complex(kMgF2), Complex(2.3), Complex(1.0), Complex(1.7, 0.4), Complex(0.9, 2.0)})
     for (const bool is_p : {false, true})
@@ -255,8 +260,8 @@ TEST(ThinFilm, ManyLayersAgreeWithRecursion) {
   }
 }
 
-// Through a gap of air between glass and glass: 1 / T = 1 + ((a^2 + b^2) / (2 a b))^2 sinh^2(k d |w|), with the
-// admittances a and i b of glass and gap.
+// For a gap of air between two glasses, 1 / T = 1 + ((a^2 + b^2) / (2 a b))^2 sinh^2(k d |w|). The admittances of glass
+// and gap are a and i b.
 TEST(ThinFilm, FrustratedTotalReflection) {
   const double ci = 0.5;
   const double decay = std::sqrt(kGlass * kGlass * (1.0 - ci * ci) - 1.0);
@@ -272,8 +277,8 @@ TEST(ThinFilm, FrustratedTotalReflection) {
   }
 }
 
-// What a film takes is what the field heats it with: 2 pi Im(n^2) times the integral of |E|^2 over its thickness in
-// wavelengths, over n0 cos t, for s (Born and Wolf, 14.1).
+// The absorbed power of a film follows from the field inside it. For s, it is 2 pi Im(n^2) times the integral of |E|^2
+// over the thickness in wavelengths, divided by n0 cos t (Born and Wolf, 14.1).
 TEST(ThinFilm, AbsorbedPowerIsThatOfTheField) {
   const ThinLayer film{kAluminium, 0.02};
   for (const double to : {1.0, 1.333})
@@ -285,7 +290,7 @@ TEST(ThinFilm, AbsorbedPowerIsThatOfTheField) {
       const Complex down = (1.0 + f.r_s) / (1.0 + back.r * once * once);  // E is continuous
       constexpr int kSteps = 2000;
       double integral = 0.0;
-      for (int k = 0; k < kSteps; ++k) {  // midpoints
+      for (int k = 0; k < kSteps; ++k) {  // midpoint rule
         const double z = film.thickness * (k + 0.5) / kSteps;
         const Complex turn = std::exp(Complex(0.0, 2.0 * std::numbers::pi * z) * w);
         integral += std::norm(down * (turn + back.r * once * once / turn)) * film.thickness / kSteps;

@@ -1,5 +1,5 @@
-// The search through Embree's boxes against one through all cells, and against the triangles that solids are exported
-// from.
+// Tests of the search with the boxes of Embree. It is compared with a search through all cells, and with the triangles
+// of exported solids.
 #include "raytrace/faces/back_surface.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ Vec3 random_direction(std::mt19937_64& generator) {
   return Vec3(normal(generator), normal(generator), normal(generator)).normalized();
 }
 
-/// How far the ray gets until a triangle that faces it, but for those of the facet that it leaves; none: infinity. By
-/// the rule of signed volumes, which shares nothing with planes and outlines.
+/// Returns the distance along the ray to the first triangle that faces it, or infinity. Triangles of the facet that the
+/// ray leaves are ignored. The method uses signed volumes; it is independent of planes and outlines.
 double distance_to_triangles(const Part& part, const Vec2& centre, const SurfaceRay& ray) {
   double least = INFINITY;
   for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
@@ -47,7 +47,7 @@ double distance_to_triangles(const Part& part, const Vec2& centre, const Surface
   return least;
 }
 
-/// Rays from inside the plate downwards, then on from where they hit, to either side.
+/// Traces rays from inside the plate downwards, and from each hit point to either side of the facet.
 void compare_searches(const PartSpec& spec, int count) {
   const Part part = build_part(spec);
   const Rectangle box = bounding_box(part.outline);
@@ -85,7 +85,7 @@ void compare_searches(const PartSpec& spec, int count) {
       ray.origin += fast->t * ray.direction;
       ray.source = fast->facet;
       ray.inside = unit(generator) < 0.7;
-      // Any direction on the chosen side of the facet just hit.
+      // The direction is random, on the chosen side of the facet.
       ray.direction = random_direction(generator);
       const double out = ray.direction.dot(normal);
       if ((out > 0.0) == ray.inside) ray.direction -= 2.0 * out * normal;
@@ -119,7 +119,7 @@ TEST(BackSurface, InstancedPieces) {
   compare_searches(spec, 500);
 }
 
-// Of cells with many facets each has a box of its own.
+// If cells have many facets, each facet has its own box.
 TEST(BackSurface, RoundedEdges) {
   PartSpec spec = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 5.0, 5.0, 0.5);
   spec.edges.root_radius_mm = 0.02;
@@ -134,7 +134,7 @@ TEST(BackSurface, EveryCellUnlikeTheOthers) {
   compare_searches(spec, 2000);
 }
 
-// A ray that leaves its facet at any angle, however flat, does not meet that facet again.
+// A ray that leaves a facet does not hit the same facet again, even at grazing angles.
 TEST(BackSurface, NoSelfHit) {
   const Part part = build_part(single(HexagonalCube{1.0}, 0.5));
   const BackSurface surface(part, Vec2::Zero());
@@ -147,7 +147,7 @@ TEST(BackSurface, NoSelfHit) {
     ray.direction.z() = -std::abs(ray.direction.z()) - 0.5;
     ray.direction.normalize();
     const auto hit = surface.first_hit(ray);
-    if (!hit) continue;  // out through a side
+    if (!hit) continue;  // leaves through a side
     ++hits;
     const Vec3 normal = surface.facet(hit->facet).normal;
     ray.origin += hit->t * ray.direction;

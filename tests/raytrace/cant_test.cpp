@@ -1,5 +1,5 @@
-// Canted cube corners: their three planes stay at right angles, so that they send light straight back, from an aperture
-// that leans with them.
+// Tests of canted cube corners. Their three planes remain perpendicular to each other, so that they return light to the
+// source. Their effective aperture is tilted with them.
 
 #include <gtest/gtest.h>
 
@@ -77,7 +77,7 @@ TEST(Cant, AgreesWithTheReference) {
   }
 }
 
-/// A cube's own coordinates: the directions of its three edges, from the apex.
+/// Returns the directions of the three edges of a cube from its apex, as columns.
 Eigen::Matrix3d edges_of(const Cant& cant) {
   Eigen::Matrix3d edges;
   for (int k = 0; k < 3; ++k) {
@@ -129,7 +129,7 @@ double share_by_points(const Polygon& outline, const Cant& cant, double depth_mm
   return static_cast<double>(back) / inside;
 }
 
-/// Power that three facets of a single mirror cube send back exactly to where it came from.
+/// Returns the power that three facets of a single mirror cube return exactly to the source.
 double straight_back(const PartSpec& spec, const Illumination& light) {
   double power = 0.0;
   const BeamObserver note = [&](const ReturnedBeam& beam) {

@@ -1,4 +1,4 @@
-// Every bit of power ends in one account, for every kind of design.
+// Tests that all power ends in exactly one account, for every kind of design.
 #include "raytrace/light/ledger.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ struct Named {
   PartSpec spec;
 };
 
-/// Every element kind, arrangement and border treatment.
+/// Returns designs with every kind of element, arrangement and border.
 std::vector<Named> all_designs() {
   const RtpElement prism{0.5, 0.5, 90.0};
   const HexagonalCube hexagon{1.0};
@@ -86,7 +86,7 @@ TEST_P(LedgerOf, AddsUpToOne) {
 
 INSTANTIATE_TEST_SUITE_P(Designs, LedgerOf, ::testing::Range(std::size_t{0}, all_designs().size()));
 
-// The cut-off moves power to `truncated` and nowhere else.
+// A higher cut-off increases the account `truncated` only.
 TEST(Ledger, CutoffIsBookedAsTruncated) {
   const Part part = build_part(single(HexagonalCube{1.0}, 0.5));
   Optics optics = pmma();

@@ -18,7 +18,7 @@ FlatPolygon rectangle(double x0, double y0, double x1, double y1) {
   return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
 }
 
-/// Corners on an ellipse in any direction: convex.
+/// Returns a convex polygon with random corners on a rotated ellipse.
 FlatPolygon random_polygon(std::mt19937& random, double radius) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::vector<double> angles(3 + random() % 5);
@@ -91,7 +91,8 @@ TEST(Overlay, PolygonsWithoutAreaAreNothing) {
   EXPECT_TRUE(overlay.pieces().empty());
 }
 
-// Random polygons: the pieces are disjoint, their values are the sums of what was laid there, and nothing is lost.
+// Random polygons are overlaid. The resulting fragments are disjoint, their values are the sums of the overlaid values,
+// and area and value are conserved.
 TEST(Overlay, RandomPolygonsKeepAreaAndValue) {
   std::mt19937 random(7);
   for (int round = 0; round < 40; ++round) {

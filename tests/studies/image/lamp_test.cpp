@@ -148,7 +148,7 @@ TEST(Lamp, DirectionsAreThoseOfItsPlanes) {
                     [](double plane, double angle) { return std::fmod(plane, 360.0) + 1000.0 * (angle / 90.0); }),
                 "a.ies")
           .intensity;
-  EXPECT_NEAR(c.cd(towards(90, 0)), 1000.0, 1e-9);  // C = 0: right
+  EXPECT_NEAR(c.cd(towards(90, 0)), 1000.0, 1e-9);        // C = 0: right
   EXPECT_NEAR(c.cd(towards(0, 45)), 90.0 + 500.0, 1e-9);  // C = 90: up
   EXPECT_NEAR(c.cd(towards(-45, 0)), 180.0 + 500.0, 1e-9);
   EXPECT_NEAR(c.cd(towards(0, -45)), 270.0 + 500.0, 1e-9);
@@ -195,7 +195,7 @@ TEST(Lamp, FactorsCountAsTheFilesEditionSays) {
   };
   EXPECT_NEAR(largest("IESNA:LM-63-2002\n", "0.9 1 60"), 90.0, 1e-9);
   EXPECT_NEAR(largest("IES:LM-63-2019\n", "0.9 1.10000 60"), 90.0, 1e-9);  // this field is no factor in LM-63-2019
-  EXPECT_NEAR(largest("", "0.9 0.5 60"), 45.0, 1e-9);  // LM-63-86
+  EXPECT_NEAR(largest("", "0.9 0.5 60"), 45.0, 1e-9);                      // LM-63-86
   const PhotometricLamp lamp = parse_ies(ies(1, {0}, {0, 90}, kPlain), "a.ies");
   EXPECT_EQ(lamp.printed_lumens, 1000.0);
   EXPECT_EQ(lamp.title, "A lamp");
@@ -267,7 +267,7 @@ TEST(Lamp, CutOffIsSeenOnTheRoad) {
     return beam.cd(Vec3(std::tan(right_deg * kRadPerDeg), std::tan(up_deg * kRadPerDeg), -1.0));
   };
   EXPECT_GT(ahead(-2, -0.9), 30.0 * ahead(-2, -0.2));  // cut-off on the side of oncoming traffic
-  EXPECT_GT(ahead(4, 0.2), 10.0 * ahead(-4, 0.2));  // on the other side, the cut-off is higher
+  EXPECT_GT(ahead(4, 0.2), 10.0 * ahead(-4, 0.2));     // on the other side, the cut-off is higher
   // The scene shows the rear of a car at 30 m. The lower part is illuminated and the upper part is dark, until the
   // lamps are aimed higher.
   const auto picture = [&](double aim_deg) {
