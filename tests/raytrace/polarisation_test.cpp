@@ -1,4 +1,5 @@
-// Polarised light in all engines: an independent engine with field vectors, Jones matrices of a cube corner, symmetry.
+// Tests of polarised light in all engines: an independent engine with field vectors, Jones matrices of a cube corner,
+// and symmetry.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -47,7 +48,8 @@ struct Case {
   Optics optics = pmma();
 };
 
-/// Layers that pass light and turn the phases of total reflection, and a film of metal on the entrance face.
+/// Returns optics with transparent layers that change the phases of total reflection, and with a metal film on the
+/// entrance face.
 Optics layered() {
   Optics optics = pmma();
   optics.facet_layers = {{{1.9, 0.11}, {1.3777, 0.2}}};
@@ -64,7 +66,7 @@ std::vector<Case> cases() {
           {"triangle", single(TriangularCube{1.0}, 0.4), 9.0, 200.0}};
 }
 
-// Both engines against one that carries complex field vectors in space, for every kind of light.
+// For every kind of light, both engines are compared with an engine that uses complex field vectors in space.
 TEST(Polarisation, AllEnginesAgree) {
   const std::vector<Stokes> lights = {kUnpolarised,  linear(0.0),          linear(45.0),
                                       linear(110.0), {1.0, 0.0, 0.0, 1.0}, {1.0, 0.3, -0.5, -0.4}};
@@ -88,13 +90,13 @@ TEST(Polarisation, AllEnginesAgree) {
   }
 }
 
-// Everything is linear in the Stokes parameters: unpolarised light is the mean of any two orthogonal ones.
+// All results are linear in the Stokes parameters. Unpolarised light is the mean of any two orthogonal states.
 TEST(Polarisation, UnpolarisedIsTheMeanOfOrthogonalStates) {
   const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.5));
   BeamPolicy policy;
   policy.cutoff = 1e-11;
   Optics optics = pmma();
-  optics.absorption_per_mm = 0.5;  // ends deep beams early
+  optics.absorption_per_mm = 0.5;  // weakens beams with many reflections
   const BeamTracer tracer(part);
   const auto rre = [&](const Stokes& light) {
     return tracer.trace(optics, polarised(31.0, 17.0, light), {0.5}, policy).ledgers[0][Account::retroreflected];
@@ -105,8 +107,8 @@ TEST(Polarisation, UnpolarisedIsTheMeanOfOrthogonalStates) {
   EXPECT_GT(std::abs(rre(linear(0.0)) - rre(linear(90.0))), 1e-3 * unpolarised);
 }
 
-// Averaging the reflectances of s and p at every interface is not what light does: at 75 degrees, askew, a prism sends
-// back 7 % less than that would say, and the engine tells the difference.
+// Averaging the reflectances of s and p at every interface is not correct. At an oblique incidence of 75 degrees, the
+// RRE of a prism is 7 % smaller than with this average, and the engine shows this difference.
 TEST(Polarisation, ScalarAveragingIsWrong) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.3));
   const Illumination askew = from(75.0, 45.0);
@@ -122,7 +124,7 @@ TEST(Polarisation, ScalarAveragingIsWrong) {
 
 using Jones = Eigen::Matrix2cd;
 
-/// Amplitudes (first, second) along the axes of the source: of light on its way down or up.
+/// Returns the matrix from the amplitudes of s and p to the amplitudes along the axes of the source.
 Eigen::Matrix2d to_axes(const Vec3& direction, const Vec3& s_axis) {
   const Vec3 first = source_axis(Vec3::UnitZ());
   const Vec3 second = Vec3::UnitZ().cross(first);
@@ -134,12 +136,12 @@ Eigen::Matrix2d to_axes(const Vec3& direction, const Vec3& s_axis) {
 
 constexpr double kSin2AtFacets = 2.0 / 3.0;
 
-/// arg r_s - arg r_p of a facet of a cube corner, bare.
+/// Returns the phase difference arg r_s - arg r_p of a facet of a cube corner without layers.
 double retardance_of_bare_facet() {
   return 2.0 * std::atan(std::sqrt((1.0 - kSin2AtFacets) * (kSin2AtFacets - 1.0 / (kPmma * kPmma))) / kSin2AtFacets);
 }
 
-/// The same behind one layer, by Airy's formula.
+/// Returns the phase difference of a facet with one layer, by Airy's formula.
 double retardance_behind(const materials::ThinLayer& layer) {
   const auto w = [](std::complex<double> n) { return std::sqrt(n * n - kPmma * kPmma * kSin2AtFacets); };
   const auto reflection = [&](std::complex<double> a, std::complex<double> b, std::complex<double> c) {
@@ -154,8 +156,9 @@ double retardance_behind(const materials::ThinLayer& layer) {
                   reflection(w(kPmma) / (kPmma * kPmma), w(n1) / (n1 * n1), w(1.0)));
 }
 
-/// Jones matrix of three total reflections at the facets with inward normals n[0], n[1], n[2], from docs/theory: a
-/// retarder a0 + i (a3 sigma3 + a1 sigma1) from (s, p) of the first to those of the last reflection.
+/// Returns the Jones matrix of three total reflections at facets with the inward normals n[0], n[1] and n[2]
+/// (docs/theory). It is a retarder a0 + i (a3 sigma3 + a1 sigma1), from s and p of the first reflection to s and p of
+/// the last reflection.
 Jones three_reflections(const std::array<Vec3, 3>& n, double retardance) {
   const double c = std::cos(0.5 * retardance);
   const double s = std::sin(0.5 * retardance);
@@ -173,10 +176,10 @@ Jones three_reflections(const std::array<Vec3, 3>& n, double retardance) {
   return out * m * in.transpose();
 }
 
-/// The Stokes parameters that a Jones matrix makes of light from the source.
+/// Returns the Stokes parameters of light from the source after a Jones matrix.
 std::array<double, 4> after(const Jones& jones, const Stokes& light) {
   const std::complex<double> i(0.0, 1.0);
-  Jones coherency;  // right-handed light on its way down turns from the first axis to the second
+  Jones coherency;  // right-handed light on its way down rotates from the first axis to the second
   coherency << 0.5 * (light.i + light.q), 0.5 * (light.u - i * light.v), 0.5 * (light.u + i * light.v),
       0.5 * (light.i - light.q);
   const Jones out = jones * coherency * jones.adjoint();
@@ -184,12 +187,12 @@ std::array<double, 4> after(const Jones& jones, const Stokes& light) {
           2.0 * out(0, 1).imag()};
 }
 
-// Liu and Azzam, Appl. Opt. 36, 1553 (1997); Murphy and Goodrow, Appl. Opt. 52, 117 (2013). Six sub-beams, one for
-// each order of the facets.
+// Liu and Azzam, Appl. Opt. 36, 1553 (1997); Murphy and Goodrow, Appl. Opt. 52, 117 (2013). There are six sub-beams,
+// one for each order of the facets.
 void expect_six_sub_beams(const Optics& optics, double retardance) {
   const Part part = build_part(single(HexagonalCube{kCubeAperture}, 0.4));
   const Vec2 centre = centroid(part.outline);
-  std::array<Vec3, 3> edges;  // seen from the apex
+  std::array<Vec3, 3> edges;  // directions from the apex
   for (std::size_t k = 0; k < 3; ++k) {
     const double a = 120.0 * static_cast<double>(k) * kDeg;
     edges[k] = Vec3(std::sqrt(2.0 / 3.0) * std::cos(a), std::sqrt(2.0 / 3.0) * std::sin(a), std::sqrt(1.0 / 3.0));
@@ -202,7 +205,8 @@ void expect_six_sub_beams(const Optics& optics, double retardance) {
       if (angle_deg < 0.0) angle_deg += 360.0;
       const auto sextant = static_cast<std::size_t>(angle_deg / 60.0);
       share[sextant] += beam.stokes.i;
-      // The facet between edges k and k + 1 is normal to the third; the next is the one beyond the nearer edge.
+      // The facet between the edges k and k + 1 is perpendicular to the third edge. The next facet is on the other side
+      // of the nearer edge.
       const std::size_t k = sextant / 2;
       const std::size_t first = (k + 2) % 3;
       const std::size_t second = sextant % 2 == 0 ? (k + 1) % 3 : k;
@@ -224,7 +228,7 @@ TEST(Polarisation, SixSubBeamsOfASolidCubeCorner) {
   expect_six_sub_beams(optics, retardance_of_bare_facet());
 }
 
-// A layer on the facets leaves total reflection total and turns its phases.
+// With a layer on the facets, total reflection remains total, but its phases change.
 TEST(Polarisation, SixSubBeamsBehindALayer) {
   Optics optics = pmma();
   optics.lossless_entrance = true;

@@ -1,4 +1,4 @@
-// Single rays from anywhere: against an engine that knows the closed boundary alone, and against beams of many.
+// Tests of single rays from any position: comparison with an engine that uses only the closed boundary, and with beams.
 #include "raytrace/paths/ray_tracer.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ PathPolicy every_branch() {
   return policy;
 }
 
-/// One ray in, at most one out.
+/// Returns a policy with which each ray gives at most one ray.
 PathPolicy one_branch() {
   PathPolicy policy;
   policy.split_power = 1.0;
@@ -45,7 +45,7 @@ class Random {
     std::normal_distribution<double> normal;
     return Vec3(normal(generator_), normal(generator_), normal(generator_)).normalized();
   }
-  /// Polarised in part, of power 1.
+  /// Returns partly polarised light of power 1.
   Light light(const Vec3& along) {
     const Vec3 state = between(0.0, 1.0) * direction();
     return {{1.0, state.x(), state.y(), state.z()}, along.cross(direction()).normalized()};
@@ -58,10 +58,10 @@ class Random {
   std::mt19937_64 generator_;
 };
 
-/// What leaves is found among what the reference knows, and the other way round, where it is not too weak.
+/// Expects that every ray that is not too weak has an equal ray in the reference, and vice versa.
 void expect_same(const TracedRays& found, const ReferenceRay& known, const std::string& what) {
-  constexpr double kNoise = 2e-3;   // what the reference follows no further
-  constexpr double kChance = 1e-7;  // what a branch takes of one that is too weak to be followed
+  constexpr double kNoise = 2e-3;   // power that the reference truncates
+  constexpr double kChance = 1e-7;  // effect of a branch that is too weak to be traced
   ASSERT_EQ(found.missed.empty(), known.meets) << what;
   for (std::size_t k = 0; k < kAccountCount; ++k)
     EXPECT_NEAR(found.ledger.ledger.power[k], known.ledger.power[k], kNoise) << what << ": " << kAccountNames[k];
@@ -78,7 +78,7 @@ void expect_same(const TracedRays& found, const ReferenceRay& known, const std::
     const std::array<double, 4> stokes = exit.stokes(same->light.s_axis);
     for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(same->light.stokes.values()[k], stokes[k], kChance) << what << k;
   }
-  // What was compared is most of the light.
+  // The compared rays contain most of the light.
   EXPECT_NEAR(strong + known.ledger[Account::absorbed], known.meets ? 1.0 : 0.0, 0.06) << what;
 }
 
@@ -99,7 +99,7 @@ std::vector<Named> parts() {
           {"honeycomb", finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.3, 1.9, 0.4)}};
 }
 
-/// Rays towards points of the box round a part, and the part, followed by both.
+/// Fixture with rays towards points of a box around a part. Both engines trace these rays.
 class RayByRay : public ::testing::TestWithParam<std::size_t> {
  protected:
   void compare(const Vec3& origin, const Vec3& direction, bool inside, const Optics& optics, const std::string& what) {
@@ -127,7 +127,7 @@ TEST_P(RayByRay, FromAllAroundIsThatOfTheReference) {
   }
 }
 
-// Clear parts would keep some of the light for ever.
+// The material absorbs light. In a transparent part, some light would be trapped.
 TEST_P(RayByRay, FromInsideIsThatOfTheReference) {
   Optics dark = pmma();
   dark.absorption_per_mm = 1.0;
@@ -139,7 +139,7 @@ TEST_P(RayByRay, FromInsideIsThatOfTheReference) {
 TEST_P(RayByRay, WithAnotherMediumBehindIsThatOfTheReference) {
   Optics wet = pmma();
   wet.back_index = 1.2;
-  // What comes from the front: from behind it would come through that medium.
+  // The ray hits the entrance face from the front. From behind, it would come through the medium behind the part.
   for (int k = 0; k < 20; ++k) {
     Vec3 direction = random.direction();
     direction.z() = -std::abs(direction.z()) - 0.3;
@@ -151,7 +151,7 @@ TEST_P(RayByRay, WithAnotherMediumBehindIsThatOfTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(Parts, RayByRay, ::testing::Range(std::size_t{0}, parts().size()));
 
-/// Parallel rays that cover a rectangle evenly at random, from far above it.
+/// Returns parallel rays from far above that cover a rectangle with a uniform random distribution.
 std::vector<IncidentRay> beam(const Rectangle& over, double z, const Illumination& light, std::size_t count) {
   Random random(7);
   const Vec3 to_source = direction_to_source(light);
@@ -163,7 +163,8 @@ std::vector<IncidentRay> beam(const Rectangle& over, double z, const Illuminatio
   return rays;
 }
 
-/// The accounts of rays are those of the beam within four standard errors, shares of what met the part.
+/// Expects that the accounts of rays, as fractions of the rays that hit the part, equal those of the beam within four
+/// standard errors.
 void expect_same_accounts(const RayLedger& rays, const Ledger& beam) {
   for (std::size_t k = 0; k < kAccountCount; ++k) {
     const double share = rays.ledger.power[k] / (rays.incident - rays.missed);
@@ -189,7 +190,7 @@ TEST(RayTracer, ManyRaysAreABeamOnAnEndlessPart) {
     EXPECT_LE(traced.leaving.size(), 40000U);
     const MonteCarloResult known = MonteCarlo(part).trace(absorbing, light, {0.5}, rays(65536), {});
     expect_same_accounts(traced.ledger, known.cones[0].ledger);
-    // That of a share, less what absorption takes of the scatter.
+    // The standard error is that of a fraction, slightly reduced by absorption.
     const double rre = known.cones[0].rre;
     EXPECT_NEAR(traced.ledger.std_error() / std::sqrt(rre * (1.0 - rre) / 40000.0), 0.95, 0.08);
   }
@@ -214,7 +215,8 @@ TEST(RayTracer, WhereTheyLeaveAnEndlessPartIsWhereTheyCame) {
       EXPECT_LT((b.leaving[i].position_mm - a.leaving[i].position_mm - Vec3(far.x(), far.y(), 0.0)).norm(), 1e-9);
       EXPECT_EQ(a.leaving[i].account, b.leaving[i].account);
     }
-    // Light goes on from where it came: no exit lies further off than paths within the plate and elements reach.
+    // Light leaves near its point of entry. No exit is farther away than a path within the plate and the elements can
+    // reach.
     const double scale = 10.0 / std::max(0.05, std::abs(direction.z()));
     for (const LeavingRay& ray : a.leaving) EXPECT_LT((ray.position_mm - at).norm() * ray.light.power(), scale);
   }
@@ -271,7 +273,8 @@ TEST(RayTracer, NeitherThreadsNorPiecesMatter) {
     EXPECT_EQ(one.leaving[one.leaving.size() - k].position_mm, tail.leaving[tail.leaving.size() - k].position_mm);
 }
 
-// Files hold places in single precision: light that begins on a face up to that rounding meets it once.
+// Files contain positions in single precision. A ray that starts on a face, within rounding errors, must hit this face
+// once.
 TEST(RayTracer, RaysThatBeginOnAFaceMeetItOnce) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.3));
   RayTracer tracer(part, nullptr, 0.5, every_branch(), 1);
@@ -287,7 +290,7 @@ TEST(RayTracer, RaysThatBeginOnAFaceMeetItOnce) {
     EXPECT_NEAR(down.leaving.front().light.power(), reflected, 1e-12) << off;
     EXPECT_EQ(front(0.3 + off, 1.0).missed.size(), 1U) << off;
   }
-  // On a facet of the prism, whose ridge is along y at x = 0.25, z = -0.25.
+  // The ray starts on a facet of the prism. Its roof edge is along y at x = 0.25 and z = -0.25.
   for (const double off : {-1e-8, 0.0, 1e-8}) {
     const IncidentRay up{{0.1, 0.2, -0.1 + off}, {0.0, 0.0, 1.0}, {}, 0};
     const TracedRays entering = tracer.trace({&up, 1}, 0, nullptr);

@@ -1,4 +1,5 @@
-// Where returned light entered and left, and with what polarisation: closed forms, reciprocity, an independent tracer.
+// Tests of the positions at which returned light enters and leaves, and of its polarisation: closed forms, reciprocity,
+// and an independent tracer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,8 +51,8 @@ TEST(ReturnedBeams, AddUpToTheLedger) {
   }
 }
 
-// A retroreflected beam leaves at the point opposite to where it entered: turned by half a turn about a centre for a
-// cube corner, and the entered region lies on the entrance face.
+// A cube corner returns a beam at the point opposite to its entry, rotated by 180 degrees about a center. The entry
+// region is on the entrance face.
 TEST(ReturnedBeams, CubeCornerTurnsTheEntryAboutItsAxis) {
   const Part part = build_part(single(HexagonalCube{kCubeAperture}, 0.4));
   const Vec2 centre = centroid(part.outline);
@@ -60,7 +61,7 @@ TEST(ReturnedBeams, CubeCornerTurnsTheEntryAboutItsAxis) {
     if (beam.depth != 4 || beam.cone != 0) continue;
     ++seen;
     EXPECT_NEAR(area(beam.entered_mm), area(beam.left_mm), 1e-12);
-    // The axis of the apex, seen along the light inside, meets the face at the middle of entry and exit.
+    // The center is the projection of the apex onto the face, along the direction of the light inside.
     const double shift =
         (part.thickness_mm + part.element_depth_mm) * std::tan(std::asin(std::sin(12.0 * kDeg) / kPmma));
     const Vec2 axis = centre + shift * Vec2(std::cos(40.0 * kDeg), std::sin(40.0 * kDeg));
@@ -69,7 +70,7 @@ TEST(ReturnedBeams, CubeCornerTurnsTheEntryAboutItsAxis) {
   EXPECT_GE(seen, 6);
 }
 
-// The region that sends light back, for mirror facets under a lossless face: the effective aperture.
+// For mirror facets behind a lossless face, the region that returns light is the effective aperture.
 TEST(ReturnedBeams, EnterWithinTheEffectiveAperture) {
   const Part part = build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0));
   for (const double t : {0.0, 12.0, 40.0}) {
@@ -111,8 +112,8 @@ double power_towards(const std::vector<Spot>& spots, const Vec3& direction) {
   return power;
 }
 
-// f(s -> r) cos t'_s = f(r -> s) cos t'_r, t' inside: a beam and its reverse have one cross-section and one Fresnel
-// power.
+// f(s -> r) cos t'_s = f(r -> s) cos t'_r, where t' is the angle inside. A beam and its reverse have the same
+// cross-section and the same Fresnel transmittance.
 int expect_reciprocity(const Part& part, const Optics& optics, const Illumination& illumination) {
   const auto cos_inside = [&](const Vec3& d) {
     return std::sqrt(1.0 - (1.0 - d.z() * d.z()) / (optics.index * optics.index));
@@ -129,7 +130,8 @@ int expect_reciprocity(const Part& part, const Optics& optics, const Illuminatio
   return checked;
 }
 
-// Mirror facets keep all light inside, where the cross-section of a beam lasts; absorption ends deep beams early.
+// With mirror facets, all light remains inside and beams keep their cross-section. Absorption weakens beams with many
+// reflections.
 TEST(Reciprocity, OfEveryEntranceToEntranceBeam) {
   Optics optics = pmma();
   optics.mirror_facets = true;

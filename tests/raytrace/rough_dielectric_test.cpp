@@ -1,4 +1,5 @@
-// Roughness between dielectrics in the tracers: light that is scattered out at total reflection, ledgers, engines.
+// Tests of roughness between dielectrics: light that is scattered out at total reflection, ledgers, and agreement of
+// the engines.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +24,7 @@ Optics rough(double sq_nm, double length_um, double waviness_sq_nm = 0.0, double
   return optics;
 }
 
-/// A ray inside that meets a facet whose outward normal is -z.
+/// Returns a ray inside the part that hits a facet with the outward normal -z.
 Ray ray_at(double incidence_deg, const Stokes& stokes) {
   const double t = incidence_deg * std::numbers::pi / 180.0;
   Ray ray;
@@ -32,7 +33,7 @@ Ray ray_at(double incidence_deg, const Stokes& stokes) {
   return ray;
 }
 
-/// What first order scatters through the facet of light at `incidence_deg`, by midpoints.
+/// Returns the power that a facet scatters into transmission in first order, by the midpoint rule.
 double scattered_through(const Optics& optics, double incidence_deg, const Polarisation2& coherency) {
   const auto& model = std::get<HarveyShack>(optics.facet_scatter);
   const surface_models::ScatterEvent event = {ray_at(incidence_deg, kUnpolarised).direction, kPmma, 1.0, 550.0, true};
@@ -47,8 +48,8 @@ double scattered_through(const Optics& optics, double incidence_deg, const Polar
   return std::numbers::pi * sum / (kRings * kRings);
 }
 
-// One facet, many times: every event keeps its power, the specular rest is that of the exact engine, and at total
-// reflection light leaves through the facet as first order says, whichever branches are followed.
+// One facet is hit many times. Every event conserves power, and the specular light is that of the exact engine. At
+// total reflection, the light that leaves through the facet is that of first-order theory, for any choice of branches.
 TEST(RoughDielectric, OneFacetKeepsItsPower) {
   constexpr std::uint32_t kDraws = 40000;
   const Optics optics = rough(6.0, 0.39);
@@ -88,13 +89,14 @@ TEST(RoughDielectric, OneFacetKeepsItsPower) {
         coherency << 0.5 * (1.0 + stokes.q), std::complex<double>(0.0, 0.5 * stokes.v),
             std::complex<double>(0.0, -0.5 * stokes.v), 0.5 * (1.0 - stokes.q);
         const double expected = scattered_through(optics, incidence_deg, coherency);
-        // Light that is diffracted twice takes some of it.
+        // Light that is diffracted twice reduces this power.
         EXPECT_NEAR(through, expected, error + 0.03 * expected) << incidence_deg << " " << stokes.q;
         EXPECT_GT(expected, 1e-4);
       }
 }
 
-// What stays specular is the same in the exact engine, behind Embree and column by column; and all ledgers close.
+// The specular light is the same in the exact engine, with Embree, and in the SIMD lanes of the cell engine. All
+// ledgers add up to 1.
 TEST(RoughDielectric, EnginesAgreeOnTheMeanField) {
   const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.5));
   BeamPolicy policy;
@@ -114,7 +116,7 @@ TEST(RoughDielectric, EnginesAgreeOnTheMeanField) {
   }
 }
 
-// Long heights are as the model of phases has them, which mirrors and films of metal keep.
+// For long correlation lengths, the results are those of the phase model, which is used for mirrors and metal films.
 TEST(RoughDielectric, IsThePhaseModelForLongHeights) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   Optics phases = rough(20.0, 100.0);

@@ -1,4 +1,4 @@
-// Less chance with textured facets: what stays specular and what does not are followed apart.
+// Tests of textured facets with reduced variance: specular and scattered light are traced separately.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ MonteCarloResult trace(const Part& part, std::uint64_t count, std::uint32_t seed
       .trace(rough_pmma(), from(12.0, 30.0), kCones, rays(count, seed), policy);
 }
 
-// 95 % intervals of many short runs hold what one long run with other points says.
+// 95 % intervals of many short runs must contain the result of one long run with other points.
 TEST(RoughVariance, ErrorsAreTrue) {
   constexpr std::uint32_t kSeeds = 60;
   const Part part = build_part(kCubes);
@@ -38,11 +38,11 @@ TEST(RoughVariance, ErrorsAreTrue) {
     const ConeResult run = trace(part, 1U << 13, seed, {}).cones[0];
     within += std::abs(run.rre - truth.rre) <= t95 * std::hypot(run.std_error, truth.std_error) ? 1 : 0;
   }
-  // Of 60 runs 57 on average; fewer than 50 by chance once in a thousand suites.
+  // The expected number is 57 of 60 runs. Fewer than 50 occur by chance in one of a thousand runs of the tests.
   EXPECT_GE(within, 50);
 }
 
-// The same on average, and fewer rays for the same error.
+// Separate tracing gives the same mean, and needs fewer rays for the same error.
 TEST(RoughVariance, SharesAreFollowedApart) {
   const Part part = build_part(kCubes);
   PathPolicy one_by_chance;
@@ -57,7 +57,7 @@ TEST(RoughVariance, SharesAreFollowedApart) {
     for (std::size_t n = 0; n < kAccountCount; ++n)
       EXPECT_NEAR(a.ledger.power[n], b.ledger.power[n], 4.0 * 0.5 / 256.0) << kAccountNames[n];
   }
-  // In the narrow cone, which scattered light misses, with a quarter of the rays.
+  // In the narrow cone without scattered light, the error is smaller with a quarter of the rays.
   EXPECT_LT(apart.cones[0].std_error, chance.cones[0].std_error);
 }
 

@@ -1,4 +1,5 @@
-// Arcs of chords against true circles with smooth normals: an independent tracer in the plane across grooves.
+// Tests of arcs that consist of chords against true circles with smooth normals. The reference traces rays in the plane
+// across the grooves.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ using namespace raytrace;
 
 constexpr double kBase = 0.5, kThickness = 0.5, kConeDeg = 0.5;
 
-/// A point or a direction across the grooves.
+/// A point or a direction in the plane across the grooves.
 struct Vec {
   double x = 0.0, z = 0.0;
 };
@@ -35,7 +36,7 @@ double dot(Vec a, Vec b) {
   return a.x * b.x + a.z * b.z;
 }
 
-/// Grooves of 90 degrees with circular roots (over x = 0, base, ...) and rims; the part lies above.
+/// Grooves of 90 degrees with circular roots, at x = 0, base, ..., and circular rims. The part is above the grooves.
 class Grooves {
  public:
   Grooves(double root_mm, double rim_mm) : root_mm_(root_mm), rim_mm_(rim_mm) {}
@@ -45,10 +46,10 @@ class Grooves {
     Vec normal;  ///< out of the part
   };
 
-  /// The first face that a ray meets from its own side.
+  /// Returns the first face that a ray hits from its own side.
   Hit first_hit(Vec from, Vec along, bool inside) const {
     Hit best;
-    // The surface fills the layer from the roots to z = 0.
+    // The surface is in the layer between the roots and z = 0.
     const bool falls = along.z < 0.0;
     const double slowness = 1.0 / std::max(1e-3, std::abs(along.z));
     const double enters = falls ? std::max(0.0, from.z) * slowness : 0.0;
@@ -80,7 +81,8 @@ class Grooves {
     if (t > kStart && t < best.t && off >= begins && off <= ends) best = {t, normal};
   }
 
-  /// The quarter of a circle below its centre (vertical = -1, a root) or above it (a rim).
+  /// Intersects a quarter of a circle. It is below the center for a root (vertical = -1), and above the center for a
+  /// rim.
   static void meet_circle(Hit& best, Vec from, Vec along, bool inside, Vec centre, double radius_mm, double vertical) {
     if (radius_mm <= 0.0) return;
     const Vec to = from + -1.0 * centre;
@@ -103,7 +105,7 @@ struct Path {
   Vec at;
   Vec along;
   bool inside = true;
-  std::array<double, 2> power{};  ///< of s and p
+  std::array<double, 2> power{};  ///< power of s and p
   int events = 0;
 };
 
@@ -111,7 +113,7 @@ double total(const Path& path) {
   return 0.5 * (path.power[0] + path.power[1]);
 }
 
-/// Both ways on at an interface, with power by Fresnel's formulas for s and p.
+/// Returns the reflected and the refracted path at an interface, with their power by Fresnel's formulas for s and p.
 std::array<std::optional<Path>, 2> branches(const Path& path, Vec normal_out) {
   const double ratio = path.inside ? kPmma : 1.0 / kPmma;
   const Vec against = path.inside ? -1.0 * normal_out : normal_out;
@@ -133,7 +135,7 @@ std::array<std::optional<Path>, 2> branches(const Path& path, Vec normal_out) {
   return {reflected, refracted};
 }
 
-/// RRE of endless grooves for light across them, rays at even distances.
+/// Returns the RRE of infinite grooves for light across them, with evenly spaced rays.
 double rre_of_circles(double root_mm, double rim_mm, double incidence_deg, int rays) {
   const Grooves grooves(root_mm, rim_mm);
   const double incidence = incidence_deg * std::numbers::pi / 180.0;
@@ -157,7 +159,7 @@ double rre_of_circles(double root_mm, double rim_mm, double incidence_deg, int r
       const double up = path.along.z > 0.0 ? (kThickness - path.at.z) / path.along.z : INFINITY;
       const bool at_face = path.inside && up < hit.t;
       if (at_face) hit = {up, {0.0, 1.0}};
-      if (hit.t == INFINITY) continue;  // away from the facets
+      if (hit.t == INFINITY) continue;  // travels away from the facets
       path.at = path.at + hit.t * path.along;
       path.at.x -= kBase * std::floor(path.at.x / kBase);
       for (const std::optional<Path>& next : branches(path, hit.normal)) {
@@ -186,8 +188,8 @@ TEST(RoundEdges, TwoTracersAgreeOnSharpEdges) {
     EXPECT_NEAR(rre_of_circles(0.0, 0.0, incidence_deg, 50000), rre_of_chords(0.0, 0.0, incidence_deg, 16), 5e-5);
 }
 
-// A strip of an arc sends its light into the cone or past it as a whole; on a circle some of every strip's does. So
-// they differ by at most a strip for each arc.
+// All light of one strip of an arc is either inside or outside of the cone. On a circle, only a part of it may be
+// inside. The results therefore differ by at most one strip for each arc.
 TEST(RoundEdges, ChordsConvergeToCircles) {
   constexpr double sampling = 1e-4;
   for (const auto& [root_mm, rim_mm] : {std::array{0.02, 0.0}, std::array{0.0, 0.02}, std::array{0.05, 0.05}})

@@ -1,4 +1,5 @@
-// Scratches up the facets of prisms: dead widths and volumes by closed form, closed parts, agreement of the engines.
+// Tests of scratches along the facets of prisms: closed forms of ineffective widths and volumes, closed boundaries, and
+// agreement of the engines.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,8 +38,9 @@ double volume_mm3(const PartSpec& spec) {
   return six / 6.0;
 }
 
-// At normal incidence light meets both facets at the same place along the roof edge: a scratch of either takes its
-// width of the whole prism. What is turned aside may come back by a second scratch: to second order of what they take.
+// At normal incidence, light hits both facets at the same position along the roof edge. A scratch of either facet
+// therefore makes its width of the whole prism ineffective. Deflected light may return by a second scratch, which is an
+// effect of second order.
 TEST(Scratches, TakeTheirWidthOfAPrism) {
   const PartSpec smooth = infinite(RtpElement{kBase, kWidth, 90.0}, Arrangement::aligned, 1.0);
   Optics lossless = pmma();
@@ -59,7 +61,8 @@ TEST(Scratches, TakeTheirWidthOfAPrism) {
   EXPECT_NEAR(exact_rre(scratched(smooth, {{0, 0.05, w, 0.0}}), lossless), 1.0, 1e-9);
 }
 
-// A V of depth d normal to the facet takes half its width times d from every unit of the facet's length.
+// A V-shaped scratch of depth d, normal to the facet, removes a cross-section of half its width times d along the
+// facet.
 TEST(Scratches, TakeTheirVolume) {
   for (const double apex_deg : {90.0, 70.0}) {
     const PartSpec smooth = single(RtpElement{kBase, kWidth, apex_deg}, 0.5);
@@ -95,7 +98,7 @@ TEST(Scratches, EnginesAgree) {
   for (const PartSpec& spec : all_arrangements(kTwo)) expect_engines_agree(spec, 0.03);
 }
 
-// Turning a prism by 180 degrees swaps its facets and the sense along its roof edge.
+// If a prism is rotated by 180 degrees, its facets are swapped and the direction along its roof edge is reversed.
 TEST(Scratches, TurnWithThePrism) {
   const auto rre = [](const std::vector<Scratch>& scratches, double azimuth_deg) {
     const PartSpec spec = scratched(single(RtpElement{kBase, kWidth, 90.0}, 0.5), scratches);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Facets with heights drawn at random as screens of phases: elements are met by rays that are followed one by one, and
-// the fields of all paths are added up over the aperture by fast Fourier transforms.
+// A reference for diffraction with roughness. Facets with random heights are treated as phase screens. Rays through an
+// element are traced one by one. The fields of all paths are added over the aperture by fast Fourier transforms.
 
 #include <algorithm>
 #include <array>
@@ -55,7 +55,8 @@ inline FarField engine_field(const Part& part, const Optics& optics, const Illum
   return collector.finish();
 }
 
-/// An element whose facets are planes through its apex or root at the origin, seen from above at normal incidence.
+/// An element whose facets are planes through its apex or root. The apex or root is at the origin. Light falls along
+/// the normal.
 class Screens {
  public:
   static Screens cube(double aperture_mm, bool mirrors) {
@@ -96,16 +97,16 @@ class Screens {
 
   struct Hit {
     std::size_t facet = 0;
-    Vec2 place = Vec2::Zero();  ///< along the axes of the facet
+    Vec2 place = Vec2::Zero();  ///< position along the axes of the facet
     double cosine = 0.0;
   };
   struct Ray {
     Vec2 out;
-    Eigen::Matrix2cd field;  ///< along x and y, of light along x and y
+    Eigen::Matrix2cd field;  ///< x and y components of the field, for incident light polarised along x and y
     std::vector<Hit> hits;
   };
 
-  /// Light that comes straight down at a place; nothing beside the aperture.
+  /// Traces light that falls vertically on a point. Returns nothing if the point is outside of the aperture.
   std::optional<Ray> trace(const Vec2& place) const {
     for (const Vec3& b : borders_)
       if (b.head<2>().dot(place) > b.z()) return std::nullopt;
@@ -141,7 +142,7 @@ class Screens {
     Complex rs = -1.0;
     Complex rp = 1.0;
     if (!mirrors_) {
-      // Born and Wolf, 1.5.2 (20), with the root of total reflection for exp(-i w t).
+      // Born and Wolf, 1.5.2 (20). The root of total reflection is that for the convention exp(-i w t).
       const double m = 1.0 / (kPmma * kPmma);
       const Complex root = std::sqrt(Complex(m - (1.0 - c * c)));
       rs = (c - root) / (c + root);
@@ -161,10 +162,11 @@ class Screens {
   double half_ = 0.0, depth_ = 0.0, facet_size_ = 0.0;
   std::vector<Vec3> normals_;
   std::vector<std::array<Vec3, 2>> axes_;
-  std::vector<Vec3> borders_;  ///< half planes: cosines and distance
+  std::vector<Vec3> borders_;  ///< half planes: direction cosines and distance
 };
 
-/// Heights of unit variance with the autocorrelation exp(-r^2 / l^2), periodic over more than a facet.
+/// Random heights of unit variance with the autocorrelation exp(-r^2 / l^2). They are periodic, with a period larger
+/// than a facet.
 class Heights {
  public:
   Heights(double size_mm, double length_mm)
@@ -237,16 +239,17 @@ class Heights {
   double length_ = 0.0;
 };
 
-/// What the aperture sends into directions, by the bins of a Fourier transform, and into single directions.
+/// The far field of the aperture: in the bins of a Fourier transform, and in single directions.
 struct Pattern {
-  std::vector<double> bins;   ///< of power over cosines, row by row, frequencies from 0 upwards, then negative
-  std::vector<double> nodes;  ///< the same in single directions
+  std::vector<double> bins;   ///< power per direction cosines; frequencies from 0 upwards, then negative
+  std::vector<double> nodes;  ///< power per direction cosines in single directions
 };
 
-/// The fields of all paths over the aperture, pixel by pixel.
+/// The fields of all paths over the aperture, on a grid of pixels.
 class Aperture {
  public:
-  /// \param pixels along the aperture's diameter \param nodes cosines of single directions
+  /// \param pixels number of pixels along the diameter of the aperture
+  /// \param nodes direction cosines of single directions
   Aperture(const Screens& screens, std::size_t pixels, std::vector<Vec2> nodes)
       : step_(2.0 * screens.half() / static_cast<double>(pixels)),
         points_(surface_models::fast_length(pixels + pixels / 2)),
@@ -258,7 +261,7 @@ class Aperture {
         const Vec2 at = step_ * Vec2(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5) -
                         Vec2(screens.half(), screens.half());
         if (auto ray = screens.trace(at)) {
-          // Places of pixels go into places of pixels.
+          // The centers of pixels are mapped to centers of pixels.
           const Vec2 out = (ray->out + Vec2(screens.half(), screens.half())) / step_;
           cell_.push_back(static_cast<std::size_t>(out.y()) * points_ + static_cast<std::size_t>(out.x()));
           rays_.push_back(std::move(*ray));
@@ -274,7 +277,8 @@ class Aperture {
   const std::vector<Screens::Ray>& rays() const { return rays_; }
   double bin_width() const { return kWave / (static_cast<double>(points_) * step_); }
 
-  /// Adds |field|^2 with the factor of every pixel. Unpolarised light of power 1.
+  /// Adds |field|^2, with a factor for every pixel, to the pattern. The incident light is unpolarised and has the power
+  /// 1.
   void add(const std::vector<Complex>& factors, double weight, Pattern& pattern) {
     pattern.bins.resize(points_ * points_, 0.0);
     pattern.nodes.resize(nodes_.size(), 0.0);
@@ -305,7 +309,7 @@ class Aperture {
           const Complex b = im_.spectrum()[r * half + c];
           const Complex i(0.0, 1.0);
           pattern.bins[r * points_ + c] += scale * std::norm(a + i * b);
-          // At the opposite frequency both are conjugates.
+          // At the opposite frequency, both components are complex conjugates.
           const std::size_t column = (points_ - c) % points_;
           if (column >= half)
             pattern.bins[(points_ - r) % points_ * points_ + column] +=
@@ -314,7 +318,7 @@ class Aperture {
     }
   }
 
-  /// Power within a cone, of bins by the share of them that lies in it.
+  /// Returns the power within a cone. Bins at the edge count with the fraction of their area that is inside.
   double within(const Pattern& pattern, double half_angle_deg) const {
     const double radius = std::sin(half_angle_deg * kDeg) / bin_width();
     const auto n = static_cast<std::ptrdiff_t>(points_);
@@ -356,14 +360,14 @@ struct Case {
 
 inline constexpr std::array<double, 2> kSqNm = {5.0, 20.0};
 
-/// What heights of kSqNm scatter, and the factor that they leave of the mean amplitude.
+/// The light that heights of kSqNm scatter, and the factor of the mean amplitude.
 struct Scattered {
   std::array<Pattern, 2> patterns;
   std::array<double, 2> mean_factors = {};
 };
 
-/// Means over realisations of the heights. The field is its mean, which is known, and what fluctuates; powers of both
-/// are added, as products of the two average to nothing.
+/// Returns means over random realisations of the heights. The field is the sum of its known mean and a fluctuation. The
+/// powers of both are added, because the mean of their product is 0.
 inline Scattered screened(const Screens& screens, Aperture& aperture, const Case& c) {
   std::deque<Heights> heights;
   for (std::size_t k = 0; k < screens.facets(); ++k) heights.emplace_back(screens.facet_size(), 1e-3 * c.length_um);

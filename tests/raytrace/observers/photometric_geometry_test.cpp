@@ -1,4 +1,4 @@
-// The angles of CIE 54.2 and ASTM E808 against their published relations and against each other.
+// Tests of the angles of CIE 54.2 and ASTM E808 against their published relations.
 #include "raytrace/observers/photometric_geometry.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace {
 using namespace raytrace;
 using geometry::Vec3;
 
-/// The intrinsic system of CIE 54.2 and ASTM E808: angles between the illumination axis, the observation axis, the
-/// normal and the datum mark, whatever turned them there.
+/// The intrinsic system of CIE 54.2 and ASTM E808. Its angles are between the illumination axis, the observation axis,
+/// the normal and the datum mark. They do not depend on the order of rotations.
 struct IntrinsicGeometry {
   Angle alpha;    ///< observation angle
   Angle beta;     ///< entrance angle, between the normal and the illumination axis; 0 to 180 degrees
@@ -28,17 +28,18 @@ struct IntrinsicGeometry {
                   ///< points away from the source - to the datum mark, counter-clockwise likewise
 };
 
-// Sines below this are those of parallel directions.
+// Directions count as parallel if the sine of the angle between them is below this value.
 constexpr double kParallel = 1e-14;
 
-/// Into (-pi, pi]; rounding does not choose between the ends.
+/// Wraps an angle into (-pi, pi]. Rounding errors do not change the sign of an angle close to pi.
 Angle wrapped(double angle_rad) {
   double turned = std::remainder(angle_rad, 2.0 * std::numbers::pi);
   if (turned < 1e-12 - std::numbers::pi) turned += 2.0 * std::numbers::pi;
   return Angle::from_rad(turned);
 }
 
-/// From the plane through `axis` and `from` to that through `axis` and `to`, counter-clockwise as seen from its end.
+/// Returns the angle from the plane through `axis` and `from` to the plane through `axis` and `to`. It is
+/// counter-clockwise as seen from the end of the axis.
 double turn_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
   return std::atan2(axis.dot(from.cross(to)), from.dot(to) - axis.dot(from) * axis.dot(to));
 }
@@ -49,9 +50,10 @@ IntrinsicGeometry intrinsic_of(const PhotometricGeometry& geometry) {
   IntrinsicGeometry intrinsic;
   intrinsic.alpha = geometry.alpha;
   intrinsic.beta = Angle::from_rad(std::atan2(normal.cross(d.to_source).norm(), normal.dot(d.to_source)));
-  Vec3 entrance_half_plane = normal;  // beyond the illumination axis
+  Vec3 entrance_half_plane = normal;  // half plane on the side of the normal
   if (normal.cross(d.to_source).norm() < kParallel) {
-    // Without an entrance half plane its trace is taken through the observer: gamma = 0.
+    // If the normal is parallel to the illumination axis, the half plane is taken through the observer, so that gamma =
+    // 0.
     const Vec3 observer = return_frame(geometry).up;
     entrance_half_plane = d.to_source + observer;
   }
@@ -66,11 +68,11 @@ IntrinsicGeometry intrinsic_of(const PhotometricGeometry& geometry) {
 PhotometricGeometry from_intrinsic(const IntrinsicGeometry& intrinsic) {
   const double beta = intrinsic.beta.rad();
   const double gamma = intrinsic.gamma.rad();
-  // Laboratory: z to the source, y towards the observer. The normal lies in the half plane that reaches the observer's
-  // by a turn of gamma about z.
+  // In the laboratory frame, z points to the source and y towards the observer. The half plane of the normal is rotated
+  // by gamma about z into the half plane of the observer.
   const Vec3 in_plane(std::sin(gamma), std::cos(gamma), 0.0);
   const Vec3 normal = std::cos(beta) * Vec3::UnitZ() + std::sin(beta) * in_plane;
-  // Across the normal, away from the source.
+  // Direction perpendicular to the normal, away from the source.
   const Vec3 away = std::cos(beta) * in_plane - std::sin(beta) * Vec3::UnitZ();
   const Vec3 datum = Eigen::AngleAxisd(intrinsic.omega_s.rad(), normal) * away;
   Eigen::Matrix3d part_from_lab;
@@ -78,7 +80,7 @@ PhotometricGeometry from_intrinsic(const IntrinsicGeometry& intrinsic) {
   const double alpha = intrinsic.alpha.rad();
   const Vec3 up = part_from_lab * Vec3::UnitY();
   const Vec3 s = part_from_lab * Vec3::UnitZ();
-  // From the observation half plane itself, which is there even where alpha is 0.
+  // The half plane of the observer is known even if alpha is 0.
   PhotometricGeometry geometry = geometry_of({s, (s + up).normalized()});
   geometry.alpha = Angle::from_rad(alpha);
   return geometry;
@@ -125,8 +127,8 @@ TEST(PhotometricGeometry, IntrinsicAnglesRoundTrip) {
   }
 }
 
-// The direction to the source of the regulations: V about the fixed horizontal axis, H about the axis that moves with
-// it.
+// Direction to the source in regulations: V is a rotation about the fixed horizontal axis. H is a rotation about the
+// axis that moves with V.
 TEST(PhotometricGeometry, SourceAndObserverOfVAndH) {
   for (std::uint32_t k = 0; k < 1000; ++k) {
     const double v = uniform(k, 8, -60.0, 60.0) * kDeg;
@@ -141,7 +143,7 @@ TEST(PhotometricGeometry, SourceAndObserverOfVAndH) {
   }
 }
 
-// Relations of ASTM E808 between the two systems, and of both to the entrance and the viewing angle.
+// ASTM E808 publishes relations between the two systems, and with the entrance angle and the viewing angle.
 TEST(PhotometricGeometry, PublishedRelationsHold) {
   for (std::uint32_t k = 0; k < 1000; ++k) {
     const PhotometricGeometry g = random_geometry(k);

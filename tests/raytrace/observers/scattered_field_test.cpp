@@ -1,5 +1,5 @@
-// Diffraction together with roughness, against phase screens: facets with heights drawn at random, met by rays that are
-// followed one by one, and the fields of all paths added up over the aperture by fast Fourier transforms.
+// Tests of diffraction with roughness against phase screens. Facets have random heights. Rays are traced one by one,
+// and the fields of all paths are added over the aperture by fast Fourier transforms.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -46,7 +46,7 @@ void expect_agreement(const Case& c) {
   }
 }
 
-/// Cones of a hundredth of a degree are as good as their axis.
+/// Cones of a hundredth of a degree are so narrow that the direction of their axis represents them.
 const Vec2 kAxis = Vec2::Zero();
 
 TEST(DiffractionWithRoughness, PrismsAgreeWithPhaseScreensThatBothPathsMeet) {
