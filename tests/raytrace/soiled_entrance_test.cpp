@@ -1,5 +1,5 @@
-// Entrance faces under layers, water, dust, scratches and haze: closed forms, an independent trace of a drop,
-// reciprocity, and ledgers that close in every engine.
+// Tests of entrance faces with layers, water, dust, scratches and haze: closed forms, an independent trace of a drop,
+// reciprocity, and ledgers that add up to 1 in every engine.
 #include "raytrace/paths/soiled_entrance.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ EntranceCondition with_drops(double coverage, double contact_angle_deg) {
   return condition;
 }
 
-/// All at once but for roughness, which has no film.
+/// Returns a condition with all kinds of contamination. Roughness is left out, because a rough face has no film.
 EntranceCondition filthy() {
   EntranceCondition condition = wet(0.3);
   condition.layers.insert(condition.layers.begin(), {1.6, 0.01, 0.5});
@@ -78,7 +78,8 @@ EntranceCondition rough() {
   return condition;
 }
 
-/// Light of power 1 and no polarisation on the face. \param k direction cosines along the face times the index there
+/// Returns unpolarised light of power 1 on the face.
+/// \param k direction cosines along the face, multiplied by the index of the medium of the ray
 Ray ray_at(const Vec2& k, bool inside) {
   const Vec2 along = k / (inside ? kPmma : 1.0);
   const double z = std::sqrt(1.0 - along.squaredNorm());
@@ -86,12 +87,13 @@ Ray ray_at(const Vec2& k, bool inside) {
   return {direction, {kUnpolarised, direction.unitOrthogonal()}, inside, false};
 }
 
-/// Sums over many events, in batches that tell their error.
+/// Sums over many events, in batches from which the standard error follows.
 class Events {
  public:
   static constexpr std::uint32_t kBatches = 32;
 
-  /// \param start gives the ray of an event from two random numbers \param value counts a ray that goes on
+  /// \param start returns the ray of an event from two random numbers
+  /// \param value returns the value of a ray after the event
   Events(const Optics& optics, std::uint32_t per_batch, const std::function<Ray(double, double)>& start,
          const std::function<double(const Ray&)>& value) {
     const SoiledEntrance face(optics);
@@ -128,18 +130,18 @@ double power_in_body(const Ray& ray) {
   return ray.inside ? ray.light.power() : 0.0;
 }
 
-/// Mean over light by Lambert's law from the air.
+/// Returns the mean reflectance for light from the air that is distributed by Lambert's law.
 double diffuse_reflectance() {
   double sum = 0.0;
   constexpr int kSteps = 20000;
-  for (int k = 0; k < kSteps; ++k) {  // even steps of the squared cosine
+  for (int k = 0; k < kSteps; ++k) {  // equal steps of the squared cosine
     const double cosine = std::sqrt((k + 0.5) / kSteps);
     sum += materials::reflectance(1.0 / kPmma, cosine) / kSteps;
   }
   return sum;
 }
 
-// Every event keeps its power, and its light is polarised no more than light can be.
+// Every event conserves power, and the degree of polarisation is at most 1.
 TEST(SoiledEntrance, EveryEventKeepsItsPower) {
   for (const EntranceCondition& condition :
        {filthy(), rough(), dusty(1.0, 0.9, 0.5), dusty(0.5, 0.0, 0.5), hazy(1.0, 20.0), with_drops(1.0, 90.0)}) {
@@ -169,7 +171,8 @@ TEST(SoiledEntrance, EveryEventKeepsItsPower) {
   }
 }
 
-// A haze meter behind a plate with one hazy face, on either side of it: the share beyond 2.5 degrees is the key's.
+// A plate has one hazy face, on either side. The fraction of the light beyond 2.5 degrees, as measured by a haze meter,
+// must equal the key.
 TEST(SoiledEntrance, AHazeMeterReadsTheHaze) {
   constexpr double kHaze = 0.12;
   const double spread_deg = 6.0;
@@ -180,7 +183,7 @@ TEST(SoiledEntrance, AHazeMeterReadsTheHaze) {
   for (const bool from_inside : {false, true}) {
     const auto passed = [&](const Ray& ray) {
       if (ray.inside == from_inside) return 0.0;
-      // Through the plane face on the other side, where the light has still to pass it.
+      // If the light has not yet passed the plane face on the other side, the transmittance of this face is included.
       const double through = from_inside ? 1.0 : 1.0 - materials::reflectance(kPmma, -ray.direction.z());
       return through * ray.light.power();
     };
@@ -192,7 +195,8 @@ TEST(SoiledEntrance, AHazeMeterReadsTheHaze) {
   }
 }
 
-// Lobes across scratches: erfc of the angle across, and nothing along.
+// Scratches scatter into lobes across their direction, with the error function erfc of the angle. Along the scratches,
+// nothing is scattered.
 TEST(SoiledEntrance, ScratchesThrowLightAcross) {
   EntranceCondition condition;
   condition.scratches = {0.25, sin_deg(8.0), 0.3};
@@ -211,8 +215,9 @@ TEST(SoiledEntrance, ScratchesThrowLightAcross) {
   }
 }
 
-// Dust on a face: rho = c (a b + (a f)^2 R / (1 - a b R)) comes back, with R the face's mean reflectance of Lambertian
-// light; c a f (1 - R) / (1 - a b R) goes in, whatever the incidence. In proportion to the coverage.
+// Dust on a face: the returned fraction is rho = c (a b + (a f)^2 R / (1 - a b R)), where R is the mean reflectance of
+// the face for Lambertian light. The fraction c a f (1 - R) / (1 - a b R) enters the part at any angle of incidence.
+// Both are proportional to the coverage c.
 TEST(SoiledEntrance, DustInClosedForm) {
   const double face = diffuse_reflectance();
   const double albedo = 0.8;
@@ -234,8 +239,8 @@ TEST(SoiledEntrance, DustInClosedForm) {
     }
 }
 
-// Dark field: before a body that sends nothing back dust is all that shines. Into a cone of half angle w round the
-// source at incidence t Lambertian light sends rho cos t sin^2 w.
+// The part behind the face returns no light, so that all returned light is from dust. In a cone of half-angle w around
+// the source at the incidence t, Lambertian light has the power rho cos t sin^2 w.
 TEST(SoiledEntrance, DustShinesInADarkField) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5));
   Optics optics = with_condition(dusty(0.1, 0.9, 0.6));
@@ -253,13 +258,13 @@ TEST(SoiledEntrance, DustShinesInADarkField) {
   }
 }
 
-/// Light in the meridional plane of a drop on a face: what s and p make of it, by one way after the other. Written for
-/// this test alone: angles and Fresnel's formulas in their sines and tangents.
+/// Traces light in the meridional plane of a drop on a face, for s and p separately. This code is used by the test
+/// only: it uses plane angles, and Fresnel's formulas as functions of sines and tangents.
 struct MeridionalTrace {
-  double slope;  ///< sine of the contact angle; the drop's base has the radius 1
+  double slope;  ///< sine of the contact angle; the base of the drop has the radius 1
   double in_body = 0.0, up = 0.0, down = 0.0, tangential = 0.0;
 
-  /// Of s and p between angles of incidence and refraction.
+  /// Returns the reflectances of s and p for an angle of incidence and an angle of refraction.
   static std::array<double, 2> reflectances(double i, double t) {
     if (i < 1e-9) i = 1e-9, t = i * t / std::max(t, 1e-300);
     const double s = std::sin(i - t) / std::sin(i + t);
@@ -274,7 +279,7 @@ struct MeridionalTrace {
     return reflectances(angle, std::asin(sine));
   }
 
-  /// In the water at (x, z), at an angle from straight down, towards +x.
+  /// Continues a path in the water from (x, z). The angle is measured from the downward direction, towards +x.
   void in_water(double x, double z, double angle, std::array<double, 2> power, int depth) {
     if (depth > 40 || power[0] + power[1] < 1e-9) return;
     const double radius = 1.0 / slope;
@@ -295,8 +300,8 @@ struct MeridionalTrace {
     }
     const double px = x + to_cap * dx;
     const double pz = z + to_cap * dz;
-    const double tilt = std::asin(px / radius);  // of the outward normal from straight up, towards +x
-    const double heading = std::atan2(dx, dz);   // from straight up
+    const double tilt = std::asin(px / radius);  // angle of the outward normal from +z, towards +x
+    const double heading = std::atan2(dx, dz);   // from +z
     double incidence = heading - tilt;
     incidence = std::remainder(incidence, 2.0 * pi);
     const auto r = at_interface(kWater, 1.0, std::abs(incidence), is_total);
@@ -305,11 +310,11 @@ struct MeridionalTrace {
       const double passed = 0.5 * ((1.0 - r[0]) * power[0] + (1.0 - r[1]) * power[1]);
       (std::cos(out) > 0.0 ? up : down) += passed;
     }
-    const double back = tilt + pi - incidence;  // mirrored at the normal
+    const double back = tilt + pi - incidence;  // reflected at the normal
     in_water(px, pz, pi - back, {r[0] * power[0], r[1] * power[1]}, depth + 1);
   }
 
-  /// Straight down on all of the drop.
+  /// Traces light that falls vertically on the whole drop.
   void fall(int steps) {
     for (int k = 0; k < steps; ++k) {
       const double x = std::sqrt((k + 0.5) / steps);
@@ -325,8 +330,9 @@ struct MeridionalTrace {
   }
 };
 
-// Along the normal all stays in the meridional plane: the share that enters, its tangential wave vector, and what comes
-// back, against a trace in that plane. Contact angles up to 45 degrees send nothing down beside the drop.
+// For light along the normal, all paths are in the meridional plane. Three results are compared with a trace in this
+// plane: the fraction that enters, its tangential wave vector, and the returned light. With contact angles of up to 45
+// degrees, no light leaves the drop downwards.
 TEST(SoiledEntrance, ADropAgainstATraceInItsMeridionalPlane) {
   for (const double contact_deg : {10.0, 30.0, 44.0}) {
     MeridionalTrace trace{sin_deg(contact_deg)};
@@ -339,14 +345,14 @@ TEST(SoiledEntrance, ADropAgainstATraceInItsMeridionalPlane) {
     const Events tangential(optics, 4000, start, [](const Ray& ray) {
       return ray.inside ? kPmma * ray.direction.head<2>().norm() * ray.light.power() : 0.0;
     });
-    // What leaves the drop downwards meets the face and mostly enters.
+    // Light that leaves the drop downwards hits the face, and most of it enters.
     EXPECT_NEAR(in.mean, trace.in_body, student_bound(6) * in.std_error + trace.down);
     EXPECT_NEAR(tangential.mean, trace.tangential, student_bound(6) * tangential.std_error + trace.down);
     EXPECT_LT(in.std_error, 2e-3);
   }
 }
 
-// Flat drops are a film.
+// Very flat drops act like a film.
 TEST(SoiledEntrance, FlatDropsAreAFilm) {
   for (const double k : {0.0, 0.5}) {
     const Ray ray = ray_at({k, 0.0}, false);
@@ -359,7 +365,8 @@ TEST(SoiledEntrance, FlatDropsAreAFilm) {
   }
 }
 
-// As much light goes from some directions in the air into some in the body as back, summed over polarisations.
+// Summed over polarisations, the light from given directions in the air into given directions in the body equals the
+// light in the reverse direction.
 TEST(SoiledEntrance, Reciprocal) {
   const Vec2 air(0.3, 0.0);
   const Vec2 body(-0.05, 0.15);
@@ -372,7 +379,7 @@ TEST(SoiledEntrance, Reciprocal) {
   };
   const auto arrives = [&](const Vec2& middle, bool inside) {
     return [=](const Ray& ray) {
-      // Reversed light goes the opposite way.
+      // Reversed light travels in the opposite direction.
       const Vec2 k = (inside ? kPmma : 1.0) * ray.direction.head<2>();
       return ray.inside == inside && (k - middle).norm() < radius ? ray.light.power() : 0.0;
     };
@@ -387,7 +394,8 @@ TEST(SoiledEntrance, Reciprocal) {
   }
 }
 
-// Roughness long against the wavelength keeps exp(-(4 pi s / w)^2) of the reflection specular.
+// For roughness with a correlation length much longer than the wavelength, the fraction exp(-(4 pi s / w)^2) of the
+// reflection remains specular.
 TEST(SoiledEntrance, RoughnessOfTheFaceDims) {
   EntranceCondition condition;
   condition.roughness = surface_models::HarveyShack({20.0, 30.0, 0.0, 0.0}, {kPmma, 1.0, 587.56});
@@ -397,8 +405,8 @@ TEST(SoiledEntrance, RoughnessOfTheFaceDims) {
   EXPECT_NEAR(specular.mean, kept * materials::reflectance(1.0 / kPmma, 1.0), 2e-3 * specular.mean + 1e-9);
 }
 
-// A layered, half wet face before mirrors that send all light back along the normal: R + T^2 / (1 - R'), exactly and by
-// rays.
+// An entrance face has layers and is half wet. Mirrors behind it return all light along the normal. The RRE is R + T^2
+// / (1 - R'), with the exact engine and by rays.
 TEST(SoiledEntrance, LayersAndFilmBeforeMirrors) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   EntranceCondition condition = wet(0.5);
@@ -406,7 +414,7 @@ TEST(SoiledEntrance, LayersAndFilmBeforeMirrors) {
   Optics optics = with_condition(condition);
   optics.mirror_facets = true;
   const auto r = [](double a, double b) { return std::pow((a - b) / (a + b), 2.0); };
-  // Coat alone, and coat with water, from the air and from the body, by the sums of each pair of faces.
+  // R, T and R' of the layer, and of the layer with water, are sums over multiple reflections between pairs of faces.
   const double a = std::exp(-0.06);
   const auto join = [](std::array<double, 3> one, std::array<double, 3> two, double kept) {  // R, T, R'
     const double sum = 1.0 / (1.0 - one[2] * two[0] * kept * kept);
@@ -430,7 +438,7 @@ TEST(SoiledEntrance, LayersAndFilmBeforeMirrors) {
   EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
 }
 
-// Both engines follow the same light, of endless and of finite parts, and the exact one that of layers.
+// Both engines must agree for infinite and finite parts. The exact engine is included for layers.
 TEST(SoiledEntrance, EnginesAgreeAndLedgersClose) {
   const std::vector<PartSpec> parts = {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5),
                                        finite(HexagonalCube{0.5}, Arrangement::honeycomb, 3.5, 3.0, 0.8)};
@@ -465,7 +473,7 @@ TEST(SoiledEntrance, EnginesAgreeAndLedgersClose) {
   }
 }
 
-// With their shares effects go away: from a clean face no further than the share.
+// All effects vanish with their fraction of the face. The difference from a clean face is at most this fraction.
 TEST(SoiledEntrance, NothingIsLeftOfNothing) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5));
   const auto ledger = [&](const EntranceCondition& condition) {
@@ -485,7 +493,7 @@ TEST(SoiledEntrance, NothingIsLeftOfNothing) {
        {dusty(kLittle, 0.5, 0.5), hazy(kLittle, 3.0), with_drops(kLittle, 30.0), scratched, smooth}) {
     const Ledger soiled = ledger(condition);
     for (std::size_t a = 0; a < kAccountCount; ++a)
-      EXPECT_NEAR(soiled.power[a], clean.power[a], 2e-3) << kAccountNames[a];  // of other random choices
+      EXPECT_NEAR(soiled.power[a], clean.power[a], 2e-3) << kAccountNames[a];  // the random choices differ
     EXPECT_LT(soiled[Account::scattered_out], 1e-3);
   }
 }

@@ -19,8 +19,9 @@ double rad(double deg) {
   return deg * std::numbers::pi / 180.0;
 }
 
-/// Facets that fall to both sides of the crest by these angles, cut by `top` (um below the crest, as a function of x
-/// from it), by the plain definition of a shape: the lower of all.
+/// Returns the profile of two facets with these slopes on both sides of the crest, cut by `top`. The height is the
+/// minimum of all.
+/// \param top depth below the crest, in um, as a function of the distance x from the crest
 template <class Top>
 std::vector<double> profile(double left_deg, double right_deg, Top top) {
   std::vector<double> heights_nm;
@@ -32,7 +33,8 @@ std::vector<double> profile(double left_deg, double right_deg, Top top) {
   return heights_nm;
 }
 
-/// Symmetric facets at 45 degrees, where the circle of radius r has its centre sqrt(2) r below the crest.
+/// Returns the profile of symmetric facets at 45 degrees. The center of a circle of radius r is sqrt(2) r below the
+/// crest.
 std::vector<double> rounded(double radius_um) {
   return profile(45.0, 45.0, [&](double x, double facets) {
     if (std::abs(x) >= radius_um / std::numbers::sqrt2) return facets;
@@ -78,7 +80,7 @@ TEST(EdgeFit, TakesValleysTiltedFacetsAndHoles) {
   EXPECT_NEAR(inverted.radius_um, 20.0, 0.05);
   EXPECT_NEAR(inverted.dihedral_deg, 270.0, 0.01);
 
-  // Facets at 50 and 10 degrees, 120 between them, as neighbours of a hexagonal pin on a tilted holder.
+  // Facets at 50 and 10 degrees include 120 degrees, like neighbouring hexagonal pins on a tilted holder.
   const double radius = 15.0;
   const double tan_l = std::tan(rad(50.0));
   const double tan_r = std::tan(rad(10.0));
@@ -108,7 +110,7 @@ TEST(EdgeFit, RefusesWhatIsNoEdge) {
   EXPECT_THROW(fit_edge(std::vector<double>(100, 5.0), 1.0), std::invalid_argument);
   EXPECT_THROW(fit_edge(std::vector<double>(100, kMissing), 1.0), std::invalid_argument);
   EXPECT_THROW(fit_edge({1.0, 2.0, 3.0}, 1.0), std::invalid_argument);
-  std::vector<double> hook(100, 0.0);  // the facets' lines meet outside of the profile
+  std::vector<double> hook(100, 0.0);  // the lines of the facets intersect outside of the profile
   for (std::size_t i = 0; i < 20; ++i) hook[i] = 1e5 * static_cast<double>(i);
   EXPECT_THROW(fit_edge(hook, 1.0), std::invalid_argument);
 }

@@ -9,7 +9,7 @@
 namespace retrace::surface_models::filter_test {
 namespace {
 
-/// Amplitude of the wave of frequency (fx, fy) over a map of whole periods: its Fourier coefficient.
+/// Returns the amplitude of the wave of frequency (fx, fy): its Fourier coefficient over a map of whole periods.
 double amplitude(const HeightMap& map, double fx, double fy) {
   double c = 0.0;
   double s = 0.0;
@@ -36,7 +36,7 @@ TEST(GaussianFilter, PassesWavesAsTheStandardSays) {
       const Split split = gaussian_split(map, kCutoff);
       const double expected = std::exp(-std::numbers::pi * std::pow(a * kCutoff / wavelength, 2));
       EXPECT_NEAR(gaussian_transmission(1.0 / wavelength, kCutoff), expected, 1e-15);
-      // A wave keeps its shape inside, whatever its period: compare point by point.
+      // Away from the border, the filter changes only the amplitude of a wave. The maps are compared point by point.
       for (const auto& [x, y] : {std::pair{320U, 320U}, {100U, 540U}, {431U, 207U}}) {
         EXPECT_NEAR(split.waviness.at(x, y), expected * map.at(x, y), 1e-3) << wavelength << " " << direction_deg;
         EXPECT_NEAR(split.roughness.at(x, y), (1.0 - expected) * map.at(x, y), 1e-3);
@@ -70,7 +70,7 @@ TEST(GaussianFilter, KeepsAConstantAtBordersAndAroundHoles) {
   HeightMap map{90, 70, 1.0, 1.0, std::vector<double>(90 * 70, 42.0)};
   for (std::size_t row = 20; row < 50; ++row)
     for (std::size_t column = 30; column < 80; ++column) map.at(column, row) = kMissing;
-  map.at(55, 35) = 42.0;  // alone in the hole
+  map.at(55, 35) = 42.0;  // single valid point in the hole
   const Split split = gaussian_split(map, 10.0);
   for (std::size_t i = 0; i < map.heights_nm.size(); ++i) {
     EXPECT_EQ(std::isnan(split.waviness.heights_nm[i]), std::isnan(map.heights_nm[i]));

@@ -1,5 +1,5 @@
-// Roughness between dielectrics to first order, against shallow gratings solved by the Rayleigh method, which shares
-// nothing with it; its energy, reciprocity, limits and draws.
+// Tests of first-order scattering by roughness between dielectrics. The reference is the independent Rayleigh method
+// for shallow gratings. Energy, reciprocity, limits and sampling are also tested.
 #include <Eigen/Dense>
 
 #include "materials/fresnel.h"
@@ -12,14 +12,14 @@ using namespace scatter_checks;
 using Complex = std::complex<double>;
 using Eigen::Vector3cd;
 
-/// Eigen's own conjugates that of complex vectors.
+/// Returns the cross product. Eigen's own function returns the complex conjugate for complex vectors.
 Vector3cd cross(const Vector3cd& a, const Vector3cd& b) {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
 }
 
-/// A sinusoidal grating h = depth cos(g x) between two media, by the Rayleigh method: plane waves of all orders on both
-/// sides, down to the grooves' floor, their fields matched on the surface. Exact as the depth goes to 0. Lengths in
-/// units of w / (2 pi), time dependence exp(-i w t).
+/// A sinusoidal grating h = depth cos(g x) between two media, solved by the Rayleigh method. Plane waves of all orders
+/// are assumed on both sides, down to the bottom of the grooves, and their fields are matched on the surface. The
+/// method is exact as the depth goes to 0. Lengths are in units of w / (2 pi), and the time dependence is exp(-i w t).
 template <int kOrders>
 class GratingOf {
  public:
@@ -63,7 +63,8 @@ class GratingOf {
     solution_ = system.fullPivLu().solve(right);
   }
 
-  /// Amplitudes of an order, as roots of power: rows s and p of what leaves, columns of what arrives.
+  /// Returns the amplitudes of an order, scaled so that their squares are powers. Rows are s and p of the outgoing
+  /// light, columns those of the incident light.
   Eigen::Matrix2cd order(int m, Lobe lobe) const {
     const int medium = lobe == Lobe::reflection ? 0 : 1;
     const double q = std::abs(wave_vector(m, medium).z().real()), q_in = std::abs(wave_vector(0, 0).z().real());
@@ -106,7 +107,8 @@ struct Incidence {
   }
 };
 
-/// Inside and outside, in and across the plane of incidence, total reflection, both sides of the critical angle (42.1).
+/// Returns incidences from inside and outside, in and across the plane of incidence, with total reflection, and on both
+/// sides of the critical angle (42.1 degrees).
 const std::vector<Incidence>& incidences() {
   static const std::vector<Incidence> all = {
       {kIndex, 1.0, 5.0, 0.0, 0.4},     {kIndex, 1.0, 30.0, 35.0, 0.3},  {kIndex, 1.0, 41.9, 180.0, 0.05},
@@ -120,7 +122,7 @@ Vec2 unit(const Vec2& v) {
   return v / v.norm();
 }
 
-// Both orders of a grating that is 1e-5 of a wave deep, every component with its phase.
+// Compares both first orders of a grating with a depth of 1e-5 wavelengths, every component with its phase.
 TEST(FirstOrder, IsTheFirstOrderOfAShallowGrating) {
   constexpr double kDepth = 1e-4;
   int compared = 0;
@@ -132,7 +134,7 @@ TEST(FirstOrder, IsTheFirstOrderOfAShallowGrating) {
         if (!grating.propagates(m, lobe)) continue;
         const Vec2 k_out = i.k() + Vec2(m * i.g, 0.0);
         const Polarisation2 f = interface.amplitudes(i.k().norm(), unit(i.k()), k_out, lobe);
-        // Half of the cosine belongs to either order; scattered fields are a quarter of a period late.
+        // Each first order gets half of the cosine. Scattered fields are delayed by a quarter of a period.
         const Polarisation2 expected = grating.order(m, lobe) / (Complex(0.0, 1.0) * 0.5 * kDepth);
         EXPECT_LT((f - expected).norm(), 2e-5 * (1.0 + expected.norm()))
             << i.incidence_deg << " deg, order " << m << ", lobe " << static_cast<int>(lobe) << "\n"
@@ -144,8 +146,8 @@ TEST(FirstOrder, IsTheFirstOrderOfAShallowGrating) {
   EXPECT_GE(compared, 30);
 }
 
-/// Share of unpolarised light, or of s or p, in units of (2 pi Sq / w)^2 and by midpoints over the discs of both sides:
-/// nothing in common with the table's rule.
+/// Returns the scattered fraction of unpolarised light, or of s or p, in units of (2 pi Sq / w)^2. It is integrated
+/// over the discs of both sides by the midpoint rule, independently of the table.
 double share_by_midpoints(const DielectricInterface& interface, double length, double k_in,
                           const Polarisation2& coherency, std::optional<Lobe> only = {}) {
   double sum = 0.0;
@@ -175,12 +177,13 @@ ScatterEvent rough_event(double incidence_deg) {
   return event;
 }
 
-/// Correlation length in units of w / (2 pi).
+/// Converts a correlation length to units of w / (2 pi).
 double in_waves(double length_um, double wavelength_nm = 550.0) {
   return 2e3 * std::numbers::pi * length_um / wavelength_nm;
 }
 
-// Shares between the nodes of the table, at both sides of the critical angle, for short lengths and long ones.
+// Tests fractions between the nodes of the table, on both sides of the critical angle, for short and long correlation
+// lengths.
 TEST(FirstOrder, SharesAreIntegralsOverBothSides) {
   for (const auto& [from, to] : {std::pair(kIndex, 1.0), std::pair(1.0, kIndex), std::pair(kIndex, 1.333)}) {
     const DielectricInterface interface(from, to);
@@ -196,7 +199,8 @@ TEST(FirstOrder, SharesAreIntegralsOverBothSides) {
   }
 }
 
-// What a shallow grating takes from the specular light, to second order of its depth, is what its first orders carry.
+// To second order of the depth, the power that a shallow grating removes from the specular light is the power of its
+// first orders.
 TEST(FirstOrder, SpecularLightLosesWhatIsScattered) {
   constexpr double kDepth = 3e-3;
   for (const Incidence& i : incidences()) {
@@ -212,15 +216,15 @@ TEST(FirstOrder, SpecularLightLosesWhatIsScattered) {
             scattered += 0.25 * kDepth * kDepth *
                          power(interface.amplitudes(i.k().norm(), unit(i.k()), i.k() + Vec2(m * i.g, 0.0), lobe));
       }
-      // Terms of the fourth power grow with the slope of what the orders see, 1 / q.
+      // Terms of fourth order increase with the slope relative to the order, 1 / q.
       EXPECT_NEAR((1.0 - specular) / scattered, 1.0, 1e-3) << i.incidence_deg;
     }
   }
 }
 
-// What the model takes from the specular light of both sides, R (1 - exp(-x_r)) + T (1 - exp(-x_t)), is what it
-// scatters to both, below and above the critical angle, for low heights; nothing is taken from light that does not
-// pass.
+// For small heights, the model removes the power R (1 - exp(-x_r)) + T (1 - exp(-x_t)) from the specular light of both
+// sides. This equals the power that it scatters to both sides, below and above the critical angle. Nothing is removed
+// from transmitted light at total reflection.
 TEST(FirstOrder, MeansTakeWhatIsScatteredToBothSides) {
   for (const double length_um : {0.3, 1.5}) {
     const HarveyShack model({0.2, length_um, 0.0, 0.0}, {kIndex, 1.0, 550.0});
@@ -248,9 +252,9 @@ TEST(FirstOrder, MeansTakeWhatIsScatteredToBothSides) {
   }
 }
 
-/// What Gaussian heights of variance 1 take from reflected and transmitted light of s and of p, to second order of the
-/// heights: to that order the mean field is linear in their spectrum, so that gratings of all periods and directions
-/// add up. By the Rayleigh method, with nothing of first order in it.
+/// The power that Gaussian heights of variance 1 remove from reflected and transmitted light of s and of p, to second
+/// order of the heights. To this order, the mean field is linear in the spectrum of the heights. The losses of gratings
+/// of all periods and directions therefore add up. The Rayleigh method is independent of first-order theory.
 struct Losses {
   std::array<double, 2> reflected{}, transmitted{};
 };
@@ -263,7 +267,8 @@ Losses losses_by_gratings(double index_from, double index_to, double incidence_d
   Losses sum;
   for (int a = 0; a < kAngles; ++a)
     for (int r = 0; r < kRadii; ++r) {
-      // Equal shares of the spectrum: 1 - exp(-(length g / 2)^2) of it lies below g.
+      // The samples represent equal fractions of the spectrum. The fraction 1 - exp(-(length g / 2)^2) of the spectrum
+      // is below g.
       const double g = 2.0 / length * std::sqrt(-std::log(1.0 - (r + 0.5) / kRadii));
       const double angle = 2.0 * std::numbers::pi * (a + 0.5) / kAngles;
       const GratingOf<1> grating(index_from, index_to, k * Vec2(std::cos(angle), std::sin(angle)), g, kDepth);
@@ -278,8 +283,8 @@ Losses losses_by_gratings(double index_from, double index_to, double incidence_d
   return sum;
 }
 
-// How R and T share the loss is a matter of second order: the model's rule is as near as docs/theory/scatter.md says;
-// its sum is right, and beyond the critical angle reflected light pays alone.
+// The division of the loss between R and T is an effect of second order. The rule of the model is as accurate as
+// docs/theory/scatter.md states. The sum is correct, and beyond the critical angle only reflected light has a loss.
 TEST(FirstOrder, ReflectedAndTransmittedLightShareTheLoss) {
   struct Split {
     double length_um, incidence_deg, within_s, within_p;  ///< of R's part
@@ -307,8 +312,8 @@ TEST(FirstOrder, ReflectedAndTransmittedLightShareTheLoss) {
   }
 }
 
-// Turned round, light goes the other way with the same amplitude: F(in -> out) is F(out -> in) transposed, but for the
-// sign of s, whose axis turns with the light.
+// Reciprocity: reversed light has the same amplitude. F(in -> out) is the transpose of F(out -> in) except for the sign
+// of s, whose axis rotates with the light.
 TEST(FirstOrder, IsReciprocal) {
   for (const Incidence& i : incidences()) {
     const DielectricInterface there(i.index_from, i.index_to), back(i.index_to, i.index_from);
@@ -323,8 +328,8 @@ TEST(FirstOrder, IsReciprocal) {
   }
 }
 
-// Heights that are long against the wavelength put a phase on Fresnel's amplitudes: the limit in which the model of
-// phases was right.
+// For correlation lengths much longer than the wavelength, heights only change the phase of Fresnel's amplitudes. In
+// this limit, the phase model is valid.
 TEST(FirstOrder, LongHeightsPutAPhaseOnFresnelsLight) {
   for (const Incidence& i : incidences()) {
     const DielectricInterface interface(i.index_from, i.index_to);
@@ -348,8 +353,8 @@ Polarisation2 askew() {
   return made;
 }
 
-// Draws in both hemispheres follow the density, with light of every polarisation, and below and above the critical
-// angle; their mean coherency, too, is that of the amplitudes.
+// Draws in both hemispheres follow the density, for light of every polarisation, below and above the critical angle.
+// Their mean coherency is also that of the amplitudes.
 TEST(FirstOrder, DrawsFollowTheDensity) {
   constexpr std::uint32_t kDraws = 60000;
   const Roughness heights = {5.0, 0.39, 4.0, 8.0};
@@ -391,8 +396,8 @@ TEST(FirstOrder, DrawsFollowTheDensity) {
   }
 }
 
-// For roughness that is long against the wavelength the means are the phase variances, so that nothing changes; for
-// short ones they are less at total reflection.
+// For correlation lengths much longer than the wavelength, the means are the phase variances. For short lengths, they
+// are smaller at total reflection.
 TEST(FirstOrder, MeansAreThePhaseVariancesOfLongHeights) {
   const double sq_nm = 10.0;
   for (const double incidence_deg : {0.0, 20.0, 50.0, 54.74, 70.0}) {
@@ -415,7 +420,8 @@ TEST(FirstOrder, MeansAreThePhaseVariancesOfLongHeights) {
   }
 }
 
-// The bound of the draws holds for every index ratio, incidence and direction, and is nearly reached.
+// The upper bound used for drawing is valid for every index ratio, incidence and direction, and some directions come
+// close to it.
 TEST(FirstOrder, BoundHolds) {
   double closest = 0.0;
   for (const double ratio : {0.4, 0.67, 0.9, 1.02, 1.12, 1.49, 2.0, 3.0}) {

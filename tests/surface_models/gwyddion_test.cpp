@@ -1,4 +1,4 @@
-// Gwyddion's libraries compute the same quantities of the same surfaces. Its lengths and heights are in metres.
+// Compares quantities of surfaces with those of Gwyddion's libraries, whose lengths and heights are in metres.
 
 #include <gtest/gtest.h>
 #include <libgwyddion/gwycontainer.h>
@@ -36,7 +36,7 @@ Field field_of(const HeightMap& map) {
   return field;
 }
 
-/// Roughness with a wave, a plane and heights that are not symmetric.
+/// Returns a rough surface with a wave, a plane, and an asymmetric distribution of heights.
 HeightMap skewed_surface() {
   HeightMap map = testing::gaussian_surface(384, 300, 9.0, 4.0, 8);
   for (double& z : map.heights_nm) z += 0.02 * z * z;
@@ -88,8 +88,8 @@ TEST(Gwyddion, AgreesOnTheGaussianFilterInside) {
 }
 
 TEST(Gwyddion, AgreesOnSpectraAlongBothAxes) {
-  // Gwyddion scales each line back to its variance before the window, so long waves, of which a line holds only one,
-  // would come out differently.
+  // Gwyddion scales each line to its original variance before the window is applied. Long waves, of which a line
+  // contains only one, would therefore have different amplitudes.
   HeightMap map = testing::gaussian_surface(384, 300, 9.0, 3.0, 8);
   testing::add_wave(map, 5.0, 1.0 / 16.0, 1.0 / 12.0, 0.3);
   const Field field = field_of(map);
@@ -99,8 +99,8 @@ TEST(Gwyddion, AgreesOnSpectraAlongBothAxes) {
                         axis == Axis::x ? GWY_ORIENTATION_HORIZONTAL : GWY_ORIENTATION_VERTICAL,
                         GWY_INTERPOLATION_LINEAR, GWY_WINDOWING_HANN, -1);
     const Spectrum spectrum = line_spectrum(map, axis);
-    // Gwyddion's density starts at the first harmonic as well. It is two-sided, in m^3 over the angular frequency 2 pi
-    // f.
+    // Gwyddion's density also starts at the first harmonic. It is two-sided, in m^3, as a function of the angular
+    // frequency 2 pi f.
     constexpr double kOneSided = 2.0;
     constexpr double kNm2MmPerM3 = 1e21;
     double ours = 0.0;
@@ -120,7 +120,7 @@ TEST(Gwyddion, AgreesOnTheAutocorrelation) {
   const Field acf(gwy_data_field_new(1, 1, 1.0, 1.0, FALSE));
   gwy_data_field_area_2dacf(field.get(), acf.get(), 0, 0, static_cast<gint>(map.columns), static_cast<gint>(map.rows),
                             20, 20);
-  // Distance 0 lies in the middle.
+  // Distance 0 is at the center of the field.
   const gint middle_x = gwy_data_field_get_xres(acf.get()) / 2;
   const gint middle_y = gwy_data_field_get_yres(acf.get()) / 2;
   const Autocorrelation r = autocorrelation(map, 30.0);
@@ -161,7 +161,7 @@ TEST(Gwyddion, WritesFilesThatAreReadBack) {
     EXPECT_NEAR(first.map.heights_nm[i], map.heights_nm[i], 1e-12);
     EXPECT_NEAR(second.map.heights_nm[i], 2.0 * map.heights_nm[i], 1e-12);
   }
-  // Wherever the file is cut, an error says so.
+  // A file that is cut at any position causes an error.
   for (std::size_t length = 4; length < content.size(); length += 7)
     EXPECT_THROW(parse_height_map(content.substr(0, length), "cut.gwy", {}), InputError) << length;
 }

@@ -1,4 +1,4 @@
-// Scatter from measured maps: closed forms, diffraction by their own spectrum, facets.
+// Tests of scatter from measured maps: closed forms, diffraction by the spectrum of the map, and facets.
 #include "surface_models/scatter/height_map_scatter.h"
 
 #include "core/error.h"
@@ -14,7 +14,7 @@ using namespace scatter_checks;
 
 constexpr double kPi = std::numbers::pi;
 
-/// Waves along x with a whole number of periods.
+/// Returns a map of waves along x with a whole number of periods.
 HeightMap sine_map(std::size_t points, double pixel_um, double sq_nm, double length_um) {
   HeightMap map = flat(points, pixel_um);
   for (std::size_t r = 0; r < points; ++r)
@@ -39,7 +39,7 @@ TEST(HeightMapScatter, SpecularShareIsTheClosedForm) {
     }
 }
 
-// The specular share of Gaussian heights is what the diffraction integral over the map itself gives.
+// For Gaussian heights, the specular fraction equals the diffraction integral over the map itself.
 TEST(HeightMapScatter, SpecularShareIsTheMeanPhaseOfTheMap) {
   const HeightMap map = random_map(512, 0.5, 30.0, 2.0, 2.0);
   std::complex<double> mean = 0.0;
@@ -50,12 +50,13 @@ TEST(HeightMapScatter, SpecularShareIsTheMeanPhaseOfTheMap) {
 }
 
 TEST(HeightMapScatter, SamplesFollowTheDensity) {
-  // Correlation lengths differ, so that x and y cannot be mixed up; one case is cut by the horizon.
+  // The correlation lengths along x and y differ, so that the test detects swapped axes. In one case, the lobe is cut
+  // by the horizon.
   const HeightMapScatter model(random_map(32, 0.4, 40.0, 2.0, 1.0), 550.0);
   std::uint32_t seed = 600;
   for (const auto& [name, event, lobe] : cases()) {
     const double wave_um = 0.55 / event.index_of(lobe);
-    // Bins as cells of the spectrum: there the density has steps.
+    // The bins are the cells of the spectrum, because the density has steps between them.
     const double step = wave_um / (32 * 0.4);
     const Vec2 centre = specular_direction(event, Vec3::UnitZ(), lobe)->head<2>();
     const Density density = scaled_density(model, event, lobe);
@@ -127,12 +128,13 @@ TEST(HeightMapScatter, ConservesEnergy) {
   for (const Case& c : cases()) {
     const double scattered = disc_integral(scaled_density(model, c.event, c.lobe), 700, 700);
     EXPECT_GT(scattered, 0.01) << c.name;
-    // The density has steps, which the plain rule of the test sees to some 1e-3.
+    // The density has steps. Numerical integration in this test has errors of about 1e-3.
     EXPECT_NEAR(scattered + specular_share(model, c.event, {}, c.lobe), 1.0, 2e-3) << c.name;
   }
 }
 
-// Of a map whose waves run askew, so that a mirror image would show; in transmission over n squared.
+// The waves of the map are oblique, so that a mirrored map would be detected. In transmission, reciprocity applies to
+// the density divided by n squared.
 TEST(HeightMapScatter, IsReciprocalBeforeScaling) {
   HeightMap map = random_map(64, 0.4, 25.0, 3.0, 2.0);
   for (std::size_t r = 0; r < map.rows; ++r)
@@ -159,8 +161,8 @@ TEST(HeightMapScatter, IsReciprocalBeforeScaling) {
     }
 }
 
-// Facets of a roof with two slopes, p and -q: light meets them in proportion to their share of the map and the
-// cross-section that they show, from either side.
+// The map is a roof with two slopes, p and -q. Light hits a slope with a probability proportional to its area in the
+// map and to its projected area, from either side.
 TEST(HeightMapScatter, FacetsAreDrawnByTheirCrossSection) {
   HeightMap map = flat(96, 1.0);
   for (std::size_t r = 0; r < 96; ++r)
@@ -169,8 +171,8 @@ TEST(HeightMapScatter, FacetsAreDrawnByTheirCrossSection) {
       map.at(c, r) = phase < 32.0 ? 60.0 * phase : 120.0 * (48.0 - phase);
     }
   const HeightMapScatter model(map, 550.0);
-  // Levelling tilts both flanks alike. Central differences across the crests and at the border give no flank: of 96
-  // columns 62 rise and 29 fall.
+  // Levelling tilts both slopes equally. Central differences at the crests and at the border belong to neither slope.
+  // Of 96 columns, 62 rise and 29 fall.
   const HeightMap levelled = without_form(map, 1);
   const double rise = 1e-3 * (levelled.at(11, 0) - levelled.at(10, 0));
   const double fall = 1e-3 * (levelled.at(41, 0) - levelled.at(40, 0));
@@ -199,7 +201,7 @@ TEST(HeightMapScatter, FacetsAreDrawnByTheirCrossSection) {
     }
 }
 
-// A low sine is a grating: first orders at w / (n L), and none of the light along y.
+// A sine wave with small heights is a grating. Its first orders are at w / (n L), and no light is scattered along y.
 TEST(HeightMapScatter, LowWavesDiffract) {
   const HeightMapScatter model(sine_map(64, 0.5, 5.0, 4.0), 550.0);
   ScatterEvent event = inside(0.0);
@@ -218,7 +220,7 @@ TEST(HeightMapScatter, LowWavesDiffract) {
   EXPECT_LT(std::sqrt(y2 / scattered), 0.25 * std::sqrt(x2 / scattered));
 }
 
-// A high one reflects by its slopes, sqrt(2) 2 pi Sq / L at most, along x alone.
+// A sine wave with large heights reflects by its slopes, which are at most sqrt(2) 2 pi Sq / L, along x only.
 TEST(HeightMapScatter, HighWavesReflectByTheirSlopes) {
   const double sq_nm = 300.0, length_um = 32.0;
   const HeightMapScatter model(sine_map(512, 0.25, sq_nm, length_um), 550.0);
@@ -239,7 +241,8 @@ TEST(HeightMapScatter, HighWavesReflectByTheirSlopes) {
   EXPECT_NEAR(largest / (std::sqrt(2.0) * rms), 1.0, 0.01);
 }
 
-// A saw-tooth has gentle slopes one way and steep ones the other: its facets, seen from both sides of the surface.
+// A saw-tooth has small slopes in one direction and large slopes in the other. Its facets are tested from both sides of
+// the surface.
 TEST(HeightMapScatter, FacetsHaveTheMapsOrientation) {
   HeightMap map = flat(64, 1.0);
   for (std::size_t r = 0; r < 64; ++r)
@@ -278,7 +281,7 @@ TEST(HeightMapScatter, FlatMapsAndMissingPoints) {
 TEST(HeightMapScatter, Warns) {
   EXPECT_TRUE(warnings(HeightMapScatter(random_map(128, 0.15, 20.0, 1.5, 1.5), 550.0), kIndex, 550.0).empty());
   const auto coarse = warnings(HeightMapScatter(sine_map(64, 1.29, 20.0, 40.0), 550.0), kIndex, 550.0);
-  EXPECT_EQ(coarse.size(), 2U);  // sampling, and the kurtosis of a sine
+  EXPECT_EQ(coarse.size(), 2U);  // warnings about the sampling and about the kurtosis of a sine
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(HeightParameters, OfAGaussianSurfaceAreTheKnownOnes) {
   const HeightParameters p = height_parameters(map.heights_nm);
   EXPECT_NEAR(p.sq_nm, 1.0, 0.003);
   EXPECT_NEAR(p.sa_nm, std::sqrt(2.0 / std::numbers::pi), 0.003);
-  // Standard errors sqrt(6 / n) and sqrt(24 / n).
+  // The standard errors of Ssk and Sku are sqrt(6 / n) and sqrt(24 / n).
   EXPECT_NEAR(p.ssk, 0.0, 4.0 * std::sqrt(6.0) / 1024.0);
   EXPECT_NEAR(p.sku, 3.0, 4.0 * std::sqrt(24.0) / 1024.0);
 }
@@ -60,7 +60,8 @@ TEST(HeightMap, TurnedByAQuarter) {
   EXPECT_EQ(turned.rows, 3U);
   EXPECT_EQ(turned.x_pixel_um, 2.0);
   EXPECT_EQ(turned.y_pixel_um, 0.5);
-  // What rose along y (1 to 4) rises along x, what rose along x (1 to 3) falls along y: no mirror image.
+  // The map is rotated, not mirrored. Heights that increased along y (1 to 4) increase along x. Heights that increased
+  // along x (1 to 3) decrease along y.
   EXPECT_EQ(turned.heights_nm, (std::vector<double>{3.0, 6.0, 2.0, 5.0, 1.0, 4.0}));
 }
 

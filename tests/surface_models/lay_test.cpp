@@ -1,4 +1,4 @@
-// Roughness with a lay: two correlation lengths.
+// Tests of roughness with a lay, which has two correlation lengths.
 #include "core/error.h"
 #include "tests/surface_models/scatter_checks.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 using namespace scatter_checks;
 
-/// Transform of exp(-x^2 / l^2) to the frequency f, over its value at f = 0 and per unit of f, by equal steps.
+/// Returns the Fourier transform of exp(-x^2 / l^2) at the frequency f, computed as a sum with equal steps.
 double transform(double length, double frequency) {
   const double step = 0.02 * length;
   double sum = 0.0;
@@ -16,7 +16,8 @@ double transform(double length, double frequency) {
   return sum * step;
 }
 
-// Low heights scatter by the spectrum that is the transform of the autocovariance s^2 exp(-x^2 / lx^2 - y^2 / ly^2).
+// Small heights scatter by their spectrum, which is the transform of the autocovariance s^2 exp(-x^2 / lx^2 - y^2 /
+// ly^2).
 TEST(Lay, LowHeightsScatterByTheTransformOfTheirAutocovariance) {
   const Roughness r = {0.01, 3.0, 0.0, 0.0, 1.2};
   const HarveyShack model(r);
@@ -35,7 +36,7 @@ TEST(Lay, LowHeightsScatterByTheTransformOfTheirAutocovariance) {
   }
 }
 
-// The spread of single diffraction along each axis is w / (sqrt(2) pi n l) of its own length.
+// For single diffraction, the spread along each axis is w / (sqrt(2) pi n l), with the correlation length of this axis.
 TEST(Lay, SpreadsByTheLengthOfEachAxis) {
   constexpr std::uint32_t kDraws = 100000;
   const HarveyShack model({2.0, 12.0, 0.0, 0.0, 3.0});
@@ -54,8 +55,8 @@ TEST(Lay, SpreadsByTheLengthOfEachAxis) {
   EXPECT_NEAR(moments(0, 1) / std::sqrt(moments(0, 0) * moments(1, 1)), 0.0, 0.02);
 }
 
-// Waves shorter than those of light scatter nothing: what is left of Sq^2 is the spectrum's part in a disc, here added
-// up on a grid.
+// Roughness with wavelengths shorter than the light does not scatter. The effective Sq^2 is the part of the spectrum
+// inside a disc, here summed on a grid.
 TEST(Lay, ShortWavesDoNotScatter) {
   const Roughness r = {10.0, 1.0, 0.0, 0.0, 0.1};
   const ScatterEvent event = inside(0.0);
@@ -76,7 +77,7 @@ TEST(Lay, ShortWavesDoNotScatter) {
               1e-4);
 }
 
-// Equal lengths are one length, to the last digit, between dielectrics as well.
+// Two equal lengths give exactly the same results as one length, also between dielectrics.
 TEST(Lay, EqualLengthsAreOne) {
   const Dielectrics media = {kIndex, 1.0, 550.0};
   for (const bool between : {false, true}) {
@@ -104,8 +105,8 @@ TEST(Lay, RefusesAndWarnsByItsShorterLength) {
   EXPECT_EQ(warnings(HarveyShack({5.0, 30.0, 0.0, 0.0, 0.2}), kIndex, 550.0).size(), 1U);
 }
 
-// What the specular light leaves and the lobe scatters are all light, in reflection, transmission and total reflection;
-// a draw has weight 1.
+// The specular and the scattered fraction add up to 1, in reflection, transmission and total reflection. Every draw has
+// the weight 1.
 TEST(Lay, KeepsAllLight) {
   for (const Roughness& r : {Roughness{20.0, 3.0, 0.0, 0.0, 1.0}, Roughness{40.0, 1.0, 0.0, 0.0, 3.0}}) {
     const HarveyShack model(r);
@@ -125,7 +126,7 @@ TEST(Lay, KeepsAllLight) {
   }
 }
 
-// Draws follow the density, which is as wide as its lengths ask for along either axis.
+// Draws follow the density, whose width along each axis depends on the correlation length of this axis.
 TEST(Lay, DrawsFollowTheDensity) {
   std::uint32_t seed = 700;
   for (const Roughness& r : {Roughness{20.0, 8.0, 0.0, 0.0, 2.0}, Roughness{60.0, 3.0, 0.0, 0.0, 12.0}}) {

@@ -22,7 +22,7 @@ using namespace surface_models;
 inline constexpr double kIndex = 1.4917;
 inline constexpr double kRadians = std::numbers::pi / 180.0;
 
-/// Light in a plane of incidence askew to the axes.
+/// Returns an event whose plane of incidence is oblique to the axes.
 inline ScatterEvent event_at(double incidence_deg, double index_from, double index_to, double wavelength_nm = 550.0) {
   const double t = incidence_deg * kRadians, p = 0.4;
   ScatterEvent event;
@@ -46,7 +46,7 @@ struct Case {
   Lobe lobe;
 };
 
-/// Both sides, both lobes, total reflection.
+/// Returns cases for both sides, both lobes, and total reflection.
 inline const std::vector<Case>& cases() {
   static const std::vector<Case> all = {{"normal, inside, reflected", inside(0.0), Lobe::reflection},
                                         {"30, inside, reflected", inside(30.0), Lobe::reflection},
@@ -63,12 +63,12 @@ inline RandomStream stream(std::uint32_t seed, std::uint32_t sample) {
   return {{seed, 77}, sample, 0, 0};
 }
 
-/// Density of directions per unit of direction cosines squared.
+/// Density of directions per area in the plane of direction cosines.
 using Density = std::function<double(const Vec2&)>;
-/// One draw; nothing for what the density leaves out.
+/// One draw of a direction, or nothing if the drawn light is not part of the density.
 using Draw = std::function<std::optional<Vec2>(RandomStream&)>;
 
-/// Sectors of rings about the specular direction, and the rest.
+/// Bins for directions: sectors of rings around the specular direction, and one bin for all other directions.
 class Rings {
  public:
   static constexpr int kSectors = 8;
@@ -78,7 +78,7 @@ class Rings {
   }
   std::size_t size() const { return (edges_.size() - 1) * kSectors; }
 
-  /// size() where `beta` is in none.
+  /// Returns the number of the bin, or size() if `beta` is in no bin.
   std::size_t bin_of(const Vec2& beta) const {
     const Vec2 shift = beta - centre_;
     const auto edge = std::upper_bound(edges_.begin(), edges_.end(), shift.norm());
@@ -98,7 +98,7 @@ class Rings {
           const double inward = centre_.dot(along);
           const double border = -inward + std::sqrt(1.0 - centre_.squaredNorm() + inward * inward);
           if (border <= from) return 0.0;
-          // Radii as end - u^2: densities may grow towards the border of the disc as 1 / cosine.
+          // The radius is end - u^2, because densities may increase towards the border of the disc as 1 / cosine.
           const double end = std::min(to, border);
           return gauss<double, 15>::integrate(
               [&](double u) {
@@ -115,8 +115,8 @@ class Rings {
   std::vector<double> edges_;
 };
 
-/// Probability of a chi-square at least as large, if the draws follow the density. Bins with fewer than ten expected
-/// draws are put together with the rest.
+/// Returns the probability of a chi-square that is at least as large, if the draws follow the density. Bins with fewer
+/// than ten expected draws are merged with the bin of all other directions.
 inline double chi_square_p(const Rings& rings, const Density& density, const Draw& draw, std::uint32_t seed,
                            std::uint32_t draws = 100000) {
   std::vector<double> expected(rings.size() + 1, 0.0), seen(rings.size() + 1, 0.0);
@@ -152,7 +152,8 @@ inline double chi_square_p(const Rings& rings, const Density& density, const Dra
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(bins), chi2));
 }
 
-/// Integral over the unit disc in polar coordinates about its centre: nothing in common with the library's rule.
+/// Returns the integral over the unit disc in polar coordinates about its center. The rule is independent of the
+/// library's rule.
 inline double disc_integral(const Density& density, int rings = 600, int sectors = 600) {
   double sum = 0.0;
   for (int k = 0; k < rings; ++k) {
@@ -173,7 +174,8 @@ inline Draw draw_of(const ScatterModel& model, const ScatterEvent& event, Lobe l
   };
 }
 
-/// The quick form of a density that the model gives by quadrature: its shape, scaled at one direction.
+/// Returns a fast form of a density that the model computes by quadrature: its shape, scaled by its value in one
+/// direction.
 template <class Model>
 Density scaled_density(const Model& model, const ScatterEvent& event, Lobe lobe) {
   const Vec2 at = specular_direction(event, Vec3::UnitZ(), lobe)->template head<2>() * 0.99;
@@ -189,7 +191,7 @@ inline HeightMap flat(std::size_t points, double pixel_um) {
   return map;
 }
 
-/// Gaussian heights with Gaussian autocorrelation along both axes; Sq as given exactly.
+/// Returns a map of Gaussian heights with Gaussian autocorrelation along both axes. Its Sq is exactly the given value.
 inline HeightMap random_map(std::size_t points, double pixel_um, double sq_nm, double x_length_um, double y_length_um) {
   HeightMap map = flat(points, pixel_um);
   RealFft fft(points, points);
@@ -213,7 +215,7 @@ inline HeightMap random_map(std::size_t points, double pixel_um, double sq_nm, d
   return map;
 }
 
-/// Share of draws that are specular, each with weight 1.
+/// Returns the fraction of draws that are specular. Each draw has the weight 1.
 inline double specular_draws(const ScatterModel& model, const ScatterEvent& event, Lobe lobe, std::uint32_t seed,
                              std::uint32_t draws) {
   double specular = 0.0;
@@ -228,8 +230,8 @@ inline double specular_draws(const ScatterModel& model, const ScatterEvent& even
   return specular / draws;
 }
 
-/// Closed form 7, by the formula and by drawing: exp(-q^2), with the phase q = 4 pi n s cos t / w in reflection and
-/// 2 pi s (n1 cos t1 - n2 cos t2) / w in transmission.
+/// Compares the specular fraction with closed form 7, both by the formula and by drawing. The fraction is exp(-q^2),
+/// with the phase q = 4 pi n s cos t / w in reflection and 2 pi s (n1 cos t1 - n2 cos t2) / w in transmission.
 inline void expect_closed_form_share(const ScatterModel& model, double sq_nm, const Case& c, std::uint32_t seed,
                                      std::size_t comparisons) {
   constexpr std::uint32_t kDraws = 50000;

@@ -1,4 +1,4 @@
-// What a texture does to light: samplers against their densities, energy, reciprocity, closed forms.
+// Tests of the scattering of light by textures: sampling against densities, energy, reciprocity, and closed forms.
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/math/special_functions/bessel.hpp>
 
@@ -40,7 +40,8 @@ TEST(HarveyShack, SamplesFollowTheDensity) {
     }
 }
 
-// Both shares drawn at once are those of one draw: the power of each, and the mean and spread of where light scatters.
+// Drawing the specular and the scattered light separately is equivalent to drawing one of them: the powers, and the
+// mean and the spread of the scattered directions, are the same.
 TEST(HarveyShack, SharesDrawnApartAreThoseOfOneDraw) {
   constexpr std::uint32_t kDraws = 40000;
   const HarveyShack model({40.0, 2.0, 0.0, 0.0});
@@ -85,7 +86,7 @@ TEST(HarveyShack, ConservesEnergy) {
     }
 }
 
-// Samples, so that nothing of the formula is shared but the event.
+// The fraction is measured by drawing, so that the test is independent of the formula.
 TEST(HarveyShack, SpecularShareIsTheClosedForm) {
   constexpr std::uint32_t kDraws = 200000;
   std::uint32_t seed = 100;
@@ -103,7 +104,7 @@ TEST(HarveyShack, SpecularShareIsTheClosedForm) {
       }
 }
 
-// The same, drawn, in transmission and from outside.
+// The same fraction is measured by drawing in transmission and from outside.
 TEST(HarveyShack, SpecularShareIsTheClosedFormOnBothSides) {
   std::uint32_t seed = 700;
   for (const Case& c : cases())
@@ -117,7 +118,8 @@ TEST(HarveyShack, PublishedValues) {
   };
   EXPECT_NEAR(scattered(10.0, 54.74, 550.0), 0.038, 5e-4);
   EXPECT_NEAR(scattered(20.0, 54.74, 550.0), 0.14, 5e-3);
-  // Sq 30 nm leaves 63 % after one total reflection in a right-angle prism at the d line.
+  // With Sq = 30 nm, 63 % of the light remains specular after one total reflection in a right-angle prism at the d
+  // line.
   EXPECT_NEAR(scattered(30.0, 45.0, 587.56), 0.37, 5e-3);
   EXPECT_NEAR(gaussian_sa(10.0), 7.978845608028654, 1e-12);
 }
@@ -130,7 +132,7 @@ TEST(HarveyShack, TransmissionHasThePhaseOfTheDifferenceOfPaths) {
               std::exp(-phase * phase), 1e-12);
 }
 
-// The part of the spectrum beyond n / w scatters nothing.
+// Roughness with spatial frequencies above n / w does not scatter.
 TEST(HarveyShack, FineRoughnessIsNotRelevant) {
   const double coarse = specular_share(HarveyShack({20.0, 1.0, 0.0, 0.0}), inside(45.0), {}, Lobe::reflection);
   const double fine = specular_share(HarveyShack({20.0, 0.02, 0.0, 0.0}), inside(45.0), {}, Lobe::reflection);
@@ -138,8 +140,8 @@ TEST(HarveyShack, FineRoughnessIsNotRelevant) {
   EXPECT_LT(coarse, 0.8);
 }
 
-// First-order perturbation theory of smooth surfaces, Rayleigh-Rice without its polarisation factor: the BRDF is
-// (2 pi n / w)^2 (cos t_i + cos t_s)^2 PSD / (w / n)^2 for small heights.
+// For small heights, first-order perturbation theory (Rayleigh-Rice without its polarisation factor) gives the BRDF (2
+// pi n / w)^2 (cos t_i + cos t_s)^2 PSD / (w / n)^2.
 TEST(HarveyShack, SmallRoughnessScattersAsThePsd) {
   const double sq_um = 1e-5, length_um = 1.0, wave_um = 0.55 / kIndex;
   const ScatterEvent event = inside(30.0);
@@ -153,8 +155,8 @@ TEST(HarveyShack, SmallRoughnessScattersAsThePsd) {
   EXPECT_NEAR(model.unscaled_density(event, {}, Lobe::reflection, beta) / expected, 1.0, 1e-4);
 }
 
-// The series against what it expands: the Fourier transform of the surface transfer function less its specular part,
-// over distances in wavelengths (Krywonos et al. 2011).
+// The density is computed by a series. The reference is the Fourier transform of the surface transfer function less its
+// specular part, as a function of distances in wavelengths (Krywonos et al. 2011).
 TEST(HarveyShack, DensityIsTheTransformOfTheSurfaceTransferFunction) {
   const double pi = std::numbers::pi;
   for (const Roughness& r : {Roughness{60.0, 1.2, 0.0, 0.0}, Roughness{25.0, 1.2, 40.0, 12.0}})
@@ -207,7 +209,7 @@ TEST(HarveyShack, IsReciprocalBeforeScaling) {
         ScatterEvent out = inside(0.0), in = outside(0.0);
         out.direction_in = down;
         const Vec3 left = direction_of(Vec2(b, -0.1), Lobe::transmission);
-        // Seen from outside: turned by half a turn about x.
+        // As seen from outside, the directions are rotated by 180 degrees about x.
         const auto turned = [](const Vec3& v) { return Vec3(v.x(), -v.y(), -v.z()); };
         in.direction_in = turned(-left);
         const double leaves = model.unscaled_density(out, {}, Lobe::transmission, left.head<2>());
@@ -217,7 +219,7 @@ TEST(HarveyShack, IsReciprocalBeforeScaling) {
   }
 }
 
-// At the border of both regimes of waviness, slopes and diffraction spread light alike.
+// At the limit between both regimes of waviness, reflection by slopes and diffraction give the same spread.
 TEST(HarveyShack, WavinessHasOneWidthOnBothSidesOfItsThreshold) {
   const double waviness_length_um = 40.0;
   const auto spread = [&](double phase2) {
@@ -248,7 +250,7 @@ TEST(HarveyShack, OnlyTheWavinessOwnPhaseDecidesOnSlopes) {
   EXPECT_FALSE(sample_facet(wavy, inside(85.0), random).is_tilted);
 }
 
-// Roughness on top of facets: the weight is BSDF * cosine / pdf given the facet.
+// Roughness is added to facets. Given the facet, the weight is BSDF * cosine / pdf.
 TEST(HarveyShack, WeightOnATiltedFacet) {
   const ScatterModel model = HarveyShack({20.0, 1.0, 400.0, 20.0});
   const ScatterEvent event = inside(50.0);
@@ -311,7 +313,7 @@ TEST(Abg, IsReciprocalInReflection) {
   }
 }
 
-// Total integrated scatter at normal incidence: pi A ln(1 + 1 / B) for g = 2.
+// The total integrated scatter at normal incidence is pi A ln(1 + 1 / B) for g = 2.
 TEST(Abg, TotalScatterInClosedForm) {
   EXPECT_NEAR(specular_share(Abg(0.01, 1e-3, 2.0), inside(0.0), {}, Lobe::reflection),
               1.0 - std::numbers::pi * 0.01 * std::log1p(1e3), 1e-7);
@@ -380,8 +382,8 @@ TEST(Microfacet, WeightIsBsdfTimesCosineOverPdf) {
     }
 }
 
-// With Fresnel's factors at the facet, reflection and transmission together keep at most all light; what they lack was
-// masked: little for moderate Gaussian slopes.
+// With Fresnel's factors at the facet, reflection and transmission together contain at most all light. The remainder is
+// masked, which is little for moderate Gaussian slopes.
 TEST(Microfacet, EnergyOfBothLobes) {
   for (const auto& [shape, rms_slope] : kMicrofacets) {
     if (rms_slope < 0.1) continue;  // too narrow for the plain rule of the test; its weights are 1
@@ -424,7 +426,7 @@ TEST(Microfacet, IsReciprocal) {
   }
 }
 
-// 2 pi Sq / L is the areal rms slope: light at normal incidence is turned by twice the slope.
+// The areal rms slope is 2 pi Sq / L. Light at normal incidence is deviated by twice the slope.
 TEST(Microfacet, SlopeOfWaviness) {
   const Microfacet model = Microfacet::of_waviness(SlopeShape::beckmann, 100.0, 50.0);
   double sum = 0.0;
@@ -454,7 +456,7 @@ TEST(Scatter, SmoothIsSpecular) {
     }
 }
 
-// For every model with a density of its own, on both sides, in both lobes. Microfacet has its own test.
+// Tests every model that has a density, on both sides and in both lobes. Microfacet has a separate test.
 TEST(Scatter, WeightIsBsdfTimesCosineOverPdf) {
   const std::vector<ScatterModel> models = {HarveyShack({60.0, 0.6, 0.0, 0.0}), HarveyShack({15.0, 1.0, 40.0, 20.0}),
                                             Abg(0.02, 1e-2, 1.0),
@@ -516,7 +518,7 @@ TEST(Scatter, WarnsOutsideItsRange) {
   EXPECT_EQ(warnings(Abg(0.01, 1e-4, 2.0), kIndex, 550.0).size(), 1U);
 }
 
-// Slopes of roughness count as far as its spatial frequencies scatter: those below n / w.
+// The slopes of roughness count only for spatial frequencies that scatter, which are below n / w.
 TEST(Scatter, RefusesSlopesBeyondEveryModel) {
   EXPECT_THROW(HarveyShack({0.0, 0.0, 1000.0, 6.0}), InputError);
   EXPECT_NO_THROW(HarveyShack({0.0, 0.0, 1000.0, 6.5}));

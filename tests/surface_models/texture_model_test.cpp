@@ -8,7 +8,7 @@
 #include "surface_models/height_parameters.h"
 #include "tests/support/synthetic_surface.h"
 
-// Surfaces made of known parts are measured back.
+// Surfaces are generated from known components. The measured parameters must equal those of the components.
 
 namespace retrace::surface_models::texture_model_test {
 namespace {
@@ -80,7 +80,7 @@ TEST(TextureModel, OfWavesAloneHasNoRoughness) {
   expect_share(*model.waviness_length_um, 160.0, 0.02, "waviness length");
 }
 
-/// Of a surface of 8 nm Sq over 5 um with a wave of 20 nm every 200 um.
+/// Expects the parameters of a surface with Sq = 8 nm over 5 um and a wave of 20 nm every 200 um.
 void expect_texture(const TextureModel& model, double roughness_share) {
   expect_share(model.roughness_sq_nm, 8.0, roughness_share, "roughness");
   expect_share(*model.correlation_length_um, 5.0, roughness_share, "correlation length");
