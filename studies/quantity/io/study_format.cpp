@@ -142,8 +142,8 @@ constexpr Row kAnalysisRows[] = {
      "Turn of the part about its normal, counter-clockwise as seen from the light, for all that is asked about light."},
     {"engine", Word{kEngines}, "auto", "As `retrace rre --engine`."},
     {"target_error", Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}}, Computed{"1e-4"},
-     "As `retrace rre --target-error`. Needs a quantity of RRE."},
-    {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Rays, as `retrace rre --samples`.", kOfRays},
+     "As for `retrace rre --target-error`. Needs a quantity of RRE."},
+    {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Number of rays, as for `retrace rre --samples`.", kOfRays},
     {"cutoff", Number{{.low = 0.0, .high = 1.0, .high_included = false}}, kNone,
      "As for `retrace rre --cutoff`. Photometry by rays has no cut-off.", kOfCutoff}};
 
