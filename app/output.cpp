@@ -119,7 +119,7 @@ void ResultFiles::prepare() const {
   if (!options_.out.empty()) make_output_folder(options_.out);
 }
 
-ExitCode ResultFiles::write(std::string_view json, std::string_view text, const std::vector<std::string>& warnings,
+ExitCode ResultFiles::write(std::string_view json, std::string_view text, const Warnings& warnings,
                             const Ending& ending) const {
   write_outputs(json, text);
   print_warnings(options_, warnings);
@@ -157,7 +157,7 @@ TextFiles::TextFiles(const CommonOptions& common, std::vector<std::string> input
   files_.prepare();
 }
 
-ExitCode TextFiles::write(std::string_view json, const std::string& text, const std::vector<std::string>& warnings,
+ExitCode TextFiles::write(std::string_view json, const std::string& text, const Warnings& warnings,
                           const Ending& ending, std::string_view summary) {
   *text_ = text;
   const ExitCode code = files_.write(json, has_file_ ? summary : "", warnings, ending);
@@ -180,9 +180,9 @@ void say(std::string_view text) {
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
-void print_warnings(const CommonOptions& options, const std::vector<std::string>& warnings) {
+void print_warnings(const CommonOptions& options, const Warnings& warnings) {
   if (options.quiet) return;
-  for (const std::string& warning : warnings) say("warning: " + warning);
+  for (const Warning& warning : warnings) say("warning: " + warning.text);
 }
 
 }  // namespace retrace::app

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/command.h"
+#include "core/warning.h"
 #include "studies/design/design.h"
 
 namespace retrace::app {
@@ -74,7 +75,7 @@ class ResultFiles {
   /// warnings to standard error, and a message if the command was interrupted.
   /// \return the exit code
   /// \throw OutputError if a file or standard output cannot be written
-  ExitCode write(std::string_view json, std::string_view text, const std::vector<std::string>& warnings = {},
+  ExitCode write(std::string_view json, std::string_view text, const Warnings& warnings = {},
                  const Ending& ending = {}) const;
 
  private:
@@ -115,7 +116,7 @@ class TextFiles {
 
   /// Writes the result in the same way as ResultFiles::write(), and prints the text if --out is not given.
   /// \param summary text for standard output if the result is written to a file
-  ExitCode write(std::string_view json, const std::string& text, const std::vector<std::string>& warnings = {},
+  ExitCode write(std::string_view json, const std::string& text, const Warnings& warnings = {},
                  const Ending& ending = {}, std::string_view summary = {});
 
  private:
@@ -135,6 +136,6 @@ ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohma
 void say(std::string_view text);
 
 /// Writes warnings to standard error, one line each. Does nothing if --quiet is given.
-void print_warnings(const CommonOptions& options, const std::vector<std::string>& warnings);
+void print_warnings(const CommonOptions& options, const Warnings& warnings);
 
 }  // namespace retrace::app

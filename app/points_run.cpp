@@ -75,7 +75,7 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
     });
   }
   result.emplace(studies::collect(sweep, store, complete));
-  for (const std::string& remark : remarks_of(session)) result->warnings.push_back(remark);
+  for (const Warning& remark : remarks_of(session)) result->warnings.push_back(remark);
   result->elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const ExitCode code = command.write(*result, files);
   print_warnings(common, result->warnings);

@@ -50,8 +50,8 @@ ShareTasks share_among(studies::MpiSession* session, std::size_t at_a_time, cons
   };
 }
 
-std::vector<std::string> remarks_of(const studies::MpiSession* session) {
-  return session != nullptr ? session->remarks() : std::vector<std::string>();
+Warnings remarks_of(const studies::MpiSession* session) {
+  return session != nullptr ? session->remarks() : Warnings();
 }
 
 }  // namespace retrace::app

@@ -8,6 +8,7 @@
 #include "app/command.h"
 #include "core/error.h"
 #include "core/shared_tasks.h"
+#include "core/warning.h"
 #include "studies/sweep/mpi_session.h"
 
 namespace retrace::app {
@@ -30,6 +31,6 @@ ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
 ShareTasks share_among(studies::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel);
 
 /// Returns messages of rank 0 about the other ranks. The list is empty if `session` is null.
-std::vector<std::string> remarks_of(const studies::MpiSession* session);
+Warnings remarks_of(const studies::MpiSession* session);
 
 }  // namespace retrace::app

@@ -65,12 +65,11 @@ std::string to_text(const nlohmann::ordered_json& document) {
   return writer.text + '\n';
 }
 
-std::string result_text(std::string_view schema, Json content, const std::vector<std::string>& warnings,
-                        bool complete) {
+std::string result_text(std::string_view schema, Json content, const Warnings& warnings, bool complete) {
   Json document = {{"schema", schema}};
   for (auto& member : content.items()) document[member.key()] = std::move(member.value());
   document["version"] = kVersion;
-  document["warnings"] = warnings;
+  document["warnings"] = texts_of(warnings);
   document["complete"] = complete;
   return to_text(document);
 }

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/warning.h"
+
 namespace retrace {
 
 /// A JSON document as text: keys in the order they were set, numbers as the shortest text that reads back equal, and
@@ -16,7 +18,7 @@ std::string to_text(const nlohmann::ordered_json& document);
 
 /// The document of a result: its schema, what it holds, and what every result says of itself at its end: the program's
 /// version, warnings, and whether all that was requested is there.
-std::string result_text(std::string_view schema, nlohmann::ordered_json content,
-                        const std::vector<std::string>& warnings, bool complete = true);
+std::string result_text(std::string_view schema, nlohmann::ordered_json content, const Warnings& warnings,
+                        bool complete = true);
 
 }  // namespace retrace

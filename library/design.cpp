@@ -65,7 +65,7 @@ std::vector<std::filesystem::path> Design::files() const {
   return content_->design.files();
 }
 
-std::vector<std::string> Design::warnings() const {
+Warnings Design::warnings() const {
   return content_->design.warnings();
 }
 

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/warning.h"
 #include "materials/spectrum.h"
 
 namespace retrace::materials {
@@ -120,7 +121,7 @@ struct Material {
   std::optional<ThermoOptic> thermo_optic;
   std::variant<double, SpectralCurve> absorption_per_mm = 0.0;  ///< Napierian, for power
   std::string source;
-  std::vector<std::string> warnings = {};  ///< Doubts about the data, each with its file and line.
+  Warnings warnings = {};  ///< Doubts about the data, each with its file and line.
 };
 
 /// Index of `material` relative to `air`, at the same vacuum wavelength, at the temperature that its data are for.

@@ -99,7 +99,7 @@ struct WholePart {
 /// \param warnings receives the reason if one of them cannot be made; the other results are still written
 WholePart whole_part_of(const ComposeOptions& options, const studies::Study& study,
                         const std::vector<studies::Zone>& zones, const studies::ZonedDesignRequest& zoned,
-                        std::vector<std::string>& warnings) {
+                        Warnings& warnings) {
   WholePart whole;
   if (options.design.empty()) return whole;
   try {
@@ -110,7 +110,8 @@ WholePart whole_part_of(const ComposeOptions& options, const studies::Study& stu
     warnings.insert(warnings.end(), whole.job->warnings.begin(), whole.job->warnings.end());
   } catch (const InputError& error) {
     warnings.push_back(
-        fmt::format("{} is not written: {}", whole.design.empty() ? options.design : options.job, error.what()));
+        {"zones_not_written",
+         fmt::format("{} is not written: {}", whole.design.empty() ? options.design : options.job, error.what())});
     whole.is_complete = false;
   }
   return whole;
@@ -158,8 +159,8 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   }
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string why_not = studies::why_not_reached(study, request, composition);
-  std::vector<std::string> warnings = remarks_of(session);
-  const std::vector<std::string> without_effect = studies::keys_without_effect(study);
+  Warnings warnings = remarks_of(session);
+  const Warnings without_effect = studies::keys_without_effect(study);
   warnings.insert(warnings.end(), without_effect.begin(), without_effect.end());
   if (composition.best) whole = whole_part_of(options, study, written_zones(), zoned, warnings);
   const ExitCode code = files.write(studies::composition_json(study, request, composition, elapsed_s),

@@ -85,11 +85,11 @@ ExitCode run(const CorrectOptions& options, const CommonOptions& common) {
   files.add("job.toml", [&] { return fabrication::job_text(corrected_job(plan.job, options.job, common.out)); });
   files.add("residuals.csv", [&] { return studies::residuals_csv(result->calibration); });
   files.check();
-  std::vector<std::string> warnings;
+  Warnings warnings;
   surface_models::HeightMapOptions reading = reading_of(options.reading);
   for (studies::FacetMap& map : maps) {
     surface_models::HeightMapFile file = surface_models::read_height_map(map.file, reading);
-    for (const std::string& warning : file.warnings) warnings.push_back(warning);
+    for (const Warning& warning : file.warnings) warnings.push_back(warning);
     map.heights = std::move(file.map);
   }
   result = studies::correct(plan, std::move(maps));

@@ -93,7 +93,7 @@ ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
               [&result, k] { return fabrication::nc_text(result.plan.programs[k], result.dialect); });
   files.add("setup.html", [&] { return report::setup_html(report::setup_page(result, sheet, drawings_of(result))); });
   files.prepare();
-  std::vector<std::string> warnings = result.warnings;
+  Warnings warnings = result.warnings;
   warnings.insert(warnings.end(), sheet.warnings.begin(), sheet.warnings.end());
   return files.write(studies::fabrication_json(result, studies::setup_json(result, sheet)),
                      studies::fabrication_table(result), warnings);

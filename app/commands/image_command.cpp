@@ -317,7 +317,7 @@ ExitCode photograph(const ImageOptions& options, const CommonOptions& common, st
         bar, cancel, [&](const raytrace::CameraImage& image) { preview(image); },
         share_among(session, kPassesAtATime, cancel));
   });
-  for (const std::string& remark : remarks_of(session)) result.warnings.push_back(remark);
+  for (const Warning& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(studies::camera_json(result), studies::camera_table(result), result.warnings,
                      {.complete = result.complete});
 }

@@ -88,13 +88,14 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
   }
   if (optimum.best && !options.job.empty()) made = job_of(options, study, *optimum.best);
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::vector<std::string> warnings = remarks_of(session);
-  const std::vector<std::string> without_effect = studies::keys_without_effect(study);
+  Warnings warnings = remarks_of(session);
+  const Warnings without_effect = studies::keys_without_effect(study);
   warnings.insert(warnings.end(), without_effect.begin(), without_effect.end());
   if (optimum.ran_out > 0)
     warnings.push_back(
-        fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
-                    optimum.ran_out, optimum.evaluations, optimum.ran_out_because));
+        {"designs_out_of_budget",
+         fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
+                     optimum.ran_out, optimum.evaluations, optimum.ran_out_because)});
   if (made) warnings.insert(warnings.end(), made->warnings.begin(), made->warnings.end());
   const ExitCode code = files.write(studies::optimum_json(study, request, optimum, elapsed_s),
                                     studies::optimum_text(study, request, optimum), warnings,

@@ -58,7 +58,7 @@ std::vector<std::string> results_read(const report::ResultFolder& folder, const 
 }
 
 std::string report_json(const report::Page& page, const report::ResultFolder& folder, const fs::path& file,
-                        std::size_t bytes, const std::vector<std::string>& warnings) {
+                        std::size_t bytes, const Warnings& warnings) {
   Json documents = Json::array();
   for (const auto& document : folder.documents) documents.push_back(document.name);
   Json sections = Json::array();
@@ -75,7 +75,7 @@ std::string report_json(const report::Page& page, const report::ResultFolder& fo
 ExitCode run(const ReportOptions& options, const CommonOptions& common) {
   const report::ResultFolder folder = report::read_result_folder(options.folder, options.read);
   report::Page page = report::study_page(folder, options.title);
-  const std::vector<std::string> warnings = report::add_scene(page, folder);
+  const Warnings warnings = report::add_scene(page, folder);
   report::add_live(page, folder);
   const std::string html = report::page_html(page, report::assets_for(page));
   const fs::path file = page_file(options, common);

@@ -85,7 +85,7 @@ ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, stu
   interrupt.run(common, {"tracing", to_shorten}, [&](Progress* bar, const Cancellation* cancel) {
     result = study.run(bar, cancel, share_among(session, slots(common), cancel));
   });
-  for (const std::string& remark : remarks_of(session)) result.warnings.push_back(remark);
+  for (const Warning& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(
       studies::roughness_json(result), studies::roughness_table(result), result.warnings,
       {.complete = result.complete, .interrupted = fmt::format("finished points: {}", result.points.size())});

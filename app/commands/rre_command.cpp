@@ -91,8 +91,9 @@ std::vector<studies::Design> designs_of(const RreOptions& options, const CommonO
 /// Adds a warning if the drawing of the footprints does not show all directions.
 void warn_of_panels(studies::RreResult& result) {
   if (result.faces.empty() || result.returned.size() <= report::kMostFootprintPanels) return;
-  result.warnings.push_back(fmt::format("footprint.svg and footprint.png show the first {} of {} directions",
-                                        report::kMostFootprintPanels, result.returned.size()));
+  result.warnings.push_back(
+      {"footprints_omitted", fmt::format("footprint.svg and footprint.png show the first {} of {} directions",
+                                         report::kMostFootprintPanels, result.returned.size())});
 }
 
 /// Adds the output files of the command.

@@ -486,15 +486,14 @@ std::string superseded_text(const Precedence& rule, const Document& document, co
   return InputError(document.where(key), text).what();
 }
 
-void add_superseded(const Document& document, const Table& table, const std::string& path,
-                    std::vector<std::string>& warnings) {
+void add_superseded(const Document& document, const Table& table, const std::string& path, Warnings& warnings) {
   for (const Rule& rule : table.rules) {
     const Precedence* const precedence = std::get_if<Precedence>(&rule);
     if (precedence == nullptr || !document.holds({&precedence->winner, 1}, path)) continue;
     const std::string winner = document.path_of(precedence->winner.key, path);
     for (const std::string_view key : precedence->keys)
       if (std::string text = superseded_text(*precedence, document, winner, path_in(path, key)); !text.empty())
-        warnings.push_back(std::move(text));
+        warnings.push_back({"superseded_key", std::move(text)});
   }
   for (const Table& inner : table.tables) {
     const std::string inner_path = path_in(path, inner.name);
@@ -506,8 +505,8 @@ void add_superseded(const Document& document, const Table& table, const std::str
 
 }  // namespace
 
-std::vector<std::string> superseded_keys(const Document& document) {
-  std::vector<std::string> warnings;
+Warnings superseded_keys(const Document& document) {
+  Warnings warnings;
   add_superseded(document, document.table(), "", warnings);
   return warnings;
 }

@@ -10,6 +10,7 @@
 
 #include "core/schema/document.h"
 #include "core/toml_file.h"
+#include "core/warning.h"
 
 namespace retrace::schema {
 
@@ -34,7 +35,7 @@ Document unchecked_names(const Format& format, std::string_view text, const std:
 
 /// Returns a warning for each key that has no effect because another key takes precedence over it. Keys with their
 /// default value cause no warning.
-std::vector<std::string> superseded_keys(const Document& document);
+Warnings superseded_keys(const Document& document);
 
 /// Reads a document and stores its values in an object.
 /// \param object object of the root table of the format

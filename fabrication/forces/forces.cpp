@@ -167,19 +167,23 @@ std::vector<ForceSample> force_profile(const ForceModel& model, const CutConditi
   return samples;
 }
 
-std::vector<std::string> force_warnings(const ForceModel& model, const CutConditions& cut) {
-  std::vector<std::string> warnings;
+Warnings force_warnings(const ForceModel& model, const CutConditions& cut) {
+  Warnings warnings;
   if (cut.depth_of_cut_um < kLeastLinearDepthUm)
     warnings.push_back(
-        fmt::format("a depth of cut of {} um lies below {} um, where the linear law is not shown to hold",
-                    shortest(cut.depth_of_cut_um), shortest(kLeastLinearDepthUm)));
+        {"depth_below_linear_law",
+         fmt::format("a depth of cut of {} um lies below {} um, where the linear law is not shown to hold",
+                     shortest(cut.depth_of_cut_um), shortest(kLeastLinearDepthUm))});
   if (cut.depth_of_cut_um > model.calibrated_to_um)
-    warnings.push_back(fmt::format("a depth of cut of {} um lies beyond the {} um that were measured",
-                                   shortest(cut.depth_of_cut_um), shortest(model.calibrated_to_um)));
+    warnings.push_back(
+        {"depth_beyond_calibration", fmt::format("a depth of cut of {} um lies beyond the {} um that were measured",
+                                                 shortest(cut.depth_of_cut_um), shortest(model.calibrated_to_um))});
   if (cut.strategy == Strategy::bidirectional)
     warnings.push_back(
-        "root and retract peaks of bidirectional cuts come from another tool than the rest, at one depth of cut");
-  warnings.push_back("forces are those of aluminium 6061, a wedge of 50 degrees and a clearance of 3 degrees");
+        {"peaks_of_another_tool",
+         "root and retract peaks of bidirectional cuts come from another tool than the rest, at one depth of cut"});
+  warnings.push_back({"forces_of_one_material",
+                      "forces are those of aluminium 6061, a wedge of 50 degrees and a clearance of 3 degrees"});
   return warnings;
 }
 

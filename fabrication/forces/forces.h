@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/warning.h"
 #include "fabrication/job/job.h"
 
 namespace retrace::fabrication {
@@ -104,7 +105,7 @@ struct ForceSample {
 std::vector<ForceSample> force_profile(const ForceModel& model, const CutConditions& cut);
 
 /// Remarks on conditions that the measurements do not cover, such as depths of cut below 5 um.
-std::vector<std::string> force_warnings(const ForceModel& model, const CutConditions& cut);
+Warnings force_warnings(const ForceModel& model, const CutConditions& cut);
 
 /// Depth below which the linear law is not shown to hold.
 inline constexpr double kLeastLinearDepthUm = 5.0;

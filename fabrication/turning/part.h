@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "fabrication/turning/path_options.h"
 #include "fabrication/turning/tool.h"
 #include "geometry/surface/freeform_surface.h"
@@ -24,7 +25,7 @@ struct TurnedPart {
   std::size_t map_pixels = 101;
   std::optional<double> mesh_thickness_mm;  ///< of what is moulded in it, as a mesh; nothing: no mesh
   int mesh_rings = 100;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 }  // namespace retrace::fabrication::turning

@@ -30,18 +30,19 @@ bool clears(const TurningTool& tool, const std::vector<SlopeSample>& samples) {
 
 }  // namespace
 
-std::vector<std::string> tool_warnings(const TurningTool& tool) {
-  std::vector<std::string> warnings;
+Warnings tool_warnings(const TurningTool& tool) {
+  Warnings warnings;
   if (tool.rake_deg < kTriedRakeLowDeg || tool.rake_deg > kTriedRakeHighDeg)
     warnings.push_back(
-        fmt::format("a rake of {} degrees lies outside of the -45 to 18 degrees that were tried with good "
-                    "finish",
-                    shortest(tool.rake_deg)));
+        {"untried_rake",
+         fmt::format("a rake of {} degrees lies outside of the -45 to 18 degrees that were tried with good "
+                     "finish",
+                     shortest(tool.rake_deg))});
   if (std::abs(tool.skew_deg) > kTriedSkewDeg)
     warnings.push_back(
-        fmt::format("a skew of {} degrees lies outside of the -60 to 60 degrees that were tried with "
-                    "good finish",
-                    shortest(tool.skew_deg)));
+        {"untried_skew", fmt::format("a skew of {} degrees lies outside of the -60 to 60 degrees that were tried with "
+                                     "good finish",
+                                     shortest(tool.skew_deg))});
   return warnings;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/angle.h"
+#include "core/warning.h"
 #include "fabrication/turning/path_options.h"
 #include "geometry/surface/freeform_surface.h"
 #include "geometry/vec.h"
@@ -31,7 +32,7 @@ inline constexpr double kTriedRakeHighDeg = 18.0;
 inline constexpr double kTriedSkewDeg = 60.0;
 
 /// Remarks on rake and skew outside of what was tried.
-std::vector<std::string> tool_warnings(const TurningTool& tool);
+Warnings tool_warnings(const TurningTool& tool);
 
 /// Directions of the tool in cylindrical components of the part: outward, along the cut, up.
 struct ToolFrame {

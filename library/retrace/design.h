@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/warning.h"
 
 namespace retrace {
 
@@ -42,7 +43,7 @@ class RETRACE_API Design {
   /// Returns the paths of all files that the design refers to, relative to the working directory.
   std::vector<std::filesystem::path> files() const;
   /// Returns a warning for each key that has no effect because another key takes precedence over it.
-  std::vector<std::string> warnings() const;
+  Warnings warnings() const;
 
   struct Content;
   /// Wraps a design that was already read. Used inside the library only.

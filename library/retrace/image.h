@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/design.h"
 #include "retrace/drawing.h"
 #include "retrace/running.h"
@@ -80,7 +81,7 @@ struct Picture {
 
 struct ImageResult {
   std::vector<Picture> pictures;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
   std::string json;   ///< JSON document retrace.image/1
   std::string table;  ///< summary as text

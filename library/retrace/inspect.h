@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/design.h"
 #include "retrace/drawing.h"
 
 namespace retrace {
 
 struct Inspection {
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string json;   ///< document retrace.inspect/1
   std::string table;  ///< for people
   Drawing plan;       ///< SVG, as all but the view; drawings that a design has not are none or empty

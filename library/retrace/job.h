@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/design.h"
 #include "retrace/drawing.h"
 
@@ -27,7 +28,7 @@ struct Job {
   std::string text;                   ///< text of the job file (format retrace.job/1)
   std::int64_t elements = 0;          ///< number of elements that are cut
   std::int64_t partial_elements = 0;  ///< number of partial elements of the design, which are not cut
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string json;   ///< JSON document retrace.job_summary/1
   std::string table;  ///< summary as text
 };
@@ -56,7 +57,7 @@ struct NcText {
 
 struct Fabrication {
   std::vector<NcText> programs;  ///< in the order in which they run
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string json;     ///< JSON document retrace.fabrication/1
   std::string table;    ///< summary as text
   Drawing roughing;     ///< tool path through one element in roughing; empty if the job has no roughing stages

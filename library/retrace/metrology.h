@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/drawing.h"
 
 namespace retrace {
@@ -33,7 +34,7 @@ struct HeightMap {
 };
 
 struct Metrology {
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string json;          ///< document retrace.metrology/1
   std::string table;         ///< for people
   std::string surface_toml;  ///< table [surface] of a design file that describes this surface

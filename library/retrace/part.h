@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/design.h"
 #include "retrace/running.h"
 
@@ -31,14 +32,14 @@ struct Mesh {
   double volume_mm3 = 0.0;
   double area_mm2 = 0.0;
   bool is_manifold = true;  ///< it touches itself along no edge
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// \throw InputError for an infinite array (an element of it is allowed), or too many elements
 RETRACE_API Mesh mesh(const Design& design, const SolidRequest& request = {});
 
 struct ExportResult {
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string json;   ///< document retrace.export/1
   std::string table;  ///< for people
 };
@@ -58,7 +59,7 @@ struct MaterialRequest {
 };
 
 struct MaterialResult {
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;  ///< else it was cancelled, and nothing was written
   std::string json;      ///< document retrace.export/1
   std::string table;     ///< for people

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/design.h"
 #include "retrace/drawing.h"
 #include "retrace/running.h"
@@ -52,7 +53,7 @@ struct PhotometryResult {
   std::vector<PhotometricPoint> points;
   std::string verdict;
   bool passes = false;  ///< true if all points and the area pass and the colour does not fail
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
   std::string json;     ///< JSON document retrace.photometry/1
   std::string csv;      ///< table with one line for each point

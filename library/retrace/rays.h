@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/design.h"
 #include "retrace/running.h"
 
@@ -40,7 +41,7 @@ struct RaysRequest {
 struct RaysResult {
   std::map<std::string, double> ledger;  ///< shares of the power of all rays by account; they add up to 1
   double power = 0.0;                    ///< of all rays
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
   std::string json;   ///< document retrace.rays/1
   std::string table;  ///< for people
@@ -76,7 +77,7 @@ struct TracedRays {
   std::vector<std::uint64_t> incident;  ///< one a ray: which ray it comes from, from 0
   std::map<std::string, double> ledger;
   double power = 0.0;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
   std::string json;
   std::string table;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/warning.h"
 
 namespace retrace {
 
@@ -17,7 +18,7 @@ struct ReportPart {
 
 struct ReportPage {
   std::string html;  ///< self-contained HTML file, which needs no other file and no network
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Returns an HTML page of results.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/design.h"
 #include "retrace/drawing.h"
 #include "retrace/running.h"
@@ -48,7 +49,7 @@ struct RrePoint {
 
 struct RreResult {
   std::vector<RrePoint> points;  ///< in the order design, azimuth, incidence, acceptance
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;   ///< it was not cancelled
   std::string json;       ///< document retrace.rre/1
   std::string csv;        ///< one line a point

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/design.h"
 #include "retrace/drawing.h"
 #include "retrace/running.h"
@@ -36,7 +37,7 @@ struct StudyRequest {
 struct StudyResult {
   bool complete = true;
   bool is_yes = true;  ///< the answer to what was asked: yield is enough, a design is feasible
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string json;   ///< document retrace.sweep/1, retrace.tolerance/1 or retrace.optimum/1
   std::string csv;    ///< one line a point; of an optimum, its front
   std::string table;  ///< for people

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "retrace/drawing.h"
 #include "retrace/running.h"
 
@@ -43,7 +44,7 @@ struct Verification {
   bool passes = false;
   std::string verdict;  ///< pass, incomplete or fail
   std::vector<Finding> findings;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string json;   ///< document retrace.verification/1
   std::string table;  ///< for people
   Drawing map;        ///< the array from above, coloured by what the programs leave

@@ -45,7 +45,7 @@ Json design_json(const OpenedDesign& opened) {
   if (const auto symmetry = studies::azimuth_symmetry(design))
     json["azimuth_symmetry"] = {{"period_deg", symmetry->period_deg}, {"mirror_deg", symmetry->mirror_deg}};
   const studies::OpticalModel* const model = opened.model();
-  json["warnings"] = model != nullptr ? model->warnings : std::vector<std::string>();
+  json["warnings"] = texts_of(model != nullptr ? model->warnings : Warnings());
   if (model == nullptr) return json;
   for (const studies::SpectralOptics& lit : model->spectral) json["wavelengths_nm"].push_back(lit.wavelength_nm);
   json["refractive_index"] = model->optics.index;

@@ -74,9 +74,12 @@ Json photometry_json(const OpenedDesign& opened, const Json& request, TimeLimit&
   if (!result.complete) throw BudgetError("these test points take longer than they were given: use retrace photometry");
   Json points = Json::array();
   for (const PhotometricPoint& point : result.points) points.push_back(point_json(point));
-  return {
-      {"verdict", studies::verdict_name(result.verdict)}, {"reason", result.reason},     {"engine", result.engine},
-      {"has_diffraction", result.has_diffraction},        {"warnings", result.warnings}, {"points", std::move(points)}};
+  return {{"verdict", studies::verdict_name(result.verdict)},
+          {"reason", result.reason},
+          {"engine", result.engine},
+          {"has_diffraction", result.has_diffraction},
+          {"warnings", texts_of(result.warnings)},
+          {"points", std::move(points)}};
 }
 
 }  // namespace retrace::live

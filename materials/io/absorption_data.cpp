@@ -32,8 +32,9 @@ void AbsorptionData::warn(const Blemishes& blemishes, std::string_view one, std:
   const std::string effect = blemishes.count == 1
                                  ? fmt::format("this sample {}", one)
                                  : fmt::format("this sample and {} more {}", blemishes.count - 1, several);
-  material.warnings.emplace_back(
-      InputError({file_, blemishes.line, key_}, fmt::format("{}; {}", blemishes.reason, effect)).what());
+  material.warnings.push_back(
+      {"absorption_sample_ignored",
+       InputError({file_, blemishes.line, key_}, fmt::format("{}; {}", blemishes.reason, effect)).what()});
 }
 
 void AbsorptionData::finish(Material& material) {
@@ -58,10 +59,11 @@ void AbsorptionData::finish(Material& material) {
   warn(zeros_, "counts as 0", "count as 0", material);
   warn(left_out_, "is left out", "are left out", material);
   if (curve.values.empty() && left_out_.count > 0)
-    material.warnings.emplace_back(
-        InputError({file_, 0, key_},
-                   "has no usable sample of the absorption; 0 is used instead unless body.absorption_per_mm is given")
-            .what());
+    material.warnings.push_back(
+        {"no_absorption_data",
+         InputError({file_, 0, key_},
+                    "has no usable sample of the absorption; 0 is used instead unless body.absorption_per_mm is given")
+             .what()});
   if (curve.values.size() == 1)
     material.absorption_per_mm = curve.values.front();
   else if (!curve.values.empty())

@@ -277,7 +277,8 @@ void GlassCatalogue::check_nd(const Record& name, Material& glass) const {
   const std::optional<double> stated = number_in(name[at].text);
   const std::string doubt =
       stated ? doubt_of_nd(glass, *stated) : fmt::format("n_d must be a number, got {}", in_quotes(name[at].text));
-  if (!doubt.empty()) glass.warnings.emplace_back(InputError({file_, name[at].line, "NM"}, doubt).what());
+  if (!doubt.empty())
+    glass.warnings.push_back({"index_disagrees", InputError({file_, name[at].line, "NM"}, doubt).what()});
 }
 
 Material GlassCatalogue::glass_of(const std::vector<Record>& records) const {

@@ -235,7 +235,8 @@ class Record {
       if (std::exchange(has_extinction_, true)) fail(entry["type"], "type", "gives k a second time");
       for (const Row& row : rows_of(entry, columns)) add_extinction(row, columns, data);
     } catch (const InputError& error) {
-      material.warnings.emplace_back(InputError(error.where(), error.text() + "; this table of k is left out").what());
+      material.warnings.push_back({"absorption_table_ignored",
+                                   InputError(error.where(), error.text() + "; this table of k is left out").what()});
       return;
     }
     data.finish(material);
@@ -300,7 +301,8 @@ class Record {
       const std::optional<double> stated = number_in(trimmed(properties["nd"].Scalar()));
       const std::string doubt = stated ? doubt_of_nd(material, *stated) : std::string();
       if (!doubt.empty())
-        material.warnings.emplace_back(InputError({file_, line(properties["nd"]), "nd"}, doubt).what());
+        material.warnings.push_back(
+            {"index_disagrees", InputError({file_, line(properties["nd"]), "nd"}, doubt).what()});
     }
   }
 

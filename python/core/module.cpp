@@ -61,7 +61,7 @@ void translate(std::exception_ptr error) {
 template <class Result>
 py::class_<Result> result_class(py::module_& module, const char* name) {
   return py::class_<Result>(module, name)
-      .def_readonly("warnings", &Result::warnings)
+      .def_property_readonly("warnings", [](const Result& result) { return texts_of(result.warnings); })
       .def_readonly("json", &Result::json)
       .def_readonly("table", &Result::table);
 }
@@ -77,7 +77,7 @@ void bind_design(py::module_& module) {
       .def_property_readonly("text", &Design::text)
       .def_property_readonly("overrides", &Design::overrides)
       .def_property_readonly("files", &Design::files)
-      .def_property_readonly("warnings", &Design::warnings)
+      .def_property_readonly("warnings", [](const Design& design) { return texts_of(design.warnings()); })
       .def("json", &Design::json);
   py::class_<Drawing>(module, "Drawing")
       .def("__bool__", [](const Drawing& drawing) { return static_cast<bool>(drawing); })
@@ -209,7 +209,7 @@ void bind_part(py::module_& module) {
     result["volume_mm3"] = made.volume_mm3;
     result["area_mm2"] = made.area_mm2;
     result["is_manifold"] = made.is_manifold;
-    result["warnings"] = made.warnings;
+    result["warnings"] = texts_of(made.warnings);
     return result;
   });
 }
@@ -496,7 +496,7 @@ void bind_surfaces(py::module_& module) {
     const ReportPage page = watched(py::none(), 0, [all = std::move(all), title, readable](const Running&) {
       return report_page(all, title, readable);
     });
-    return py::make_tuple(page.html, page.warnings);
+    return py::make_tuple(page.html, texts_of(page.warnings));
   });
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "studies/inspect/inspect.h"
 
 namespace retrace::report {
@@ -15,7 +16,7 @@ struct DesignDrawings {
   std::string section = {};   ///< SVG
   std::string view = {};      ///< PNG
   std::string entrance = {};  ///< SVG: the profile of a curved front
-  std::vector<std::string> warnings = {};
+  Warnings warnings = {};
 };
 
 /// Plan, section and view of the design; of a curved front its profile in place of section and view, which know plane

@@ -116,7 +116,8 @@ ResultFolder read_result_folder(const fs::path& folder, const std::vector<std::s
     const std::string type = media_type_of(ending);
     if (ending != ".json" && type.empty()) continue;
     if (!may_read(result, file)) {
-      result.warnings.push_back(name + ": left out because it links to a file outside the folder; --read allows it");
+      result.warnings.push_back({"result_outside_folder",
+                                 name + ": left out because it links to a file outside the folder; --read allows it"});
       continue;
     }
     if (ending == ".json") add_document(result, file, name, read_file(file, kLongestDocumentBytes));

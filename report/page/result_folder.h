@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
+
 namespace retrace::report {
 
 /// Result document (JSON) of a retrace command.
@@ -32,7 +34,7 @@ struct ResultFolder {
   /// Files and folders that may be read for the page: the result folder, and the paths that the user has allowed with
   /// --read. Symbolic links in these paths are resolved.
   std::vector<std::filesystem::path> readable{};
-  std::vector<std::string> warnings{};  ///< one warning for each result that was omitted
+  Warnings warnings{};  ///< one warning for each result that was omitted
 };
 
 /// Maximum size of a document in bytes.

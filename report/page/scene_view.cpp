@@ -51,7 +51,7 @@ SceneView scene_view(const studies::DesignScene& scene) {
 }
 
 std::vector<std::string> add_scene(Page& page, const ResultFolder& folder) {
-  std::vector<std::string> warnings = folder.warnings;
+  Warnings warnings = folder.warnings;
   const auto* const design = first_design(folder);
   if (design == nullptr) return warnings;
   for (PageSection& section : page.sections) {
@@ -71,7 +71,7 @@ std::vector<std::string> add_scene(Page& page, const ResultFolder& folder) {
       section.paragraphs.push_back(text);
     } catch (const Error& error) {
       section.paragraphs.push_back(std::string("The design cannot be shown here: ") + error.what());
-      warnings.push_back(std::string("no view in three dimensions: ") + error.what());
+      warnings.push_back({"no_scene", std::string("no view in three dimensions: ") + error.what()});
     }
   }
   return warnings;

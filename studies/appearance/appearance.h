@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/warning.h"
 #include "raytrace/observers/aperture_kernel.h"
 #include "studies/appearance/reflection_table.h"
 #include "studies/design/design.h"
@@ -53,7 +54,7 @@ struct AppearanceResult {
   double least_cell_deg = 0.0;  ///< extent of the smallest cell in entrance angle
   double elapsed_s = 0.0;
   bool complete = true;  ///< false: the computation was cancelled, and the table must not be used
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Returns the errors of values against the probes.

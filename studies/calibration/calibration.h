@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/file_texts.h"
+#include "core/warning.h"
 #include "fabrication/machine/setup.h"
 #include "studies/calibration/estimate.h"
 #include "studies/calibration/measured_facets.h"
@@ -55,7 +56,7 @@ struct Calibration {
   std::vector<Outlier> outliers;    ///< left out, the worst first
   double chi_square = 0.0;
   std::size_t freedom = 0;  ///< measurements less what is estimated
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// A combination of the set-up that is less certain than this, in um or arcsec, counts as untold: one sees as much with

@@ -42,14 +42,17 @@ void tell_rests(Correction& result, double feed_mm_per_min) {
   result.waves = common_waves(rests, feed_mm_per_min);
   result.marks = common_marks(rests);
   for (const FacetWave& wave : result.waves)
-    result.calibration.warnings.push_back(fmt::format(
-        "{}: waves are not corrected. {}", words_of(wave, result.facets),
-        wave.is_along_edge ? "They are the edge's own" : "Look for a drive or a spindle that runs at their frequency"));
+    result.calibration.warnings.push_back(
+        {"waves_not_corrected",
+         fmt::format("{}: waves are not corrected. {}", words_of(wave, result.facets),
+                     wave.is_along_edge ? "They are the edge's own"
+                                        : "Look for a drive or a spindle that runs at their frequency")});
   for (const FacetMark& mark : result.marks)
-    result.calibration.warnings.push_back(fmt::format("{}: marks are not corrected. {}", words_of(mark),
-                                                      mark.is_of_edge
-                                                          ? "Most facets that show this place have it: it is the edge's"
-                                                          : "Figures are taken beside it"));
+    result.calibration.warnings.push_back(
+        {"marks_not_corrected",
+         fmt::format("{}: marks are not corrected. {}", words_of(mark),
+                     mark.is_of_edge ? "Most facets that show this place have it: it is the edge's"
+                                     : "Figures are taken beside it")});
 }
 
 }  // namespace
@@ -89,8 +92,9 @@ Correction correct(const FabricationResult& plan, std::vector<FacetMap> maps) {
   for (std::size_t k = 0; k < result.maps.size(); ++k)
     if (!result.registered[k].face)
       result.calibration.warnings.push_back(
-          fmt::format("{} shows too little of the blank's face: what shifts all that it shows alike is not told by it",
-                      result.maps[k].file));
+          {"blank_face_not_visible",
+           fmt::format("{} shows too little of the blank's face: what shifts all that it shows alike is not told by it",
+                       result.maps[k].file)});
   tell_outlooks(result);
   tell_rests(result, plan.job.process.finishing_feed_mm_per_min);
   return result;

@@ -210,8 +210,9 @@ void warn_of_misses(TimeCalibration& result, const Estimate& fitted) {
     const double deviations = std::abs(result.residuals[k]) / (spare > 1e-6 ? std::sqrt(spare) : 1.0);
     if (deviations > kManyDeviations)
       result.warnings.push_back(
-          fmt::format("line {}: {} s misses the best fit of all rows by {} standard uncertainties",
-                      result.programs.rows[k].line, shortest(result.programs.rows[k].seconds), fixed(deviations, 1)));
+          {"outlier",
+           fmt::format("line {}: {} s misses the best fit of all rows by {} standard uncertainties",
+                       result.programs.rows[k].line, shortest(result.programs.rows[k].seconds), fixed(deviations, 1))});
   }
 }
 

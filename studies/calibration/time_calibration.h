@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/warning.h"
 #include "fabrication/check/program_time.h"
 #include "fabrication/machine/machine.h"
 
@@ -71,7 +72,7 @@ struct TimeCalibration {
   std::vector<double> residuals;    ///< of the rows, in standard uncertainties
   double scatter = 1.0;             ///< root mean square of the residuals, by the rows to spare; 1 without any
   std::size_t freedom = 0;          ///< rows less what is estimated
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Least squares by Gauss and Newton; neither settling nor ramp falls below 0. Where rows scatter more than their

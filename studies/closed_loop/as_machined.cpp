@@ -151,14 +151,17 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
 /// What a design with all elements alike leaves out.
 void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
   if (unlike.along_arcmin > kShownArcmin)
-    part.warnings.push_back(fmt::format("facets are turned by up to {} arcmin along the root: left out {}",
-                                        fixed(unlike.along_arcmin, 2), where));
+    part.warnings.push_back(
+        {"rotation_along_root_omitted", fmt::format("facets are turned by up to {} arcmin along the root: left out {}",
+                                                    fixed(unlike.along_arcmin, 2), where)});
   if (unlike.spread_arcmin > kShownArcmin)
-    part.warnings.push_back(fmt::format("facets of single elements differ from the mean by up to {} arcmin",
-                                        fixed(unlike.spread_arcmin, 2)));
+    part.warnings.push_back(
+        {"facets_differ_from_mean", fmt::format("facets of single elements differ from the mean by up to {} arcmin",
+                                                fixed(unlike.spread_arcmin, 2))});
   if (unlike.missing > 0)
     part.warnings.push_back(
-        "elements that are not cut are there in the as-machined design of a part that is cut directly");
+        {"uncut_elements_included",
+         "elements that are not cut are there in the as-machined design of a part that is cut directly"});
 }
 
 }  // namespace
@@ -178,12 +181,15 @@ void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, As
         fmt::format("a design with [base] has all its elements: must be cut all, {} are not", unlike.missing));
   warn_of(unlike, part, "on a base");
   if (run.result.rim_overcut_um_max > 0.0)
-    part.warnings.push_back(fmt::format(
-        "cuts of neighbours go up to {} um under rims that stand at different heights: the design has walls there",
-        fixed(run.result.rim_overcut_um_max, 3)));
+    part.warnings.push_back(
+        {"rim_overcut",
+         fmt::format(
+             "cuts of neighbours go up to {} um under rims that stand at different heights: the design has walls there",
+             fixed(run.result.rim_overcut_um_max, 3))});
   if (has_flares(run))
     part.warnings.push_back(
-        "cavities of hexagons reach beyond the elements' outlines at the border: left out on a base");
+        {"border_cavities_omitted",
+         "cavities of hexagons reach beyond the elements' outlines at the border: left out on a base"});
 }
 
 ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
@@ -196,12 +202,13 @@ ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
   }
   if (run.result.border_overcut_mm3 > 0.0)
     part.warnings.push_back(
-        run.result.elements_overcut == 0
-            ? "cavities of hexagons extend into the land at borders of zones: this is left out"
-            : fmt::format(
-                  "cavities of hexagons extend beyond the elements' outlines at borders of zones, and remove {} "
-                  "mm2 of the apertures of other elements: left out",
-                  fixed(run.result.zone_overcut_mm2, 4)));
+        {"zone_border_cavities_omitted",
+         run.result.elements_overcut == 0
+             ? "cavities of hexagons extend into the land at borders of zones: this is left out"
+             : fmt::format(
+                   "cavities of hexagons extend beyond the elements' outlines at borders of zones, and remove {} "
+                   "mm2 of the apertures of other elements: left out",
+                   fixed(run.result.zone_overcut_mm2, 4))});
   return machined_zones(run.job, run.request.job, elements, part.warnings);
 }
 
@@ -235,19 +242,22 @@ AsMachined as_machined(const VerificationRun& run) {
   if (run.job.strategy == Strategy::unidirectional &&
       run.job.process.plough_sa_nm != run.job.process.roughing_plunge_sa_nm)
     part.warnings.push_back(
-        fmt::format("plunged and ploughed facets differ in roughness (Sa {} and {} nm), which a design "
-                    "cannot say: it has the root of the mean of their squares",
-                    shortest(run.job.process.roughing_plunge_sa_nm), shortest(run.job.process.plough_sa_nm)));
+        {"facet_roughness_averaged",
+         fmt::format("plunged and ploughed facets differ in roughness (Sa {} and {} nm), which a design "
+                     "cannot say: it has the root of the mean of their squares",
+                     shortest(run.job.process.roughing_plunge_sa_nm), shortest(run.job.process.plough_sa_nm))});
   part.root_radius_um = run.result.root_radius_um;
   part.root_chamfer_um = run.result.root_chamfer_um;
   if (run.result.root_ridge_um > 0.0)
-    part.warnings.push_back(fmt::format(
-        "the nose of the tool leaves ridges {} um high in dihedral edges: the design has flats of {} um there",
-        fixed(run.result.root_ridge_um, 2), fixed(run.result.root_chamfer_um, 2)));
+    part.warnings.push_back(
+        {"root_ridges_as_flats",
+         fmt::format(
+             "the nose of the tool leaves ridges {} um high in dihedral edges: the design has flats of {} um there",
+             fixed(run.result.root_ridge_um, 2), fixed(run.result.root_chamfer_um, 2))});
   part.texture = predicted_texture(run.job);
   part.scratches = scratches_of(run.job);
   if (run.job.substrate && !part.scratches.empty()) {
-    part.warnings.push_back("scratches of a chipped edge are left out on a base");
+    part.warnings.push_back({"scratches_omitted", "scratches of a chipped edge are left out on a base"});
     part.scratches.clear();
   }
   part.body = machined_body(run.job, run.request.job, part.warnings);

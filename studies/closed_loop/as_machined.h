@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "geometry/elements/facet_planes.h"
 #include "studies/closed_loop/part_planes.h"
 #include "studies/closed_loop/verification.h"
@@ -35,7 +36,7 @@ struct AsMachined {
   PredictedTexture texture;
   std::vector<geometry::Scratch> scratches;  ///< that the chips of the tool's edge leave
   MachinedBody body;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// \throw InputError if no element was cut whose facets could be measured

@@ -134,7 +134,7 @@ std::vector<CutAngles> cut_angles(const fabrication::Job& job, const std::vector
 }  // namespace
 
 ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
-                         const std::vector<ElementTilts>& elements, std::vector<std::string>& warnings) {
+                         const std::vector<ElementTilts>& elements, Warnings& warnings) {
   const InputLocation at{"", 0, "--as-machined"};
   const std::optional<Design> design = design_beside(job, job_file);
   if (!design)
@@ -167,12 +167,14 @@ ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::pat
   for (ElementsOfZone& of_zone : part.elements)
     if (of_zone.mask) of_zone.mask->name = std::filesystem::absolute(of_zone.mask->file).string();
   if (cut < designed.size())
-    warnings.push_back(fmt::format("{} of {} elements are not cut, but are contained in the as-machined design",
-                                   designed.size() - cut, designed.size()));
+    warnings.push_back({"uncut_elements_included",
+                        fmt::format("{} of {} elements are not cut, but are contained in the as-machined design",
+                                    designed.size() - cut, designed.size())});
   if (spread_arcmin > kToldSpreadArcmin)
     warnings.push_back(
-        fmt::format("facets of a zone differ by up to {} arcmin: the as-machined design contains their mean",
-                    fixed(spread_arcmin, 2)));
+        {"facets_differ_from_mean",
+         fmt::format("facets of a zone differ by up to {} arcmin: the as-machined design contains their mean",
+                     fixed(spread_arcmin, 2))});
   return part;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "fabrication/job/job.h"
 #include "studies/design/design.h"
 
@@ -25,6 +26,6 @@ using ElementTilts = std::optional<std::array<double, 3>>;
 ///        does not have
 /// the design does not have
 ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
-                         const std::vector<ElementTilts>& elements, std::vector<std::string>& warnings);
+                         const std::vector<ElementTilts>& elements, Warnings& warnings);
 
 }  // namespace retrace::studies

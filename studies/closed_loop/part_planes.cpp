@@ -76,7 +76,7 @@ std::optional<Design> design_beside(const Job& job, const fs::path& job_file) {
   return read_design(file);
 }
 
-MachinedBody machined_body(const Job& job, const fs::path& job_file, std::vector<std::string>& warnings) {
+MachinedBody machined_body(const Job& job, const fs::path& job_file, Warnings& warnings) {
   if (const std::optional<Design> design = design_beside(job, job_file))
     return {design->thickness_mm(),
             design->substance.material,
@@ -85,7 +85,8 @@ MachinedBody machined_body(const Job& job, const fs::path& job_file, std::vector
             design->substance.temperature_c,
             design->substance.absorption_per_mm};
   warnings.push_back(
-      "the job's design is not where the job names it: the as-machined part is given a plate of 2 mm of PMMA");
+      {"design_not_found",
+       "the job's design is not where the job names it: the as-machined part is given a plate of 2 mm of PMMA"});
   return {};
 }
 

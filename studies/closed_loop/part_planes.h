@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/edge_cut.h"
 #include "geometry/elements/facet_planes.h"
@@ -30,8 +31,7 @@ struct MachinedBody {
 std::optional<Design> design_beside(const fabrication::Job& job, const std::filesystem::path& job_file);
 
 /// As that design says. \param warnings is told where it is missed
-MachinedBody machined_body(const fabrication::Job& job, const std::filesystem::path& job_file,
-                           std::vector<std::string>& warnings);
+MachinedBody machined_body(const fabrication::Job& job, const std::filesystem::path& job_file, Warnings& warnings);
 
 /// The elements of the job, all alike, or with a table of planes.
 geometry::PartSpec machined_elements(const fabrication::Job& job, bool has_planes);

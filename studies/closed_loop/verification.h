@@ -8,6 +8,7 @@
 
 #include "core/file_texts.h"
 #include "core/progress.h"
+#include "core/warning.h"
 #include "fabrication/chisel/check/simulation/error_field.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/job/job.h"
@@ -33,7 +34,7 @@ struct VerificationRun {
   std::vector<fabrication::NcProgram> programs;  ///< as they were read, behind what made what stands
   std::size_t standing = 0;                      ///< so many of the programs made it, and are not judged
   fabrication::Verification result;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Reads the job, its machine and the programs, and carries the programs out.

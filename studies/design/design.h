@@ -15,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/schema/document.h"
+#include "core/warning.h"
 #include "geometry/elements/element_choice.h"
 #include "geometry/elements/part_spec.h"
 #include "geometry/part/zones.h"
@@ -316,7 +317,7 @@ struct Design {
   /// Returns the paths, from the working directory, of all files that keys of the design name.
   std::vector<std::filesystem::path> files() const;
   /// Returns a warning for each key of the design file that has no effect because of another key.
-  std::vector<std::string> warnings() const;
+  Warnings warnings() const;
   /// Returns the position at which a key was given, or at which it is missing.
   InputLocation where(std::string_view key) const;
   /// Returns the position of the key that determines the texture of the facets.

@@ -104,8 +104,7 @@ FacetForm sink(const NominalFacet& facet, double sink_um) {
 
 /// Reads a height map and fits the form polynomial to it.
 /// \throw InputError if the map cannot be read or does not cover the facet
-FacetForm measured(const NominalFacet& facet, const FormMap& map, const std::string& source,
-                   std::vector<std::string>& warnings) {
+FacetForm measured(const NominalFacet& facet, const FormMap& map, const std::string& source, Warnings& warnings) {
   const HeightMap level = level_map_of(map.file, map.level_axis, source, warnings);
   const auto fail = [&](const std::string& complaint) { throw InputError({map.file.string(), 0, ""}, complaint); };
   if (level.columns < kLeastPoints || level.rows < kLeastPoints)
@@ -125,7 +124,7 @@ FacetForm measured(const NominalFacet& facet, const FormMap& map, const std::str
 }  // namespace
 
 HeightMap level_map_of(const std::filesystem::path& file, HeightMapAxis level_axis, const std::string& source,
-                       std::vector<std::string>& warnings) {
+                       Warnings& warnings) {
   using namespace surface_models;
   HeightMapOptions options;
   options.can_be_given = false;
@@ -133,14 +132,15 @@ HeightMap level_map_of(const std::filesystem::path& file, HeightMapAxis level_ax
   const std::size_t points = read.map.heights_nm.size();
   const std::size_t missing = points - measured_points(read.map);
   if (static_cast<double>(missing) > kMissingShareToTell * static_cast<double>(points))
-    read.warnings.push_back(fmt::format("{:.1f} % of the points are missing; they count as the mean height",
-                                        100.0 * static_cast<double>(missing) / static_cast<double>(points)));
-  for (const std::string& warning : read.warnings)
-    warnings.push_back(fmt::format("{}: {}: {}", source, file.string(), warning));
+    read.warnings.push_back(
+        {"missing_points", fmt::format("{:.1f} % of the points are missing; they count as the mean height",
+                                       100.0 * static_cast<double>(missing) / static_cast<double>(points))});
+  for (const Warning& warning : read.warnings)
+    warnings.push_back({warning.id, fmt::format("{}: {}: {}", source, file.string(), warning.text)});
   return level_axis == HeightMapAxis::x ? std::move(read.map) : turned_by_quarter(read.map);
 }
 
-FacetForm form_of_design(const Design& design, std::vector<std::string>& warnings) {
+FacetForm form_of_design(const Design& design, Warnings& warnings) {
   const FormOfFacets& given = design.surface.form;
   if (given.is_plane()) return {};
   const NominalFacet facet(design.part().element);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "studies/design/design.h"
 #include "surface_models/facet_form.h"
 #include "surface_models/height_map.h"
@@ -15,12 +16,12 @@ namespace retrace::studies {
 /// \param source name of the design, for messages
 /// \throw InputError that names the file
 surface_models::HeightMap level_map_of(const std::filesystem::path& file, HeightMapAxis level_axis,
-                                       const std::string& source, std::vector<std::string>& warnings);
+                                       const std::string& source, Warnings& warnings);
 
 /// Returns the form of the retro facets of the design's element without errors and cant. Warnings are appended.
 /// \throw InputError that names file, line and key if a map cannot be read or does not cover a facet, and for slopes
 /// above 0.03
-surface_models::FacetForm form_of_design(const Design& design, std::vector<std::string>& warnings);
+surface_models::FacetForm form_of_design(const Design& design, Warnings& warnings);
 
 /// Figures of a form over a facet of the element without errors and cant.
 struct FormReport {

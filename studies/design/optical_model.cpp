@@ -76,8 +76,7 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
 
 /// Returns the height map in the orientation of the facet, with its x axis horizontal and its form removed. Warnings
 /// are appended.
-surface_models::HeightMap levelled_map(const HeightMapTexture& t, const std::string& source,
-                                       std::vector<std::string>& warnings) {
+surface_models::HeightMap levelled_map(const HeightMapTexture& t, const std::string& source, Warnings& warnings) {
   const surface_models::HeightMap level = level_map_of(t.file, t.level_axis, source, warnings);
   try {
     return surface_models::without_form(level, t.form_degree);
@@ -87,7 +86,7 @@ surface_models::HeightMap levelled_map(const HeightMapTexture& t, const std::str
 }
 
 /// Returns the measured height map of the facets, or nothing if their texture has another model. Warnings are appended.
-std::optional<surface_models::HeightMap> facet_map(const Design& design, std::vector<std::string>& warnings) {
+std::optional<surface_models::HeightMap> facet_map(const Design& design, Warnings& warnings) {
   const auto* const texture = std::get_if<HeightMapTexture>(&design.surface.texture);
   if (texture == nullptr) return std::nullopt;
   try {
@@ -278,10 +277,11 @@ void warn_of_extrapolation(const Design& design, const Substance& substance, Opt
   const std::string data = fmt::format("{}: the data of {} reach from {} to {} nm; its index ", design.source_name(),
                                        substance.name, substance.valid_from_nm, substance.valid_to_nm);
   model.warnings.push_back(
-      model.spectral.size() == 1
-          ? data + fmt::format("at {} nm is extrapolated", outside_nm.front())
-          : data + fmt::format("is extrapolated for {:.2g} % of the light, at {} wavelengths from {:.0f} to {:.0f} nm",
-                               100.0 * share, outside_nm.size(), outside_nm.front(), outside_nm.back()));
+      {"index_extrapolated",
+       model.spectral.size() == 1
+           ? data + fmt::format("at {} nm is extrapolated", outside_nm.front())
+           : data + fmt::format("is extrapolated for {:.2g} % of the light, at {} wavelengths from {:.0f} to {:.0f} nm",
+                                100.0 * share, outside_nm.size(), outside_nm.front(), outside_nm.back())});
 }
 
 /// Adds warnings about coatings: indices that are extrapolated, and interference fringes that the few traced
@@ -302,10 +302,12 @@ void add_coating_warnings(const Design& design, const materials::MaterialLibrary
       fringes = std::max(fringes, std::abs(orders_in(model.spectral[k].optics.*stack) -
                                            orders_in(model.spectral[k - 1].optics.*stack)));
     if (fringes > kMostFringesPerStep)
-      model.warnings.push_back(fmt::format(
-          "{}: layers of that thickness have up to {:.1f} interference fringes from one wavelength that stands for the "
-          "lamp to the next; means over the spectrum are those of the few wavelengths",
-          design.source_name(), fringes));
+      model.warnings.push_back(
+          {"unresolved_fringes",
+           fmt::format("{}: layers of that thickness have up to {:.1f} interference fringes from one wavelength that "
+                       "stands for the "
+                       "lamp to the next; means over the spectrum are those of the few wavelengths",
+                       design.source_name(), fringes)});
   }
 }
 
@@ -315,9 +317,11 @@ void warn_of_temperature(const Design& design, const materials::Material& materi
   if (temperature_c == material.temperature_c) return;
   const materials::ThermoOptic& data = *material.thermo_optic;
   if (temperature_c >= data.valid_from_c && temperature_c <= data.valid_to_c) return;
-  model.warnings.push_back(fmt::format(
-      "{}: the thermo-optic data of {} reach from {} to {} C; its index at {} C is extrapolated", design.source_name(),
-      material.name, shortest(data.valid_from_c), shortest(data.valid_to_c), shortest(temperature_c)));
+  model.warnings.push_back(
+      {"thermo_optic_extrapolated",
+       fmt::format("{}: the thermo-optic data of {} reach from {} to {} C; its index at {} C is extrapolated",
+                   design.source_name(), material.name, shortest(data.valid_from_c), shortest(data.valid_to_c),
+                   shortest(temperature_c))});
 }
 
 /// Adds the warnings of a texture's model about its range of validity. Only the first wavelength with warnings is
@@ -338,8 +342,8 @@ void add_texture_warnings(const std::string& name, const InputLocation& where, c
       throw InputError(where, error.what());
     }
     if (is_told) continue;
-    for (const std::string& warning : surface_models::warnings(texture(at.optics), index, at.wavelength_nm)) {
-      model.warnings.push_back(fmt::format("{}: {}", name, warning));
+    for (const Warning& warning : surface_models::warnings(texture(at.optics), index, at.wavelength_nm)) {
+      model.warnings.push_back({warning.id, fmt::format("{}: {}", name, warning.text)});
       is_told = true;
     }
   }
@@ -409,8 +413,7 @@ struct OpticsOfDesign::Hidden {
   surface_models::FacetForm form;
 };
 
-OpticsOfDesign::OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library,
-                               std::vector<std::string>& warnings) {
+OpticsOfDesign::OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library, Warnings& warnings) {
   materials::Material material = material_of(design, library);
   warnings.insert(warnings.end(), material.warnings.begin(), material.warnings.end());
   if (!design.substance.refractive_index) require_temperature(design, material);
@@ -456,7 +459,7 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
   }
   add_coating_warnings(design, library, model);
   add_texture_warnings(design, model);
-  const std::vector<std::string> superseded = design.warnings();
+  const Warnings superseded = design.warnings();
   model.warnings.insert(model.warnings.end(), superseded.begin(), superseded.end());
   return model;
 }

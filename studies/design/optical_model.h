@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/chosen_elements.h"
 #include "geometry/part/part.h"
@@ -34,7 +35,7 @@ struct OpticalModel {
   raytrace::Optics optics;  ///< properties at the traced wavelength that is nearest to `wavelength_nm`
   /// Properties at the traced wavelengths, in ascending order; the weights add up to 1.
   std::vector<SpectralOptics> spectral;
-  std::vector<std::string> warnings;  ///< warnings for the user, for example about an extrapolated index
+  Warnings warnings;  ///< warnings for the user, for example about an extrapolated index
 };
 
 /// Entrance faces that a caller supports: only a plane face, or also a curved one.
@@ -57,7 +58,7 @@ class OpticsOfDesign {
   /// \param warnings receives warnings for the user
   /// \pre `design` and `library` exist as long as this object
   /// \throw InputError as make_model()
-  OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library, std::vector<std::string>& warnings);
+  OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library, Warnings& warnings);
   ~OpticsOfDesign();
 
   /// Returns the properties at a wavelength, without another medium behind single elements.

@@ -26,12 +26,12 @@ namespace {
 // from drawings.
 constexpr double kSameThickness = 1e-4;
 
-void tell(std::vector<std::string>* warnings, const Design& design, const std::string& text) {
+void tell(Warnings* warnings, const Design& design, std::string_view id, const std::string& text) {
   if (warnings != nullptr)
-    warnings->push_back(fmt::format("{}: {}: {}", design.source_name(), design.mesh()->file.string(), text));
+    warnings->push_back({id, fmt::format("{}: {}: {}", design.source_name(), design.mesh()->file.string(), text)});
 }
 
-geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh, std::vector<std::string>* warnings) {
+geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh, Warnings* warnings) {
   geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
   if (report.is_closed) return mesh;
   if (const auto p = geometry::mixed_winding(mesh))
@@ -42,7 +42,7 @@ geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh,
   if (!design.mesh()->allow_open)
     throw InputError("the mesh is not closed; set allow_open = true in [part] to close its openings by flat pieces");
   geometry::ClosedMesh mended = geometry::with_openings_closed(mesh);
-  tell(warnings, design,
+  tell(warnings, design, "openings_closed",
        fmt::format("the mesh is not closed: {} opening{} with {} edges {} closed by flat pieces, results are those of "
                    "the part with them",
                    mended.openings, mended.openings == 1 ? "" : "s", mended.open_edges,
@@ -54,7 +54,7 @@ geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh,
 /// \param report result of check_boundary() for this mesh
 /// \pre the mesh is closed and manifold
 geometry::TriangleMesh united(const Design& design, const geometry::TriangleMesh& mesh,
-                              const geometry::BoundaryReport& report, std::vector<std::string>* warnings) {
+                              const geometry::BoundaryReport& report, Warnings* warnings) {
   std::string fault = "does not enclose one volume";
   if (const auto& p = report.crossing_mm)
     fault = fmt::format("crosses itself near ({}, {}, {}) mm", fixed(p->x(), 3), fixed(p->y(), 3), fixed(p->z(), 3));
@@ -67,15 +67,15 @@ geometry::TriangleMesh united(const Design& design, const geometry::TriangleMesh
         fmt::format("the mesh {} and its bodies cannot be united: each body must be a closed surface that does not "
                     "cross itself; repair the mesh in the program that made it",
                     fault));
-  tell(warnings, design,
+  tell(warnings, design, "bodies_united",
        fmt::format("the mesh {}; results are those of the union of its {} bodies", fault, all->bodies));
   return std::move(all->mesh);
 }
 
-geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh, std::vector<std::string>* warnings) {
+geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh, Warnings* warnings) {
   mesh = closed(design, std::move(mesh), warnings);
   if (geometry::volume_mm3(geometry::boundary_of(mesh)) < 0.0) {
-    tell(warnings, design, "the triangles of the mesh look inward; they were turned over");
+    tell(warnings, design, "triangles_reversed", "the triangles of the mesh look inward; they were turned over");
     mesh = geometry::turned_over(mesh);
   }
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
@@ -83,7 +83,7 @@ geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh
   if (report.is_manifold) return united(design, mesh, report, warnings);
   if (!design.mesh()->allow_open)
     throw InputError("the mesh touches itself along edges; set allow_open = true in [part] to trace it unchanged");
-  tell(warnings, design, "the mesh touches itself along edges; it is traced unchanged");
+  tell(warnings, design, "touching_edges", "the mesh touches itself along edges; it is traced unchanged");
   return mesh;
 }
 
@@ -93,7 +93,7 @@ std::string rounded_text(double value) {
 }
 
 /// Adds a warning if the size of a mesh suggests that its unit is not mm. STL files do not state their unit.
-void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, std::vector<std::string>* warnings) {
+void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, Warnings* warnings) {
   // Parts smaller than kSmallestMm are probably given in metres, and parts larger than kLargestMm in micrometres.
   constexpr double kSmallestMm = 0.1;
   constexpr double kLargestMm = 1000.0;
@@ -108,7 +108,7 @@ void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, std:
   const bool is_small = size_mm < kSmallestMm;
   const double probable_scale = is_small ? 1000.0 : 0.001;
   const bool is_tried = mesh_scale(design, "part") == probable_scale;
-  tell(warnings, design,
+  tell(warnings, design, "unlikely_unit",
        fmt::format("the largest dimension of the mesh is {} mm; {}", rounded_text(size_mm),
                    is_tried ? "check scale in [part]"
                             : fmt::format("if the unit of the file is the {}, set scale = {} in [part]",
@@ -124,7 +124,7 @@ void check_thickness(const Design& design, const geometry::Part& part) {
 
 }  // namespace
 
-geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::string>* warnings) {
+geometry::TriangleMesh mesh_of_design(const Design& design, Warnings* warnings) {
   if (const Plate* const plate = std::get_if<Plate>(&design.shape))
     return geometry::box_mesh({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
   const std::string name = design.mesh()->file.string();
@@ -135,7 +135,7 @@ geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::str
   });
 }
 
-geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings) {
+geometry::Part part_of_design(const Design& design, Warnings* warnings) {
   if (const Plate* const plate = std::get_if<Plate>(&design.shape))
     return geometry::build_plate({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
   if (design.zoned()) return geometry::build_part(zones_of(design));

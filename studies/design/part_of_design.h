@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "geometry/part/part.h"
 #include "geometry/part/triangle_mesh.h"
 #include "studies/design/design.h"
@@ -15,10 +16,10 @@ namespace retrace::studies {
 /// must be closed and free of self-intersections. With `allow_open`, openings are closed by flat pieces.
 /// \param warnings receives warnings about a mesh; may be null
 /// \throw InputError that names file and line
-geometry::Part part_of_design(const Design& design, std::vector<std::string>* warnings);
+geometry::Part part_of_design(const Design& design, Warnings* warnings);
 
 /// Returns the mesh of a design after the checks of part_of_design(), with normals that point outwards.
 /// \pre the design is a mesh or a plate
-geometry::TriangleMesh mesh_of_design(const Design& design, std::vector<std::string>* warnings);
+geometry::TriangleMesh mesh_of_design(const Design& design, Warnings* warnings);
 
 }  // namespace retrace::studies

@@ -180,7 +180,8 @@ void add_section(DesignDrawing& drawing, const Design& design, const Part& part,
   }
   const auto view = section_view(part, a.section_y_mm, from, to);
   if (!view) {
-    drawing.warnings.push_back(design.source_name() + ": no section is drawn: the back folds under itself there");
+    drawing.warnings.push_back(
+        {"no_section", design.source_name() + ": no section is drawn: the back folds under itself there"});
     return;
   }
   SectionPanel panel;

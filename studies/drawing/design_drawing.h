@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "studies/design/design.h"
 #include "studies/drawing/part_views.h"
 
@@ -57,7 +58,7 @@ struct DesignDrawing {
   std::vector<std::string> remarks;
   std::vector<PlanPanel> plan;  ///< the whole part, and a detail if elements are small
   std::optional<SectionPanel> section;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Maximum number of faces that a plan draws individually.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/file_texts.h"
+#include "core/warning.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
@@ -27,7 +28,7 @@ struct FabricationResult {
   fabrication::Plan plan;
   std::string dialect;
   std::string file_ending;  ///< of programs, with the dot
-  std::vector<std::string> warnings;
+  Warnings warnings;
 
   std::string program_file(std::size_t k) const { return plan.programs[k].name + file_ending; }
 };

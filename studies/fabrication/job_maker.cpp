@@ -96,8 +96,9 @@ bool has_errors(const PartSpec& part) {
 
 void warn_of_errors(const PartSpec& part, const std::string& name, MadeJob& made) {
   if (has_errors(part))
-    made.warnings.push_back(fmt::format("{}: {}random errors, edges and scratches of [surface] are not cut", name,
-                                        is_prism(part) ? "facet tilts, " : ""));
+    made.warnings.push_back(
+        {"surface_errors_not_cut", fmt::format("{}: {}random errors, edges and scratches of [surface] are not cut",
+                                               name, is_prism(part) ? "facet tilts, " : "")});
 }
 
 /// Partial elements of the array, whether or not a mask is to leave out others.
@@ -123,7 +124,7 @@ void add_warnings(const Design& design, MadeJob& made) {
   if (made.partial_elements > 0) {
     made.job.notes.push_back(fmt::format("{} partial elements are left out", made.partial_elements));
     if (design.part().array.partial_elements == geometry::PartialElements::cut)
-      made.warnings.push_back(cut_warning(name, made.partial_elements));
+      made.warnings.push_back({"partial_elements_not_cut", cut_warning(name, made.partial_elements)});
   }
   warn_of_errors(design.part(), name, made);
   if (design.part().array.arrangement == Arrangement::honeycomb)
@@ -173,7 +174,8 @@ void add_zones(const Design& design, MadeJob& made) {
       by_turn[std::remainder(at.rotation_deg, 360.0)].apexes_mm.emplace_back(rounded_mm(at.apex_mm.x()),
                                                                              rounded_mm(at.apex_mm.y()));
     if (by_turn.empty())
-      made.warnings.push_back(fmt::format("zone {} has no whole element: the zone is not cut", z + 1));
+      made.warnings.push_back(
+          {"zone_not_cut", fmt::format("zone {} has no whole element: the zone is not cut", z + 1)});
     for (auto& [turn_deg, zone] : by_turn) {
       zone.rotation_deg = turn_deg;
       if (aperture_mm(elements.element) != aperture_mm(job.element)) zone.aperture_mm = aperture_mm(elements.element);
@@ -193,7 +195,7 @@ void add_zones(const Design& design, MadeJob& made) {
   if (made.partial_elements > 0 && std::ranges::any_of(spec.zones, [](const geometry::PartZone& zone) {
         return zone.elements.array.partial_elements == geometry::PartialElements::cut;
       }))
-    made.warnings.push_back(cut_warning(design.source_name(), made.partial_elements));
+    made.warnings.push_back({"partial_elements_not_cut", cut_warning(design.source_name(), made.partial_elements)});
 }
 
 /// Warns about the parts of elements that are removed by cavities of another zone.
@@ -207,11 +209,12 @@ void tell_overcut(MadeJob& made) {
   const fabrication::ZoneOvercut overcut =
       fabrication::zone_overcut(workpiece, std::vector<bool>(workpiece.grooves.size(), true));
   if (overcut.elements == 0) return;
-  made.warnings.push_back(fmt::format(
-      "cavities remove {} mm2 of the apertures of {} of {} elements, because they extend into other zones: at most {} "
-      "um "
-      "deep",
-      fixed(overcut.area_mm2, 4), overcut.elements, workpiece.grooves.size(), fixed(1e3 * overcut.deepest_mm, 1)));
+  made.warnings.push_back({"zones_overcut", fmt::format("cavities remove {} mm2 of the apertures of {} of {} elements, "
+                                                        "because they extend into other zones: at most {} "
+                                                        "um "
+                                                        "deep",
+                                                        fixed(overcut.area_mm2, 4), overcut.elements,
+                                                        workpiece.grooves.size(), fixed(1e3 * overcut.deepest_mm, 1))});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/warning.h"
 #include "fabrication/job/job.h"
 #include "studies/design/design.h"
 
@@ -28,7 +29,7 @@ struct MadeJob {
   std::filesystem::path design_file;  ///< that it was made from, from the working directory; none: standard input
   std::int64_t elements = 0;          ///< that are cut
   std::int64_t partial_elements = 0;  ///< that the design has and the job leaves out
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// What can be told of a request without a design: its words, machine and process. \throw InputError

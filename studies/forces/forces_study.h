@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "fabrication/forces/forces.h"
 #include "fabrication/job/job.h"
 
@@ -23,7 +24,7 @@ struct ForcesResult {
   fabrication::CutConditions cut;
   fabrication::ForceEvents events;
   std::vector<fabrication::ForceSample> profile;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Forces over one cycle of a job's roughing (of a bidirectional job: of a layer), by the shipped measurements.

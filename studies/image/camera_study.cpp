@@ -303,17 +303,20 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   }
   result.complete = ledger.is_finished();
   if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
-    result.warnings.push_back(fmt::format(
-        "{}: the noise of {} is above the target of {} after {} passes, which would take about {:.2g}, of {} at most "
-        "(--passes N sets the number of passes)",
-        design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise), result.image.passes,
-        passes_needed(result.image, request_), kMostPasses));
+    result.warnings.push_back(
+        {"noise_above_target",
+         fmt::format("{}: the noise of {} is above the target of {} after {} passes, which would take about {:.2g}, of "
+                     "{} at most "
+                     "(--passes N sets the number of passes)",
+                     design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise),
+                     result.image.passes, passes_needed(result.image, request_), kMostPasses)});
   if (result.complete && result.image.part_mean() == 0.0)
     result.warnings.push_back(
-        fmt::format("{}: no light comes to the camera from the part in {} passes: the part is dark, or bright paths "
-                    "are too rare to "
-                    "be found (--passes N sets the number of passes)",
-                    design_.source_name(), result.image.passes));
+        {"no_light_found",
+         fmt::format("{}: no light comes to the camera from the part in {} passes: the part is dark, or bright paths "
+                     "are too rare to "
+                     "be found (--passes N sets the number of passes)",
+                     design_.source_name(), result.image.passes)});
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

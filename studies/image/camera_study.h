@@ -13,6 +13,7 @@
 
 #include "core/progress.h"
 #include "core/shared_tasks.h"
+#include "core/warning.h"
 #include "raytrace/observers/camera.h"
 #include "studies/design/optical_model.h"
 #include "studies/image/lamp.h"
@@ -65,7 +66,7 @@ struct CameraResult {
   double entrance_deg = 0.0;
   double viewing_deg = 0.0;
   double elapsed_s = 0.0;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;  ///< false: fewer passes than requested
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/warning.h"
 #include "raytrace/observers/detector.h"
 #include "studies/design/optical_model.h"
 #include "studies/rre/rre.h"
@@ -39,7 +40,7 @@ struct DetectorResult {
   bool is_period = false;  ///< true: the face is one period of an infinite part
   raytrace::DetectorMaps maps;
   double elapsed_s = 0.0;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
 };
 

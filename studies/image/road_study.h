@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/warning.h"
 #include "materials/spectrum.h"
 #include "studies/design/design.h"
 #include "studies/image/lamp.h"
@@ -68,7 +69,7 @@ struct RoadResult {
   std::string engine;
   std::vector<RoadView> views;
   double elapsed_s = 0.0;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
 };
 

@@ -112,10 +112,12 @@ std::string of_turned_elements(const geometry::PartSpec& part) {
 void tell_early_end(Inspection& result) {
   const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element) || circumstances(result).empty()) return;
-  result.warnings.push_back(fmt::format(
-      "{}: total reflection at the facets ends at {} degrees of incidence at azimuth {:.1f} (n = {:.4f}{}){}",
-      result.design.source_name(), fixed_visible(*result.tir_limit_deg, 2), *result.tir_limit_azimuth_deg,
-      least_index(result.light), circumstances(result), of_turned_elements(part)));
+  result.warnings.push_back(
+      {"total_reflection_limit",
+       fmt::format(
+           "{}: total reflection at the facets ends at {} degrees of incidence at azimuth {:.1f} (n = {:.4f}{}){}",
+           result.design.source_name(), fixed_visible(*result.tir_limit_deg, 2), *result.tir_limit_azimuth_deg,
+           least_index(result.light), circumstances(result), of_turned_elements(part))});
 }
 
 /// Adds a warning if light at normal incidence is not totally reflected at some wavelengths.
@@ -137,12 +139,13 @@ void warn_of_lost_reflection(Inspection& result) {
   const std::string begins = where_it_begins(result);
   const std::string ends = begins.empty() ? begins : begins + of_turned_elements(result.design.part());
   if (result.light.size() == 1)
-    result.warnings.push_back(
-        fmt::format("{} (n = {:.4f}{}){}", lost, result.refractive_index, circumstances(result), ends));
+    result.warnings.push_back({"no_total_reflection", fmt::format("{} (n = {:.4f}{}){}", lost, result.refractive_index,
+                                                                  circumstances(result), ends)});
   else
-    result.warnings.push_back(fmt::format("{} for {:.0f} % of the light, {:.0f} to {:.0f} nm (n from {:.4f}{}){}", lost,
-                                          100.0 * share, from_nm, to_nm, least_index(result.light),
-                                          circumstances(result), ends));
+    result.warnings.push_back(
+        {"no_total_reflection",
+         fmt::format("{} for {:.0f} % of the light, {:.0f} to {:.0f} nm (n from {:.4f}{}){}", lost, 100.0 * share,
+                     from_nm, to_nm, least_index(result.light), circumstances(result), ends)});
 }
 
 /// Adds the report on the base. The depth of an element is measured along its own axis; the depth of the part includes
@@ -163,8 +166,9 @@ void add_warnings(Inspection& result, const geometry::Part& part) {
   if (!part.spec.substrate) warn_of_lost_reflection(result);
   if (part.elements_partial > 0 && part.spec.array.partial_elements == geometry::PartialElements::cut)
     result.warnings.push_back(
-        fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
-                    result.design.source_name(), part.elements_partial));
+        {"partial_elements",
+         fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
+                     result.design.source_name(), part.elements_partial)});
 }
 
 Inspection inspect_balls(const Design& design, const materials::MaterialLibrary& library) {

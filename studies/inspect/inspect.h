@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "geometry/part/substrate_part.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
@@ -80,7 +81,7 @@ struct Inspection {
   double dead_zone_share = 0.0;      ///< fraction of an element's plan that rounded and chamfered edges occupy
   std::optional<BallFigures> balls;  ///< for kind = "ball"; then only this, the light, counts and areas are valid
   std::string boundary;              ///< result of the boundary check
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Returns the properties of a design.

@@ -51,7 +51,8 @@ HeightMap thinned(const HeightMap& map) {
 void measure_edge(MetrologyResult& result, const HeightMap& whole) {
   const HeightMap map = thinned(whole);
   if (map.rows < whole.rows)
-    result.warnings.push_back(fmt::format("the edge is fitted to {} of {} rows, evenly spread", map.rows, whole.rows));
+    result.warnings.push_back(
+        {"rows_subsampled", fmt::format("the edge is fitted to {} of {} rows, evenly spread", map.rows, whole.rows)});
   std::vector<double> radius, chamfer, dihedral, radius_residual, chamfer_residual;
   std::string refusal;
   result.surface = map;
@@ -73,8 +74,8 @@ void measure_edge(MetrologyResult& result, const HeightMap& whole) {
   }
   if (radius.empty()) throw InputError({result.request.file, 0, "--edge"}, refusal);
   if (radius.size() < map.rows)
-    result.warnings.push_back(
-        fmt::format("{} of {} rows show no edge and are left out", map.rows - radius.size(), map.rows));
+    result.warnings.push_back({"rows_without_edge", fmt::format("{} of {} rows show no edge and are left out",
+                                                                map.rows - radius.size(), map.rows)});
   EdgeResult edge{summarise(radius),
                   summarise(chamfer),
                   summarise(dihedral),
@@ -88,19 +89,22 @@ void measure_edge(MetrologyResult& result, const HeightMap& whole) {
 void warn(MetrologyResult& result, const HeightMap& map) {
   const double missing = static_cast<double>(result.missing) / static_cast<double>(map.heights_nm.size());
   if (missing > kMissingShareToTell)
-    result.warnings.push_back(fmt::format("{} % of the points are missing", fixed(100.0 * missing, 1)));
+    result.warnings.push_back(
+        {"missing_points", fmt::format("{} % of the points are missing", fixed(100.0 * missing, 1))});
   const double x_um = static_cast<double>(map.columns) * map.x_pixel_um;
   const double y_um = map.is_profile() ? x_um : static_cast<double>(map.rows) * map.y_pixel_um;
   if (result.request.cutoff_um > 0.5 * std::min(x_um, y_um))
-    result.warnings.push_back(fmt::format("the cut-off of {} um is longer than half of the map's shorter side of {} um",
-                                          shortest(result.request.cutoff_um), shortest(std::min(x_um, y_um))));
+    result.warnings.push_back(
+        {"cutoff_too_long", fmt::format("the cut-off of {} um is longer than half of the map's shorter side of {} um",
+                                        shortest(result.request.cutoff_um), shortest(std::min(x_um, y_um)))});
   if (result.edge) return;  // what is left of an edge describes no facet
   const auto& length = result.texture.correlation_length_um;
   if (!length && result.of_roughness.sq_nm > 0.0)
-    result.warnings.push_back("the roughness has no correlation length within the cut-off");
+    result.warnings.push_back({"no_correlation_length", "the roughness has no correlation length within the cut-off"});
   if (length && *length < kLeastPointsPerLength * map.x_pixel_um)
-    result.warnings.push_back(fmt::format("the correlation length of {} um is not resolved by a spacing of {} um",
-                                          fixed(*length, 3), shortest(map.x_pixel_um)));
+    result.warnings.push_back({"correlation_length_unresolved",
+                               fmt::format("the correlation length of {} um is not resolved by a spacing of {} um",
+                                           fixed(*length, 3), shortest(map.x_pixel_um))});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/warning.h"
 #include "surface_models/edge_fit.h"
 #include "surface_models/gaussian_filter.h"
 #include "surface_models/height_map.h"
@@ -59,7 +60,7 @@ struct MetrologyResult {
   surface_models::TextureModel texture;
   std::vector<surface_models::Scratch> scratches;
   std::optional<EdgeResult> edge;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// The degree that a word names: `none`, `plane`, `poly2` to `poly8`. \throw InputError naming --form

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/warning.h"
 #include "raytrace/observers/far_field.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "studies/design/optical_model.h"
@@ -80,7 +81,7 @@ class Photometer {
   /// Returns groups of settings that can share one traced far field.
   std::vector<LitAlike> settings_lit_alike(const std::vector<PhotometerSetting>& settings) const;
 
-  const std::vector<std::string>& warnings() const { return model_.warnings; }
+  const Warnings& warnings() const { return model_.warnings; }
   std::vector<double> wavelengths_nm() const;
   std::string engine_name() const;
   /// Returns the cut-off power, as a fraction of the power that falls on one element. Weaker beams are resampled or

@@ -457,9 +457,9 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   result.has_diffraction = photometer.has_diffraction();
   if (request.diffraction && !result.has_diffraction)
     result.warnings.push_back(
-        fmt::format("{}: the Monte-Carlo engine has no diffraction, which spreads the light of "
-                    "cells under {} mm",
-                    design.source_name(), fixed(photometer.least_undiffracted_mm(), 1)));
+        {"no_diffraction", fmt::format("{}: the Monte-Carlo engine has no diffraction, which spreads the light of "
+                                       "cells under {} mm",
+                                       design.source_name(), fixed(photometer.least_undiffracted_mm(), 1))});
   result.complete = readings.has_value();
   if (readings) {
     for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);

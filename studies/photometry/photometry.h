@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/warning.h"
 #include "materials/chromaticity.h"
 #include "materials/spectrum.h"
 #include "raytrace/observers/aperture_kernel.h"
@@ -177,7 +178,7 @@ struct PhotometryResult {
   std::vector<FarFieldMap> maps;
   std::vector<ObservationCurve> curves;
   double elapsed_s = 0.0;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
 
   /// Returns true if every point and the area satisfy their limits, and if the colour does not fail.

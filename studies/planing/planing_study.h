@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "fabrication/planing/check/check.h"
 #include "fabrication/planing/plan/plan.h"
 
@@ -18,7 +19,7 @@ struct PlaningResult {
   fabrication::PlaningPlan plan;
   std::vector<fabrication::PlaningText> programs;  ///< names and texts of the files
   fabrication::PlaningCheck check;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Plans a part and writes its programs.
@@ -34,7 +35,7 @@ struct PlaningVerification {
   fabrication::PlaningCheck check;
 
   bool passes() const { return check.passes(); }
-  std::vector<std::string> part_warnings() const { return {}; }
+  Warnings part_warnings() const { return {}; }
 };
 
 /// Checks programs for a part.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "studies/rays/ray_set.h"
 
 namespace retrace::studies {
@@ -23,7 +24,7 @@ class RaySource {
   /// Returns the fraction of the source that has been read, 0 to 1.
   virtual double share_read() const = 0;
   /// Returns warnings for the user. They are complete after the last ray.
-  virtual std::vector<std::string> warnings() const { return {}; }
+  virtual Warnings warnings() const { return {}; }
 };
 
 /// Data of leaving rays, which the sink receives before the first ray.

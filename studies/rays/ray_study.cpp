@@ -97,7 +97,7 @@ struct RayStudy::Hidden {
   RayRequest request;
   materials::MaterialLibrary library;
   OpticalModel model;
-  std::vector<std::string> ignored;  ///< warnings that the model also contains
+  Warnings ignored;  ///< warnings that the model also contains
   OpticsOfDesign optics;
   RayPlacement placement;
 };
@@ -304,14 +304,15 @@ class RayStudy::Run {
       const auto [least, most] = std::minmax_element(extrapolated_nm_.begin(), extrapolated_nm_.end());
       const materials::Material& material = hidden_.optics.material();
       result_.warnings.push_back(
-          fmt::format("{}: the data of {} reach from {} to {} nm; its index is extrapolated for wavelengths of rays "
-                      "from {} to {} nm",
-                      hidden_.design.source_name(), material.name, material.valid_from_nm, material.valid_to_nm,
-                      shortest(*least), shortest(*most)));
+          {"index_extrapolated",
+           fmt::format("{}: the data of {} reach from {} to {} nm; its index is extrapolated for wavelengths of rays "
+                       "from {} to {} nm",
+                       hidden_.design.source_name(), material.name, material.valid_from_nm, material.valid_to_nm,
+                       shortest(*least), shortest(*most))});
     }
-    for (std::string& warning : source_.warnings()) result_.warnings.push_back(std::move(warning));
+    for (Warning& warning : source_.warnings()) result_.warnings.push_back(std::move(warning));
     if (result_.ledger.rays > 0 && result_.ledger.rays_missed == result_.ledger.rays)
-      result_.warnings.push_back("no ray meets the part: see --at-mm, --aim-mm and --incidence");
+      result_.warnings.push_back({"no_ray_meets_part", "no ray meets the part: see --at-mm, --aim-mm and --incidence"});
   }
 
   const Hidden& hidden_;

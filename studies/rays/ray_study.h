@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/warning.h"
 #include "raytrace/paths/ray_tracer.h"
 #include "studies/design/optical_model.h"
 #include "studies/rays/emitter.h"
@@ -46,7 +47,7 @@ struct RayResult {
   std::uint64_t rays_out = 0;  ///< number of rays that the sink received
   double shortest_nm = 0.0;    ///< shortest traced wavelength
   double longest_nm = 0.0;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
   double elapsed_s = 0.0;
 };

@@ -53,20 +53,11 @@ RreRequest direction_of(const RoughnessRequest& asked) {
   return request;
 }
 
-/// Returns a warning without its numbers. Several points of a curve may leave the range of a model, but one warning of
-/// each kind is enough.
-std::string without_numbers(std::string warning) {
-  std::erase_if(warning, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
-  return warning;
-}
-
+/// Adds the warnings of a traced point. Several points of a curve may cause the same kind of warning; the first one is
+/// enough.
 void add_warnings(RoughnessResult& result, const RreResult& traced) {
-  for (const std::string& warning : traced.warnings) {
-    const auto says_the_same = [&](const std::string& other) {
-      return without_numbers(other) == without_numbers(warning);
-    };
-    if (std::none_of(result.warnings.begin(), result.warnings.end(), says_the_same)) result.warnings.push_back(warning);
-  }
+  for (const Warning& warning : traced.warnings)
+    if (std::ranges::count(result.warnings, warning.id, &Warning::id) == 0) result.warnings.push_back(warning);
   result.rays += traced.rays;
   result.elapsed_s += traced.elapsed_s;
   result.complete = result.complete && traced.complete;

@@ -11,6 +11,7 @@
 
 #include "core/progress.h"
 #include "core/shared_tasks.h"
+#include "core/warning.h"
 #include "studies/design/design.h"
 #include "studies/rre/rre.h"
 
@@ -58,7 +59,7 @@ struct RoughnessResult {
   std::vector<RoughnessPoint> points;  ///< curves in the order of the request, then the measured facets
   std::uint64_t rays = 0;
   double elapsed_s = 0.0;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
 };
 

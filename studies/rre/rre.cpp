@@ -193,11 +193,12 @@ void warn_of_truncation(const RreRequest& request, RreResult& result) {
       std::max_element(result.points.begin(), result.points.end(),
                        [&](const RrePoint& a, const RrePoint& b) { return truncated(a) < truncated(b); });
   if (worst == result.points.end() || truncated(*worst) <= allowed) return;
-  result.warnings.push_back(fmt::format(
-      "{}: {:.2g} % of the power is cut off at incidence {}, azimuth {}, and RRE up to that much too low; a smaller "
-      "--cutoff follows more",
-      result.designs[worst->design].source_name(), 100.0 * truncated(*worst), shortest(worst->incidence_deg),
-      shortest(worst->azimuth_deg)));
+  result.warnings.push_back(
+      {"power_truncated", fmt::format("{}: {:.2g} % of the power is cut off at incidence {}, azimuth {}, and RRE up to "
+                                      "that much too low; a smaller "
+                                      "--cutoff follows more",
+                                      result.designs[worst->design].source_name(), 100.0 * truncated(*worst),
+                                      shortest(worst->incidence_deg), shortest(worst->azimuth_deg))});
 }
 
 /// Returns the engine of all points. If points have different engines, returns `montecarlo` if all traced rays,
@@ -238,12 +239,13 @@ RreResult RreStudy::run(std::optional<std::size_t> design, Progress* progress, c
   RreResult result = begun();
   TracedRequest traced = trace_request(designs, models, request, design, progress, cancel);
   result.complete = traced.complete;
-  if (!traced.warning.empty()) result.warnings.push_back(traced.warning);
+  if (!traced.warning.empty()) result.warnings.push_back({"curve_not_resolved", traced.warning});
   for (Direction& direction : traced.directions) {
     for (const std::uint64_t rays : direction.rays) result.rays += rays;
     const bool missed_target = std::count(direction.missed_target.begin(), direction.missed_target.end(), 1) > 0;
     if (missed_target)
-      result.warnings.push_back(missed_target_text(designs[direction.at.design], direction.at, request));
+      result.warnings.push_back(
+          {"target_missed", missed_target_text(designs[direction.at.design], direction.at, request)});
     for (RrePoint& point : direction.points) point.missed_target = missed_target;
     result.points.insert(result.points.end(), direction.points.begin(), direction.points.end());
     if (!direction.points.empty() && (direction.footprint || direction.far_field))
@@ -267,7 +269,8 @@ RreResult RreStudy::result_of(std::vector<RrePoint> points) const {
   RreResult result = begun();
   for (const RrePoint& point : points)
     if (point.missed_target)
-      result.warnings.push_back(missed_target_text(result.designs[point.design], point, prepared_->request));
+      result.warnings.push_back(
+          {"target_missed", missed_target_text(result.designs[point.design], point, prepared_->request)});
   result.points = std::move(points);
   finish(result);
   return result;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/warning.h"
 #include "raytrace/light/ledger.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "studies/design/design.h"
@@ -143,7 +144,7 @@ struct RreResult {
   std::vector<EntranceFace> faces;  ///< one for each design, if footprints were requested
   std::uint64_t rays = 0;
   double elapsed_s = 0.0;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool complete = true;
 };
 

@@ -80,7 +80,7 @@ class LastCuts {
 };
 
 /// The design of the moulded patch but for its planes: smooth and clean, lit as the job's design says.
-Design patch_design(const Job& patch, const std::filesystem::path& job_file, std::vector<std::string>& warnings) {
+Design patch_design(const Job& patch, const std::filesystem::path& job_file, Warnings& warnings) {
   Design design;
   ElementArray array{machined_elements(patch, true), {}, {}};
   if (const std::optional<Design> given = design_beside(patch, job_file)) {
@@ -145,7 +145,7 @@ std::string why_no_setup_light(const Job& job) {
 }
 
 SetupLight setup_light(const Job& job, const std::filesystem::path& job_file, const Machine& machine,
-                       std::vector<std::string>& warnings) {
+                       Warnings& warnings) {
   const Job patch = patch_of(job);
   const LastCuts cuts(patch, machine);
   const Design design = patch_design(patch, job_file, warnings);

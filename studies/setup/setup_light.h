@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/warning.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 
@@ -43,6 +44,6 @@ std::string why_no_setup_light(const fabrication::Job& job);
 /// \param job_file beside which its design lies \param warnings is told where that is missed
 /// \pre why_no_setup_light() is empty
 SetupLight setup_light(const fabrication::Job& job, const std::filesystem::path& job_file,
-                       const fabrication::Machine& machine, std::vector<std::string>& warnings);
+                       const fabrication::Machine& machine, Warnings& warnings);
 
 }  // namespace retrace::studies

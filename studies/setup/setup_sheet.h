@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "studies/fabrication/fabricate.h"
 #include "studies/setup/sensitivity.h"
 #include "studies/setup/setup_light.h"
@@ -60,7 +61,7 @@ struct SetupSheet {
   Sensitivities sensitivities;
   std::optional<SetupLight> light;
   std::string why_no_light;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 
   /// What a unit of a quantity changes of the light; null where that is not told.
   const PartLight* change_of_light(const fabrication::SetupQuantity& quantity, fabrication::Tilt tilt) const;

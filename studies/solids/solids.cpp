@@ -64,11 +64,14 @@ void measure(Solid& solid) {
 void add_warnings(Solid& solid) {
   const std::string name = solid.design.source_name();
   if (!solid.is_manifold)
-    solid.warnings.push_back(name + ": the part touches itself along edges, which some programs take for open");
+    solid.warnings.push_back(
+        {"touching_edges", name + ": the part touches itself along edges, which some programs take for open"});
   if (!solid.design.surface.is_smooth())
-    solid.warnings.push_back(name + ": the texture of the facets is left out: a solid's facets are plane");
+    solid.warnings.push_back(
+        {"texture_omitted", name + ": the texture of the facets is left out: a solid's facets are plane"});
   if (!solid.design.surface.form.is_plane())
-    solid.warnings.push_back(name + ": the form of the facets is left out: a solid's facets are plane");
+    solid.warnings.push_back(
+        {"form_omitted", name + ": the form of the facets is left out: a solid's facets are plane"});
 }
 
 geometry::Part part_to_write(const Design& design, SolidKind what) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "geometry/part/closed_boundary.h"
 #include "studies/design/design.h"
 
@@ -45,7 +46,7 @@ struct Solid {
   geometry::Vec3 lower_mm = geometry::Vec3::Zero();
   geometry::Vec3 upper_mm = geometry::Vec3::Zero();
   bool is_manifold = true;  ///< true: the solid does not touch itself along an edge
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Builds the boundary of a solid. Facets are plane and smooth. Of the table [surface], only errors of angle and edges

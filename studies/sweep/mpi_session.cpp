@@ -76,7 +76,7 @@ struct MpiSession::State {
   bool may_go = false;      ///< other ranks: true after the message `go` of rank 0
   bool has_ended = false;
   bool ended_well = true;
-  std::vector<std::string> remarks;
+  Warnings remarks;
   Clock::time_point looked_last = Clock::now();
 
   bool is_silent(int rank) const { return mailbox->silence(rank) > silence; }
@@ -168,7 +168,7 @@ int MpiSession::rank() const {
   return state_->mailbox->rank();
 }
 
-std::vector<std::string> MpiSession::remarks() const {
+Warnings MpiSession::remarks() const {
   return state_->remarks;
 }
 
@@ -286,7 +286,7 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
     dealer.take_back(rank);
     state.at_work.erase(rank);
     waiting.erase(rank);
-    state.remarks.push_back(fmt::format("rank {} {}; its points went to others", rank, why));
+    state.remarks.push_back({"rank_lost", fmt::format("rank {} {}; its points went to others", rank, why)});
   };
   const auto read = [&](const Letter& letter) {
     if (!state.there.contains(letter.rank)) return;  // the rank was given up, although it is alive

@@ -9,6 +9,7 @@
 
 #include "core/progress.h"
 #include "core/shared_tasks.h"
+#include "core/warning.h"
 
 namespace retrace::studies {
 
@@ -38,7 +39,7 @@ class MpiSession {
   /// \throw Error of the ledger, or of a task that rank 0 computed
   bool deal(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots, const Cancellation* cancel);
   /// Returns remarks of rank 0 on the other ranks, for the user.
-  std::vector<std::string> remarks() const;
+  Warnings remarks() const;
 
   /// Other ranks: compute the tasks that rank 0 deals out, `slots` at a time, until there are no more.
   /// \throw Error of a task; leave() must then be called

@@ -312,13 +312,14 @@ SweepResult collect(const Sweep& sweep, const ResultStore& store, bool complete)
   const auto failed = [](const StoredPoint& point) { return point.failed; };
   const auto first = std::find_if(result.points.begin(), result.points.end(), failed);
   if (first != result.points.end())
-    result.warnings.push_back(fmt::format("{} of {} points failed, the first of them point {}: {}",
-                                          std::count_if(result.points.begin(), result.points.end(), failed),
-                                          result.points.size(), first->point, first->reason));
+    result.warnings.push_back(
+        {"points_failed", fmt::format("{} of {} points failed, the first of them point {}: {}",
+                                      std::count_if(result.points.begin(), result.points.end(), failed),
+                                      result.points.size(), first->point, first->reason)});
   for (const StoredPoint& point : result.points)
     if (point.version != kVersion) {
       result.warnings.push_back(
-          fmt::format("points were computed by version {} and this is {}", point.version, kVersion));
+          {"other_version", fmt::format("points were computed by version {} and this is {}", point.version, kVersion)});
       break;
     }
   return result;

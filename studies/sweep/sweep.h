@@ -11,6 +11,7 @@
 
 #include "core/progress.h"
 #include "core/task_progress.h"
+#include "core/warning.h"
 #include "studies/quantity/study.h"
 #include "studies/store/store.h"
 #include "studies/sweep/sampling.h"
@@ -119,7 +120,7 @@ struct SweepResult {
   std::vector<StoredPoint> points;  ///< in ascending order of their numbers
   double elapsed_s = 0.0;
   bool complete = true;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Returns the finished points with warnings about the study.

@@ -159,15 +159,18 @@ void add_yields(const Sweep& sweep, const Finished& finished, const ToleranceReq
 void add_warnings(const ToleranceRequest& request, ToleranceResult& result) {
   for (const QuantityTolerance& quantity : result.quantities) {
     if (quantity.without > 0)
-      result.warnings.push_back(fmt::format("{}: {} of {} parts have no value and are left out of its spread",
-                                            quantity.quantity, quantity.without, result.parts));
+      result.warnings.push_back(
+          {"parts_without_value", fmt::format("{}: {} of {} parts have no value and are left out of its spread",
+                                              quantity.quantity, quantity.without, result.parts)});
     if (quantity.noise && *quantity.noise > kMuchNoise)
       result.warnings.push_back(
-          fmt::format("{}: the standard error of its values is {:.2g} of their deviation: part of the spread is noise; "
-                      "a smaller analysis.target_error helps",
-                      quantity.quantity, *quantity.noise));
+          {"noisy_values",
+           fmt::format(
+               "{}: the standard error of its values is {:.2g} of their deviation: part of the spread is noise; "
+               "a smaller analysis.target_error helps",
+               quantity.quantity, *quantity.noise)});
     if (request.indices && quantity.rows > 1 && quantity.indices.empty())
-      result.warnings.push_back(fmt::format("{}: does not vary: no indices", quantity.quantity));
+      result.warnings.push_back({"no_variation", fmt::format("{}: does not vary: no indices", quantity.quantity)});
   }
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "studies/quantity/constraint.h"
 #include "studies/sweep/sweep.h"
 #include "studies/tolerance/indices.h"
@@ -76,7 +77,7 @@ struct ToleranceResult {
   std::vector<LimitYield> limits;
   std::size_t parts = 0;   ///< number of manufactured parts
   std::size_t failed = 0;  ///< number of parts that could not be computed; they count as bad
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool is_enough = true;  ///< false: the yield is below the requested minimum
 };
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/warning.h"
 #include "fabrication/check/findings.h"
 #include "fabrication/turning/check/turning_check.h"
 #include "fabrication/turning/finish.h"
@@ -83,7 +84,7 @@ struct TurningVerification {
   std::vector<fabrication::Finding> findings;
 
   bool passes() const { return findings.empty(); }
-  const std::vector<std::string>& part_warnings() const { return part.warnings; }
+  const Warnings& part_warnings() const { return part.warnings; }
 };
 
 /// \throw InputError for a file that cannot be read or understood, with its line, and for a table of strokes that the

@@ -38,13 +38,14 @@ RawMap parse_known(const Source& source) {
 
 /// The option if it is given, else what the file says. \throw InputError if neither does
 double pixel_um(const Source& source, const std::optional<double>& option, const std::optional<double>& in_file,
-                const char* axis, std::vector<std::string>& warnings) {
+                const char* axis, Warnings& warnings) {
   if (!option && !in_file)
     source.fail(0, fmt::format("the spacing along {0} is not known: give {0}_pixel_um in the file{1}", axis,
                                source.options.can_be_given ? ", or --pixel-um" : ""));
   if (option && in_file && std::abs(*option - *in_file) > 1e-6 * *option)
-    warnings.push_back(fmt::format("--pixel-um {} goes before the file's spacing along {} of {} um", shortest(*option),
-                                   axis, shortest(*in_file)));
+    warnings.push_back(
+        {"spacing_of_file_ignored", fmt::format("--pixel-um {} goes before the file's spacing along {} of {} um",
+                                                shortest(*option), axis, shortest(*in_file))});
   const double pixel = option ? *option : *in_file;
   if (!(pixel >= kLeastPixelUm && pixel <= kMostPixelUm))
     source.fail(0, fmt::format("the spacing along {} must be from 1e-6 to 1e6 um, got {}", axis, pixel));
@@ -64,7 +65,8 @@ double nm_per_unit(const Source& source, RawMap& raw) {
                      fmt::format("must be {}, got {}", kUnits, in_quotes(*source.options.height_unit)));
   if (raw.nm_per_unit && *raw.nm_per_unit != *given)
     raw.warnings.push_back(
-        fmt::format("--height-unit {} goes before the file's unit of heights", *source.options.height_unit));
+        {"unit_of_file_ignored",
+         fmt::format("--height-unit {} goes before the file's unit of heights", *source.options.height_unit)});
   return *given;
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/warning.h"
 #include "surface_models/height_map.h"
 
 namespace retrace::surface_models {
@@ -26,7 +27,7 @@ struct HeightMapOptions {
 struct HeightMapFile {
   HeightMap map;
   std::string format;  ///< such as "Gwyddion native (GWY)"
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Most points of a map: 5000 x 5000. Larger files are refused.

@@ -10,6 +10,7 @@
 
 #include "core/message_text.h"
 #include "core/text.h"
+#include "core/warning.h"
 #include "surface_models/io/height_map_reader.h"
 
 namespace retrace::surface_models {
@@ -35,7 +36,7 @@ struct RawMap {
   std::optional<double> y_pixel_um;
   std::optional<double> nm_per_unit;  ///< of the heights
   std::vector<double> heights;        ///< columns * rows; NaN where missing
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// How many nanometres a unit has: m, mm, um (also with the Greek letter), nm, pm. Nothing for another word.

@@ -86,11 +86,12 @@ double Abg::specular_share(const ScatterEvent& event, const Facet& facet, Lobe l
                                    [&](const Vec2& beta) { return scattered_density(event, facet, lobe, beta); });
 }
 
-std::vector<std::string> Abg::warnings(double, double) const {
+Warnings Abg::warnings(double, double) const {
   if (total_ <= kMostScatterOfSmooth) return {};
-  return {"up to " + shortest(std::round(1e3 * total_) / 10.0) +
-          " % of the light scatters by abg, which holds for smooth surfaces (up to " +
-          shortest(100.0 * kMostScatterOfSmooth) + " %): rougher ones change their scatter with the angle"};
+  return {{"strong_scatter", "up to " + shortest(std::round(1e3 * total_) / 10.0) +
+                                 " % of the light scatters by abg, which holds for smooth surfaces (up to " +
+                                 shortest(100.0 * kMostScatterOfSmooth) +
+                                 " %): rougher ones change their scatter with the angle"}};
 }
 
 }  // namespace retrace::surface_models

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "surface_models/scatter/random_stream.h"
 #include "surface_models/scatter/scatter_event.h"
 
@@ -34,7 +35,7 @@ class Abg {
   std::optional<Vec2> sample_scattered(const ScatterEvent& event, const Facet&, Lobe lobe, RandomStream& random) const;
   double scattered_density(const ScatterEvent& event, const Facet&, Lobe lobe, const Vec2& beta) const;
   double unmasked_share(const Vec3&) const { return 1.0; }
-  std::vector<std::string> warnings(double index, double wavelength_nm) const;
+  Warnings warnings(double index, double wavelength_nm) const;
 
  private:
   double bsdf_per_sr(double shift) const { return a_ / (b_ + std::pow(shift, g_)); }

@@ -367,8 +367,8 @@ void HarveyShack::require_in_range(double index, double wavelength_nm) const {
     require_modelled_slope(roughness_rms_slope(roughness_, index, wavelength_nm), "roughness");
 }
 
-std::vector<std::string> HarveyShack::warnings(double index, double wavelength_nm) const {
-  std::vector<std::string> found;
+Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
+  Warnings found;
   const Roughness& r = roughness_;
   const double wave_um = 1e-3 * wavelength_nm / index;
   if (r.sq_nm > 0.0) {
@@ -376,27 +376,33 @@ std::vector<std::string> HarveyShack::warnings(double index, double wavelength_n
     const double phase = reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm);
     const double shortest_um = correlation_lengths_um(r).minCoeff();
     if (!r.is_isotropic() && shortest_um >= wave_um && shortest_um < kLongOfLay)
-      found.push_back("correlation length " + shortest(shortest_um) + " um of roughness with a lay is below " +
-                      shortest(kLongOfLay) + " um: at total reflection it scatters less than its phase says");
+      found.push_back({"lay_beyond_model", "correlation length " + shortest(shortest_um) +
+                                               " um of roughness with a lay is below " + shortest(kLongOfLay) +
+                                               " um: at total reflection it scatters less than its phase says"});
     if (shortest_um < wave_um && (media_ == nullptr || phase * phase > kMostPhase2OfFirstOrder))
-      found.push_back("correlation length " + shortest(shortest_um) +
-                      " um is below the wavelength in the material: the phase model of roughness does not hold" +
-                      (media_ == nullptr ? "" : ", and heights are too large for first order alone"));
+      found.push_back({"correlation_below_wavelength",
+                       "correlation length " + shortest(shortest_um) +
+                           " um is below the wavelength in the material: the phase model of roughness does not hold" +
+                           (media_ == nullptr ? "" : ", and heights are too large for first order alone")});
     const double slope = roughness_rms_slope(r, index, wavelength_nm);
     if (slope > kLargestSlope)
-      found.push_back("rms slope of the roughness " + fixed_apart(slope, kLargestSlope, 3) + " is above " +
-                      shortest(kLargestSlope) +
-                      ": light that is reflected several times on the surface is not modelled");
+      found.push_back(
+          {"steep_roughness", "rms slope of the roughness " + fixed_apart(slope, kLargestSlope, 3) + " is above " +
+                                  shortest(kLargestSlope) +
+                                  ": light that is reflected several times on the surface is not modelled"});
     if (reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm) > 2.0 * pi)
-      found.push_back("roughness " + shortest(std::round(100.0 * r.sq_nm) / 100.0) +
-                      " nm is above half a wavelength in the material: microfacet is the model for it");
+      found.push_back({"roughness_beyond_model",
+                       "roughness " + shortest(std::round(100.0 * r.sq_nm) / 100.0) +
+                           " nm is above half a wavelength in the material: microfacet is the model for it"});
   }
   if (slopes_.rms_slope() > kLargestSlope)
-    found.push_back("rms slope of the waviness " + fixed_apart(slopes_.rms_slope(), kLargestSlope, 3) + " is above " +
-                    shortest(kLargestSlope) + ": light that is reflected several times on the surface is not modelled");
+    found.push_back({"steep_waviness", "rms slope of the waviness " +
+                                           fixed_apart(slopes_.rms_slope(), kLargestSlope, 3) + " is above " +
+                                           shortest(kLargestSlope) +
+                                           ": light that is reflected several times on the surface is not modelled"});
   if (r.waviness_sq_nm > 0.0 && r.waviness_length_um < 5.0 * wave_um)
-    found.push_back("waviness of period " + shortest(r.waviness_length_um) +
-                    " um is shorter than five wavelengths in the material: it is roughness");
+    found.push_back({"short_waviness", "waviness of period " + shortest(r.waviness_length_um) +
+                                           " um is shorter than five wavelengths in the material: it is roughness"});
   return found;
 }
 

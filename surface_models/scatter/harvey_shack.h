@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "materials/fresnel.h"
 #include "surface_models/scatter/first_order.h"
 #include "surface_models/scatter/phase_lobe.h"
@@ -113,7 +114,7 @@ class HarveyShack {
   /// \throw InputError where the slopes of what scatters are beyond every model
   void require_in_range(double index, double wavelength_nm) const;
   /// What lies outside the model's range at this index (of the denser side) and wavelength, one sentence each.
-  std::vector<std::string> warnings(double index, double wavelength_nm) const;
+  Warnings warnings(double index, double wavelength_nm) const;
 
   /// The density before scaling to the scattered share: symmetric under exchange of the directions in reflection, and
   /// over n^2 of the side it goes to in transmission.

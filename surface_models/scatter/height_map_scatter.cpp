@@ -306,20 +306,23 @@ double HeightMapScatter::scattered_density(const ScatterEvent& event, const Face
   return sum > 0.0 ? phase_lobe->scattered_share() * unscaled_density(event, facet, lobe, beta) / sum : 0.0;
 }
 
-std::vector<std::string> HeightMapScatter::warnings(double index, double wavelength_nm) const {
-  std::vector<std::string> found;
+Warnings HeightMapScatter::warnings(double index, double wavelength_nm) const {
+  Warnings found;
   const Texture& t = *texture_;
   const double wave_um = 1e-3 * wavelength_nm / index;
   if (const double pixel = t.pixel_um.maxCoeff(); pixel > 0.5 * wave_um)
-    found.push_back("points of the height map are " + shortest(pixel) +
-                    " um apart, more than half a wavelength in the material: finer roughness is not in it");
+    found.push_back({"coarse_height_map",
+                     "points of the height map are " + shortest(pixel) +
+                         " um apart, more than half a wavelength in the material: finer roughness is not in it"});
   if (t.rms_slope > kLargestSlope)
-    found.push_back("rms slope of the height map " + fixed_apart(t.rms_slope, kLargestSlope, 3) + " is above " +
-                    shortest(kLargestSlope) +
-                    ": masking, and light that is reflected several times on the surface, are not modelled");
+    found.push_back({"steep_height_map",
+                     "rms slope of the height map " + fixed_apart(t.rms_slope, kLargestSlope, 3) + " is above " +
+                         shortest(kLargestSlope) +
+                         ": masking, and light that is reflected several times on the surface, are not modelled"});
   if (t.sq_nm > 0.0 && std::abs(t.kurtosis - 3.0) > 1.0)
-    found.push_back("kurtosis of the heights is " + fixed(t.kurtosis, 2) +
-                    ", not the 3 of Gaussian heights: the specular share is off where it is small");
+    found.push_back(
+        {"heights_not_gaussian", "kurtosis of the heights is " + fixed(t.kurtosis, 2) +
+                                     ", not the 3 of Gaussian heights: the specular share is off where it is small"});
   return found;
 }
 

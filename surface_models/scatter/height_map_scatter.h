@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "surface_models/height_map.h"
 #include "surface_models/scatter/phase_lobe.h"
 
@@ -48,7 +49,7 @@ class HeightMapScatter {
   /// The density before scaling to the scattered share.
   double unscaled_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;
   double unmasked_share(const Vec3&) const { return 1.0; }
-  std::vector<std::string> warnings(double index, double wavelength_nm) const;
+  Warnings warnings(double index, double wavelength_nm) const;
 
  private:
   struct Texture;

@@ -62,15 +62,17 @@ double Microfacet::pdf_per_sr(const ScatterEvent& event, Lobe lobe, const Vec3& 
   return slopes_.visible_normal_pdf_per_sr(-event.direction_in, *normal) * jacobian(event, lobe, direction, *normal);
 }
 
-std::vector<std::string> Microfacet::warnings(double index, double wavelength_nm) const {
-  std::vector<std::string> found;
+Warnings Microfacet::warnings(double index, double wavelength_nm) const {
+  Warnings found;
   if (slopes_.rms_slope() > kLargestSlope)
-    found.push_back("rms slope " + fixed_apart(slopes_.rms_slope(), kLargestSlope, 3) + " is above " +
-                    shortest(kLargestSlope) + ": light that is reflected several times on the surface is not modelled");
+    found.push_back({"steep_facets", "rms slope " + fixed_apart(slopes_.rms_slope(), kLargestSlope, 3) + " is above " +
+                                         shortest(kLargestSlope) +
+                                         ": light that is reflected several times on the surface is not modelled"});
   const double phase = reflection_phase_rad(waviness_sq_nm_, index, 1.0, wavelength_nm);
   if (waviness_sq_nm_ > 0.0 && phase * phase < kSlopePhase2)
-    found.push_back("waviness of " + shortest(waviness_sq_nm_) +
-                    " nm is too low for facets: it diffracts, and harvey_shack is the model for it");
+    found.push_back(
+        {"low_waviness", "waviness of " + shortest(waviness_sq_nm_) +
+                             " nm is too low for facets: it diffracts, and harvey_shack is the model for it"});
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "surface_models/scatter/slope_distribution.h"
 
 namespace retrace::surface_models {
@@ -28,7 +29,7 @@ class Microfacet {
   std::optional<Vec2> sample_scattered(const ScatterEvent&, const Facet&, Lobe, RandomStream&) const { return {}; }
   double scattered_density(const ScatterEvent&, const Facet&, Lobe, const Vec2&) const { return 0.0; }
   double unmasked_share(const Vec3& direction) const { return slopes_.visible_share(direction); }
-  std::vector<std::string> warnings(double index, double wavelength_nm) const;
+  Warnings warnings(double index, double wavelength_nm) const;
 
   /// Normal of the facets that send the event's light to `direction`, if any do.
   std::optional<Vec3> facet_towards(const ScatterEvent& event, Lobe lobe, const Vec3& direction) const;

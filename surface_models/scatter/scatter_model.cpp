@@ -174,7 +174,7 @@ void require_in_range(const ScatterModel& model, double index, double wavelength
   if (const auto* rough = std::get_if<HarveyShack>(&model)) rough->require_in_range(index, wavelength_nm);
 }
 
-std::vector<std::string> warnings(const ScatterModel& model, double index, double wavelength_nm) {
+Warnings warnings(const ScatterModel& model, double index, double wavelength_nm) {
   return std::visit([&](const auto& m) { return m.warnings(index, wavelength_nm); }, model);
 }
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/warning.h"
 #include "surface_models/scatter/abg.h"
 #include "surface_models/scatter/harvey_shack.h"
 #include "surface_models/scatter/height_map_scatter.h"
@@ -96,6 +97,6 @@ void require_in_range(const ScatterModel& model, double index, double wavelength
 
 /// What lies outside the range in which the model holds, one sentence each. Allocates.
 /// \param index of the denser side
-std::vector<std::string> warnings(const ScatterModel& model, double index, double wavelength_nm);
+Warnings warnings(const ScatterModel& model, double index, double wavelength_nm);
 
 }  // namespace retrace::surface_models

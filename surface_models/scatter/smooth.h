@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/warning.h"
 #include "surface_models/scatter/random_stream.h"
 #include "surface_models/scatter/scatter_event.h"
 
@@ -18,7 +19,7 @@ class Smooth {
   std::optional<Vec2> sample_scattered(const ScatterEvent&, const Facet&, Lobe, RandomStream&) const { return {}; }
   double scattered_density(const ScatterEvent&, const Facet&, Lobe, const Vec2&) const { return 0.0; }
   double unmasked_share(const Vec3&) const { return 1.0; }
-  std::vector<std::string> warnings(double, double) const { return {}; }
+  Warnings warnings(double, double) const { return {}; }
 };
 
 }  // namespace retrace::surface_models

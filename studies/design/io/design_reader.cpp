@@ -289,23 +289,24 @@ namespace {
 /// Returns a warning for each correlation length or waviness period whose rms height is missing in the document. An
 /// explicit height of 0 causes no warning, because parameter studies vary heights starting from 0.
 std::vector<std::string> lengths_without_heights(const Document& document) {
-  std::vector<std::string> warnings;
+  Warnings warnings;
   for (const auto& [length, height] : {std::pair("surface.correlation_length_um", "surface.roughness_sq_nm"),
                                        {"surface.correlation_length_down_um", "surface.roughness_sq_nm"},
                                        {"surface.waviness_length_um", "surface.waviness_sq_nm"},
                                        {"entrance.correlation_length_um", "entrance.roughness_sq_nm"}})
     if (document.number_if(length).value_or(0.0) > 0.0 && document.has(length) && !document.has(height))
-      warnings.emplace_back(
-          InputError(document.where(length), fmt::format("has no effect: give {} as well, or remove it", height))
-              .what());
+      warnings.push_back(
+          {"key_without_effect",
+           InputError(document.where(length), fmt::format("has no effect: give {} as well, or remove it", height))
+               .what()});
   return warnings;
 }
 
 }  // namespace
 
-std::vector<std::string> Design::warnings() const {
+Warnings Design::warnings() const {
   if (!document) return {};
-  std::vector<std::string> warnings = schema::superseded_keys(*document);
+  Warnings warnings = schema::superseded_keys(*document);
   const std::vector<std::string> more = lengths_without_heights(*document);
   warnings.insert(warnings.end(), more.begin(), more.end());
   return warnings;

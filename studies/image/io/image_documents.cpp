@@ -26,7 +26,7 @@ Json header(const char* kind, const Design& design, std::uint32_t seed) {
   return {{"kind", kind}, {"design", to_json(design)}, {"seed", seed}};
 }
 
-std::string image_text(Json json, double elapsed_s, const std::vector<std::string>& warnings, bool complete) {
+std::string image_text(Json json, double elapsed_s, const Warnings& warnings, bool complete) {
   json["elapsed_s"] = elapsed_s;
   return result_text("retrace.image/1", std::move(json), warnings, complete);
 }

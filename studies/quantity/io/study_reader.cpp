@@ -336,7 +336,7 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
   return {varied, analysis_of(document, study.seed), machining};
 }
 
-std::vector<std::string> keys_without_effect(const Study& study) try {
+Warnings keys_without_effect(const Study& study) try {
   return make_candidate(study, some_values(study)).design().warnings();
 } catch (const InputError&) {
   return {};

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/file_texts.h"
+#include "core/warning.h"
 #include "studies/quantity/candidate.h"
 #include "studies/quantity/study.h"
 
@@ -32,6 +33,6 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
 
 /// Returns a warning for each key that has no effect. The keys are checked in one example design of the study. If the
 /// example is invalid, there are no warnings.
-std::vector<std::string> keys_without_effect(const Study& study);
+Warnings keys_without_effect(const Study& study);
 
 }  // namespace retrace::studies

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/atomic_file.h"
+#include "core/warning.h"
 #include "studies/rays/io/ray_input.h"
 #include "studies/rays/ray_source.h"
 
@@ -27,7 +28,7 @@ class Tm25Source : public RaySource {
   const RaySetInfo& info() const override { return info_; }
   bool read(std::size_t most, std::vector<SetRay>& rays) override;
   double share_read() const override;
-  std::vector<std::string> warnings() const override;
+  Warnings warnings() const override;
 
  private:
   [[noreturn]] void fail(std::uint64_t byte, std::string_view text) const;

@@ -277,23 +277,27 @@ SetRay Tm25Source::ray_at(const char* record, std::uint64_t byte) {
   return ray;
 }
 
-std::vector<std::string> Tm25Source::warnings() const {
-  std::vector<std::string> told;
+Warnings Tm25Source::warnings() const {
+  Warnings told;
   const auto compare = [&](std::string_view what, const std::optional<double>& said, bool is_there, double found) {
     if (!is_there || !said || *said == 0.0 || std::abs(found - *said) <= kFluxTolerance * *said) return;
-    told.push_back(fmt::format("{}: its header says {:.6g} {}, its rays add up to {:.6g}; they are taken", file_, *said,
-                               what, found));
+    told.push_back(
+        {"flux_disagrees", fmt::format("{}: its header says {:.6g} {}, its rays add up to {:.6g}; they are taken",
+                                       file_, *said, what, found)});
   };
   if (rays_read_ == *info_.rays) {
     compare("W", info_.radiant_w, info_.has_radiant, radiant_w_);
     compare("lm", info_.luminous_lm, info_.has_luminous, luminous_lm_);
   }
   if (not_unit_ > 0)
-    told.push_back(fmt::format("{}: directions of {} rays are no unit vectors; they were made such", file_, not_unit_));
+    told.push_back(
+        {"directions_normalised",
+         fmt::format("{}: directions of {} rays are no unit vectors; they were made such", file_, not_unit_)});
   std::string names;
   for (const std::string& name : info_.more_items)
     if (name != "account") names += (names.empty() ? "" : ", ") + name;
-  if (!names.empty()) told.push_back(fmt::format("{}: additional items are left out: {}", file_, names));
+  if (!names.empty())
+    told.push_back({"items_omitted", fmt::format("{}: additional items are left out: {}", file_, names)});
   return told;
 }
 

@@ -121,13 +121,15 @@ std::string validation_json(const ValidationResult& result) {
                      validation_warnings(result), result.complete);
 }
 
-std::vector<std::string> validation_warnings(const ValidationResult& result) {
-  std::vector<std::string> warnings;
+Warnings validation_warnings(const ValidationResult& result) {
+  Warnings warnings;
   for (const ValidatedRow& validated : result.rows)
     if (!validated.holds().value_or(true))
-      warnings.push_back(fmt::format("{}: {}: must be {} within {}, is {}", validated.row.topic, validated.row.quantity,
-                                     shortest(validated.row.expected), shortest(*validated.row.allowed),
-                                     std::isfinite(validated.computed) ? shortest(validated.computed) : "no number"));
+      warnings.push_back(
+          {"not_validated",
+           fmt::format("{}: {}: must be {} within {}, is {}", validated.row.topic, validated.row.quantity,
+                       shortest(validated.row.expected), shortest(*validated.row.allowed),
+                       std::isfinite(validated.computed) ? shortest(validated.computed) : "no number")});
   return warnings;
 }
 

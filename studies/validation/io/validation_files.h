@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/warning.h"
 #include "studies/validation/validation.h"
 
 namespace retrace::studies {
@@ -16,6 +17,6 @@ std::string validation_markdown(const ValidationResult& result);
 std::string validation_json(const ValidationResult& result);
 
 /// A line for each row that is outside of what it is allowed.
-std::vector<std::string> validation_warnings(const ValidationResult& result);
+Warnings validation_warnings(const ValidationResult& result);
 
 }  // namespace retrace::studies
