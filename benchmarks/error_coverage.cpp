@@ -1,9 +1,12 @@
-// Compares the RRE of the exact engine with the RRE of Monte Carlo. Random designs are each lit from one direction.
+// Compares the RRE (retroreflective efficiency) of the exact engine with that of the Monte Carlo engine, for random
+// designs that are each lit from one direction.
 //   retrace_error_coverage_benchmark [DESIGNS [FIRST_SEED [TARGET_ERROR]]]
-// The RRE expected from the exact engine is its RRE plus half of the power that it truncated. Two values agree if the
-// Monte Carlo RRE differs from the expected RRE by at most 1.96 standard errors plus half of the truncated power.
-// The program prints one line for each design whose values disagree, and at the end the percentage of designs whose
-// values agree.
+// The exact engine truncates a small power, which may be retroreflected or not. The expected RRE is therefore the RRE
+// of the exact engine plus half of the truncated power.
+// The two engines agree if the Monte Carlo RRE differs from the expected RRE by at most 1.96 standard errors plus half
+// of the truncated power.
+// The program prints one line for each design for which the engines disagree. At the end it prints the percentage of
+// designs for which they agree.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -34,15 +37,14 @@ std::optional<studies::RrePoint> answer(const studies::Design& design, studies::
 }
 
 struct Trial {
-  /// Monte Carlo RRE minus the RRE expected from the exact engine, divided by the standard error of the Monte Carlo
-  /// RRE.
+  /// Monte Carlo RRE minus the expected RRE, in standard errors of the Monte Carlo RRE.
   double difference = 0.0;
-  /// True if the two values agree, as defined at the top of this file.
+  /// True if the two engines agree, as defined at the top of this file.
   bool agrees = false;
 };
 
 /// Runs both engines on the random design that `seed` generates. Returns nothing if the design is invalid or has rough
-/// facets, or if an engine exceeds kMaxTime_s or its limit on time, memory or accuracy (BudgetError).
+/// facets. Returns nothing, too, if an engine exceeds kMaxTime_s or its own limit on time, memory or accuracy.
 std::optional<Trial> trial(unsigned seed, double target_error) {
   RandomDesigns random(seed);
   const std::string text = random.next();

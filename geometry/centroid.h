@@ -1,7 +1,7 @@
 #pragma once
 
-// Centroids of polygons in the plane and in space. In contrast to the average of the corners, a centroid is
-// unchanged if a vertex is inserted in an edge.
+// Centroids of polygons in the plane and in space. A centroid does not change if a vertex is inserted in an edge. The
+// average of the corners would change.
 
 #include <cstdint>
 #include <span>
@@ -10,12 +10,13 @@
 
 namespace retrace::geometry {
 
-/// Returns the centroid of a polygon's area. If the area is 0 within rounding errors, returns the centroid of the
-/// border. If all corners coincide, returns their position. The result is within the bounding box of the corners.
+/// Returns the centroid of a polygon's area. If the area is 0 within rounding errors, the centroid of the border
+/// polyline is returned. If all corners coincide, their common position is returned. The result is within the bounding
+/// box of the corners.
 /// \param corners at least one, in order along the border
 Vec2 centroid(std::span<const Vec2> corners);
 
-/// Returns the centroid of a polygon in space, whose corners need not be exactly coplanar. Areas are measured in
+/// Returns the centroid of a polygon in space. The corners need not be exactly coplanar: areas are measured in the
 /// projection along the mean normal.
 /// \param corners at least one, in order along the border
 Vec3 centroid(std::span<const Vec3> corners);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Directions and rotations computed from angles. They use sin_cos(). Directions along the axes are therefore exact.
+// Computes directions and rotations from angles. Sines and cosines come from sin_cos(), which is exact at multiples of
+// 90 degrees. Directions along the coordinate axes are therefore exact.
 
 #include "core/sin_cos.h"
 #include "geometry/vec.h"

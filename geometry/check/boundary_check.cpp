@@ -34,7 +34,7 @@ bool passes_edges_both_ways(const BoundaryMesh& mesh) {
 
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 
-/// Returns the centroid of the smallest of all triangles that intersect another triangle.
+/// Returns a point near a self-intersection: the centroid of the smallest triangle that intersects another triangle.
 Vec3 crossing_of(const Surface& surface) {
   std::vector<std::pair<Surface::Face_index, Surface::Face_index>> pairs;
   pmp::self_intersections(surface, std::back_inserter(pairs));
@@ -56,7 +56,7 @@ Vec3 crossing_of(const Surface& surface) {
 }  // namespace
 
 BoundaryReport check_boundary(const BoundaryMesh& mesh) {
-  // Vertices that no triangle has are left out: CGAL 5.5 falls over them.
+  // Vertices that belong to no triangle are omitted, because CGAL 5.5 fails on them.
   constexpr std::size_t unused = SIZE_MAX;
   std::vector<std::size_t> number(mesh.vertices.size(), unused);
   std::vector<Kernel::Point_3> points;

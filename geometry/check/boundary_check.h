@@ -1,7 +1,7 @@
 #pragma once
 
-// Checks that a triangle mesh bounds a solid, by CGAL with exact predicates: for meshes that users bring, and for what
-// retrace builds itself.
+// Checks that a triangle mesh bounds a solid. CGAL with exact predicates is used. The check is applied to meshes from
+// users' files and to meshes that retrace builds.
 
 #include <optional>
 
@@ -9,9 +9,9 @@
 
 namespace retrace::geometry {
 
-/// What CGAL finds of a boundary mesh.
+/// Result of check_boundary().
 struct BoundaryReport {
-  bool is_closed = false;    ///< every edge is passed as often in one direction as in the other
+  bool is_closed = false;    ///< every edge is traversed equally often in both directions
   bool is_manifold = false;  ///< if false, the members below keep their default values
   bool self_intersects = true;
   std::optional<Vec3> crossing_mm;  ///< point near one of the self-intersections
@@ -21,7 +21,7 @@ struct BoundaryReport {
   bool ok() const { return is_manifold && is_closed && !self_intersects && bounds_a_volume; }
 };
 
-/// Checks that a boundary is closed, manifold, outward oriented and does not cross itself (CGAL, exact predicates).
+/// Checks that a mesh is closed, manifold and oriented outward, and that it does not intersect itself.
 BoundaryReport check_boundary(const BoundaryMesh& mesh);
 
 }  // namespace retrace::geometry

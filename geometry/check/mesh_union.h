@@ -1,6 +1,6 @@
 #pragma once
 
-// Computes the boolean union of the bodies of a mesh. CGAL with exact constructions is used. Bodies may intersect or
+// Computes the boolean union of the bodies of a mesh, using CGAL with exact constructions. The bodies may intersect or
 // contain each other.
 
 #include <cstddef>
@@ -17,8 +17,8 @@ struct MeshUnion {
 };
 
 /// Returns the union of the bodies of a mesh. A body is a set of triangles that are connected through shared edges.
-/// Returns nothing if the mesh has only one body or if the union would not be manifold. Returns nothing, too, if a body
-/// intersects itself or has inward normals.
+/// Returns nothing if the mesh has only one body, if a body intersects itself or has inward normals, or if the union
+/// would not be manifold.
 /// \pre the mesh is closed and manifold
 std::optional<MeshUnion> union_of_bodies(const TriangleMesh& mesh);
 

@@ -12,9 +12,10 @@
 
 namespace retrace::geometry {
 
-/// Returns the dark pixels of a picture as `#` in one text per row, beginning with the row of largest y. A pixel is
-/// dark if its grey value is less than threshold * 255. The grey value is 0 (black) to 255 (white): 0.299 R + 0.587 G +
-/// 0.114 B, rounded, on a white background (Milliken 2017, section 2.4).
+/// Reads a picture and marks its dark pixels. Returns one string per row of pixels, in which `#` marks a dark pixel.
+/// The first string is the row with the largest y. A pixel is dark if its grey value is less than threshold * 255. The
+/// grey value is 0 (black) to 255 (white): 0.299 R + 0.587 G + 0.114 B, rounded, on a white background (Milliken 2017,
+/// section 2.4).
 /// \param cells required numbers of columns and rows, with one pixel per cell of the array as in Array::pattern; empty:
 ///        any size up to 4e7 pixels
 /// \param where location of the mask's file name, for messages

@@ -17,8 +17,8 @@ bool is_wall(const PatchFacet& facet) {
   return facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
 }
 
-/// Returns the (x, y) centroid of a cell in projection along z, without its walls. If the projected area is 0, returns
-/// the centre of the cell's bounding box.
+/// Returns the (x, y) centroid of a cell in projection along z, without its vertical walls. If the projected area is 0,
+/// returns the centre of the cell's bounding box.
 Vec2 middle_in_plan(const SurfacePatch& patch, const PatchCell& cell) {
   Vec2 sum = Vec2::Zero();
   double area_mm2 = 0.0;
@@ -36,8 +36,8 @@ Vec2 middle_in_plan(const SurfacePatch& patch, const PatchCell& cell) {
   return area_mm2 > 0.0 ? Vec2(sum / area_mm2) : Vec2(0.5 * (cell.lower + cell.upper).head<2>());
 }
 
-/// Returns the (x, y) position of a wall's centroid, moved by `by_mm` along the wall's outward normal. If the wall
-/// separates two cells, the returned position is in the shallower cell.
+/// Returns a point next to a wall, projected to (x, y): the wall's centroid, moved by `by_mm` along the outward normal.
+/// If the wall separates two cells, this point is in the shallower cell.
 Vec2 beyond_wall(const SurfacePatch& patch, const PatchFacet& wall, double by_mm) {
   const std::span<const std::uint32_t> ring(&patch.corners[wall.first_corner], wall.corner_count);
   return (ring_centroid(patch.vertices, ring) + by_mm * wall.normal).head<2>();
@@ -85,7 +85,7 @@ ChosenElements::ChosenElements(const Part& part, const ElementChoice& choice)
       if (chosen) ++count_;
     }
   }
-  // Regions are convex: walls lie between the corners.
+  // A region of choice is convex. If all corners of the outline are chosen, the walls between them are chosen, too.
   const auto wall_is_chosen = [&](const Vec2& corner) { return is_chosen({}, corner); };
   const auto* const by_chance = std::get_if<RandomShare>(&choice_);
   is_everything_ = all && (by_chance ? by_chance->share >= 1.0 : std::ranges::all_of(part.outline, wall_is_chosen));
@@ -139,7 +139,7 @@ bool ChosenElements::is_chosen(const Place& element, const Vec2& place_mm) const
 }
 
 bool ChosenElements::has_wall_at(const Vec2& place_mm) const {
-  // A little inwards: on the border itself the lattice goes on to either side.
+  // The point is moved slightly inward, because the lattice would continue on both sides of the border.
   const Vec2 within = place_mm.cwiseMax(part_mm_.lower + inwards_).cwiseMin(part_mm_.upper - inwards_);
   return is_chosen(element_at(within), within);
 }

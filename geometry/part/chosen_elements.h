@@ -1,6 +1,6 @@
 #pragma once
 
-// Which facets of a finite part belong to chosen elements.
+// Determines which facets of a finite part belong to chosen elements.
 
 #include <cstdint>
 #include <vector>
@@ -11,19 +11,19 @@
 
 namespace retrace::geometry {
 
-/// Table that contains, for each facet, whether it belongs to a chosen element. An element is chosen as a whole. A
-/// choice by region uses the position of the element's centre: the centre of a prism's rectangle or the apex of a cube
-/// corner. If the centre is outside the part, the position on the part nearest to it is used.
+/// Table that contains, for each facet, whether it belongs to a chosen element. Elements are chosen by region or at
+/// random (ElementChoice), and always as a whole. A choice by region uses the element's centre: the centre of a prism's
+/// rectangle or the apex of a cube corner. If the centre is outside the part, the nearest position on the part is used.
 ///
-/// Land belongs to no element. In a choice by region, the position of land itself decides whether the land is chosen.
-/// In a random choice, land is chosen together with the nearest element. An outer wall is chosen together with the
-/// element or land next to it.
+/// Land (flat surface between elements) belongs to no element. In a choice by region, the position of the land decides
+/// whether the land is chosen. In a random choice, land is chosen together with the nearest element. An outer wall is
+/// chosen together with the element or land next to it.
 ///
-/// A vertical wall between two elements is a face of the deeper element, but is chosen together with the shallower one:
-/// the medium outside the wall is the medium below the shallower element.
+/// A vertical wall between two elements is a face of the deeper element. It is nevertheless chosen together with the
+/// shallower element, because the medium behind the wall is the medium below the shallower element.
 class ChosenElements {
  public:
-  /// \param part a finite array on the plane z = 0, not `single`
+  /// \param part finite array on the plane z = 0; the arrangement must not be `single`
   ChosenElements(const Part& part, const ElementChoice& choice);
   ChosenElements(const ChosenElements&) = delete;
   ChosenElements& operator=(const ChosenElements&) = delete;
@@ -34,21 +34,24 @@ class ChosenElements {
   bool has(std::uint32_t placement, std::uint32_t facet) const {
     return facets_[first_of_placement_[placement] + facet];
   }
-  /// The same of a place on the outer walls, in the part frame.
+  /// Returns true if the element or land next to a position on the outer walls is chosen.
+  /// \param place_mm position in the part frame
   bool has_wall_at(const Vec2& place_mm) const;
 
-  /// Elements, whole and cut, that are chosen, and all.
+  /// Return the number of chosen elements and the number of all elements, including elements that are cut by the
+  /// border.
   std::int64_t count() const { return count_; }
   std::int64_t of_all() const { return of_all_; }
-  /// Whether everything is chosen, and nothing, land and walls included.
+  /// Return whether all facets or no facets are chosen, including land and walls.
   bool is_everything() const { return is_everything_; }
   bool is_nothing() const { return is_nothing_; }
 
  private:
   struct Place {
-    std::int64_t i = 0, j = 0;  ///< period of the lattice
-    std::uint32_t number = 0;   ///< cell in it
-    bool is_within = false;     ///< the element; else it is the nearest one
+    std::int64_t i = 0, j = 0;  ///< indices of the lattice period
+    std::uint32_t number = 0;   ///< index of the cell within the period
+    /// true if the position is within the element; if false, the element is the nearest one
+    bool is_within = false;
     Vec2 middle_mm = Vec2::Zero();
   };
   Place element_at(const Vec2& place_mm) const;
@@ -56,9 +59,9 @@ class ChosenElements {
 
   ElementChoice choice_;
   PartSpec spec_;
-  ArraySheet sheet_;  ///< of spec_
+  ArraySheet sheet_;  ///< made from spec_
   Rectangle part_mm_;
-  Vec2 inwards_;  ///< from the border, mm
+  Vec2 inwards_;  ///< distance from the border for positions on the outer walls, mm
   std::vector<std::size_t> first_of_placement_;
   std::vector<bool> facets_;
   std::int64_t count_ = 0;

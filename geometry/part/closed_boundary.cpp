@@ -8,7 +8,7 @@
 namespace retrace::geometry {
 namespace {
 
-/// Raises rim vertices to the entrance face, each once.
+/// Adds a vertex on the entrance face above each vertex of the rim. A vertex that was added before is returned again.
 class EntranceVertices {
  public:
   EntranceVertices(BoundaryMesh& mesh, double thickness_mm) : mesh_(mesh), thickness_mm_(thickness_mm) {}

@@ -16,25 +16,26 @@
 namespace retrace::geometry {
 namespace {
 
-// Maximum distance of a vertex from the entrance plane for the vertex to be moved onto it, relative to the size of the
-// mesh. The maximum distance from a side is twice as large. Rounding to single precision causes smaller distances.
+// Vertices within this distance of the entrance plane are moved onto that plane. The distance is relative to the size
+// of the mesh; twice this distance applies to the sides. Rounding to single precision causes smaller deviations.
 constexpr double kSinglePrecision = 1e-6;
-// Maximum sine of the angle between a facet and the horizontal for the facet to count as horizontal. The same limit
-// applies to the angle between a facet and the vertical.
+// Maximum sine of the angle between a facet and the horizontal at which the facet is classified as horizontal. The same
+// limit applies to the angle between a facet and the vertical.
 constexpr double kLevel = 1e-4;
 // Maximum error of a vertex, relative to the largest coordinate: a few rounding errors of single precision.
 constexpr double kVertexRounding = 0x1p-21;
-// Maximum length of an edge for its two ends to be merged, in multiples of the maximum error of a vertex. The length is
-// measured after the vertices were moved onto their planes.
+// Edges shorter than this length are removed by merging their two ends. The length is in multiples of the maximum error
+// of a vertex, and is measured after the vertices were moved onto their planes.
 constexpr double kSamePoint = 0x1p-4;
-// Maximum number of facets of an element for the element to be stored in a single cell. Elements with more facets are
-// divided into several cells by position. Each ray is then tested against few facets.
+// Maximum number of facets in a cell. An element with more facets is divided into several cells by position, so that
+// each ray is tested against few facets.
 constexpr std::size_t kMaxFacetsOfCell = 16;
 
 using Ring = std::vector<std::uint32_t>;
 
-/// The next vertex along the borders of some triangles, which lie on the left of them. \throw InputError if one
-/// branches
+/// Returns, for each border vertex of some triangles, the next vertex along the border. The triangles are on the left
+/// of the border.
+/// \throw InputError if a border branches
 std::map<std::uint32_t, std::uint32_t> borders(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                                const char* what) {
   std::unordered_map<std::uint64_t, int> passed;
@@ -49,7 +50,7 @@ std::map<std::uint32_t, std::uint32_t> borders(const std::vector<std::array<std:
   return next;
 }
 
-/// Takes one closed walk out of them.
+/// Removes one closed border from `next` and returns its vertices.
 Ring take_ring(std::map<std::uint32_t, std::uint32_t>& next) {
   Ring ring;
   const std::uint32_t first = next.begin()->first;
@@ -94,7 +95,7 @@ class PartBuilder {
 
  private:
   struct Side {
-    Vec2 normal = Vec2::UnitX();  ///< out of the part
+    Vec2 normal = Vec2::UnitX();  ///< points out of the part
     double offset_mm = 0.0;
   };
 
@@ -123,7 +124,7 @@ class PartBuilder {
     require_convex();
   }
 
-  /// Only what is no point of a straight side.
+  /// Adds corner i of the ring to the outline, unless the corner is on a straight side.
   void add_corner(const Ring& ring, std::size_t i) {
     const auto at = [&](std::size_t k) { return Vec2(mesh_.vertices[ring[k % ring.size()]].head<2>()); };
     const Vec2 before = outline_.empty() ? at(i + ring.size() - 1) : outline_.back();
@@ -152,7 +153,7 @@ class PartBuilder {
     }
   }
 
-  /// Moves vertices that are near the entrance plane or a side onto it.
+  /// Moves vertices that are near the entrance plane or near a side onto that plane or side.
   /// \throw InputError if a vertex is outside the outline of the entrance face
   void settle_vertices() {
     settled_ = mesh_.vertices;
@@ -170,9 +171,9 @@ class PartBuilder {
     }
   }
 
-  /// Moves a vertex that is near a corner or a side of the outline onto this corner or side. Returns the projection
-  /// onto the directions in which the vertex may still move. A vertex on a corner may move along z. A vertex on a side
-  /// may move within the plane of the side. Any other vertex may move in all directions.
+  /// Moves a vertex that is near a corner or side of the outline onto this corner or side. Returns the projection onto
+  /// the directions in which the vertex may still move: along z on a corner, within the side's plane on a side, and any
+  /// direction elsewhere.
   Freedom settle(Vec3& p) const {
     for (const Vec2& corner : outline_)
       if ((p.head<2>() - corner).norm() <= 2.0 * tolerance_mm_) {
@@ -213,14 +214,13 @@ class PartBuilder {
     return std::abs(normal.z()) < kLevel ? FacetRole::inner_wall : FacetRole::retro_facet;
   }
 
-  /// Builds the back surface.
-  /// \param part part whose heights and sizes are set
+  /// Builds the back surface, and sets the heights and sizes of `part`.
   SurfacePatch make_patch(Part& part) {
     check_plate();
     PlaneRegions regions = settled_regions();
     move_to_zero(part, regions.planes);
     const Rectangle box = bounding_box(outline_);
-    // Typical size of an element: side of a square with the area of four average facets.
+    // Typical size of an element: the side of a square that has the area of four average facets.
     part.size_mm = std::clamp(2.0 * std::sqrt(area(outline_) / static_cast<double>(regions.planes.size())),
                               1e-3 * box.size().minCoeff(), box.size().minCoeff());
     part.spec.element = RtpElement{part.size_mm, part.size_mm, 90.0};
@@ -228,9 +228,9 @@ class PartBuilder {
     return fill_patch(regions, part.size_mm);
   }
 
-  /// Finds the plane regions of the back and moves its vertices onto their planes. After that, some vertices may
-  /// coincide, and edges between them have no direction. Some strips may be too narrow to be facets. A second pass
-  /// therefore merges coincident vertices and finds the regions again.
+  /// Finds the plane regions of the back and moves its vertices onto the planes of their regions. The movement can make
+  /// vertices coincide, and can leave strips too narrow to be facets. A second pass therefore merges coincident
+  /// vertices and finds the regions again.
   PlaneRegions settled_regions() {
     PlaneRegions regions;
     for (int pass = 0; pass < 2; ++pass) {
@@ -350,7 +350,7 @@ ClosedMesh with_openings_closed(const TriangleMesh& mesh) {
     }
     const auto hub = static_cast<std::uint32_t>(closed.mesh.vertices.size());
     closed.mesh.vertices.push_back(ring_centroid(mesh.vertices, ring));
-    // The border has the mesh on its left; what fills the opening runs the other way.
+    // The mesh is on the left of the ring. The new triangles run in the opposite direction.
     for (std::size_t i = 0; i < ring.size(); ++i)
       closed.mesh.triangles.push_back({hub, ring[(i + 1) % ring.size()], ring[i]});
   }

@@ -14,7 +14,7 @@ namespace {
 using Ring = std::vector<std::uint32_t>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// The directed edges of triangles that no neighbour passes the other way, in the order of the triangles.
+/// Returns the directed edges for which no triangle has the opposite edge, in the order of the triangles.
 std::vector<Edge> open_edges(const BoundaryMesh& mesh) {
   std::unordered_map<std::uint64_t, int> passed;
   passed.reserve(3 * mesh.triangles.size());
@@ -27,7 +27,8 @@ std::vector<Edge> open_edges(const BoundaryMesh& mesh) {
   return open;
 }
 
-/// The vertices of the surface's border over one place of the plan, by height, and the one at the bottom under them.
+/// Border vertices of the surface with the same x and y, sorted by height, and the vertex at the bottom of the block
+/// below them.
 struct Column {
   std::vector<std::pair<double, std::uint32_t>> vertices;
   std::uint32_t bottom = 0;
@@ -49,7 +50,8 @@ class MouldBuilder {
     collect_columns(border);
     const std::uint32_t hub = add_vertex({middle_.x(), middle_.y(), bottom_z_});
     for (const auto& [a, b] : border) {
-      if (place(a) == place(b)) continue;  // the end of a wall: part of the column beside it
+      // vertical end of a wall; add_side() inserts its vertices as part of the column
+      if (place(a) == place(b)) continue;
       add_side(a, b);
       add_triangle(hub, columns_.at(place(b)).bottom, columns_.at(place(a)).bottom, FacetRole::flat_back);
     }
@@ -59,7 +61,7 @@ class MouldBuilder {
  private:
   using Place = std::pair<double, double>;
 
-  /// Vertices over one another have the very same x and y.
+  /// Returns x and y of a vertex. Vertices above one another have exactly equal x and y.
   Place place(std::uint32_t vertex) const { return {mesh_.vertices[vertex].x(), mesh_.vertices[vertex].y()}; }
 
   std::uint32_t add_vertex(const Vec3& p) {
@@ -82,7 +84,8 @@ class MouldBuilder {
     }
   }
 
-  /// The side of the block under the edge from a to b of the surface, with every vertex on its outline.
+  /// Adds the side of the block below the surface's edge from a to b. The side includes all border vertices on its
+  /// outline.
   void add_side(std::uint32_t a, std::uint32_t b) {
     const Column& under_a = columns_.at(place(a));
     const Column& under_b = columns_.at(place(b));

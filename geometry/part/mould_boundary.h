@@ -1,6 +1,6 @@
 #pragma once
 
-// The mould of a part as a closed triangle mesh: the block whose upper face is the part's back surface.
+// Builds the mould of a part as a closed triangle mesh: a block whose upper face is the part's back surface.
 
 #include "geometry/part/closed_boundary.h"
 

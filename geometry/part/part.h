@@ -1,6 +1,7 @@
 #pragma once
 
-// The part that is traced: a plate with its back surface of elements, stored as few distinct patches in many places.
+// The part that is traced: a plate with a back surface of elements. The back surface is stored as a few distinct
+// patches, each of which is placed many times.
 
 #include <array>
 #include <cstdint>
@@ -13,50 +14,53 @@
 
 namespace retrace::geometry {
 
-/// A patch of the back surface, moved to its place in the part frame.
+/// Placement of a patch of the back surface in the part frame.
 struct Placement {
   std::uint32_t patch = 0;
   Vec2 offset_mm = Vec2::Zero();
-  double height_mm = 0.0;  ///< along z; other than 0 on a base alone
+  double height_mm = 0.0;  ///< shift along z; not 0 only on a substrate
 };
 
-/// What a zone of a part has.
+/// Elements of one zone of a part.
 struct ZoneElements {
   std::int64_t full = 0;
-  std::int64_t partial = 0;  ///< cut by a border of the zone
-  double area_mm2 = 0.0;     ///< in plan
-  std::size_t cells = 0;     ///< of the patch, which has those of zone after zone
+  std::int64_t partial = 0;  ///< elements that a border of the zone cuts
+  double area_mm2 = 0.0;     ///< area in plan
+  std::size_t cells = 0;     ///< number of consecutive cells in the patch; cells are stored zone by zone
 };
 
-/// A region of the plate in which the elements form a periodic lattice.
+/// Region of the plate in which the elements form a periodic lattice.
 struct LatticeRegion {
   Polygon outline;                 ///< convex, counter-clockwise
   std::array<Vec2, 2> periods_mm;  ///< two lattice vectors at right angles
 };
 
-/// A solid part in the part frame: a plate 0 <= z <= thickness whose flat entrance face is z = thickness, and below it
-/// the elements, whose rims lie on z = 0 but for errors of angle and cant. A finite part is the prism over a convex
-/// outline, open at the bottom only where the back surface ends it; an infinite one repeats with a rectangular period.
+/// Solid part in the part frame. It is a plate 0 <= z <= thickness with the flat entrance face z = thickness and the
+/// elements below the plate. The rims of the elements are on z = 0, except for errors of angle and cant.
+/// A finite part is the prism over a convex outline; only the back surface bounds it at the bottom. An infinite part
+/// repeats with a rectangular period.
 ///
-/// The back surface is stored as few distinct patches and many placements, so that a large array costs the memory of
-/// its different pieces (interior, borders, corners).
+/// The back surface is stored as few distinct patches and many placements. A large array then needs only the memory of
+/// its distinct patches (interior, borders, corners).
 struct Part {
   PartSpec spec;
   double thickness_mm = 0.0;
-  double element_depth_mm = 0.0;  ///< the back surface lies in -element_depth_mm <= z <= top_mm
+  double element_depth_mm = 0.0;  ///< the back surface is within -element_depth_mm <= z <= top_mm
   double top_mm = 0.0;            ///< highest point of the back surface; 0 for nominal facets
-  double size_mm = 0.0;           ///< of an element in plan, the scale for tolerances
+  double size_mm = 0.0;           ///< size of an element in plan; scale for tolerances
   std::vector<SurfacePatch> patches;
   std::vector<Placement> placements;
-  Polygon outline;                ///< finite parts; counter-clockwise
-  std::optional<Vec2> period_mm;  ///< infinite parts: the surface covers [-margin, 1 + margin] periods in x and y
-  int periods_beyond = 0;         ///< that margin
-  /// Finite arrays of equal elements: where the surface is that of the lattice, which starts at `lattice_anchor_mm`.
+  Polygon outline;  ///< finite parts; counter-clockwise
+  /// infinite parts; the surface covers [-periods_beyond, 1 + periods_beyond] periods in x and y
+  std::optional<Vec2> period_mm;
+  int periods_beyond = 0;  ///< infinite parts: number of additional periods on each side
+  /// Finite arrays of equal elements: region in which the surface equals that of the infinite lattice. A period of the
+  /// lattice begins at `lattice_anchor_mm`.
   std::optional<Rectangle> lattice_region_mm;
   Vec2 lattice_anchor_mm = Vec2::Zero();
-  std::int64_t elements_full = 0;  ///< finite: whole elements; infinite: elements per period
+  std::int64_t elements_full = 0;  ///< finite parts: complete elements; infinite parts: elements per period
   std::int64_t elements_partial = 0;
-  std::vector<ZoneElements> zones;             ///< parts of zones
+  std::vector<ZoneElements> zones;             ///< parts with zones only
   std::vector<LatticeRegion> lattice_regions;  ///< parts with zones: regions that together cover the plate
   double entrance_area_mm2 = 0.0;              ///< infinite parts: area of one period
   double retro_facet_area_mm2 = 0.0;           ///< infinite parts: area in one period
@@ -71,12 +75,13 @@ struct Part {
   }
 };
 
-/// Builds the part. `origin_mm` moves it in the plane (finite parts), for tests of numerical robustness.
+/// Builds the part.
+/// \param origin_mm shift in the plane (finite parts only), for tests of numerical robustness
 /// \pre the specification is consistent (studies::parse_design checks it)
-/// \throw InputError when it holds no whole element, or when a rim reaches the entrance face
+/// \throw InputError if the part contains no complete element, or if a rim reaches the entrance face
 Part build_part(const PartSpec& spec, const Vec2& origin_mm = Vec2::Zero());
 
-/// Area of a facet of a patch.
+/// Returns the area of a facet in mm2.
 double facet_area(const SurfacePatch& patch, const PatchFacet& facet);
 
 }  // namespace retrace::geometry

@@ -12,19 +12,21 @@ namespace retrace::geometry {
 namespace {
 
 constexpr std::uint32_t kNoTriangle = UINT32_MAX;
-// Minimum factor by which the number of vertices of a region must grow for the region's plane to be fitted again.
+// Factor by which the number of vertices of a region must grow before the plane is fitted again.
 constexpr double kGrowthPerFit = 1.25;
-// Maximum height of a triangle above its longest edge for the triangle's normal to be ignored, in multiples of the
-// maximum error of a vertex. Rounding may have reversed the normal of such a triangle.
+// Maximum height of a triangle whose normal is ignored, in multiples of the maximum error of a vertex. The height is
+// measured above the longest edge. Rounding may have reversed the normal of such a flat triangle.
 constexpr double kHeightWithNormal = 16.0;
-// Uncertainty of a fitted normal above which the plane may be made exactly vertical or horizontal. This is done if the
-// deviation of the plane from that orientation is less than the uncertainty and less than kMaxError_rad.
+// Minimum uncertainty of a fitted normal, in radians, at which the plane may be made exactly vertical or horizontal.
+// The plane is changed only if its deviation from that orientation is less than the uncertainty and less than
+// kMaxError_rad.
 constexpr double kCertain_rad = 1e-4, kMaxError_rad = 0.5;
 constexpr int kMaxRounds = 100;
-// Maximum distance of the vertices from their planes for settle_on_planes() to end, relative to the size of the mesh.
+// settle_on_planes() ends when all vertices are within this distance of their planes. The distance is relative to the
+// size of the mesh.
 constexpr double kAgreement = 1e-14;
-// Regularization of the least-squares movement of a vertex. Without it, rounding errors would determine how far the
-// vertex moves along nearly parallel planes towards their intersection.
+// Regularization of the least-squares movement of a vertex. Without this term, rounding errors would determine how far
+// a vertex moves along two nearly parallel planes towards their intersection.
 constexpr double kDamping = 1e-4;
 
 Vec3 twice_area(const std::vector<Vec3>& vertices, const MeshTriangle& t) {
@@ -200,8 +202,7 @@ class RegionGrower {
 /// List of (key, value) pairs. sorted() orders the pairs and removes duplicates.
 using Incidence = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Calls visit(key, first, last) once for each key. The pairs with this key have the indices from `first` to
-/// `last` - 1.
+/// Calls visit(key, first, last) one time for each key. The pairs with this key are at the indices first ... last - 1.
 /// \pre the pairs are sorted
 template <class Visit>
 void for_each_key(const Incidence& incidence, const Visit& visit) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Finds the plane facets of a triangle mesh, whatever their triangulation.
+// Finds the plane facets of a triangle mesh. How a facet is triangulated has no effect on the result.
 
 #include <array>
 #include <cstdint>
@@ -20,8 +20,9 @@ struct FacetPlane {
   double height(const Vec3& p) const { return normal.dot(p) - offset_mm; }
 };
 
-/// Constraint on the plane of a region. Rounding errors make the normal of a narrow strip uncertain. If the
-/// deviation of the plane from the vertical or the horizontal is less than this uncertainty, the deviation is removed.
+/// Constraint on the plane of a region. Rounding errors make the normal of a narrow strip uncertain. If the deviation
+/// of the plane from the vertical or from the horizontal is less than this uncertainty, the plane is made exactly
+/// vertical or horizontal.
 enum class PlaneKind : std::uint8_t {
   any,      ///< no constraint
   upright,  ///< vertical
@@ -38,15 +39,15 @@ struct PlaneRegions {
 /// Projection matrix onto the directions in which a vertex may move.
 using Freedom = Eigen::Matrix3d;
 
-/// Groups triangles into plane regions. A triangle next to a region joins the region if all vertices of the triangle
-/// are near the region's plane. Their maximum distance is `rounding_mm` plus the uncertainty of the plane at the
-/// vertex.
+/// Groups triangles into plane regions. A region grows from one triangle. An adjacent triangle joins the region if all
+/// its vertices are near the region's plane: the distance must be at most `rounding_mm` plus the uncertainty of the
+/// plane at the vertex.
 /// \param rounding_mm maximum error of a vertex, mm
 PlaneRegions plane_regions(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,
                            double rounding_mm);
 
-/// Moves the vertices onto the planes of their regions and fits the planes to the moved vertices. Repeats these two
-/// steps until all vertices are on their planes or a maximum number of rounds is reached.
+/// Moves the vertices onto the planes of their regions, then fits the planes to the moved vertices. These two steps are
+/// repeated until all vertices are on their planes or a maximum number of rounds is reached.
 /// \param freedom directions in which each vertex may move
 /// \param regions regions of the triangles; their planes are updated
 void settle_on_planes(std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,

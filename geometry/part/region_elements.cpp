@@ -15,11 +15,11 @@
 namespace retrace::geometry {
 namespace {
 
-// Maximum angle between the normals of two regions at a concave edge for the regions to count as one curved facet. Form
-// errors cause angles of a few minutes of arc.
+// Maximum angle between the normals of two regions at a concave edge at which both regions are treated as parts of one
+// curved facet. Form errors cause angles of a few minutes of arc.
 constexpr double kSmoothBend_rad = std::numbers::pi / 180.0;
-// Maximum total length of the edges between two regions for these edges to be ignored, in multiples of the maximum
-// error of a vertex. Rounding makes the directions of such short edges uncertain.
+// Maximum total length of the common edges of two regions at which these edges are ignored. The length is in multiples
+// of the maximum error of a vertex. Rounding makes the directions of such short edges uncertain.
 constexpr double kRoundingsOfEdge = 16.0;
 
 /// Two adjacent regions and the length of the edges that join them. An edge joins its two regions into one element if
@@ -30,9 +30,9 @@ struct Joint {
   std::uint32_t b = 0;
 };
 
-/// Returns the angle between the outward normals on both sides of an edge. The angle is positive if the solid is convex
-/// at the edge.
-/// \param along direction of the edge, with region `left` on its left as seen from outside
+/// Returns the angle in radians between the outward normals on both sides of an edge. The angle is positive if the
+/// solid is convex at the edge.
+/// \param along direction of the edge; region `left` is on the left of the edge as seen from outside
 double bend_rad(const FacetPlane& left, const FacetPlane& right, const Vec3& along) {
   return std::atan2(left.normal.cross(right.normal).dot(along.normalized()), left.normal.dot(right.normal));
 }

@@ -10,11 +10,11 @@
 
 namespace retrace::geometry {
 
-/// Returns the element of each plane region, numbered from 0. Regions belong to one element if they meet at an edge
-/// where the solid is convex, such as the dihedral edges of a cube corner. Edges where the solid is concave are rims
-/// between elements. There is one exception: if the normals at a concave edge differ by less than one degree, both
-/// regions are parts of one curved facet. A wall belongs to the element with which it shares its longest convex edge,
-/// but does not connect two elements.
+/// Returns the element number of each plane region, counted from 0. Regions belong to one element if they meet at an
+/// edge where the solid is convex, such as the dihedral edges of a cube corner. Edges where the solid is concave are
+/// rims between elements. There is one exception: if the normals at a concave edge differ by less than one degree, both
+/// regions are parts of one curved facet.
+/// A wall belongs to the element with which it shares its longest convex edge. A wall does not connect two elements.
 /// \param roles role of each region
 /// \param rounding_mm maximum error of a vertex, mm; edges that are only a few times as long are ignored
 std::vector<std::uint32_t> elements_of_regions(const std::vector<Vec3>& vertices, const RegionTriangles& mesh,

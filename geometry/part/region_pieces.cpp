@@ -16,11 +16,11 @@ namespace {
 using Ring = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t kNoRegion = UINT32_MAX;
-// Maximum sine of the angle by which a corner may turn inward and still count as convex. Rounding errors cause smaller
-// angles.
+// Maximum sine of the angle by which the border may turn inward at a corner that is treated as convex. Rounding errors
+// cause smaller angles.
 constexpr double kStraight = 1e-13;
-// Maximum relative area for a polygon to count as having no area. The relative area is twice the area, divided by the
-// squared maximum distance of a corner from the first corner.
+// Maximum relative area of a polygon that is treated as having no area. The relative area is twice the area, divided by
+// the squared maximum distance between a corner and the first corner.
 constexpr double kNeedle = 1e-12;
 
 /// Returns twice the area of a triangle. The result is positive if the corners run counter-clockwise about the normal.
@@ -65,7 +65,7 @@ class EarClipper {
     return static_cast<std::size_t>(std::max_element(turns.begin(), turns.end()) - turns.begin());
   }
 
-  /// True if the triangle of corner k and its two neighbours contains no other reflex corner of the ring.
+  /// Returns true if no reflex corner of the ring is within the triangle of corner k and its two neighbours.
   bool is_free(const Ring& ring, std::size_t k, const Ring& reflex) const {
     const std::uint32_t a = before(ring, k);
     const std::uint32_t b = ring[k];
@@ -102,15 +102,15 @@ class VertexRemover {
   }
 
  private:
-  /// Regions on both sides of an edge between a vertex v and another vertex. Seen in the direction away
-  /// from v, `outgoing` is on the left of the edge and `incoming` on the right.
+  /// Regions on the two sides of an edge from a vertex v to another vertex. Looking along the edge away from v,
+  /// `outgoing` is on the left and `incoming` is on the right.
   struct EdgeRegions {
     std::uint32_t outgoing = kNoRegion;
     std::uint32_t incoming = kNoRegion;
   };
   using Removed = std::vector<std::uint32_t>;
 
-  /// Returns the ends of the edge opposite corner v of a triangle.
+  /// Returns the two ends of the edge that is opposite to corner v of a triangle.
   static std::pair<std::uint32_t, std::uint32_t> opposite(const MeshTriangle& t, std::uint32_t v) {
     const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
     return {t[(k + 1) % 3], t[(k + 2) % 3]};
@@ -118,8 +118,8 @@ class VertexRemover {
 
   static std::pair<std::uint32_t, std::uint32_t> edge(std::uint32_t a, std::uint32_t b) { return std::minmax(a, b); }
 
-  /// Returns the far ends of the border edges at v. An edge is a border if the regions on its two sides differ, or if
-  /// it has a region on one side only.
+  /// Returns the other ends of the border edges at v. An edge is on a border if the regions on its two sides differ or
+  /// if only one side has a region.
   std::vector<std::uint32_t> border_at(std::uint32_t v) const {
     std::map<std::uint32_t, EdgeRegions> edges;
     for (const std::uint32_t t : triangles_at_[v]) {
@@ -151,8 +151,8 @@ class VertexRemover {
       for (const MeshTriangle& t : EarClipper(vertices_, planes_[region].normal).triangles_of(ring)) insert(t, region);
   }
 
-  /// True if v and all vertices that were removed earlier between `from` and `to` are on the straight line from `from`
-  /// to `to`.
+  /// Returns true if v is on the straight line from `from` to `to`. All vertices that were removed earlier between
+  /// `from` and `to` must be on this line, too.
   bool is_straight(std::uint32_t v, std::uint32_t from, std::uint32_t to) const {
     const Vec3& a = vertices_[from];
     const Vec3 along = vertices_[to] - a;
@@ -222,7 +222,8 @@ class VertexRemover {
   const std::vector<FacetPlane>& planes_;
   double rounding_mm_;
   std::vector<std::vector<std::uint32_t>> triangles_at_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Removed> removed_;  ///< removed vertices; keys: the ends of an edge
+  /// removed vertices of each edge; the key is the two ends of the edge
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Removed> removed_;
 };
 
 /// Joins triangles into convex polygons by removing edges between them (Hertel and Mehlhorn 1983).
@@ -270,7 +271,7 @@ class PieceJoiner {
     return sorted;
   }
 
-  /// False if rounding errors have inverted the triangle.
+  /// Returns false if rounding errors have inverted the triangle.
   bool is_convex(std::uint32_t t) const {
     const Ring& ring = rings_[t];
     for (std::size_t k = 0; k < ring.size(); ++k)
@@ -303,8 +304,8 @@ class PieceJoiner {
     rings_[other].clear();
   }
 
-  /// Returns `ring`, rotated so that it begins with `first` and ends with `last`. Returns an empty ring if no edge
-  /// leads from `last` to `first`.
+  /// Returns `ring` rotated such that it begins with `first` and ends with `last`. Returns an empty ring if the ring
+  /// has no edge from `last` to `first`.
   static Ring starting_at(Ring ring, std::uint32_t first, std::uint32_t last) {
     std::rotate(ring.begin(), std::find(ring.begin(), ring.end(), first), ring.end());
     return ring.front() == first && ring.back() == last ? ring : Ring{};

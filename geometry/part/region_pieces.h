@@ -1,7 +1,7 @@
 #pragma once
 
-// Subdivides the plane regions of a mesh into few convex polygons. A convex region becomes a single polygon, whatever
-// its triangulation.
+// Subdivides the plane regions of a mesh into few convex polygons. A region that is convex becomes a single polygon,
+// however it was triangulated.
 
 #include <cstdint>
 #include <vector>
@@ -27,7 +27,7 @@ struct RegionTriangles {
 RegionTriangles without_needless_vertices(const std::vector<Vec3>& vertices, RegionTriangles mesh,
                                           const std::vector<FacetPlane>& planes, double rounding_mm);
 
-/// Joins the triangles of each region into convex polygons. Polygons without area are left out.
+/// Joins the triangles of each region into convex polygons. Polygons without area are omitted.
 std::vector<RegionPiece> convex_pieces(const std::vector<Vec3>& vertices, const RegionTriangles& mesh,
                                        const std::vector<FacetPlane>& planes);
 

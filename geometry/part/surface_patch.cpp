@@ -14,7 +14,7 @@ namespace {
 
 using Ring = std::vector<std::uint32_t>;
 
-/// The tiles on the two sides of an elementary edge from vertex `from` < `to`.
+/// Two neighbouring vertices (from < to) and the tiles on both sides of the edge between them.
 struct SharedEdge {
   std::uint32_t from = 0;
   std::uint32_t to = 0;
@@ -22,7 +22,8 @@ struct SharedEdge {
   std::optional<std::uint32_t> right;
 };
 
-/// A grid with a corner or two in a cell: of parts with edges, whose strips are much narrower than elements, too.
+/// Returns the cell size of a search grid such that each cell contains about one corner. The number of corners is used,
+/// because strips at rounded edges are much narrower than elements.
 double grid_of(const std::vector<Tile>& tiles) {
   double area_mm2 = 0.0;
   double corners = 1.0;
@@ -55,7 +56,7 @@ class PatchBuilder {
 
  private:
   struct Wall {
-    std::uint32_t from = 0;  ///< the solid lies on the left of from -> to
+    std::uint32_t from = 0;  ///< the solid is on the left of the edge from -> to
     std::uint32_t to = 0;
     std::uint32_t deep = 0;
     std::uint32_t shallow = 0;
@@ -73,9 +74,10 @@ class PatchBuilder {
     }
   }
 
-  /// A corner inside a straight side would make a flat triangle: subdivided() puts it back as a vertex of the side.
+  /// Removes corners on straight sides, because they would cause triangles without area. subdivided() inserts them
+  /// again as vertices of the side.
   Ring without_straight_corners(const Ring& ring) const {
-    constexpr double rounding = 1e-3;  // of the tolerance within which vertices lie on a side
+    constexpr double rounding = 1e-3;  // in multiples of the tolerance within which vertices count as being on a side
     Ring kept;
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Vec2& before = index_[ring[(i + ring.size() - 1) % ring.size()]];
@@ -87,7 +89,7 @@ class PatchBuilder {
     return kept.size() < 3 ? ring : kept;
   }
 
-  /// The outline with every vertex of another tile that lies on it.
+  /// Returns the outline with all vertices of other tiles that are on it inserted.
   Ring subdivided(const Ring& outline) const {
     Ring ring;
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -108,7 +110,8 @@ class PatchBuilder {
       rings_.push_back(subdivided(outline));
       corners += rings_.back().size();
     }
-    // All but those on the border are shared by two.
+    // Edges are shared by two tiles, except on the border. The number of edges is therefore about half the number of
+    // corners.
     std::unordered_map<std::uint64_t, std::uint32_t> edge_of;
     edge_of.reserve(corners / 2);
     edges_.reserve(corners / 2);
@@ -126,12 +129,14 @@ class PatchBuilder {
   }
 
   double height(std::uint32_t tile, std::uint32_t vertex) const { return tiles_[tile].plane.at(index_[vertex]); }
-  /// Beyond the border stands what z = 0 is for the walls there.
+  /// Returns the height of a tile at a vertex. Outside the border there is no tile, and the walls on the border end at
+  /// z = 0.
   double height(const std::optional<std::uint32_t>& tile, std::uint32_t vertex) const {
     return tile ? height(*tile, vertex) : 0.0;
   }
 
-  /// Where the profiles of two neighbours cross, the wall changes sides: a vertex belongs there.
+  /// Adds a vertex at each position where the heights of two neighbouring tiles are equal, because the deeper tile is a
+  /// different one on each side of this position.
   bool add_crossings() {
     bool added = false;
     for (const SharedEdge& e : edges_) {
@@ -154,7 +159,7 @@ class PatchBuilder {
     return id;
   }
 
-  /// Where the plate's side begins over a tile on the border.
+  /// Returns the height at which the plate's side begins above a tile on the border.
   double rim_height(std::uint32_t tile, std::uint32_t vertex) const { return std::max(0.0, height(tile, vertex)); }
 
   void collect_heights() {
@@ -181,8 +186,8 @@ class PatchBuilder {
     }
   }
 
-  /// The face between heights bottom and top over the edge from -> to, the solid on the left; `ring` gets every vertex
-  /// on its outline, `corners` only the corners.
+  /// Vertical face over the edge from -> to, between a bottom and a top. The solid is on the left. `ring` contains all
+  /// vertices on the outline, and `corners` only the corners.
   struct Strip {
     Ring ring;
     Ring corners;
@@ -239,7 +244,7 @@ class PatchBuilder {
     const Vec3 downward(tile.plane.slope.x(), tile.plane.slope.y(), -1.0);
     facet.normal = downward.normalized();
     facet.offset_mm = -tile.plane.height_mm / downward.norm();
-    // Seen from outside, from below, the outline runs the other way round.
+    // The outline is counter-clockwise as seen from above. Outside is below, so the order is reversed.
     Ring ring;
     Ring corners;
     for (auto it = rings_[t].rbegin(); it != rings_[t].rend(); ++it) ring.push_back(vertex_at(*it, height(t, *it)));
@@ -316,7 +321,7 @@ class PatchBuilder {
     }
   }
 
-  /// Parts may have millions of these.
+  /// Frees unused capacity, because parts may have millions of facets.
   void shrink() {
     patch_.vertices.shrink_to_fit();
     patch_.facets.shrink_to_fit();
@@ -333,7 +338,8 @@ class PatchBuilder {
   std::vector<Ring> outlines_;
   std::vector<Ring> rings_;
   std::vector<SharedEdge> edges_;
-  std::vector<std::vector<std::pair<double, std::uint32_t>>> columns_;  ///< heights over each flat vertex, rising
+  /// heights above each vertex in plan, ascending
+  std::vector<std::vector<std::pair<double, std::uint32_t>>> columns_;
   std::vector<std::vector<Wall>> walls_of_;
   SurfacePatch patch_;
 };

@@ -1,7 +1,7 @@
 #pragma once
 
-// Welds facets of neighbouring cells into a watertight piece of the back surface, with vertical walls where heights
-// differ.
+// Joins the facets of neighbouring cells into a watertight patch of the back surface. Vertical walls are added where
+// the heights of neighbouring facets differ.
 
 #include <array>
 #include <cstdint>
@@ -13,57 +13,60 @@
 
 namespace retrace::geometry {
 
-/// A cell facet as it stands in the part, after the border has cut it: input of build_patch().
+/// Facet of a cell in the part, already cut by the part's border. Input of build_patch().
 struct Tile {
   Polygon outline;
   HeightPlane plane;
   FacetRole role = FacetRole::retro_facet;
-  std::uint32_t cell = 0;              ///< tiles of one cell are adjacent in the input
-  bool owned = true;                   ///< false: only a neighbour that shapes walls and welds
-  std::optional<Vec2> middle_mm = {};  ///< of CellFacet
+  std::uint32_t cell = 0;  ///< cell of the tile; tiles of one cell must be consecutive in the input
+  /// false: the tile is not output, but its neighbours need it for walls and shared vertices
+  bool owned = true;
+  std::optional<Vec2> middle_mm = {};  ///< as CellFacet::middle_mm
 };
 
-/// One plane convex face of the back surface.
+/// A plane, convex face of the back surface.
 struct PatchFacet {
-  Vec3 normal = Vec3::Zero();  ///< unit, out of the part
-  double offset_mm = 0.0;      ///< normal . p for every point p of the plane
+  Vec3 normal = Vec3::Zero();  ///< unit vector, out of the part
+  double offset_mm = 0.0;      ///< normal . p for all points p of the plane
   std::uint32_t first_corner = 0;
   std::uint32_t corner_count = 0;
   FacetRole role = FacetRole::retro_facet;
-  std::optional<Vec2> middle_mm = {};  ///< of CellFacet
+  std::optional<Vec2> middle_mm = {};  ///< as CellFacet::middle_mm
 };
 
-/// The consecutive facets of one cell and the box round them.
+/// Consecutive facets of one cell, and their bounding box.
 struct PatchCell {
   std::uint32_t first_facet = 0;
   std::uint32_t facet_count = 0;
   Vec3 lower = Vec3::Zero();
   Vec3 upper = Vec3::Zero();
-  /// Index of the first cell of the element to which this cell belongs. If it is not set, the cell is an element of its
-  /// own.
+  /// Index of the first cell of the element to which this cell belongs. If the index is not set, the cell is a complete
+  /// element.
   std::optional<std::uint32_t> first_of_element = {};
 };
 
-/// A welded piece of the part's back surface, everything below the plate but the outer walls, in coordinates local to
-/// the piece. Triangles of neighbouring facets share whole edges (no T-junctions).
+/// Connected patch of the part's back surface, in coordinates of its own. It contains everything below the plate except
+/// the outer walls. Triangles of neighbouring facets share complete edges (no T-junctions).
 struct SurfacePatch {
   std::vector<Vec3> vertices;
   std::vector<PatchFacet> facets;
-  std::vector<std::uint32_t> corners;  ///< corners of the facets, counter-clockwise seen from outside
+  std::vector<std::uint32_t> corners;  ///< corners of the facets, counter-clockwise as seen from outside
   std::vector<PatchCell> cells;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_facet;
 
-  /// Where the surface ends: the walls that close it up to z = 0 where it lies below, and the lower borders of the
-  /// plate's sides, with the part on the left seen from +z. A side begins on z = 0 or where the surface ends above it,
-  /// and its ends are the highest vertices over their place.
+  /// Borders of the surface. `border_walls` are vertical walls between the surface and z = 0, where the surface is
+  /// below z = 0. `border_rim` are the lower borders of the plate's sides, with the part on the left as seen from +z. A
+  /// side begins at z = 0, or at the surface where the surface is above z = 0. The two ends of a rim are the highest
+  /// vertices at their (x, y).
   std::vector<std::vector<std::uint32_t>> border_walls;
   std::vector<std::vector<std::uint32_t>> border_rim;
 };
 
-/// Welds tiles into a surface and raises the vertical walls where neighbouring tiles differ in height. A wall belongs
-/// to the deeper of its two tiles. Walls on the border of `block` (the area the array fills) get role border_wall,
-/// others inner_wall. \param size_mm the size of an element, for tolerances
+/// Joins tiles into a surface, and adds vertical walls where neighbouring tiles differ in height. A wall belongs to the
+/// deeper of its two tiles. Walls on the border of `block` get the role border_wall, other walls get inner_wall.
+/// \param block area that the array fills
+/// \param size_mm size of an element, for tolerances
 SurfacePatch build_patch(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm);
 
 }  // namespace retrace::geometry
