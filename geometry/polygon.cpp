@@ -10,8 +10,9 @@
 namespace retrace::geometry {
 namespace {
 
-/// Keeps what does not lie beyond a border. \param beyond how far a place does, mm \param settle puts a place on the
-/// border, where rounding left it beside
+/// Clips a polygon at a border line.
+/// \param beyond returns the distance of a point beyond the border, mm
+/// \param settle moves a point that is beside the border because of rounding exactly onto the border
 template <class Beyond, class Settle>
 Polygon clip_at(const Polygon& polygon, const Beyond& beyond, const Settle& settle, double tolerance_mm) {
   Polygon kept;
@@ -31,7 +32,7 @@ Polygon clip_at(const Polygon& polygon, const Beyond& beyond, const Settle& sett
   return kept;
 }
 
-/// Keeps `sign * coordinate <= sign * bound`.
+/// Keeps the points with `sign * coordinate <= sign * bound`.
 Polygon clip_axis(const Polygon& polygon, Eigen::Index axis, double sign, double bound, double tolerance_mm) {
   const auto settle = [&](Vec2 cut) {
     cut[axis] = bound;

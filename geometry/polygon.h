@@ -11,7 +11,7 @@ namespace retrace::geometry {
 /// A convex polygon in the plane, counter-clockwise, in mm.
 using Polygon = std::vector<Vec2>;
 
-/// An axis-aligned rectangle; empty when an upper bound does not exceed its lower bound.
+/// Axis-aligned rectangle. It is empty if an upper bound is not above its lower bound.
 struct Rectangle {
   Vec2 lower = Vec2::Zero();
   Vec2 upper = Vec2::Zero();
@@ -28,25 +28,26 @@ Rectangle bounding_box(const Polygon& polygon);
 Polygon moved(Polygon polygon, const Vec2& by);
 Rectangle moved(const Rectangle& rectangle, const Vec2& by);
 
-/// The part of a convex polygon inside a rectangle. Vertices within `tolerance_mm` of a border count as on it and stay
-/// where they are, so that an edge that coincides with the border up to rounding is neither moved nor doubled. Empty
-/// when nothing wider than the tolerance is left.
+/// Returns the intersection of a convex polygon and a rectangle. Vertices within `tolerance_mm` of a border are treated
+/// as points on the border and are not moved. An edge that coincides with the border within rounding errors is
+/// therefore neither moved nor duplicated. Returns an empty polygon if the intersection is not wider than the
+/// tolerance.
 Polygon clip(const Polygon& polygon, const Rectangle& rectangle, double tolerance_mm);
 
-/// The same of a convex polygon in place of the rectangle.
+/// Returns the intersection of two convex polygons, with the tolerance of the function above.
 Polygon clip(const Polygon& polygon, const Polygon& region, double tolerance_mm);
 
-/// Whether a counter-clockwise polygon turns left at every vertex, or runs straight on up to the tolerance, and goes
-/// round once.
+/// Returns true if a counter-clockwise polygon is convex and winds around one time. At each vertex it must turn left,
+/// or be straight within the tolerance.
 bool is_convex(const Polygon& polygon, double tolerance_mm);
 
-/// The least distance between two parallel lines that hold a convex polygon between them.
+/// Returns the minimum distance between two parallel lines that enclose a convex polygon.
 double width(const Polygon& polygon);
 
-/// Whether a place lies in a convex polygon or on its border.
+/// Returns true if a point is inside a convex polygon or on its border.
 bool contains(const Polygon& polygon, const Vec2& place);
 
-/// True if every vertex lies in the rectangle widened by `tolerance_mm`.
+/// Returns true if every vertex is in the rectangle, which is enlarged by `tolerance_mm` on all sides.
 bool contains(const Rectangle& rectangle, const Polygon& polygon, double tolerance_mm);
 
 }  // namespace retrace::geometry

@@ -1,7 +1,7 @@
 #pragma once
 
-// The elements themselves, seen from above: prisms and cube corners as planes over polygons, with their errors of angle
-// and cant.
+// Geometry of single elements in plan. Prisms and cube corners are planes over polygons, with their errors of angle and
+// cant.
 
 #include <cstdint>
 #include <optional>
@@ -12,17 +12,18 @@
 
 namespace retrace::geometry {
 
-/// What a face of the part is there for; the ledger books light that leaves by the role of the face it left through.
+/// Type of a face of the part. The energy ledger books light that leaves the part by the role of the face through which
+/// the light left.
 enum class FacetRole : std::uint8_t {
   entrance,     ///< flat face at z = +thickness
   retro_facet,  ///< a facet of an element
   flat_back,    ///< flat land, margin or omitted element on z = 0
   inner_wall,   ///< vertical wall between cells of different depth
-  border_wall,  ///< vertical wall that closes what the border of the array cuts
+  border_wall,  ///< vertical wall that closes the cut where the border of the array cuts elements
   side          ///< side of the plate
 };
 
-/// A plane as a height over the part's xy plane: z = height_mm + slope . (x, y).
+/// Plane as a height over the part's xy plane: z = height_mm + slope . (x, y).
 struct HeightPlane {
   double height_mm = 0.0;
   Vec2 slope = Vec2::Zero();
@@ -30,57 +31,62 @@ struct HeightPlane {
   double at(const Vec2& p) const { return height_mm + slope.dot(p); }
 };
 
-/// One facet of an element seen from above: its outline and the plane it lies in.
+/// Facet of an element: its outline in plan and its plane.
 struct CellFacet {
   Polygon outline;
   HeightPlane plane;
-  bool is_edge = false;  ///< a strip of a rounded or chamfered edge, or a flank of a scratch
-  /// Over which the centroid of the whole facet lies, whatever edges, scratches and borders take of it: the origin of
-  /// what its form is told in. None of land and edges.
+  bool is_edge = false;  ///< true for a strip of a rounded or chamfered edge, and for a flank of a scratch
+  /// (x, y) of the centroid of the complete facet, before edges, scratches and borders remove parts of it. The facet's
+  /// form error is defined relative to this point. Land and edges have no value.
   std::optional<Vec2> middle_mm = {};
 };
 
-/// An element (its facets in the contract's order), or a piece of flat land (on z = 0).
+/// An element, or a piece of flat land on z = 0. The order of an element's facets is the order of
+/// ElementPlanes::planes.
 struct Cell {
   bool is_element = true;
   Polygon outline;
   std::vector<CellFacet> facets;
-  Vec2 at_mm = Vec2::Zero();  ///< an element's corner or centre
+  Vec2 at_mm = Vec2::Zero();  ///< lower left corner of a prism, apex of a cube corner
   bool rotated = false;
 };
 
-/// A right triangular prism with its lower left corner at `corner_mm`; `rotated` by 90 degrees about z it has its roof
-/// edge along x (base = width then).
+/// Returns a right triangular prism.
+/// \param corner_mm lower left corner
+/// \param rotated true: the prism is rotated by 90 degrees about z, so that its roof edge is along x; base and width
+///     must be equal
 Cell rtp_cell(const RtpElement& element, const AngleErrors& errors, const Vec2& corner_mm, bool rotated = false);
 
-/// A full cube corner with its apex over `centre_mm` and, without errors and cant, its three highest rim points on z =
-/// 0.
+/// Returns a full cube corner with its apex below `centre_mm`. Without errors and cant, its three highest rim points
+/// are on z = 0.
 Cell hexagonal_cube_cell(const HexagonalCube& element, const AngleErrors& errors, const Vec2& centre_mm);
 
-/// A triangular cube corner with its apex over `centre_mm` and, without errors and cant, its rim on z = 0; `rotated` by
-/// 180 degrees about z, errors and cant included.
+/// Returns a triangular cube corner with its apex below `centre_mm`. Without errors and cant, its rim is on z = 0.
+/// \param rotated true: the element, including errors and cant, is rotated by 180 degrees about z
 Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& errors, const Vec2& centre_mm,
                           bool rotated = false);
 
-/// One element, unrotated, with its lower left corner (RTP) or its apex (cube corners) at the origin.
+/// Returns one element that is not rotated. Its lower left corner (prism) or its apex (cube corner) is at the origin.
 Cell element_cell(const Element& element, const AngleErrors& errors = {});
 
-/// The element that stands in the place of `cell`, with its own errors. \pre cell.is_element
+/// Returns an element at the position and rotation of `cell`, with the given errors.
+/// \pre cell.is_element
 Cell element_in_place_of(const Cell& cell, const Element& element, const AngleErrors& errors);
 
-/// Depth of an element from z = 0 to its root or apex.
+/// Returns the depth of an element from z = 0 to its root or apex.
 double element_depth_mm(const Element& element, const AngleErrors& errors = {});
 
-/// The cant of a cube corner; none for prisms.
+/// Returns the cant of a cube corner. A prism has no cant.
 Cant cant_of(const Element& element);
 
-/// Largest angle between a facet of an element and the xy plane.
+/// Returns the largest angle between a facet of an element and the xy plane.
 double steepest_facet_deg(const Element& element, const AngleErrors& errors);
 
-/// How far its errors or its cant lift the rim of an element above z = 0; 0 if they do not.
+/// Returns how far the rim of an element is above z = 0 because of errors or cant. Returns 0 if the rim is not above z
+/// = 0.
 double element_top_mm(const Element& element, const AngleErrors& errors);
 
-/// The outline of one element's aperture, its bounding box starting at the origin.
+/// Returns the outline of one element's aperture, shifted such that its bounding box begins at the origin.
 Polygon aperture_outline(const Element& element);
 
 }  // namespace retrace::geometry

@@ -18,8 +18,8 @@
 #include "core/message_text.h"
 #include "core/text.h"
 
-// Own code, for want of a library that names the line at fault: a binary file is a header and an array, and an ASCII
-// one has a grammar of seven words.
+// STL is read by code of our own, because no suitable library reports the line of an error. A binary file is a header
+// and an array. An ASCII file has a grammar of seven keywords.
 
 namespace retrace::geometry {
 namespace {
@@ -57,7 +57,7 @@ class Welder {
  public:
   Welder(const std::string& name, double scale) : name_(name), scale_(scale) {}
 
-  /// \param where "triangle 7", "line 12"
+  /// \param where location for messages, such as "triangle 7" or "line 12"
   void add(const std::array<Vec3, 3>& corners, const InputLocation& where, std::string_view what) {
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertex(corners[k], where, what);
@@ -81,7 +81,7 @@ class Welder {
   };
 
   std::uint32_t vertex(const Vec3& p, const InputLocation& where, std::string_view what) {
-    // Adding 0 makes -0 the same as 0.
+    // Adding 0 converts -0 to +0.
     const std::array<double, 3> at = {scale_ * p.x() + 0.0, scale_ * p.y() + 0.0, scale_ * p.z() + 0.0};
     for (const double c : at)
       if (!(std::abs(c) < kLargestCoordinateMm))
@@ -108,18 +108,20 @@ std::size_t binary_length(std::size_t triangles) {
   return kHeaderBytes + kCountBytes + kTriangleBytes * triangles;
 }
 
-/// \param begin beginning of the file, at least binary_length(0) bytes of it if the file is as long
+/// Returns true if the length of the file matches the number of triangles in a binary header.
+/// \param begin beginning of the file; it contains at least binary_length(0) bytes unless the file is shorter
 bool is_binary(std::string_view begin, std::uintmax_t file_bytes) {
   return begin.size() >= binary_length(0) && file_bytes == binary_length(binary_count(begin));
 }
 
-/// Returns true if there is a zero byte in the header or in the number of triangles. Binary files have one, text files
-/// do not.
+/// Returns true if the header or the number of triangles contains a zero byte. Binary files contain zero bytes, but
+/// text files do not.
 bool begins_as_binary(std::string_view text) {
   return text.substr(0, binary_length(0)).find('\0') != std::string_view::npos;
 }
 
-/// \throw InputError for a binary file whose length does not fit its number of triangles
+/// Refuses a binary file whose length does not match its number of triangles.
+/// \throw InputError always
 [[noreturn]] void refuse_length(std::string_view begin, std::uintmax_t file_bytes, const std::string& name) {
   constexpr std::string_view what = "not an STL file: binary STL must have 84 bytes plus 50 for each triangle";
   if (file_bytes < binary_length(0)) throw InputError({name, 0, ""}, fmt::format("{}, got {}", what, file_bytes));
@@ -145,14 +147,14 @@ TriangleMesh parse_binary(std::string_view text, const std::string& name, double
   return welder.finish();
 }
 
-/// The words of an ASCII file, each with its line.
+/// Splits an ASCII file into words and counts its lines.
 class Words {
  public:
   Words(std::string_view text, const std::string& name) : text_(text), name_(name) {}
 
   int line() const { return line_; }
 
-  /// Empty at the end.
+  /// Returns the next word, or an empty text at the end of the file.
   std::string_view next() {
     while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n' ? 1 : 0;
     const std::size_t begin = at_;
@@ -207,7 +209,7 @@ TriangleMesh parse_ascii(std::string_view text, const std::string& name, double 
   Words words(text, name);
   if (!Words::is(words.next(), "solid"))
     throw InputError({name, 0, ""}, "not an STL file: must begin with \"solid\", or be binary STL");
-  words.skip_line();  // its name
+  words.skip_line();  // the rest of the line is the name of the solid
   Welder welder(name, scale);
   for (std::string_view word = words.next();; word = words.next()) {
     if (Words::is(word, "endsolid")) {
@@ -220,7 +222,8 @@ TriangleMesh parse_ascii(std::string_view text, const std::string& name, double 
     }
     if (!Words::is(word, "facet")) words.fail("\"facet\" or \"endsolid\"", word);
     words.expect("normal");
-    for (int axis = 0; axis < 3; ++axis) words.next();  // made of the vertices; files have nan there at times
+    // the normal is skipped, because it follows from the vertices; some files contain nan
+    for (int axis = 0; axis < 3; ++axis) words.next();
     words.expect("outer");
     words.expect("loop");
     std::array<Vec3, 3> corners;
@@ -260,7 +263,7 @@ TriangleMesh parse_stl(std::string_view text, const std::string& name, double sc
 TriangleMesh read_stl(const std::filesystem::path& file, double scale) {
   const std::string name = file.string();
   std::error_code error;
-  if (std::filesystem::is_regular_file(file, error)) {  // read_file() reports any other
+  if (std::filesystem::is_regular_file(file, error)) {  // read_file() below reports other types of file
     require_short_file(file, kMostDataBytes);
     std::string begin(binary_length(0), '\0');
     std::ifstream stream(file, std::ios::binary);

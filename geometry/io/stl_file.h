@@ -12,25 +12,25 @@
 
 namespace retrace::geometry {
 
-/// Most triangles that are read: 10 million, 500 MB of binary STL.
+/// Maximum number of triangles in a file: 10 million, 500 MB of binary STL.
 inline constexpr std::size_t kMostStlTriangles = 10'000'000;
 
-/// The mesh as binary STL: millimetres in single precision, normals from the triangles. \param title goes into the
-/// header, up to 80 bytes
+/// Returns a mesh as binary STL. Coordinates are in mm in single precision. Normals are computed from the triangles.
+/// \param title text for the header; at most 80 bytes are used
 std::string stl_text(const BoundaryMesh& mesh, std::string_view title);
 
-/// Reads binary and ASCII STL. A file is binary if its length matches the number of triangles that follows its header,
-/// whatever the header contains. Keywords of ASCII files may be in upper or lower case. The stored normals are ignored,
-/// because the order of vertices defines the outside: counter-clockwise as seen from there. Vertices with equal
-/// coordinates are merged. Triangles with two equal vertices are removed.
+/// Reads binary and ASCII STL. A file is binary if its length matches the number of triangles that is stored after its
+/// header, whatever the header contains. Keywords of ASCII files may be in upper or lower case.
+/// The stored normals are ignored. The order of vertices defines the outside: it is counter-clockwise as seen from
+/// outside. Vertices with equal coordinates are merged. Triangles with two equal vertices are removed.
 /// \param name name of the file, for messages
 /// \param scale factor from the unit of the file to mm
 /// \throw InputError if the text is not STL, if a coordinate is not a finite number below 1e6 mm, or if there are no
 ///        triangles or more than kMostStlTriangles. The message quotes the file only if it begins like an STL file.
 TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale = 1.0);
 
-/// Reads an STL file as parse_stl() reads its text. If the number of triangles in the header of a binary file is above
-/// kMostStlTriangles, or does not fit the length of the file, the file is refused before its triangles are read.
+/// Reads an STL file as parse_stl() does. A binary file is refused before its triangles are read if the stored number
+/// of triangles is above kMostStlTriangles or does not match the length of the file.
 /// \throw InputError as parse_stl(), or if the file cannot be read
 TriangleMesh read_stl(const std::filesystem::path& file, double scale = 1.0);
 

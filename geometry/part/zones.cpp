@@ -17,10 +17,11 @@
 namespace retrace::geometry {
 namespace {
 
-/// Corners that are nearer to each other than this share of the smallest element are one.
+/// Distance below which two corners are treated as the same corner, relative to the size of the smallest element.
 constexpr double kSamePlace = 1e-9;
 
-/// A turn about a place of a sheet and a move from there to a place of the part.
+/// Rotation about a point of a sheet, followed by a translation that moves this point to a point of the part. A sheet
+/// is the plane on which an array is laid out.
 class Turn {
  public:
   Turn(double deg, const Vec2& on_sheet, const Vec2& in_part)
@@ -30,7 +31,7 @@ class Turn {
     return {along_.x() * v.x() - along_.y() * v.y(), along_.y() * v.x() + along_.x() * v.y()};
   }
   Vec2 place(const Vec2& p) const { return turned(p - on_sheet_) + in_part_; }
-  /// Where a place of the part lies, seen from in_part and turned back.
+  /// Applies the inverse rotation to the vector from in_part_ to a point of the part.
   Vec2 back(const Vec2& p) const {
     const Vec2 v = p - in_part_;
     return {along_.x() * v.x() + along_.y() * v.y(), -along_.y() * v.x() + along_.x() * v.y()};
@@ -57,18 +58,19 @@ bool is_box(const Polygon& region, double tolerance_mm) {
          });
 }
 
-/// Returns true if the lost area is larger than rounding errors can cause.
+/// Returns true if the area that was cut off is larger than rounding errors can explain.
+/// \param left polygon that remains after the cut
 bool is_loss(double lost_mm2, const Polygon& left, double tolerance_mm) {
   return lost_mm2 > tolerance_mm * bounding_box(left).size().norm();
 }
 
-/// The tiles of one cell, consecutive, within a region.
+/// Clips the tiles of an array to a region. Tiles of one cell must be consecutive.
 class RegionCutter {
  public:
   RegionCutter(const Polygon& region, PartialElements partial, double tolerance_mm)
       : region_(region), partial_(partial), tolerance_mm_(tolerance_mm) {}
 
-  /// Leaves of all cells what lies in the region, and counts elements anew.
+  /// Clips all cells to the region, and counts complete and partial elements again.
   void cut(ArrayTiles& array) const {
     ArrayTiles within;
     for (auto first = array.tiles.begin(); first != array.tiles.end();) {
@@ -107,7 +109,7 @@ Vec2 pitch_of(const PartSpec& spec) {
   return bounding_box(aperture_outline(spec.element)).size() + Vec2(spec.array.x_gap_mm, spec.array.y_gap_mm);
 }
 
-/// What stands in cells of the plate's array, each turned about its centroid.
+/// Returns the tiles of the zone's cells. Each element is rotated about its centroid.
 ArrayTiles tiles_of_cells(const PartZone& zone, const PartSpec& spec, const ArrayPlan& plan, double tolerance_mm) {
   ArrayTiles array{uncut_tiles(spec, zone.cells), 0, 0};
   if (zone.rotation_deg != 0.0) {
@@ -123,10 +125,11 @@ ArrayTiles tiles_of_cells(const PartZone& zone, const PartSpec& spec, const Arra
   return array;
 }
 
-/// Array that fills a region. It covers the bounding box of the region, or extends beyond the region on all sides.
+/// Array that fills a region. If the array is clipped later (is_cut), it extends beyond the region on all sides.
+/// Otherwise it has the size of the region's bounding box.
 struct FillingArray {
   PartSpec spec;
-  Turn to_part;  ///< rotation and shift from coordinates relative to the centre of the array to the part frame
+  Turn to_part;  ///< maps coordinates relative to the centre of the array to the part frame
   bool is_cut = false;
 
   FillingArray(const PartZone& zone, const Polygon& region, double tolerance_mm)
@@ -156,7 +159,7 @@ ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double toleranc
   return array;
 }
 
-/// Appends the elements of a zone's array that lie completely within a region.
+/// Appends the elements of a zone's array that are completely within a region.
 void add_whole_elements(const PartZone& zone, const Polygon& region, double tolerance_mm,
                         std::vector<StandingElement>& elements) {
   const FillingArray filling(zone, region, tolerance_mm);
@@ -170,7 +173,7 @@ void add_whole_elements(const PartZone& zone, const Polygon& region, double tole
   }
 }
 
-/// Corners beside the plate's border by less than the tolerance lie on it.
+/// Moves corners that are within the tolerance of the plate's border onto the border.
 void settle_on_border(Polygon& outline, const Vec2& size_mm, double tolerance_mm) {
   for (Vec2& p : outline)
     for (const Eigen::Index axis : {0, 1})
@@ -184,7 +187,7 @@ std::array<Vec2, 2> periods_of(const PartSpec& elements, double rotation_deg) {
   return {to_zone.turned({period_mm.x(), 0.0}), to_zone.turned({0.0, period_mm.y()})};
 }
 
-/// The tiles of zone after zone.
+/// Collects the tiles of all zones, one zone after the other.
 class ZoneTiler {
  public:
   ZoneTiler(const Vec2& size_mm, double tolerance_mm) : size_mm_(size_mm), tolerance_mm_(tolerance_mm) {}
@@ -198,7 +201,7 @@ class ZoneTiler {
     return elements;
   }
 
-  /// \param land_mm what is flat beside the elements
+  /// \param land_mm flat areas next to the elements
   ZoneElements add_cells(const PartZone& zone, const PartSpec& array, const ArrayPlan& plan,
                          const std::vector<Rectangle>& land_mm) {
     ZoneElements elements;
@@ -213,7 +216,7 @@ class ZoneTiler {
   const std::vector<Tile>& tiles() const { return tiles_; }
 
  private:
-  /// \param elements what they are is added to it
+  /// Appends tiles, and adds the numbers of their elements and cells to `elements`.
   void append(ArrayTiles array, ZoneElements& elements) {
     elements.full += array.full;
     elements.partial += array.partial;
@@ -237,7 +240,7 @@ class ZoneTiler {
   std::vector<Tile> tiles_;
 };
 
-/// Of the smallest element, the scale for tolerances.
+/// Returns the size of the smallest element, which is the scale for tolerances.
 double size_of(const ZonedSpec& spec) {
   double size_mm = spec.size_mm.minCoeff();
   for (const PartZone& zone : spec.zones)
@@ -245,7 +248,7 @@ double size_of(const ZonedSpec& spec) {
   return size_mm;
 }
 
-/// Whether two polygons are one, whichever corner is the first.
+/// Returns true if two polygons have the same corners. The first corner may differ.
 bool is_same(const Polygon& a, const Polygon& b, double near_mm) {
   const auto has = [&](const Vec2& p) {
     return std::ranges::any_of(b, [&](const Vec2& q) { return (p - q).norm() <= near_mm; });
@@ -253,7 +256,7 @@ bool is_same(const Polygon& a, const Polygon& b, double near_mm) {
   return a.size() == b.size() && std::ranges::all_of(a, has);
 }
 
-/// Returns true if two arrays have elements and land with equal outlines at equal positions.
+/// Returns true if the elements and land of two arrays have equal outlines at equal positions.
 bool are_alike(const ArraySheet& own, const ArraySheet& first, double near_mm) {
   const auto is_near = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= near_mm; };
   return is_near(own.lattice.period_mm, first.lattice.period_mm) && is_near(own.anchor_mm, first.anchor_mm) &&
@@ -281,7 +284,8 @@ double least_turn_deg(const ArraySheet& sheet, double near_mm) {
   return 360.0;
 }
 
-/// Returns why the elements of a zone cannot be placed in the cells of the first zone's array, or nothing if they can.
+/// Returns nothing if the elements of a zone fit into the cells of the first zone's array. Otherwise, returns the
+/// reason.
 std::optional<ZoneFault> misfit(std::size_t zone, const ArraySheet& own, const ArraySheet& first, double rotation_deg,
                                 double near_mm) {
   if (!are_alike(own, first, near_mm))
@@ -328,7 +332,7 @@ std::optional<ZoneFault> fault_of_cells(const ZonedSpec& spec) {
                                                       first.cells.size(), words_of(*free))};
 }
 
-/// In the plane, what an element has with the land beside it.
+/// Returns the area in plan of one element and the land that belongs to it.
 double room_of_element(const PartSpec& elements) {
   const bool is_prism = std::holds_alternative<RtpElement>(elements.element);
   return is_prism ? pitch_of(elements).prod() : area(aperture_outline(elements.element));
@@ -345,7 +349,8 @@ PartSpec array_of_cells(const ZonedSpec& spec, const PartZone& zone) {
 
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
   if (spec.is_by_cell) return fault_of_cells(spec);
-  // What is farther apart than corners that are welded is a gap.
+  // Corners within the relative distance kSamePlace are merged later. The tolerance for gaps and overlaps is half of
+  // this distance.
   const double near_mm = 0.5 * kSamePlace * size_of(spec);
   const double near_mm2 = near_mm * spec.size_mm.norm();
   struct Placed {
@@ -403,7 +408,7 @@ std::vector<std::vector<StandingElement>> whole_elements(const ZonedSpec& spec) 
       while (cell->number != number) ++cell;
       if (!cell->is_element || !contains(plan.block_mm, cell->outline, tolerance_mm)) continue;
       const Vec2 apex = centroid(cell->outline);
-      // A rotated triangle has no corner in the direction +x from its centroid.
+      // A rotated triangle (by 180 degrees) has no corner in the direction +x from its centroid.
       const bool is_rotated = std::ranges::none_of(
           cell->outline, [&](const Vec2& p) { return p.x() - apex.x() > 0.75 * (p - apex).norm(); });
       elements[z].push_back({apex, zone.rotation_deg + (is_rotated ? 180.0 : 0.0)});

@@ -1,4 +1,4 @@
-// Whether a substrate can carry its elements.
+// Checks whether a substrate can carry its elements.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -19,7 +19,7 @@ namespace {
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kMostIncline = 60.0;
 constexpr double kSteepestFacet = 88.0;
-constexpr int kGridSteps = 64;  // of the grids on which facets and pins are tried
+constexpr int kGridSteps = 64;  // of the grids at which facets and pins are checked
 
 template <class Visit>
 void visit_grid(const Vec2& half_mm, const Visit& visit) {
@@ -28,7 +28,7 @@ void visit_grid(const Vec2& half_mm, const Visit& visit) {
       visit(Vec2(half_mm.cwiseProduct(Vec2(2.0 * i / kGridSteps - 1.0, 2.0 * j / kGridSteps - 1.0))));
 }
 
-/// On spheres and formulas no element is like another, and each takes some kilobytes.
+/// Limits the number of elements on spheres and formulas. There all elements differ, and each needs some kilobytes.
 void check_count(const PartSpec& spec) {
   constexpr double kMostUnlike = 2e6;
   const bool repeats = std::holds_alternative<PlaneSubstrate>(spec.substrate->shape) ||
@@ -41,7 +41,7 @@ void check_count(const PartSpec& spec) {
                     kMostUnlike, count));
 }
 
-/// Normals of the facets of an element, towards the light, and of its turned neighbour.
+/// Returns the normals, towards the light, of the facets of an element and of its rotated neighbour.
 std::vector<Vec3> facet_normals(const PartSpec& spec) {
   std::vector<Vec3> normals;
   for (const CellFacet& facet : element_cell(spec.element, spec.angle_errors).facets) {
@@ -68,8 +68,8 @@ void check_steepness(const PartSpec& spec, const SubstrateSurface& surface, cons
                                  kSteepestFacet, fixed_apart(steepest, kSteepestFacet, 2)));
 }
 
-/// Pins touch their neighbours along their sides. Where one stands out by more than its tip is deep, its rim is beyond
-/// all of the neighbour's tip and nothing of the two facets borders on each other.
+/// Checks that pins touch their neighbours. Pins touch along their sides. If a pin is shifted along its axis by more
+/// than the depth of its tip, its facets no longer share an edge with the neighbour's facets.
 void check_contact(const PartSpec& spec, const SubstrateSurface& surface, const Vec2& half_mm) {
   const double depth = element_depth_mm(spec.element, spec.angle_errors);
   const double pitch = 0.5 * std::numbers::sqrt3 * std::get<HexagonalCube>(spec.element).aperture_mm;

@@ -17,7 +17,7 @@ std::string degrees(double angle_rad) {
   return fixed(std::remainder(angle_rad, kTurn) * 180.0 / std::numbers::pi, 2);
 }
 
-/// Least and most radius: at the ends and at several places of every piece.
+/// Estimates the minimum and maximum radius from the ends and several points of each spline segment.
 void measure(Boundary& boundary, const InputLocation& where) {
   const std::vector<double>& knots = boundary.radius_mm.knots_rad();
   constexpr int kPlaces = 16;
@@ -36,13 +36,13 @@ void measure(Boundary& boundary, const InputLocation& where) {
       boundary.most_mm = std::max(boundary.most_mm, r);
     }
   }
-  // Between the places a radius may still differ a little: the quick answers keep clear of that.
+  // Between these points, the radius may slightly exceed the range. A margin is therefore added.
   const double margin = 1e-3 * (boundary.most_mm - boundary.least_mm);
   boundary.least_mm -= std::min(margin, 0.5 * boundary.least_mm);
   boundary.most_mm += margin;
 }
 
-/// Angles of points about the centre, each within half a turn of the one before it.
+/// Returns the angles of points about the centre. Each angle differs from the previous angle by at most half a turn.
 std::vector<double> unwound(const std::vector<Vec2>& points, const Vec2& centre) {
   std::vector<double> angles;
   for (const Vec2& p : points) {
@@ -52,8 +52,8 @@ std::vector<double> unwound(const std::vector<Vec2>& points, const Vec2& centre)
   return angles;
 }
 
-/// Returns the average of the points, which lies inside their convex hull. If no centre is given, scattered points are
-/// first sorted by their angle about this point.
+/// Returns the mean of the points, which is inside their convex hull. If no centre is given, scattered points are first
+/// sorted by their angle about the mean.
 Vec2 inner_point(const std::vector<Vec2>& points) {
   Vec2 mean = Vec2::Zero();
   for (const Vec2& p : points) mean += p / static_cast<double>(points.size());
@@ -66,7 +66,7 @@ void sort_by_angle(std::vector<Vec2>& points, const Vec2& centre) {
   });
 }
 
-/// The angles must rise all the way round, once.
+/// Checks that the angles ascend through exactly one full turn.
 void check_single_valued(const std::vector<double>& angles, const InputLocation& where) {
   const double closing = angles.back() + std::remainder(angles.front() - angles.back(), kTurn);
   for (std::size_t i = 0; i < angles.size(); ++i) {
@@ -138,7 +138,7 @@ Boundary circle_boundary(const Vec2& centre_mm, double radius_mm, int degree) {
   Boundary boundary;
   boundary.centre_mm = centre_mm;
   boundary.radius_mm = PeriodicSpline::constant(radius_mm, degree);
-  // A spline through equal values is that value but for rounding.
+  // A spline through equal values is constant except for rounding errors.
   boundary.least_mm = radius_mm * (1.0 - 1e-12);
   boundary.most_mm = radius_mm * (1.0 + 1e-12);
   return boundary;
@@ -154,7 +154,8 @@ Boundary rectangle_boundary(const Vec2& centre_mm, double width_mm, double heigh
     const double y = std::abs(std::sin(angle));
     const double to_side = std::min(x > 0.0 ? a / x : 1e300, y > 0.0 ? b / y : 1e300);
     if (to_side * x <= a - c || to_side * y <= b - c) return to_side;
-    // On the corner's circle about (a - c, b - c): the farther root of |r (x, y) - centre| = c.
+    // Point on the circle of the rounded corner, whose centre is (a - c, b - c). The radius is the larger root of |r
+    // (x, y) - centre| = c.
     const double along = x * (a - c) + y * (b - c);
     const double across = x * (b - c) - y * (a - c);
     return along + std::sqrt(std::max(0.0, c * c - across * across));
