@@ -1,6 +1,6 @@
 #pragma once
 
-// The colour of light: tristimulus values and chromaticity of the CIE 1931 standard observer (ISO/CIE 11664-1 and -3).
+// Colour of light: tristimulus values and chromaticity for the CIE 1931 standard observer (ISO/CIE 11664-1 and -3).
 
 #include <array>
 
@@ -8,13 +8,13 @@
 
 namespace retrace::materials {
 
-/// The colour matching functions x, y and z of the observer of 2 degrees; that of y is V.
+/// Colour matching functions x, y and z of the 2-degree observer. The function y equals V.
 using ColourMatching = std::array<SpectralCurve, 3>;
 
-/// X, Y and Z, in the unit of what was summed.
+/// X, Y and Z, in the unit of the spectral power.
 using Tristimulus = std::array<double, 3>;
 
-/// Shares of X and Y in X + Y + Z.
+/// Chromaticity coordinates: X and Y divided by X + Y + Z.
 struct Chromaticity {
   double x = 0.0;
   double y = 0.0;
@@ -22,10 +22,11 @@ struct Chromaticity {
   double z() const { return 1.0 - x - y; }
 };
 
-/// X, Y and Z of light of spectral power `power` (per nm, in any unit): sums over the wavelengths of the functions, as
-/// the CIE takes them.
+/// Returns X, Y and Z of light with the spectral power `power` (per nm, in any unit). As defined by the CIE, these are
+/// sums over the wavelengths of the colour matching functions.
 Tristimulus tristimulus(const SpectralCurve& power, const ColourMatching& functions);
 
+/// Returns the chromaticity of tristimulus values.
 /// \pre X + Y + Z > 0
 Chromaticity chromaticity(const Tristimulus& values);
 

@@ -50,9 +50,9 @@ double index_at(const GasRefractivity& d, double w_um) {
 }
 
 double index_at(const RecordFormula& d, double w_um) {
-  const auto c = [&](std::size_t k) { return k <= d.c.size() ? d.c[k - 1] : 0.0; };  // from 1
+  const auto c = [&](std::size_t k) { return k <= d.c.size() ? d.c[k - 1] : 0.0; };  // coefficients are counted from 1
   const double w2 = w_um * w_um;
-  /// Of pairs from c_first on.
+  /// Sum of term(c, c') over the pairs of coefficients from number `first` on.
   const auto sum = [&](std::size_t first, const auto& term) {
     double total = 0.0;
     for (std::size_t k = first; k <= d.c.size(); k += 2)
@@ -89,7 +89,8 @@ double index_at(const TabulatedIndex& d, double w_um) {
   return is_within ? d.n.at(wavelength_nm) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// By how much the index against vacuum grows. \param n at the temperature of the data, relative to air
+/// Returns the increase of the index relative to vacuum when the material is warmer by `warmer_k`.
+/// \param n index relative to air at the temperature of the data
 double growth_of_index(const ThermoOptic& t, double n, double w_um, double warmer_k) {
   const double by_wavelength =
       (t.e0_um2_per_k + t.e1_um2_per_k2 * warmer_k) / (w_um * w_um - t.resonance_um * t.resonance_um);
@@ -97,7 +98,7 @@ double growth_of_index(const ThermoOptic& t, double n, double w_um, double warme
   return 0.5 * (n * n - 1.0) / n * per_k * warmer_k;
 }
 
-/// Index of air against vacuum at a temperature of its own.
+/// Returns the index of air relative to vacuum at a given temperature.
 double index_of_air(const Material& air, double wavelength_nm, double temperature_c) {
   constexpr double expansion_per_c = 0.00367;
   return 1.0 + (refractive_index(air.dispersion, wavelength_nm) - 1.0) * (1.0 + expansion_per_c * air.temperature_c) /

@@ -1,7 +1,7 @@
 #pragma once
 
-// Refractive index of transparent materials over wavelength and temperature, by dispersion formula, and relative to
-// air.
+// Refractive index of transparent materials, from dispersion formulas over wavelength and temperature. Indices can be
+// converted to indices relative to air.
 
 #include <limits>
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace retrace::materials {
 
-/// The same index at every wavelength.
+/// Index that is equal at all wavelengths.
 struct ConstantIndex {
   double n = 1.0;
 };
@@ -35,7 +35,7 @@ struct Sellmeier {
     double resonance_um2 = 0.0;
   };
   std::vector<Term> terms;
-  PowerSeries rest = {};  ///< none but in variants of glass catalogues
+  PowerSeries rest = {};  ///< used only by some formulas of glass catalogues
 };
 
 /// n = constant + by_w / w + by_w35 / w^3.5, w in um (Conrady).
@@ -64,8 +64,9 @@ struct GasRefractivity {
   std::vector<Term> terms;
 };
 
-/// A dispersion formula of the refractiveindex.info database. Each formula has a number; w is the wavelength in um and
-/// L = 1 / (w^2 - 0.028). Sums run over all further pairs of coefficients, c and c'. Missing coefficients are 0.
+/// Dispersion formula of the refractiveindex.info database. The formulas have numbers. w is the wavelength in um and L
+/// = 1 / (w^2 - 0.028). c1, c2, ... are the coefficients; missing coefficients are 0. Each sum runs over the remaining
+/// coefficients, which are pairs c, c'.
 /// 1: n^2 - 1 = c1 + sum of c w^2 / (w^2 - c'^2)
 /// 2: n^2 - 1 = c1 + sum of c w^2 / (w^2 - c')
 /// 3: n^2 = c1 + sum of c w^c'
@@ -82,7 +83,7 @@ struct RecordFormula {
   std::vector<double> c;  ///< c1 first
 };
 
-/// Linear between its wavelengths; none beyond them.
+/// Table of the index, with linear interpolation. There is no index outside its wavelengths.
 struct TabulatedIndex {
   SpectralCurve n;
 };
@@ -90,13 +91,16 @@ struct TabulatedIndex {
 using Dispersion = std::variant<ConstantIndex, PowerSeries, Sellmeier, GasRefractivity, Conrady, Herzberger,
                                 RecordFormula, TabulatedIndex>;
 
-/// The refractive index by formula. \param wavelength_nm in vacuum, > 0
-/// \throw InputError if the formula has no real index there
+/// Returns the refractive index at a wavelength.
+/// \param wavelength_nm in vacuum, > 0
+/// \throw InputError if the formula has no real index at this wavelength
 double refractive_index(const Dispersion& dispersion, double wavelength_nm);
 
-/// How the index against vacuum changes when a material is warmer by t than its data are for (Schott's formula):
-/// dn = (n^2 - 1) / (2 n) (d0 t + d1 t^2 + d2 t^3 + (e0 t + e1 t^2) / (w^2 - w_TK^2)), w in um.
-/// P. Hartmann, Optical Glass, SPIE (2014), eq. 3.18.
+/// Coefficients of Schott's formula for the change of the index with temperature. The change of the index relative to
+/// vacuum is
+/// dn = (n^2 - 1) / (2 n) (d0 t + d1 t^2 + d2 t^3 + (e0 t + e1 t^2) / (w^2 - w_TK^2)),
+/// where t is the temperature minus the temperature of the data, in K, and w is the wavelength in um (P. Hartmann,
+/// Optical Glass, SPIE (2014), eq. 3.18).
 struct ThermoOptic {
   double d0_per_k = 0.0;
   double d1_per_k2 = 0.0;
@@ -104,43 +108,45 @@ struct ThermoOptic {
   double e0_um2_per_k = 0.0;
   double e1_um2_per_k2 = 0.0;
   double resonance_um = 0.0;                                       ///< w_TK
-  double valid_from_c = -std::numeric_limits<double>::infinity();  ///< range of the data, where the source tells it
+  double valid_from_c = -std::numeric_limits<double>::infinity();  ///< range of the data, if the source contains it
   double valid_to_c = std::numeric_limits<double>::infinity();
   std::string source;
 };
 
-/// A transparent material. Indices are relative to air, as polymer data are measured, unless `relative_to_vacuum`.
+/// A transparent material. Its index is relative to air, as usual for polymers, unless `relative_to_vacuum` is true.
 struct Material {
   std::string name;
   std::string description;
   Dispersion dispersion;
   bool relative_to_vacuum = false;
-  double valid_from_nm = 0.0;  ///< range of the data behind the formula
+  double valid_from_nm = 0.0;  ///< range of the data from which the formula was fitted
   double valid_to_nm = 0.0;
-  double temperature_c = 20.0;  ///< that the data behind the formula are for
+  double temperature_c = 20.0;  ///< temperature of these data
   std::optional<ThermoOptic> thermo_optic;
   std::variant<double, SpectralCurve> absorption_per_mm = 0.0;  ///< Napierian, for power
   std::string source;
   Warnings warnings = {};  ///< Doubts about the data, each with its file and line.
 };
 
-/// Index of `material` relative to `air`, at the same vacuum wavelength, at the temperature that its data are for.
+/// Returns the index of `material` relative to `air` at the same vacuum wavelength, at the temperature of the data.
 double index_relative_to_air(const Material& material, const Material& air, double wavelength_nm);
 
-/// The same where material and air are at `temperature_c`; of the air n - 1 goes as 1 / (1 + 0.00367 T), T in degrees
-/// C, at constant pressure (Hartmann 2014, eq. 3.21). \throw InputError if that is not the temperature of the data and
-/// the material has no thermo-optic coefficients, or there is no real index
+/// Returns the index of `material` relative to `air` when both are at `temperature_c`. At constant pressure, n - 1 of
+/// air is proportional to 1 / (1 + 0.00367 T), with T in degrees C (Hartmann 2014, eq. 3.21).
+/// \throw InputError if the index is not real, or if the material has no thermo-optic coefficients and `temperature_c`
+///     is not the temperature of its data
 double index_relative_to_air(const Material& material, const Material& air, double wavelength_nm, double temperature_c);
 
-/// What is lost per mm at a wavelength: of a curve linear between its wavelengths, beyond them as at its ends.
+/// Returns the absorption coefficient per mm at a wavelength. Curves are interpolated linearly; outside their
+/// wavelengths, the value at the nearest end is used.
 double absorption_per_mm(const Material& material, double wavelength_nm);
 
-/// Compares the index at the d line of helium with `stated_nd`, the value that a data file states next to its formula.
-/// Returns what is wrong. Returns an empty text if the two agree within 1e-3, if `stated_nd` is a placeholder (1 or
-/// less), or if the data do not reach the d line.
+/// Compares the formula's index at the helium d line (587.56 nm) with `stated_nd`, the value that a data file states
+/// next to the formula. Returns a text that describes the contradiction. Returns an empty text if the two values agree
+/// within 1e-3, if `stated_nd` is a placeholder (1 or less), or if the data do not include the d line.
 std::string doubt_of_nd(const Material& material, double stated_nd);
 
-/// True if `wavelength_nm` lies within the data behind the formula.
+/// Returns true if `wavelength_nm` is within the range of the data.
 bool is_valid_at(const Material& material, double wavelength_nm);
 
 }  // namespace retrace::materials

@@ -9,14 +9,14 @@ FresnelCoefficients fresnel(double index_ratio, double cos_incidence) {
   const double ci = std::clamp(cos_incidence, 0.0, 1.0);
   const double sin2_refracted = index_ratio * index_ratio * (1.0 - ci * ci);
   FresnelCoefficients f;
-  if (ci == 0.0) {  // at grazing incidence everything is reflected, whatever the ratio
+  if (ci == 0.0) {  // at grazing incidence everything is reflected, for any index ratio
     f.r_s = f.r_p = -1.0;
     f.total_reflection = true;
     return f;
   }
   if (sin2_refracted >= 1.0) {
     f.total_reflection = true;
-    // (a - i b) / (a + i b) with real a, b
+    // returns (a - i b) / (a + i b) for real a and b
     const auto phase = [](double a, double b) {
       return std::complex<double>(a * a - b * b, -2.0 * a * b) / (a * a + b * b);
     };
@@ -39,7 +39,7 @@ FresnelCoefficients fresnel(double index_ratio, double cos_incidence) {
 
 FresnelCoefficients fresnel_metal(std::complex<double> index_ratio, double cos_incidence) {
   const double ci = std::clamp(cos_incidence, 0.0, 1.0);
-  // Of the two roots the one whose wave decays into the metal.
+  // Of the two square roots, choose the one for which the wave decays into the metal.
   std::complex<double> ct = std::sqrt(1.0 - index_ratio * index_ratio * (1.0 - ci * ci));
   if ((ct / index_ratio).imag() < 0.0) ct = -ct;
   FresnelCoefficients f;

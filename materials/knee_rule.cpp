@@ -9,9 +9,10 @@
 namespace retrace::materials {
 namespace {
 
-/// Spacing of the grid points that are added to the wavelengths of the lamp's table for the trapezium rule.
+/// Spacing in nm of grid points for the trapezium rule. They are used in addition to the wavelengths of the lamp's
+/// table.
 constexpr double kTableStepNm = 5.0;
-/// Distance from a knee to grid point 1 of the trapezium rule. Grid point j is located at j^2 times this distance from
+/// Distance in nm from a knee to the first grid point of the trapezium rule. Point j is at j^2 times this distance from
 /// the knee.
 constexpr double kFirstStepNm = 0.05;
 constexpr int kStepsAtKnee = 10;
@@ -23,8 +24,8 @@ struct Interval {
   bool has_knee_at_low = false;
   bool has_knee_at_high = false;
 
-  /// Converts a wavelength to the integration variable of the Gauss rule. The square root of the distance from a knee
-  /// is a smooth function of this variable, which increases with the wavelength.
+  /// Converts a wavelength to the integration variable of the Gauss rule. As a function of this variable, the square
+  /// root of the distance from a knee is smooth. The variable increases with the wavelength.
   double coordinate(double wavelength_nm) const {
     const double share = std::clamp((wavelength_nm - low_nm) / (high_nm - low_nm), 0.0, 1.0);
     if (has_knee_at_low && has_knee_at_high) return std::asin(std::sqrt(share));
@@ -74,8 +75,8 @@ std::vector<double> grid_of(const SpectralCurve& power, const Interval& interval
   return grid;
 }
 
-/// Returns the grid points of an interval, each with the flux at it as its weight. The sum of the weights is not 1. In
-/// place of its wavelength, each grid point has its Interval::coordinate().
+/// Returns the grid points of an interval with their fluxes as weights. The weights do not add to 1. The member
+/// `wavelengths_nm` of the result contains the values of Interval::coordinate() instead of wavelengths.
 Spectrum flux_over(const SpectralCurve& power, const SpectralCurve& efficiency, const Interval& interval) {
   const std::vector<double> grid = grid_of(power, interval);
   Spectrum flux;

@@ -3,7 +3,7 @@
 namespace retrace::materials {
 
 std::complex<double> complex_index(const LorentzDrude& model, double wavelength_nm) {
-  constexpr double kPhotonEvNm = 1239.8419843320026;  // h c / e, exact in the SI of 2019
+  constexpr double kPhotonEvNm = 1239.8419843320026;  // h c / e, exact in the SI since 2019
   const double w = kPhotonEvNm / wavelength_nm;
   std::complex<double> permittivity = 1.0;
   for (const LorentzDrude::Term& term : model.terms)

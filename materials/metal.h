@@ -1,6 +1,6 @@
 #pragma once
 
-// Complex refractive index of metals from the Lorentz-Drude model, for facets that are aluminised.
+// Complex refractive index of metals from the Lorentz-Drude model, for aluminised facets.
 
 #include <complex>
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace retrace::materials {
 
-/// The dielectric function of a metal by the Lorentz-Drude model:
-/// eps = 1 - f0 wp^2 / (w (w + i g0)) + sum of f wp^2 / (e^2 - w^2 - i w g), all as photon energies in eV.
+/// Dielectric function of a metal by the Lorentz-Drude model:
+/// eps = 1 - f0 wp^2 / (w (w + i g0)) + sum of f wp^2 / (e^2 - w^2 - i w g), where all quantities are photon energies
+/// in eV.
 /// Rakic et al., Applied Optics 37, 5271 (1998), eqs. 1 to 3.
 struct LorentzDrude {
   struct Term {
@@ -26,12 +27,13 @@ struct Metal {
   std::string name;
   std::string description;
   LorentzDrude model;
-  double valid_from_nm = 0.0;  ///< range of the data behind the model
+  double valid_from_nm = 0.0;  ///< range of the data from which the model was fitted
   double valid_to_nm = 0.0;
   std::string source;
 };
 
-/// n + i k, k > 0 (time dependence exp(-i w t)), relative to vacuum. \param wavelength_nm in vacuum, > 0
+/// Returns n + i k relative to vacuum, with k > 0 (time dependence exp(-i w t)).
+/// \param wavelength_nm in vacuum, > 0
 std::complex<double> complex_index(const LorentzDrude& model, double wavelength_nm);
 
 }  // namespace retrace::materials

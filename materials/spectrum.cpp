@@ -10,9 +10,11 @@
 namespace retrace::materials {
 namespace {
 
-/// Shares below this change no mean that is told, and would only make the recurrence ill-conditioned.
+/// Smaller fractions of the flux are ignored. They have no visible effect on a mean, but would make the recurrence
+/// ill-conditioned.
 constexpr double kLeastShare = 1e-15;
 
+/// Returns the fluxes divided by their sum.
 /// \throw InputError if all `fluxes` are 0
 Spectrum normalised(const std::vector<double>& wavelengths_nm, const std::vector<double>& fluxes, bool is_luminous) {
   const double largest = *std::max_element(fluxes.begin(), fluxes.end());
@@ -36,7 +38,7 @@ double efficiency_at(const SpectralCurve* efficiency, double wavelength_nm) {
   return efficiency != nullptr ? efficiency->at(wavelength_nm) : 1.0;
 }
 
-/// The given wavelengths and the multiples of 5 nm between them, which are those of the CIE's tables.
+/// Returns the given wavelengths and the multiples of 5 nm between them. The CIE tables use these multiples.
 std::vector<double> refined(const std::vector<double>& given_nm) {
   constexpr double kStepNm = 5.0;
   std::vector<double> all = given_nm;
@@ -46,7 +48,8 @@ std::vector<double> refined(const std::vector<double>& given_nm) {
   return all;
 }
 
-/// alpha and sqrt(beta) of the polynomials that are orthonormal over the points x of these weights.
+/// Coefficients alpha and sqrt(beta) of the recurrence of the polynomials that are orthonormal for the points x and
+/// their weights.
 struct Recurrence {
   Eigen::VectorXd diagonal;
   Eigen::VectorXd off_diagonal;
@@ -69,7 +72,8 @@ Recurrence stieltjes(const Eigen::ArrayXd& x, const Eigen::ArrayXd& weights, Eig
   return r;
 }
 
-/// Appends the nodes of one part, which stands for `share` of the flux; the last node may be met again.
+/// Appends the nodes of one span, which has the fraction `share` of the flux. The first node may equal the last node of
+/// the previous span.
 void append(Spectrum& rule, const Spectrum& nodes, double share) {
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (rule.size() == 0 || nodes.wavelengths_nm[k] > rule.wavelengths_nm.back()) {
@@ -80,9 +84,9 @@ void append(Spectrum& rule, const Spectrum& nodes, double share) {
   }
 }
 
-/// The power of two that brings the largest power near to 1, so that sums of any unit stay finite.
+/// Returns the power of two that scales the largest power to about 1. Sums then stay finite for any unit.
 double exact_scale(double largest) {
-  constexpr int most = 1000;  // of numbers so small that the power of two would not be finite
+  constexpr int most = 1000;  // limit for very small numbers, for which the power of two would not be finite
   return largest > 0.0 ? std::ldexp(1.0, std::min(most, -std::ilogb(largest))) : 1.0;
 }
 
@@ -135,7 +139,7 @@ Spectrum gauss_rule(const Spectrum& spectrum, std::size_t nodes) {
   const double high = spectrum.wavelengths_nm.back();
   const double centre = 0.5 * (low + high);
   const double half = 0.5 * (high - low);
-  // On [-1, 1] the recurrence keeps to numbers near 1.
+  // On [-1, 1] the coefficients of the recurrence are of the order of 1.
   const Eigen::ArrayXd x = (Eigen::Map<const Eigen::ArrayXd>(spectrum.wavelengths_nm.data(), points) - centre) / half;
   const Eigen::ArrayXd weights = Eigen::Map<const Eigen::ArrayXd>(spectrum.weights.data(), points);
   const Recurrence r = stieltjes(x, weights, static_cast<Eigen::Index>(nodes));
@@ -157,7 +161,7 @@ Spectrum traced_spectrum(const Spectrum& spectrum, std::size_t parts) {
   Spectrum part;
   double room = share;
   for (std::size_t k = 0; k < spectrum.size(); ++k) {
-    // A sample on the border of two parts belongs to both.
+    // A sample on the border of two spans is divided between them.
     double left = spectrum.weights[k];
     while (left >= room && k + 1 < spectrum.size()) {
       if (room > 0.0) {

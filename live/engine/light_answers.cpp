@@ -1,4 +1,4 @@
-// Answers about light: directions and RRE, by the exact engine.
+// Answers requests about light: single directions and curves of RRE (retroreflective efficiency).
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -16,10 +16,10 @@ using studies::RrePoint;
 
 constexpr double kMovingError = 1e-4;
 
-/// What was found at one wavelength, by cone.
+/// Result for one wavelength, or the mean over all wavelengths. There is one point per acceptance cone.
 struct Found {
   std::vector<RrePoint> points;
-  RrePoint at_middle;  ///< of the widest cone, at the wavelength that the others are of
+  RrePoint at_middle;  ///< widest cone, at the wavelength of the footprint and the far field
   std::optional<studies::Footprint> footprint;
   std::optional<studies::FarField> far_field;
 };
@@ -32,7 +32,7 @@ RrePoint point_at(const OpenedDesign& opened, const studies::SceneLight& light) 
   return at;
 }
 
-/// The index of the wavelength that the model's own optics are of.
+/// Returns the index of the wavelength for which the model's own optics are valid.
 std::size_t middle_of(const studies::OpticalModel& model) {
   std::size_t middle = 0;
   for (std::size_t k = 0; k < model.spectral.size(); ++k)
@@ -40,14 +40,15 @@ std::size_t middle_of(const studies::OpticalModel& model) {
   return middle;
 }
 
-/// How a direction is traced.
+/// Settings for tracing one direction.
 struct Way {
-  double target_error = kMovingError;  ///< what may be left behind, or the standard error of RRE
-  bool is_exact = false;               ///< not by resampled beams
+  /// maximum truncated power (exact engine) or standard error of RRE (resampled beams)
+  double target_error = kMovingError;
+  bool is_exact = false;  ///< true if resampled beams must not be used
   studies::BeamQuestion question = {};
 };
 
-/// One direction at one of a design's wavelengths.
+/// Traces one direction at one wavelength of a design.
 class Tracing {
  public:
   Tracing(const OpenedDesign& opened, const RrePoint& at, std::size_t wavelength)
@@ -59,7 +60,8 @@ class Tracing {
     sampling_.seed = static_cast<std::uint32_t>(wavelength + 1);
   }
 
-  /// By the quicker way. Nothing if there was no time. \param limit null: none
+  /// Runs the exact engine or resampled beams, whichever is faster. Returns nothing if the time limit is reached.
+  /// \param limit null if there is no limit
   std::optional<Found> trace(const Way& way, const TimeLimit* limit) {
     studies::BeamCollector collector(way.question, part(), cones().size(), illumination_);
     sampling_.target_error = way.target_error / std::sqrt(lit_.weight);
@@ -103,8 +105,8 @@ class Tracing {
   raytrace::Sampling sampling_;
 };
 
-/// A direction at all wavelengths; footprint and far field are those of the one in the middle. Nothing if there was no
-/// time.
+/// Traces a direction at all wavelengths. The footprint and the far field are those of the middle wavelength. Returns
+/// nothing if the time limit is reached.
 std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLight& light, const Way& way,
                             const TimeLimit* limit) {
   const studies::OpticalModel& model = opened.require_model();
@@ -154,7 +156,7 @@ Json footprint_json(const studies::Footprint& footprint) {
       {"active_share", footprint.active_share()}, {"shown", footprint.rre_shown()}, {"regions", std::move(regions)}};
 }
 
-/// \param point of the same direction, which knows of weak beams as well
+/// \param point result for the same direction, which also includes weak beams
 Json far_field_json(const studies::FarField& far_field, const RrePoint& point) {
   using raytrace::Account;
   Json spots = Json::array();
@@ -225,7 +227,7 @@ Json rre_json(const OpenedDesign& opened, const Json& request, const TimeLimit& 
   Json points = Json::array();
   for (const std::vector<double>& direction : directions) {
     if (direction.size() != 2) throw InputError({"", 0, "directions"}, "must be pairs [incidence_deg, azimuth_deg]");
-    // The first is always finished, so that every request gets on.
+    // The first direction is always finished, so that every request makes progress.
     const std::optional<Found> found =
         traced(opened, checked(direction[0], direction[1]), way, points.empty() ? nullptr : &limit);
     if (!found) break;

@@ -1,4 +1,4 @@
-// In place of CGAL: only meshes from files are checked.
+// Replaces the mesh checks, because CGAL is not part of the web engine. Only meshes from files need these checks.
 #include "geometry/check/boundary_check.h"
 
 #include "geometry/check/mesh_union.h"

@@ -1,9 +1,14 @@
-// The colour of a body by daylight, in the words of standards.
+// Determines the daytime colour of a transparent body from its absorption, using the colour names of photometric
+// standards.
 
 const NM = { blue: 450, green: 530, yellow: 585, red: 640 };
-const PASSES = 0.5; // fraction of the greatest transmittance
+// Minimum transmittance at which light of a colour counts as transmitted, as a fraction of the largest transmittance.
+const PASSES = 0.5;
 
-/** Returns the absorption at a wavelength; outside of the curve it is that of the nearest end. */
+/**
+ * Returns the absorption at a wavelength by linear interpolation. Outside the curve, the value at the nearest end is
+ * used.
+ */
 function absorptionAt(curve, nm) {
   const above = curve.findIndex(([at]) => at >= nm);
   if (above === 0) return curve[0][1];
@@ -12,11 +17,14 @@ function absorptionAt(curve, nm) {
   return a + ((b - a) * (nm - low)) / (high - low);
 }
 
-/** Names of the body's colour, the best one first. A body without a spectral absorption is clear. */
+/**
+ * Returns the possible names of the body's colour, the best match first. A body without spectral absorption is clear
+ * ("white").
+ */
 export function coloursOf(design) {
   const absorption = design && design.keys.find(({ path }) => path === "body.absorption_per_mm");
   if (!absorption || !Array.isArray(absorption.value)) return ["white"];
-  const path_mm = 2 * (design.thickness_mm || 1); // in and back out
+  const path_mm = 2 * (design.thickness_mm || 1); // light passes through the body twice: in and out
   const least = Math.min(...Object.values(NM).map((nm) => absorptionAt(absorption.value, nm)));
   const passes = (nm) => Math.exp(path_mm * (least - absorptionAt(absorption.value, nm))) >= PASSES;
   const [blue, green, yellow, red] = Object.values(NM).map(passes);

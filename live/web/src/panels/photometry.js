@@ -1,17 +1,17 @@
-// Test points of a standard: the coefficient of retroreflection at each, its limit, and the verdict.
+// Panel of a photometric standard: for each test point, the coefficient of retroreflection, its limit and the verdict.
 import { coloursOf } from "../body_colour.js";
 import { h } from "../dom.js";
 import { panel } from "../frame.js";
 import { short, words } from "../units.js";
 
-// In the order of the rows: what fails comes first.
+// Verdicts and their CSS classes. Rows of the table are sorted in this order, so that failures come first.
 const VERDICTS = { fail: "bad", undetermined: "open", unconfirmed: "open", pass: "good" };
 const rankOf = ({ verdict }) => Object.keys(VERDICTS).indexOf(verdict);
 
 export class PhotometryPanel {
   constructor(session) {
     this.session = session;
-    this.isColourChosen = false; // by hand; otherwise the colour is that of the body
+    this.isColourChosen = false; // true if the user chose the colour; otherwise it follows the colour of the body
     const choice = (label) => h("select", { "aria-label": label, onchange: () => this.choose(label) });
     this.standard = choice("Standard");
     this.part_class = choice("Class");
@@ -54,7 +54,9 @@ export class PhotometryPanel {
     this.pickColour();
   }
 
-  /** Picks the colour of the body where the standard has it. Returns whether the colour is another one than before. */
+  /**
+   * Selects the colour of the body if the standard has this colour. Returns true if the selected colour has changed.
+   */
   pickColour() {
     const before = this.colour.value;
     const list = [...this.colour.options].map(({ value }) => value);
@@ -67,7 +69,7 @@ export class PhotometryPanel {
     if (this.pickColour()) this.ask();
   }
 
-  /** What is asked for; nothing where no standard is chosen. */
+  /** Returns the test plan for the request, or null if no standard is selected. */
   programme() {
     if (!this.standard.value) return null;
     const programme = { standard: this.standard.value, area_cm2: Number(this.area.value) };
@@ -76,7 +78,7 @@ export class PhotometryPanel {
     return programme;
   }
 
-  /** The same as the address keeps it: a colour that follows the body is left out. */
+  /** Returns the test plan for the address of the page. A colour that follows the body is omitted. */
   state() {
     const programme = this.programme();
     if (programme && !this.isColourChosen) delete programme.colour;
