@@ -9,15 +9,15 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Products of amplitudes of one order of reflections: s with s, p with p, and s with the conjugate of p. Orders
-/// without a phase between them add up in each of the three.
+/// Products of amplitudes for one order of reflections: s with s, p with p, and s with the conjugate of p. Orders
+/// without a fixed phase are combined by adding each of the three products.
 using Products = std::array<Complex, 3>;
 
 Products products_of(Complex s, Complex p, double coherence) {
   return {std::norm(s), std::norm(p), coherence * s * std::conj(p)};
 }
 
-/// What a face does to light from one side.
+/// Reflection and transmission of a face for light from one side.
 struct Powers {
   Products reflected{};
   Products transmitted{};
@@ -27,7 +27,8 @@ struct Powers {
   }
 };
 
-/// Amplitudes with these powers, and the phase between them that the mixed product has.
+/// Computes amplitudes from the products of amplitudes. The third product determines the phase difference and the
+/// coherence.
 void set_amplitudes(const Products& products, Complex& s, Complex& p, double& coherence) {
   const double both = std::sqrt(std::max(0.0, products[0].real()) * std::max(0.0, products[1].real()));
   const double left = std::abs(products[2]);
@@ -46,14 +47,14 @@ FresnelCoefficients coefficients_of(const Powers& powers, double cos_refracted, 
   return f;
 }
 
-/// Both sides of what light has met so far.
+/// Reflection and transmission of one or more faces, for light from both sides.
 struct Met {
-  Powers ahead;   ///< of light that comes as the incident light does
-  Powers behind;  ///< of light that comes back
+  Powers ahead;   ///< for light in the direction of the incident light
+  Powers behind;  ///< for light in the opposite direction
 };
 
-/// Behind what was met so far, through a medium that keeps the share `kept` of power, another face: all reflections
-/// between both.
+/// Adds another face behind `met`. Between the two is a medium that transmits the fraction `kept` of the power. All
+/// multiple reflections between `met` and the new face are included.
 void add(Met& met, double kept, const Met& face) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Complex between = kept * kept * met.behind.reflected[k] * face.ahead.reflected[k];
@@ -70,7 +71,7 @@ void add(Met& met, double kept, const Met& face) {
   }
 }
 
-/// The face between the media `k` and `k + 1`, counted from the body, met from one side.
+/// Returns the coefficients of the face between two media. The face next to the body carries the thin layers.
 FresnelCoefficients face_between(const LayerStack& thin, StackSide from, bool is_next_to_body, double near, double far,
                                  double cosine) {
   return is_next_to_body ? fresnel_layers(thin, from, near, far, cosine) : fresnel(near / far, cosine);
@@ -104,7 +105,7 @@ FresnelCoefficients fresnel_thick_layers(const LayerStack& thin, std::span<const
     near = far;
     cosine = f.cos_refracted;
   }
-  return {};  // not reached: the last face returns
+  return {};  // not reached, because the loop returns at the last face
 }
 
 FresnelCoefficients mixed(const FresnelCoefficients& one, const FresnelCoefficients& other, double share_of_other) {

@@ -9,44 +9,52 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// (exp(z) - 1) / z, also near 0, where a layer is thin or light grazes along it.
+/// Returns (exp(z) - 1) / z. A series is used near z = 0, which occurs for thin layers and at grazing incidence.
 Complex mean_exponential(Complex z, Complex exponential) {
   constexpr double kSmall = 0.1;
-  constexpr int kTerms = 11;  // 0.1^11 / 12! is far below rounding
+  constexpr int kTerms = 11;  // the first omitted term, 0.1^11 / 12!, is far below the rounding error
   if (std::abs(z) > kSmall) return (exponential - 1.0) / z;
   Complex sum = 1.0;
   for (int k = kTerms; k >= 2; --k) sum = 1.0 + z * sum / static_cast<double>(k);
   return sum;
 }
 
-/// The normal component of a wave vector, in units of that in air, of the wave that decays or goes on.
+/// Returns the normal component of the wave vector, in units of the wave number in air. Of the two square roots, the
+/// wave that decays or propagates forward is chosen.
 Complex normal_component(Complex index, double tangential2) {
   const Complex w = std::sqrt(index * index - tangential2);
   return w.imag() < 0.0 ? -w : w;
 }
 
-/// The tangential fields of one component on a plane of a stack, over that of what passes, and without the growth on
-/// the way from there: E and H for s, H and E for p, as with these amplitudes have the signs of FresnelCoefficients.
+/// Tangential fields of one component (s or p) on a plane of the stack, relative to the transmitted field. Exponential
+/// growth is scaled out. `field` and `other` are E and H for s, but H and E for p. With this choice, the signs of the
+/// amplitudes are those of FresnelCoefficients.
 struct TangentialFields {
   Complex field = 1.0;
-  Complex other;  ///< admittance of what is behind, to begin with
+  Complex other;  ///< initially the admittance of the medium behind the stack
 };
 
-/// From the far side of a layer to its near side by its characteristic matrix, times exp(i w turn), so that nothing
-/// grows however much the layer absorbs. \param along, across of its diagonal, and beside it: i sin(w turn) / w, so
-/// scaled \param weight by which the admittance differs from w: 1 for s, 1 / permittivity for p
+/// Transfers the fields from the far side of a layer to its near side with the characteristic matrix. The matrix is
+/// multiplied by exp(i w turn), so that nothing grows even if the layer absorbs strongly.
+/// \param along scaled diagonal element of the matrix
+/// \param across scaled i sin(w turn) / w, from which the off-diagonal elements are computed
+/// \param w2 square of the normal component w of the wave vector
+/// \param weight ratio of the admittance to w: 1 for s, 1 / permittivity for p
 void pass(TangentialFields& at, Complex along, Complex across, Complex w2, Complex weight) {
   const Complex far = at.field;
   at.field = along * far - across / weight * at.other;
   at.other = along * at.other - across * w2 * weight * far;
 }
 
-/// \param near admittance of the medium light comes from
+/// Returns the reflection amplitude.
+/// \param near admittance of the medium of the incident light
 Complex reflected(const TangentialFields& at, double near) {
   return (near * at.field - at.other) / (near * at.field + at.other);
 }
 
-/// Of power: its square is a share. \param far admittance behind the stack \param passed over all layers
+/// Returns the transmission amplitude, scaled such that its square is a fraction of power.
+/// \param far admittance behind the stack
+/// \param passed product of the phase factors of all layers
 Complex transmitted(const TangentialFields& at, double near, double far, Complex passed) {
   return 2.0 * std::sqrt(near * far) * passed / (near * at.field + at.other);
 }

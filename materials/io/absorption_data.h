@@ -1,6 +1,6 @@
 #pragma once
 
-// Collects the samples of absorption that a data file contains. Samples that cannot be used cause only warnings,
+// Collects the samples of absorption in a data file. Samples that cannot be used cause warnings instead of errors,
 // because the refractive index in the same file does not depend on them.
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace retrace::materials {
 
-/// Samples of absorption over wavelength that are read from a file one by one.
+/// Samples of absorption over wavelength, which are added one by one while a file is read.
 class AbsorptionData {
  public:
   /// \param file name of the file, for warnings
@@ -23,16 +23,16 @@ class AbsorptionData {
   /// \param line line of the file
   /// \param per_mm Napierian absorption coefficient of the power, >= 0
   void add(int line, double wavelength_nm, double per_mm) { samples_.push_back({line, wavelength_nm, per_mm}); }
-  /// Adds a sample with the absorption 0. The value in the file is slightly beyond its bound because of measurement
-  /// noise.
+  /// Adds a sample with the absorption 0. For use when measurement noise has put the value in the file slightly outside
+  /// its allowed range.
   /// \param reason text for the warning: the allowed values and the given value
   void add_zero(int line, double wavelength_nm, std::string_view reason);
-  /// Counts a sample that cannot be used and is left out.
+  /// Counts a sample that cannot be used. The sample is omitted.
   /// \param reason text for the warning: the allowed values and the given value
   void leave_out(int line, std::string_view reason);
 
-  /// Sets the absorption of `material` and adds the warnings. Equal samples count as one sample. Samples with different
-  /// values at the same wavelength are left out.
+  /// Sets the absorption of `material` and adds the warnings. Repeated equal samples count as one sample. If samples at
+  /// the same wavelength have different values, all of them are omitted.
   void finish(Material& material);
 
  private:
@@ -41,7 +41,7 @@ class AbsorptionData {
     double wavelength_nm = 0.0;
     double per_mm = 0.0;
   };
-  /// Number of samples that cause the same warning, with the line and the reason of the first of these samples.
+  /// Samples that cause the same warning: their number, and the line and reason of the first sample.
   struct Blemishes {
     int count = 0;
     int line = 0;

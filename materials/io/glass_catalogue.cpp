@@ -30,8 +30,8 @@ constexpr std::array kExtended = {0, 2, -2, -4, -6, -8, -10, -12};
 constexpr std::array kExtended2 = {0, 2, -2, -4, -6, -8, 4, 6};
 constexpr std::array kExtended3 = {0, 2, 4, -2, -4, -6, -8, -10, -12};
 
-/// Converts UTF-16 text with a byte order mark to ASCII; characters outside ASCII become question marks. Returns other
-/// text unchanged, but without its byte order mark.
+/// Converts UTF-16 text with a byte order mark to ASCII. Characters outside ASCII become question marks. Other text is
+/// returned unchanged, except that a byte order mark is removed.
 std::string narrow(std::string_view text) {
   const bool is_little = text.starts_with("\xff\xfe");
   if (!is_little && !text.starts_with("\xfe\xff")) return std::string(without_byte_order_mark(text));
@@ -44,7 +44,7 @@ std::string narrow(std::string_view text) {
   return narrowed;
 }
 
-/// True for the code of a record: two capital letters.
+/// Returns true if a word has the form of a record's code: two capital letters.
 bool is_code(std::string_view word) {
   return word.size() == 2 && std::ranges::all_of(word, [](char c) { return c >= 'A' && c <= 'Z'; });
 }
@@ -55,8 +55,8 @@ PowerSeries series(std::span<const double> coefficients, std::span<const int> ex
   return made;
 }
 
-/// Returns the Sellmeier formula with these pairs of strength and resonance. Pairs with the strength 0 are left out,
-/// because they must not cause a pole.
+/// Returns the Sellmeier formula with the given pairs of strength and resonance. Pairs with the strength 0 are omitted,
+/// because they would cause a pole in the formula.
 Sellmeier sellmeier(std::span<const double> pairs, PowerSeries rest = {}) {
   Sellmeier made{.terms = {}, .rest = std::move(rest)};
   for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
@@ -77,7 +77,7 @@ GlassCatalogue::GlassCatalogue(std::string_view text, std::string file) : file_(
     if (words.empty()) continue;
     if (words.front() == "NM") records = &glasses_.emplace_back();
     if (is_code(words.front())) records->emplace_back();
-    if (records->empty()) continue;  // text before the first record
+    if (records->empty()) continue;  // skips text before the first record
     for (const std::string_view word : words) records->back().push_back({std::string(word), number});
   }
   if (glasses_.empty()) throw InputError({file_, 0, ""}, "holds no glass: no line begins with NM");
@@ -96,7 +96,8 @@ void GlassCatalogue::fail(int line, std::string_view key, std::string_view text)
   throw InputError({file_, line, std::string(key)}, text);
 }
 
-/// Returns the numbers of a record from field `first` on. Missing numbers up to `most` are 0.
+/// Returns the numbers of a record, beginning with field `first`. If there are fewer than `most` numbers, zeros are
+/// appended.
 /// \throw InputError if the record has fewer than `least` numbers
 std::vector<double> GlassCatalogue::numbers(const Record& record, std::size_t first, std::size_t least,
                                             std::size_t most) const {
@@ -113,8 +114,8 @@ std::vector<double> GlassCatalogue::numbers(const Record& record, std::size_t fi
   return values;
 }
 
-/// Refuses a record that has too many numbers because a line without a code was joined to it. Such a line has probably
-/// lost its code and belongs to another record.
+/// Refuses a record that consists of several lines and has too many numbers. The last line has no code and was
+/// therefore joined to this record, but it probably belongs to a different record.
 void GlassCatalogue::require_no_more(const Record& record, std::size_t most) const {
   if (record.size() <= most + 1 || record.back().line == record.front().line) return;
   fail(record.back().line, record.front().text,
@@ -125,7 +126,7 @@ void GlassCatalogue::require_no_more(const Record& record, std::size_t most) con
 }
 
 /// Refuses a record whose last coefficient is a strength without a resonance, unless this strength is 0.
-/// \param first number of the coefficient that is the first strength, counted from 1
+/// \param first number of the first coefficient that is a strength, counted from 1
 /// \param end number of the coefficient after the last resonance
 void GlassCatalogue::require_whole_pairs(const Record& record, std::size_t first, std::size_t end) const {
   if (record.size() <= first || record.size() >= end || (record.size() - first) % 2 == 0) return;
@@ -149,14 +150,14 @@ const GlassCatalogue::Record* GlassCatalogue::find(const std::vector<Record>& re
   return found;
 }
 
-/// The formulas by their numbers, after the manual of OpticStudio, "The Glass Dispersion Formulas".
+/// Returns the dispersion formula with a given number (manual of OpticStudio, "The Glass Dispersion Formulas").
 Dispersion GlassCatalogue::dispersion(const Record& name, const Record& coefficients) const {
   require_no_more(coefficients, kMostCoefficients);
   const std::vector<double> c = numbers(coefficients, 1, 1, kMostCoefficients);
   const std::span<const double> all = c;
   const double formula = numbers(name, 2, 1, 1).front();
   const auto constant = [](double n2) { return PowerSeries{{{n2 - 1.0, 0}}}; };
-  // strength / (w^2 - resonance) as strength / resonance (w^2 / (w^2 - resonance) - 1).
+  // Adds the term strength / (w^2 - resonance), written as strength / resonance (w^2 / (w^2 - resonance) - 1).
   const auto pole = [](double strength, double resonance_um2, Sellmeier& into) {
     if (strength == 0.0) return;
     if (resonance_um2 == 0.0) {
@@ -204,7 +205,8 @@ void GlassCatalogue::add_thermo_optic(const Record& record, Material& glass) con
   require_no_more(record, 7);
   const std::vector<double> t = numbers(record, 1, 6, 7);
   if (record.size() > 7) glass.temperature_c = t[6];
-  if (std::ranges::all_of(std::span(t).first(5), [](double value) { return value == 0.0; })) return;  // none are known
+  // all coefficients are 0: they are unknown
+  if (std::ranges::all_of(std::span(t).first(5), [](double value) { return value == 0.0; })) return;
   glass.thermo_optic = ThermoOptic{.d0_per_k = t[0],
                                    .d1_per_k2 = t[1],
                                    .d2_per_k3 = t[2],
@@ -225,9 +227,9 @@ void GlassCatalogue::add_range(const Record& record, Material& glass) const {
   glass.valid_to_nm = 1e3 * range_um[1];
 }
 
-/// Adds the absorption, -ln(T) / thickness, that follows from the internal transmittances T. If several samples have
-/// the same wavelength, only the thickest is used. Samples with T = 0 or the thickness 0 do not determine the
-/// absorption and are ignored.
+/// Computes the absorption, -ln(T) / thickness, from the internal transmittances T and adds it to the glass. If there
+/// are several samples at one wavelength, only the sample with the largest thickness is used. Samples with T = 0 or
+/// with the thickness 0 do not determine the absorption and are ignored.
 void GlassCatalogue::add_absorption(const std::vector<Record>& records, Material& glass) const {
   AbsorptionData data(file_, "IT");
   struct Sample {
@@ -270,9 +272,10 @@ void GlassCatalogue::add_absorption(const std::vector<Record>& records, Material
   data.finish(glass);
 }
 
-/// Warns if n_d of the record NM differs from the index of the formula.
+/// Adds a warning if n_d of the record NM differs from the index of the formula.
 void GlassCatalogue::check_nd(const Record& name, Material& glass) const {
-  constexpr std::size_t at = 4;  // after code, name, number of the formula and glass code
+  // field of n_d, which follows the code, the name, the number of the formula and the glass code
+  constexpr std::size_t at = 4;
   if (name.size() <= at) return;
   const std::optional<double> stated = number_in(name[at].text);
   const std::string doubt =

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads catalogues of glass in the AGF format (Ansys Zemax OpticStudio), in which makers publish their glasses.
+// Reads glass catalogues in the AGF format (Ansys Zemax OpticStudio), in which glass makers publish their data.
 
 #include <filesystem>
 #include <string>
@@ -12,28 +12,31 @@
 
 namespace retrace::materials {
 
-/// A catalogue of glasses. Each glass is parsed only when it is requested. An invalid glass therefore does not affect
-/// the others.
+/// Catalogue of glasses. A glass is parsed only when it is requested, so that an invalid glass does not affect the
+/// others.
 ///
-/// Records begin with a code of two capital letters. NM (name, number of the formula, glass code, n_d), CD
-/// (coefficients of the formula), TD (thermo-optic coefficients and the temperature of the data), LD (range in um) and
-/// IT (wavelength in um, internal transmittance, thickness in mm) are read; other records have no effect. A line
-/// without a code continues the record before it. Text may be ASCII, any superset of it, or UTF-16 with a byte order
-/// mark. Indices are relative to air.
+/// A record begins with a code of two capital letters. A line without a code continues the previous record. The
+/// following records are read; other records have no effect:
+/// NM (name, number of the formula, glass code, n_d), CD (coefficients of the formula), TD (thermo-optic coefficients
+/// and the temperature of the data), LD (wavelength range in um), IT (wavelength in um, internal transmittance,
+/// thickness in mm).
+/// The text may be in ASCII, in an encoding that contains ASCII, or in UTF-16 with a byte order mark. Indices are
+/// relative to air.
 class GlassCatalogue {
  public:
   /// \param file name of the file, for messages
   /// \throw InputError if the text contains no glass
   GlassCatalogue(std::string_view text, std::string file);
-  /// \throw InputError also if the file cannot be read
+  /// Reads a catalogue from a file.
+  /// \throw InputError if the file cannot be read or contains no glass
   static GlassCatalogue read(const std::filesystem::path& file);
 
   const std::vector<std::string>& names() const { return names_; }
-  /// Checks that a glass with this name exists. Upper and lower case are not distinguished.
+  /// Checks that the catalogue contains a glass with this name. The case of letters is ignored.
   /// \throw InputError at `where` if there is no such glass
   void require(std::string_view name, const InputLocation& where) const;
-  /// Returns the glass with this name. The warnings of the material report samples of the transmittance that cannot be
-  /// used, and a value of n_d that differs from the index of the formula.
+  /// Returns the glass with this name. The material has warnings for samples of the transmittance that cannot be used,
+  /// and for a value of n_d that differs from the index of the formula.
   /// \pre the catalogue contains a glass with this name
   /// \throw InputError with the file and line, if the formula is unknown, or if the records of the index are invalid or
   /// contradict each other

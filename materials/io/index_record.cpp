@@ -22,13 +22,13 @@ namespace {
 
 constexpr std::size_t kMostRecordBytes = std::size_t{4} << 20;
 constexpr std::size_t kMostOfFormula = 64;
-/// Maximum magnitude of a negative k that counts as measurement noise.
+/// Largest magnitude of a negative k that is attributed to measurement noise.
 constexpr double kNoiseOfExtinction = 1e-6;
 constexpr double kZeroCelsiusK = 273.15;
-/// Records round the temperature of 20 degrees C to 293 K.
+/// Temperatures are equal within this tolerance, because records round 20 degrees C (293.15 K) to 293 K.
 constexpr double kSameTemperatureK = 0.2;
 
-/// Allowed numbers of coefficients of the formulas 1 to 9, for messages.
+/// Allowed numbers of coefficients for the formulas 1 to 9, as text for messages.
 constexpr std::string_view kPairs = "an odd number of coefficients";
 constexpr std::array<std::string_view, 9> kTerms = {kPairs,
                                                     kPairs,
@@ -40,7 +40,7 @@ constexpr std::array<std::string_view, 9> kTerms = {kPairs,
                                                     "1, 3 or 4 coefficients",
                                                     "1, 3 or 6 coefficients"};
 
-/// True if every term of the formula has all its coefficients.
+/// Returns true if no term of the formula lacks a coefficient.
 bool has_whole_terms(const RecordFormula& formula) {
   const std::size_t count = formula.c.size();
   switch (formula.number) {
@@ -154,7 +154,7 @@ class Record {
     material.dispersion = std::move(formula);
   }
 
-  /// A row of a table, as words that are not yet converted to numbers. The first word is the wavelength in um.
+  /// Row of a table as words, which are converted to numbers later. The first word is the wavelength in um.
   struct Row {
     int line = 0;
     std::vector<std::string> words;
@@ -165,8 +165,7 @@ class Record {
   std::vector<Row> rows_of(const YAML::Node& entry, std::size_t columns) const {
     const std::string text = text_of(entry, "data");
     const std::vector<std::string_view> lines = split(text, '\n');
-    // The text of a YAML block begins in the line after the indicator `|`. Text in other forms consists of a single
-    // line.
+    // In YAML, the text of a block begins in the line after the indicator `|`. Other forms of text have only one line.
     int at = line(entry["data"]) + (lines.size() > 1 ? 1 : 0);
     std::vector<Row> rows;
     for (const std::string_view one : lines) {
@@ -202,7 +201,7 @@ class Record {
     return um;
   }
 
-  /// Returns the table of n. Equal rows count as one row.
+  /// Returns the table of n. Repeated equal rows count as one row.
   SpectralCurve index_table(const YAML::Node& entry, std::size_t columns) const {
     std::map<double, double> n_at_um;
     for (const Row& row : rows_of(entry, columns)) {
@@ -227,8 +226,8 @@ class Record {
     material.dispersion = TabulatedIndex{std::move(table)};
   }
 
-  /// Adds the absorption that follows from k, the last column of a table. Errors in this column cause only warnings,
-  /// because the refractive index does not depend on them.
+  /// Adds the absorption computed from k, which is the last column of a table. Errors in this column cause warnings
+  /// only, because the refractive index does not depend on k.
   void add_extinction(const YAML::Node& entry, std::size_t columns, Material& material) {
     AbsorptionData data(file_, "data");
     try {
@@ -293,7 +292,7 @@ class Record {
     }
   }
 
-  /// Warns if n_d of the record differs from the index of its data.
+  /// Adds a warning if n_d of the record differs from the index of its data.
   void check_nd(const YAML::Node& root, Material& material) const {
     for (const char* const table : {"PROPERTIES", "SPECS"}) {
       const YAML::Node properties = root[table];
@@ -316,7 +315,7 @@ class Record {
 Material parse_index_record(std::string_view text, const std::string& file) {
   try {
     return Record(file).read(text);
-  } catch (const YAML::Exception& error) {  // a node has an unexpected type
+  } catch (const YAML::Exception& error) {  // thrown if a node has an unexpected type
     throw InputError({file, error.mark.is_null() ? 0 : error.mark.line + 1, ""}, printable(error.msg));
   }
 }

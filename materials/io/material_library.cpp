@@ -75,7 +75,7 @@ Dispersion dispersion_of(const std::string& formula, const std::vector<double>& 
   return series;
 }
 
-/// What a material and a metal have in common.
+/// Reads the keys that materials and metals have in common.
 template <class Item>
 Item described(const Document& file, const std::string& entry) {
   Item item;
@@ -135,7 +135,8 @@ Metal metal_of(const Document& file, const std::string& entry) {
   return m;
 }
 
-/// Null if no item has the name; their names are added to `names`.
+/// Returns the item with this name, or null if there is none. In that case the names of all items are appended to
+/// `names`.
 template <class Item>
 const Item* search(const std::vector<Item>& items, std::string_view name, std::vector<std::string>& names) {
   for (const Item& item : items) {
@@ -151,7 +152,8 @@ const Item* search(const std::vector<Item>& items, std::string_view name, std::v
                    fmt::format("no {} of that name, got \"{}\"; there are {}", kind, name, fmt::join(names, ", ")));
 }
 
-/// \throw InputError at `where` if no item has the name
+/// Returns the item with this name.
+/// \throw InputError at `where` if there is no such item
 template <class Item>
 const Item& find_by_name(const std::vector<Item>& items, std::string_view kind, std::string_view name,
                          const InputLocation& where) {

@@ -1,7 +1,6 @@
 #pragma once
 
-// Reads the library of optical materials and metals (data/materials.toml), in which designs look up their substance by
-// name.
+// Reads the library of optical materials and metals (data/materials.toml). Designs refer to its entries by name.
 
 #include <filesystem>
 #include <string_view>
@@ -15,26 +14,30 @@
 
 namespace retrace::materials {
 
-/// The keys of materials files.
+/// Returns the keys of materials files, with their meaning and limits.
 const schema::Format& materials_format();
 
-/// The shipped materials and metals, each in the order of the file.
+/// Materials and metals of a file, in the order of the file.
 class MaterialLibrary {
  public:
-  /// Reads a materials file (TOML, one [[material]] or [[metal]] table each). \throw InputError naming file, line and
-  /// key
+  /// Reads a materials file (TOML with one table [[material]] or [[metal]] per entry).
+  /// \throw InputError with file, line and key
   static MaterialLibrary read(const std::filesystem::path& file);
-  /// The library in the data folder. \throw InputError
+  /// Returns the library in the data folder.
+  /// \throw InputError as read()
   static MaterialLibrary shipped();
 
   const std::vector<Material>& all() const { return materials_; }
-  /// \throw InputError at `where`, listing what there is
+  /// Returns the material with a name.
+  /// \throw InputError at `where` with a list of all names, if there is no such material
   const Material& find(std::string_view name, const InputLocation& where = {}) const;
   const Material& air() const { return find("air"); }
   const std::vector<Metal>& metals() const { return metals_; }
+  /// Returns the metal with a name.
   /// \throw InputError as find()
   const Metal& find_metal(std::string_view name, const InputLocation& where = {}) const;
-  /// Of either kind. \throw InputError as find()
+  /// Returns the material or metal with a name.
+  /// \throw InputError as find()
   std::variant<const Material*, const Metal*> find_any(std::string_view name, const InputLocation& where = {}) const;
 
  private:

@@ -18,7 +18,7 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 20;
 constexpr NumberRange kWavelengthNm{.low = 1.0, .high = 1e5};
 constexpr NumberRange kValue{.low = 0.0};
 
-/// Columns of numbers over ascending wavelengths.
+/// Reads a table of numbers. The wavelengths in its first column must be ascending.
 std::vector<std::vector<double>> read_columns(std::string_view text, const std::string& name,
                                               std::span<const std::string_view> header) {
   CsvReader table(text, name, kMostBytes, header);
