@@ -1,6 +1,7 @@
 #pragma once
 
-// How elements are repeated over a part - arrangement, gaps, offsets, shifted rows, partial elements: what designs and
+// Describes how elements are repeated over a part: arrangement, gaps, offsets, shifted rows, partial elements. Designs
+// and fabrication jobs use the same description.
 // fabrication jobs say alike.
 
 #include <string>
@@ -10,27 +11,28 @@ namespace retrace::geometry {
 
 enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
 enum class Extent { finite, infinite };
-/// Which rows of an offset array are shifted; rows count from 1 at y = 0. A single row is never shifted.
+/// Rows of an offset array that are shifted. Rows count from 1 at y = 0. An array with a single row is never shifted.
 enum class RowParity { even, odd };
-/// What becomes of an element that the border crosses.
+/// Treatment of an element that the border crosses.
 enum class PartialElements { cut, omit };
 
-/// Lengths in mm in the part frame. Jobs cut whole elements of finite arrays.
+/// Layout of an array. Lengths are in mm in the part frame. Fabrication jobs cut complete elements of finite arrays.
 struct ArrayLayout {
   Arrangement arrangement = Arrangement::aligned;
   Extent extent = Extent::finite;
   RowParity shifted_rows = RowParity::even;
   PartialElements partial_elements = PartialElements::cut;
-  double x_length_mm = 0.0;  ///< of the extent of finite arrays that are not `single`
+  double x_length_mm = 0.0;  ///< lengths of finite arrays that are not `single`
   double y_length_mm = 0.0;
   double x_gap_mm = 0.0;  ///< flat land between elements; prisms only
   double y_gap_mm = 0.0;
   double x_offset_mm = 0.0;  ///< flat margin kept free on both borders
   double y_offset_mm = 0.0;
   double overlap_percent = 50.0;  ///< shift of alternate rows of `offset`, in percent of the base
-  /// Which whole elements are there: one text a row, the row of largest y first, '#' for one that is there and '-' for
-  /// one that is not, x rising. Empty: all are. The last column of a shifted row lies beyond the border and counts for
-  /// nothing. Of cube corners a row has as many cells as lie wholly within the array at its height.
+  /// Mask of complete elements: one text per row, beginning with the row of largest y, with x ascending. '#' marks an
+  /// element that exists, '-' marks an element that is missing. An empty mask means that all elements exist.
+  /// The last column of a shifted row is beyond the border and is ignored. A row of cube corners has as many characters
+  /// as there are complete cells in the array at its height.
   std::vector<std::string> pattern;
 };
 

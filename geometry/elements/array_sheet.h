@@ -1,7 +1,7 @@
 #pragma once
 
-// Lays out the cells of an array on a sheet, which lies on what the part stands on: the plane z = 0 or a curved
-// substrate. The back surface is tiled from it.
+// Lays out the cells of an array on a sheet, from which the back surface is then tiled. The sheet is placed on the
+// plane z = 0 or on a curved substrate.
 
 #include <array>
 #include <cstdint>
@@ -16,42 +16,42 @@
 
 namespace retrace::geometry {
 
-/// Range of lattice indices, upper bounds excluded.
+/// Range of lattice indices. The upper bounds are excluded.
 struct IndexRange {
   std::array<std::int64_t, 2> lower{};
   std::array<std::int64_t, 2> upper{};
 };
 
-/// The sheet that an array is laid out on. Where elements stand upright - on the plane z = 0, or parallel to z on a
-/// substrate - it is the part in plan; otherwise the substrate rolled out (SubstrateSurface), which touches the plan in
-/// the part's middle. All lengths in mm, in the part frame.
+/// Plane sheet on which an array is laid out. If the elements are upright (on the plane z = 0, or parallel to z on a
+/// substrate), the sheet is the part in plan. Otherwise it is the substrate unrolled into a plane (SubstrateSurface);
+/// the plan and the sheet then coincide at the centre of the part. Lengths are in mm in the part frame.
 struct ArraySheet {
-  /// \pre the array is not `single`; `spec` lives as long as the sheet
-  /// \throw InputError where the array is smaller than one element
+  /// \pre the array is not `single`; `spec` outlives the sheet
+  /// \throw InputError if the array is smaller than one element
   explicit ArraySheet(const PartSpec& spec);
 
-  /// All cells of the lattice that may reach into the part.
+  /// Returns the indices of all cells of the lattice that may overlap the part.
   IndexRange indices() const;
-  /// Where the lattice's origin of that period lies.
+  /// Returns the position on the sheet of the lattice's origin in period (i, j).
   Vec2 at_mm(std::int64_t i, std::int64_t j) const;
-  /// Whether periods that differ along an axis (0: x, 1: y) alone are alike but for their height.
+  /// Returns true if periods that differ only along this axis (0: x, 1: y) are equal except for their height.
   bool repeats_along(std::size_t axis) const;
 
   const PartSpec* spec;
-  std::optional<SubstrateSurface> surface;  ///< none: the plane z = 0
+  std::optional<SubstrateSurface> surface;  ///< not set for the plane z = 0
   bool is_upright = true;
-  std::optional<PrismBlock> prisms;  ///< from the block's middle
+  std::optional<PrismBlock> prisms;  ///< relative to the centre of the block
   Lattice lattice;
-  Vec2 anchor_mm = Vec2::Zero();  ///< the lattice's origin on the sheet
-  Vec2 middle_mm = Vec2::Zero();  ///< of the part: where the substrate has its origin
-  Rectangle part_mm;              ///< in plan
-  Rectangle reach_mm;             ///< of the sheet: what covers the part
-  Rectangle block_mm;             ///< of the sheet: what elements fill; the rest is flat land
-  double top_mm = 0.0;            ///< height of the substrate that is z = 0
-  double sliver_mm = 0.0;         ///< what crosses a border of the sheet by no more lies within it
-  double tolerance_mm = 0.0;      ///< likewise of the part's border in plan
-  std::vector<Vec2> middles_mm;   ///< of each cell of the lattice: what stands on the substrate
-  /// Of each corner of each cell: its height over the substrate, as rims of full cubes are not level.
+  Vec2 anchor_mm = Vec2::Zero();  ///< origin of the lattice on the sheet
+  Vec2 middle_mm = Vec2::Zero();  ///< centre of the part, where the substrate has its origin
+  Rectangle part_mm;              ///< extent of the part in plan
+  Rectangle reach_mm;             ///< area of the sheet that covers the part
+  Rectangle block_mm;             ///< area of the sheet that elements fill; the rest is flat land
+  double top_mm = 0.0;            ///< height of the substrate at the level z = 0
+  double sliver_mm = 0.0;         ///< cells that cross a border of the sheet by at most this length count as inside
+  double tolerance_mm = 0.0;      ///< tolerance for the border of the part in plan
+  std::vector<Vec2> middles_mm;   ///< for each cell of the lattice, the point that is placed on the substrate
+  /// For each corner of each cell, its height above the substrate. Rims of full cubes are not horizontal.
   std::vector<std::vector<double>> rims_mm;
 
  private:
@@ -64,35 +64,37 @@ struct ArraySheet {
   void measure_cells();
 };
 
-/// A cell of the lattice in its place; lengths from the origin of its piece.
+/// Position of a lattice cell. Lengths are relative to the origin of its SheetPiece.
 struct CellPlace {
-  Vec2 shift_mm = Vec2::Zero();  ///< on the sheet, from where the lattice has the cell
+  Vec2 shift_mm = Vec2::Zero();  ///< shift on the sheet, relative to the cell's position in the lattice
   Polygon on_sheet;
   Polygon outline;       ///< in plan
-  SubstrateFrame frame;  ///< the substrate under its middle
+  SubstrateFrame frame;  ///< frame of the substrate at the cell's reference point
 };
 
-/// A piece of a sheet, told from the origin of one of the lattice's periods, so that like pieces are equal.
+/// Portion of a sheet, relative to the origin of one of the lattice's periods. Equal portions therefore have equal
+/// coordinates.
 class SheetPiece {
  public:
-  /// \param is_alone the only piece of the sheet, which is told in heights of the part
+  /// \param is_alone true if this is the only portion of the sheet; heights are then those of the part
   SheetPiece(const ArraySheet& sheet, std::int64_t i, std::int64_t j, bool is_alone);
 
   CellPlace place(std::size_t cell, const Vec2& shift_mm) const;
   Standing standing(const CellPlace& place) const;
-  /// Whether the cell's place in plan is clear of the part.
+  /// Returns true if the cell does not overlap the part in plan.
   bool is_clear_of_part(const CellPlace& place) const;
-  /// What of an outline in plan, which is the place's or lies in it, lies within a rectangle of the sheet and the part.
+  /// Returns the part of an outline in plan that is within the part and within a rectangle of the sheet.
+  /// \param outline the outline of `place`, or an outline within it
   Polygon within(const CellPlace& place, const Polygon& outline, const Rectangle& on_sheet) const;
-  /// The box in plan round a rectangle of the sheet.
+  /// Returns the bounding box in plan of a rectangle on the sheet.
   Rectangle plan_round(const Rectangle& on_sheet) const;
-  /// What elements fill in plan: walls on its border are the array's.
+  /// Returns the area in plan that elements fill. Walls on its border are border walls of the array.
   Rectangle block_in_plan() const;
 
   const Rectangle& part() const { return part_; }
   const Rectangle& reach() const { return reach_; }
   const Rectangle& block() const { return block_; }
-  /// The origin in the part frame.
+  /// Returns the origin in the part frame.
   const Vec2& origin_mm() const { return origin_; }
   double height_mm() const { return height_ - sheet_->top_mm; }
 
@@ -101,9 +103,9 @@ class SheetPiece {
   SubstrateFrame frame_at(const Vec2& on_sheet) const;
 
   const ArraySheet* sheet_;
-  Vec2 at_;              ///< the origin on the sheet
-  Vec2 origin_;          ///< in plan
-  double height_ = 0.0;  ///< the substrate's own there
+  Vec2 at_;              ///< origin on the sheet
+  Vec2 origin_;          ///< origin in plan
+  double height_ = 0.0;  ///< height of the substrate at the origin
   Rectangle part_;
   Rectangle reach_;
   Rectangle block_;

@@ -16,12 +16,12 @@ double rad_from_arcmin(double arcmin) {
   return arcmin / 60.0 * std::numbers::pi / 180.0;
 }
 
-/// Point at `angle_deg` on the circle of the cell's rim.
+/// Returns the point at `angle_deg` on a circle about `centre`.
 Vec2 rim_point(const Vec2& centre, double radius_mm, double angle_deg) {
   return centre + radius_mm * direction_at(Angle::from_deg(angle_deg));
 }
 
-/// The angle between the vertical and each facet of a prism.
+/// Angles between the vertical and each facet of a prism.
 struct HalfAngles {
   std::array<double, 2> rad{};
   double mean_rad = 0.0;
@@ -40,32 +40,34 @@ double rtp_depth(const RtpElement& e, const AngleErrors& errors) {
   return 0.5 * e.base_mm / std::tan(half_angles(e, errors).mean_rad);
 }
 
-// A cube of edge a: its rim circle has radius R = a sqrt(2/3); the far ends of the dihedral edges rise a/sqrt(3) above
-// the apex, the remaining corners of the full cube twice that.
+// Returns how far the outer ends of the dihedral edges are above the apex. A cube with the edge length a has a rim
+// circle with the radius a sqrt(2/3). The ends of its dihedral edges are a / sqrt(3) above the apex, and the other
+// corners of the full cube are twice as high.
 double rise_of_dihedral_edge(double aperture_mm) {
   return 0.5 * aperture_mm / std::numbers::sqrt2;
 }
 
-/// Slopes of the facets' planes of an unrotated cube corner that is not canted, each between the dihedral edges k and
-/// k + 1.
+/// Returns the slopes of the three facet planes of a cube corner that is neither rotated nor canted. Facet k is between
+/// the dihedral edges k and k + 1.
 std::array<Vec2, 3> upright_cube_slopes(const AngleErrors& errors) {
   std::array<Vec2, 3> slopes;
   for (std::size_t k = 0; k < 3; ++k)
     slopes[k] = rim_point(Vec2::Zero(), std::numbers::sqrt2, 120.0 * static_cast<double>(k) + 60.0);
   if (errors == AngleErrors{}) return slopes;
 
-  Eigen::Matrix3d normals;  // out of the part, one a column
+  Eigen::Matrix3d normals;  // outward normals of the part, one per column
   Eigen::Matrix3d products = Eigen::Matrix3d::Identity();
   for (Eigen::Index k = 0; k < 3; ++k) {
     const auto index = static_cast<std::size_t>(k);
     normals.col(k) << slopes[index], -1.0;
     normals.col(k).normalize();
-    // Between outward normals of facets that include 90 degrees + e lie 90 degrees - e.
+    // If the angle between two facets is 90 degrees + e, the angle between their outward normals is 90 degrees - e.
     const Eigen::Index before = (k + 2) % 3;
     products(before, k) = products(k, before) = std::sin(rad_from_arcmin(errors.dihedral_error_arcmin[index]));
   }
-  // Of all unit normals with these products those nearest to the nominal ones: symmetric orthogonalisation backwards
-  // (Loewdin, J. Chem. Phys. 18, 365 (1950)). It turns the two facets of an edge alike.
+  // Of all unit normals with these scalar products, choose those that are nearest to the nominal normals. This is the
+  // inverse of symmetric orthogonalisation (Loewdin, J. Chem. Phys. 18, 365 (1950)). It rotates the two facets of an
+  // edge by equal angles.
   normals *= Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(products).operatorSqrt();
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 normal = normals.col(static_cast<Eigen::Index>(k));
@@ -75,7 +77,8 @@ std::array<Vec2, 3> upright_cube_slopes(const AngleErrors& errors) {
   return slopes;
 }
 
-/// The same of a canted one: errors of angle first, then the whole cube turns about its apex.
+/// Returns the slopes of the facet planes of a canted cube corner. Errors of angle are applied first, then the whole
+/// cube is rotated about its apex.
 std::array<Vec2, 3> cube_slopes(const AngleErrors& errors, const Cant& cant) {
   std::array<Vec2, 3> slopes = upright_cube_slopes(errors);
   if (cant.deg == 0.0) return slopes;
@@ -88,8 +91,9 @@ std::array<Vec2, 3> cube_slopes(const AngleErrors& errors, const Cant& cant) {
   return slopes;
 }
 
-/// Where the ray from `centre` along `direction` leaves an outline round it: the number of the corner before and the
-/// share of the way to the next one. A corner up to rounding is that corner.
+/// Finds the point at which a ray from `centre` leaves an outline around it. Returns the index of the previous corner
+/// plus the fraction of the distance to the next corner. If the point is a corner within rounding errors, returns the
+/// index of this corner.
 double exit_of_ray(const Polygon& outline, const Vec2& centre, const Vec2& direction) {
   constexpr double rounding = 1e-10;
   const auto left_of = [&](const Vec2& p) {
@@ -106,7 +110,8 @@ double exit_of_ray(const Polygon& outline, const Vec2& centre, const Vec2& direc
   return 0.0;
 }
 
-/// A cube corner from the slopes of its planes through the apex: its facets meet where the planes do.
+/// Returns a cube corner from the slopes of its facet planes, which pass through the apex. The facets end where their
+/// planes intersect.
 Cell cube_cell(Polygon outline, const Vec2& centre, double apex_height, const std::array<Vec2, 3>& slopes) {
   std::array<double, 3> ends{};
   for (std::size_t k = 0; k < 3; ++k) {

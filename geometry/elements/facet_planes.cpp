@@ -45,7 +45,7 @@ std::size_t FacetPlanes::element_count() const {
 
 void add_flares(std::vector<ElementPlanes>& elements, double radius_mm) {
   using Key = std::pair<std::int64_t, std::int64_t>;
-  // Middles of hexagons lie on multiples of these from the first.
+  // The centres of hexagons are at multiples of this step from the first centre.
   const Vec2 step = radius_mm * Vec2(1.5, 0.5 * std::numbers::sqrt3);
   const Vec2 first = elements.front().centre_mm;
   const auto key_of = [&](const Vec2& at) {
@@ -65,7 +65,7 @@ void add_flares(std::vector<ElementPlanes>& elements, double radius_mm) {
         ElementPlanes& place = land[key_of(centre_mm)];
         place.planes.clear();
         place.centre_mm = centre_mm;
-        // The facet across the dihedral edge `other`, told over that place.
+        // Plane of the facet across the dihedral edge `other`, with its height converted to the new centre.
         HeightPlane plane = element.planes[(other + 1) % 3];
         plane.height_mm += plane.slope.dot(centre_mm - element.centre_mm);
         if (!place.flares[other]) place.flares[other] = plane;
@@ -74,7 +74,7 @@ void add_flares(std::vector<ElementPlanes>& elements, double radius_mm) {
 }
 
 double cube_spacing_mm(const Element& element) {
-  // Apexes of neighbouring triangles are half a radius apart along x, a third of their height.
+  // The apexes of neighbouring triangles are half a radius apart along x, which is a third of the triangle's height.
   constexpr double kNearest = 1.0 / 3.0;
   return kNearest * bounding_box(aperture_outline(element)).size().minCoeff();
 }
@@ -128,7 +128,7 @@ Cell flared_land(const Cell& cell, const ElementPlanes& element, const Vec2& cen
     flare.plane = *element.flares[k / 2];
     flare.plane.height_mm -= flare.plane.slope.dot(centre_mm);
     flare.outline = {hexagon[(k + 5) % 6], hexagon[k], hexagon[(k + 1) % 6]};
-    flare.is_edge = true;  // of a facet, though on land
+    flare.is_edge = true;  // the flare was cut as part of a facet, although this cell is land
     land.facets.push_back(std::move(flare));
   }
   return land;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Elements whose facets each have a plane of their own, as measured or as a simulated program left them, and the part
-// that they make.
+// Elements whose facets have individual planes, from a measurement or from the simulation of a machining program.
+// Builds the part that consists of such elements.
 
 #include <array>
 #include <cstddef>
@@ -16,38 +16,41 @@
 
 namespace retrace::geometry {
 
-/// The facets of one element as planes of their own: z = height_mm + slope . (p - centre_mm).
+/// Planes of the facets of one element: z = height_mm + slope . (p - centre_mm).
 struct ElementPlanes {
-  Vec2 centre_mm = Vec2::Zero();  ///< of a prism's aperture, or of a cube corner's apex, in the part frame
-  /// Of a prism towards -x and +x (of a rotated element: -y and +y); of a cube corner facet k between the dihedral
-  /// edges at 120 k and 120 (k + 1) degrees. None: the element is not there, and `flares` are what its place has.
+  Vec2 centre_mm = Vec2::Zero();  ///< centre of a prism's aperture, or apex of a cube corner, in the part frame
+  /// Prism: facets towards -x and +x (rotated element: -y and +y). Cube corner: facet k is between the dihedral edges
+  /// at 120 k and 120 (k + 1) degrees. Empty: the element is missing, and only `flares` are used.
   std::vector<HeightPlane> planes = std::vector<HeightPlane>(2);
-  /// In the place of a hexagonal cube corner that is not there: what cavities of its neighbours, which are triangular,
-  /// take of its corner at 120 k degrees, up to the line between the corners beside that one.
+  /// Cuts in the land that replaces a missing hexagonal cube corner. The machined cavities of its neighbours are
+  /// triangular and extend into the corners of the hexagon. Cut k removes the corner at 120 k degrees, up to the line
+  /// between the two adjacent corners.
   std::array<std::optional<HeightPlane>, 3> flares;
-  /// Of a cube corner: what a chisel with a straight edge leaves over its apex, in front of facet k: the surface is the
-  /// higher of the facets and of the lowest of these. All three, or none.
+  /// Cube corner: planes that a chisel with a straight edge leaves at the apex, in front of facet k. The surface is the
+  /// maximum of the facets and of the minimum of these planes. Either all three planes are given or none.
   std::array<std::optional<HeightPlane>, 3> caps;
 };
 
-/// Adds the flares that triangular cavities leave beside hexagonal cube corners: a corner of a hexagon at a dihedral
-/// edge is that of two others; where one of these is not there, a facet of the cavity goes on over it
-/// (docs/theory/micro_chiseling.md). \param elements all that are there, at least one \param radius_mm of their
-/// apertures
+/// Adds the flares next to hexagonal cube corners, which are machined as triangular cavities. A hexagon's corner at a
+/// dihedral edge is also a corner of two neighbouring hexagons. If one of these elements is missing, a facet of the
+/// cavity extends across its corner (docs/theory/micro_chiseling.md).
+/// \param elements all elements that exist, at least one
+/// \param radius_mm radius of their apertures
 void add_flares(std::vector<ElementPlanes>& elements, double radius_mm);
 
-/// FacetPlanes' spacing for cube corners.
+/// Returns the parameter `spacing_mm` of FacetPlanes for cube corners.
 double cube_spacing_mm(const Element& element);
 
-/// Elements with facets of their own, such as a program left them. Elements that are not among them are not there.
+/// Elements with individual facet planes. Elements of the array that are not in this list are missing.
 class FacetPlanes {
  public:
-  /// \param spacing_mm no two elements' centres are nearer than this along both axes; > 0
+  /// \param spacing_mm minimum distance between the centres of two elements along x or y; > 0
   FacetPlanes(std::vector<ElementPlanes> elements, double spacing_mm);
-  /// The element with its centre there, up to a hundredth of the spacing; null if there is none.
+  /// Returns the element whose centre is at this position, within a hundredth of the spacing. Returns null if there is
+  /// none.
   const ElementPlanes* at(const Vec2& centre_mm) const;
   std::size_t size() const { return elements_.size(); }
-  /// How many of them are there, and not just land with flares.
+  /// Returns the number of elements. Land with flares is not counted.
   std::size_t element_count() const;
   const std::vector<ElementPlanes>& elements() const { return elements_; }
 
@@ -60,21 +63,22 @@ class FacetPlanes {
   std::map<Key, std::size_t> places_;
 };
 
-/// What ElementPlanes::centre_mm is of an element's cell, and the middle of land.
+/// Returns the position that ElementPlanes::centre_mm has for a cell. For land, returns its centre.
 Vec2 place_of(const PartSpec& spec, const Cell& cell);
 
-/// The element in the place of `cell`, its facets in planes of their own: they meet where the planes do.
-/// \param centre_mm the cell's place_of() in its own coordinates
+/// Returns the element at the position of `cell`, with individual facet planes. The facets end where their planes
+/// intersect.
+/// \param centre_mm the cell's place_of() in the coordinates of the cell
 Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm);
 
-/// Land on z = 0 in the place of a hexagonal cube corner, without the corners that flares take.
-/// \pre the outline of `cell` is the hexagon, from its corner at 0 degrees
+/// Returns land on z = 0 that replaces a missing hexagonal cube corner, without the corners that the flares cut off.
+/// \pre the outline of `cell` is the hexagon, beginning with its corner at 0 degrees
 Cell flared_land(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm);
 
-/// A finite part like build_part() makes it, each element with its own facets; flat land stands where an element is
-/// not given. Outlines stay nominal, and vertical walls close what differs between neighbours.
-/// \pre spec.array.extent is finite, facets slope as nominal ones do
-/// \throw InputError as build_part(), and for planes that belong to no whole element of the array
+/// Builds a finite part as build_part(spec) does, but with individual facets for each element. Elements that are not
+/// given are replaced by flat land. Outlines are nominal, and vertical walls connect neighbours of different height.
+/// \pre spec.array.extent is finite; the facets slope in the same directions as nominal facets
+/// \throw InputError as build_part(spec), and if planes belong to no complete element of the array
 Part build_part(const PartSpec& spec, const FacetPlanes& planes);
 
 }  // namespace retrace::geometry

@@ -1,6 +1,6 @@
 #pragma once
 
-// The periodic tiling of the plane by cells that an arrangement of elements repeats.
+// Periodic tiling of the plane that an arrangement of elements repeats.
 
 #include <vector>
 
@@ -8,19 +8,20 @@
 
 namespace retrace::geometry {
 
-/// Cells that fill the plane without overlap when repeated with a rectangular period.
+/// Cells that tile the plane without overlap when they are repeated with a rectangular period.
 struct Lattice {
   Vec2 period_mm = Vec2::Zero();
   std::vector<Cell> cells;
   int elements_per_period = 0;
 };
 
-/// The element as it is: with its edges and its scratches.
+/// Returns the element with its rounded edges and its scratches.
 Cell finished_cell(const Cell& cell, const PartSpec& spec);
 
-/// The periodic tiling that an arrangement repeats. For RTP arrays the lower left corner of an element in row 1,
-/// unshifted, is at the origin; for cube corners the apex of an unrotated cell is. `rows_are_shifted` is false for a
-/// single row. \pre the arrangement fits the element and is not `single`.
+/// Returns the periodic tiling of an arrangement. The origin is the lower left corner of an unshifted prism in row 1,
+/// or the apex of a cube corner that is not rotated.
+/// \param rows_are_shifted false if there is a single row
+/// \pre the arrangement fits the element and is not `single`
 Lattice make_lattice(const PartSpec& spec, bool rows_are_shifted);
 
 }  // namespace retrace::geometry

@@ -1,26 +1,28 @@
 #pragma once
 
-// Entrance surfaces given as triangle meshes: which triangles light enters through, and whether they cover the part
-// without holes, overlaps or steps.
+// Entrance surfaces that are given as triangle meshes. Determines the triangles through which light enters, and checks
+// that they cover the part without holes, overlaps or steps.
 
 #include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/triangle_mesh.h"
 
 namespace retrace::geometry {
 
-/// Which triangles of a mesh are the entrance surface.
+/// Triangles of a mesh that form the entrance surface.
 enum class MeshSide {
-  top,    ///< those that look towards +z
-  bottom  ///< those that look towards -z, turned over: the mesh is the counterpart of the part
+  top,  ///< triangles that face +z
+  /// triangles that face -z, with reversed orientation: the mesh is the counterpart (such as a mould) of the part
+  bottom
 };
 
-/// The front of a part from a mesh, as triangles that look towards +z.
-/// \param move_mm from the mesh's frame into the part's
-/// \throw InputError unless they cover the outline once, each beside the next along whole sides: holes, overlaps,
-/// steps, corners on sides and triangles that stand upright or hang over are named with their place in the mesh's frame
+/// Returns the entrance surface of a part from a mesh, as triangles that face +z.
+/// \param move_mm translation from the frame of the mesh to that of the part
+/// \throw InputError unless the triangles cover the outline exactly one time and neighbours share complete sides.
+///     Holes, overlaps, steps, corners on sides, and vertical or overhanging triangles are reported with their position
+///     in the frame of the mesh
 SurfacePatch entrance_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline);
 
-/// entrance_range() of a mesh.
+/// Returns the range of heights and slopes of an entrance surface from a mesh, as entrance_range().
 EntranceRange range_of_entrance_mesh(const SurfacePatch& patch, const Polygon& outline);
 
 }  // namespace retrace::geometry

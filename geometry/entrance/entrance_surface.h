@@ -1,6 +1,6 @@
 #pragma once
 
-// Curved faces through which light enters a part, and what they are like over its outline.
+// Curved faces through which light enters a part, and their range of heights and slopes over the part's outline.
 
 #include <array>
 #include <limits>
@@ -14,21 +14,22 @@
 
 namespace retrace::geometry {
 
-/// A curved face through which light enters a part, in the part's frame: a freeform surface whose origin has a place
-/// there; the material lies below it.
+/// Curved face through which light enters a part, in the part frame. It is a freeform surface at a given origin. The
+/// material is below it.
 class EntranceSurface {
  public:
   struct Place {
     double height_mm = 0.0;
-    Vec2 slope = Vec2::Zero();  ///< of the height along x and y; it does not jump
+    Vec2 slope = Vec2::Zero();  ///< slope of the height along x and y; continuous
   };
-  /// \param finest_mm size of features that are known beside its lenslets
+  /// \param finest_mm size of the smallest known features other than its lenslets
   EntranceSurface(FreeformSurface surface, const Vec3& origin_mm,
                   double finest_mm = std::numeric_limits<double>::infinity());
 
-  /// Not finite where there is no surface. Safe to call from many threads.
+  /// Returns height and slope at a point. They are not finite where there is no surface. May be called from several
+  /// threads.
   Place at(const Vec2& point_mm) const;
-  /// Size of its finest features, such as lenslets; infinite where none is known.
+  /// Returns the size of the smallest features, such as lenslets, or infinity if no features are known.
   double finest_mm() const { return finest_mm_; }
 
  private:
@@ -39,31 +40,33 @@ class EntranceSurface {
   double finest_mm_;
 };
 
-/// The front of a part: an exact surface, or the triangles of a mesh that all look towards +z.
+/// Entrance of a part: an exact surface, or a mesh whose triangles all face +z.
 using Entrance = std::variant<std::shared_ptr<const EntranceSurface>, std::shared_ptr<const SurfacePatch>>;
 
-/// What an entrance surface is like over the outline of a part.
+/// Range of heights and slopes of an entrance surface over the outline of a part.
 struct EntranceRange {
   double lowest_mm = 0.0;
   double highest_mm = 0.0;
   Vec2 lowest_at_mm = Vec2::Zero();
   Vec2 highest_at_mm = Vec2::Zero();
-  double steepest_slope = 0.0;  ///< sampled
+  double steepest_slope = 0.0;  ///< maximum of samples
 };
 
-/// Lowest and highest place of an entrance surface, to rounding, found from samples as near as its finest features ask
-/// for. \throw InputError for a surface that has no finite height somewhere over the outline
+/// Returns the lowest and highest point of an entrance surface within rounding errors. The density of the samples
+/// follows from the size of the smallest features.
+/// \throw InputError if the surface has no finite height somewhere over the outline
 EntranceRange entrance_range(const Entrance& entrance, const Polygon& outline);
 
-/// How many cells across the longer side of an outline's box show all features of a surface: where none is known, so
-/// many that twice and four times as many see the same bends. \throw InputError, whose text begins with "must", if
-/// there are features that kMostEntranceCells do not show
+/// Returns the number of cells along the longer side of the outline's bounding box that resolves all features of a
+/// surface. If no feature size is known, the number is increased until grids with two and four times as many cells find
+/// the same curvatures.
+/// \throw InputError, with a text that begins with "must", if kMostEntranceCells cells do not resolve the features
 int cells_to_show(const EntranceSurface& surface, const Polygon& outline);
 
 inline constexpr int kMostEntranceCells = 1024;
 
-/// Where between its corners a cell is looked at once more, as shares of its sides: at no fraction of a period that
-/// corners could share.
+/// Relative positions within a cell at which the surface is also sampled. The values are irrational, so that a periodic
+/// structure that matches the grid is not missed.
 inline constexpr std::array<double, 2> kWithinEntranceCell = {0.3819660113, 0.6180339887};
 
 }  // namespace retrace::geometry

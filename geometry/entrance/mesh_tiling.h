@@ -1,6 +1,6 @@
 #pragma once
 
-// Tests whether triangles cover a convex outline exactly once, and names the first place where they do not.
+// Checks that triangles cover a convex outline exactly one time. Reports the first position where they do not.
 
 #include <array>
 #include <cstdint>
@@ -13,20 +13,23 @@
 
 namespace retrace::geometry {
 
-/// A place where triangles do not go on.
+/// Position at which the triangles are not continuous.
 struct TilingGap {
-  std::string_view what;  ///< "there is a hole"
+  std::string_view what;  ///< description, such as "there is a hole"
   Vec2 at_mm = Vec2::Zero();
 };
 
-/// Whether triangles that all look towards +z go on across each of their sides over the inside of a convex outline.
+/// Checks that triangles which all face +z are continuous across each of their sides within a convex outline.
 ///
-/// Where every side is passed as often one way as the other, the number of triangles over a place changes nowhere
-/// inside: the border of their sum, taken in plan, is empty there. If their areas over the outline add up to its own
-/// as well, that number is one: they tile it. Corners are shared in three dimensions, so that heights do not jump.
-/// \param sheet the triangles \param mesh all triangles, which tell what stands in a gap
-/// \param tolerance_mm within which a side counts as the outline's, and a corner as one on a side
-/// \return the first place where they do not
+/// The check has two steps. First, each side must be traversed equally often in both directions. The number of
+/// triangles above a point is then constant inside the outline. Second, the areas of the triangles over the outline
+/// must add up to the area of the outline. The number is then one, and the triangles tile the outline. Corners are
+/// shared in three dimensions, so heights are continuous.
+/// \param sheet triangles to check
+/// \param mesh all triangles of the mesh, which determine how a gap is described
+/// \param tolerance_mm maximum distance at which a side counts as part of the outline, or a corner counts as a point on
+///     a side
+/// \return the first gap, or nothing
 std::optional<TilingGap> find_gap(const std::vector<Vec3>& vertices,
                                   const std::vector<std::array<std::uint32_t, 3>>& sheet,
                                   const std::vector<std::array<std::uint32_t, 3>>& mesh, const Polygon& outline,

@@ -1,6 +1,6 @@
 #pragma once
 
-// What files of meshes call the faces of a part, by their role.
+// Names of the faces of a part in mesh files, by role.
 
 #include <array>
 #include <string_view>

@@ -9,8 +9,8 @@
 
 namespace retrace::geometry {
 
-/// The mesh as Wavefront OBJ in millimetres and double precision, one group for each role of its faces.
-/// \param title one line, goes into a comment
+/// Returns the mesh as Wavefront OBJ in mm and double precision, with one group for each role of its faces.
+/// \param title one line of text for a comment
 std::string obj_text(const BoundaryMesh& mesh, std::string_view title);
 
 }  // namespace retrace::geometry

@@ -1,6 +1,6 @@
 #pragma once
 
-// Writes faceted solids as STEP, for CAD programs; OpenCASCADE does it in a module of its own.
+// Writes faceted solids as STEP for CAD programs. The conversion is in a separate module that uses OpenCASCADE.
 
 #include <string>
 
@@ -8,13 +8,14 @@
 
 namespace retrace::geometry {
 
-/// Shortest edge that STEP export takes: OpenCASCADE holds points nearer than 1e-7 mm for one.
+/// Minimum edge length for STEP export. OpenCASCADE treats points nearer than 1e-7 mm as equal.
 inline constexpr double kShortestStepEdgeMm = 1e-6;
 
-/// The solid as STEP AP214: one manifold solid of plane faces with shared edges, in millimetres. The same solid gives
-/// the same text: its time stamp is none. \param name of the product
+/// Returns the solid as STEP AP214: one manifold solid of plane faces with shared edges, in mm. Equal solids give equal
+/// texts, because the time stamp is empty.
+/// \param name name of the product
 /// \throw InputError if an edge is shorter than kShortestStepEdgeMm
-/// \throw OutputError where the module with OpenCASCADE is missing: retrace may be built without
+/// \throw OutputError if the module with OpenCASCADE is missing, because retrace was built without it
 std::string step_text(const FacetedSolid& solid, const std::string& name);
 
 }  // namespace retrace::geometry

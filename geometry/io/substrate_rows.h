@@ -1,6 +1,6 @@
 #pragma once
 
-// The table [base] of design and job files as rows: the shape of a substrate and how elements stand on it.
+// Keys of the table [base] in design and job files: shape of a substrate and orientation of the elements on it.
 
 #include <span>
 #include <string_view>
@@ -10,10 +10,10 @@
 
 namespace retrace::geometry {
 
-/// The keys of `[base]` in designs and jobs, whose object is a Base. The last row is that of pins.
+/// Returns the keys of `[base]` in designs and jobs, as rows for an object of the type Base. The last row is for pins.
 std::span<const schema::Row> substrate_rows();
 
-/// The key that gives a base its shape, to be blamed for it.
+/// Returns the key that determines the shape of a substrate, for error messages about the shape.
 std::string_view substrate_shape_key(const Substrate& substrate);
 
 }  // namespace retrace::geometry

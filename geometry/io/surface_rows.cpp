@@ -1,4 +1,4 @@
-// What the tables of a file say that describe a surface.
+// Defines the keys of the tables that describe a surface.
 #include <algorithm>
 #include <array>
 #include <iterator>

@@ -1,6 +1,6 @@
 #pragma once
 
-// The tables of a file that describe a freeform surface, and the region over which it is made.
+// Tables of a file that describe a freeform surface and the region over which it is made.
 
 #include <cstddef>
 #include <span>
@@ -16,15 +16,16 @@ namespace retrace::geometry {
 inline constexpr std::string_view kTurnedPartId = "retrace.turned_part/1";
 inline constexpr std::size_t kMostLenslets = 100000;
 
-/// [base], [boundary], [extrapolation] and [lenslets].
+/// Returns the tables [base], [boundary], [extrapolation] and [lenslets].
 std::span<const schema::Table> surface_tables();
 
-/// The surface that these tables say. \throw InputError with file, line and key
+/// Reads the surface that these tables describe.
+/// \throw InputError with file, line and key
 FreeformSurface read_surface(const schema::Document& file);
-/// The table that is blamed for what is wrong with the whole surface.
+/// Returns the location of the table that error messages about the whole surface refer to.
 InputLocation surface_place(const schema::Document& file);
 
-/// Rows of [path] that say over which region the surface is made.
+/// Keys of [path] that define the region over which the surface is made.
 inline constexpr schema::Words kStrategies = {"spiral", "raster"};
 inline constexpr schema::Condition kSpiralOnly[] = {schema::is("strategy", schema::only(kStrategies, "spiral"))};
 inline constexpr schema::Condition kRasterOnly[] = {schema::is("strategy", schema::only(kStrategies, "raster"))};
@@ -36,16 +37,17 @@ inline constexpr schema::Row kRegionRadiusRow = {"radius_mm", schema::Number{kRe
 inline constexpr schema::Row kRegionSizeRow = {"size_mm", schema::Numbers{2, kRegionSize}, schema::kRequired,
                                                "`[across the lines (X), along them (Y)]`.", kRasterOnly};
 
-/// A turned part as light meets it: its surface, and where that is made.
+/// Data of a turned part that ray tracing needs: its surface and the region of the surface.
 struct TurnedFront {
   FreeformSurface surface;
   bool is_round = true;
-  double radius_mm = 0.0;       ///< of a round region
-  Vec2 size_mm = Vec2::Zero();  ///< of a rectangular one
+  double radius_mm = 0.0;       ///< for a round region
+  Vec2 size_mm = Vec2::Zero();  ///< for a rectangular region
 };
 
-/// Reads what a turned part's file says of its surface and region; of the tool, how it moves and what is asked of the
-/// result, nothing. The surface is finite and has no vertical slope there. \throw InputError with file, line and key
+/// Reads the surface and the region from the file of a turned part. Keys about the tool, its path and the required
+/// accuracy are ignored. The surface must be finite and must not be vertical within the region.
+/// \throw InputError with file, line and key
 TurnedFront parse_turned_front(std::string_view text, const std::string& source_name);
 
 }  // namespace retrace::geometry

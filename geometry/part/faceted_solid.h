@@ -1,6 +1,7 @@
 #pragma once
 
-// Triangle meshes as solids with plane polygonal faces, as CAD formats have them, and the volume and area of meshes.
+// Converts triangle meshes to solids with plane polygonal faces, as CAD formats use them. Computes the volume and area
+// of meshes.
 
 #include <cstdint>
 #include <vector>
@@ -9,31 +10,35 @@
 
 namespace retrace::geometry {
 
-/// One plane face of a solid: an outline and the holes in it.
+/// Plane face of a solid: an outline and its holes.
 struct SolidFace {
-  Vec3 normal = Vec3::UnitZ();              ///< unit, out of the solid
-  FacetRole role = FacetRole::retro_facet;  ///< of its first triangle
-  /// Vertex numbers. The first loop is the outline, counter-clockwise seen from outside; holes run the other way.
+  Vec3 normal = Vec3::UnitZ();              ///< unit vector, out of the solid
+  FacetRole role = FacetRole::retro_facet;  ///< role of the face's first triangle
+  /// Vertex indices. The first loop is the outline, counter-clockwise as seen from outside. The other loops are holes,
+  /// in the opposite direction.
   std::vector<std::vector<std::uint32_t>> loops;
 };
 
-/// A solid bounded by plane polygons. Every edge belongs to exactly two faces, which pass it in opposite directions.
+/// Solid bounded by plane polygons. Every edge belongs to exactly two faces, which traverse it in opposite directions.
 struct FacetedSolid {
   std::vector<Vec3> vertices;
   std::vector<SolidFace> faces;
 };
 
-/// The enclosed volume (divergence theorem), positive if triangles are counter-clockwise seen from outside.
+/// Returns the enclosed volume (divergence theorem). It is positive if triangles are counter-clockwise as seen from
+/// outside.
 double volume_mm3(const BoundaryMesh& mesh);
-/// The area of all triangles.
+/// Returns the total area of all triangles.
 double area_mm2(const BoundaryMesh& mesh);
 
-/// Whether every edge is passed exactly once in either direction: the mesh is closed and touches itself along no edge.
+/// Returns true if every edge is traversed exactly one time in each direction. The mesh is then closed, and no edge is
+/// shared by more than two triangles.
 bool is_closed_manifold(const BoundaryMesh& mesh);
 
-/// Triangles that lie in one plane and are neighbours become one face, and vertices within straight edges go.
-/// A face whose outline would touch itself stays in triangles.
-/// \param mesh is_closed_manifold() \throw std::logic_error otherwise
+/// Joins neighbouring triangles in one plane to faces, and removes vertices on straight edges. Triangles are not joined
+/// if the outline of the face would touch itself.
+/// \param mesh a mesh for which is_closed_manifold() is true
+/// \throw std::logic_error for other meshes
 FacetedSolid faceted_solid(const BoundaryMesh& mesh);
 
 }  // namespace retrace::geometry

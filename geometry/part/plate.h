@@ -7,10 +7,12 @@
 
 namespace retrace::geometry {
 
-/// A box over 0..x and 0..y whose bottom is z = 0, looking outward. \pre sizes and thickness > 0
+/// Returns a box over 0..x and 0..y whose bottom is at z = 0, oriented outward.
+/// \pre sizes and thickness > 0
 TriangleMesh box_mesh(const Vec2& size_mm, double thickness_mm);
 
-/// A plate over 0..x and 0..y whose flat back is its only retro facet. \pre sizes and thickness > 0
+/// Returns a plate over 0..x and 0..y. Its flat back is its only retro facet.
+/// \pre sizes and thickness > 0
 Part build_plate(const Vec2& size_mm, double thickness_mm);
 
 }  // namespace retrace::geometry

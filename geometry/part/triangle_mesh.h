@@ -1,6 +1,6 @@
 #pragma once
 
-// The plain triangle mesh, as read from files and handed between the rooms of geometry.
+// A plain triangle mesh. It is read from files and passed between the folders of geometry.
 
 #include <array>
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace retrace::geometry {
 
-/// Triangles without roles, vertices welded.
+/// Triangle mesh with merged vertices and without roles.
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// A key that tells the edge of a mesh from one vertex to another from all its other edges, the opposite one included.
+/// Returns a key that identifies a directed edge of a mesh. An edge and its opposite edge have different keys.
 inline std::uint64_t directed_edge(std::uint32_t from, std::uint32_t to) {
   return (static_cast<std::uint64_t>(from) << 32) | to;
 }

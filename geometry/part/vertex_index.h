@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers points of the plane so that those nearer than a tolerance share a number: welding of vertices.
+// Numbers points of the plane such that points nearer than a tolerance have the same number. This merges vertices.
 
 #include <cstdint>
 #include <unordered_map>
@@ -10,7 +10,7 @@
 
 namespace retrace::geometry {
 
-/// Welds points of the plane: points closer than the tolerance get the same number.
+/// Merges points of the plane: points that are nearer than the tolerance get the same number.
 class VertexIndex {
  public:
   /// \param cell_mm size of the search grid, of the order of the distance between neighbours
@@ -20,7 +20,8 @@ class VertexIndex {
   const Vec2& operator[](std::uint32_t index) const { return points_[index]; }
   std::size_t size() const { return points_.size(); }
 
-  /// The vertices strictly between the ends of segment a-b and on it within the tolerance, in order from a to b.
+  /// Returns the vertices on the segment from a to b within the tolerance, excluding its ends. They are in order from a
+  /// to b.
   std::vector<std::uint32_t> on_segment(std::uint32_t a, std::uint32_t b) const;
 
  private:

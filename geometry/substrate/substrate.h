@@ -1,6 +1,6 @@
 #pragma once
 
-// What elements stand on in place of a plane, as a designer says it.
+// Describes the surface on which elements are placed instead of a plane.
 
 #include <memory>
 #include <string_view>
@@ -10,39 +10,40 @@
 
 namespace retrace::geometry {
 
-/// A plane that rises by `incline_deg` towards `azimuth_deg`, from +x towards +y.
+/// Plane that rises by `incline_deg` towards `azimuth_deg`. The azimuth is counted from +x towards +y.
 struct PlaneSubstrate {
   double incline_deg = 0.0;  ///< 0..60
   double azimuth_deg = 0.0;
 };
 
-/// A cylinder with its axis along x or y over the middle of the part.
+/// Cylinder with its axis along x or y, above or below the centre of the part.
 struct CylinderSubstrate {
-  double radius_mm = 0.0;  ///< > 0: it bulges towards the light; < 0: its hollow side
+  double radius_mm = 0.0;  ///< > 0: convex towards the light; < 0: concave
   bool axis_is_x = false;
 };
 
-/// A sphere with its pole over the middle of the part.
+/// Sphere with its pole at the centre of the part.
 struct SphereSubstrate {
-  double radius_mm = 0.0;  ///< as of a cylinder
+  double radius_mm = 0.0;  ///< > 0: convex towards the light; < 0: concave
 };
 
-/// A height over the plane as a formula of x and y in mm from the middle of the part.
+/// Height as a formula of x and y, in mm from the centre of the part.
 struct FormulaSubstrate {
   std::shared_ptr<const Formula> sag_mm;  ///< never null
 };
-/// \throw InputError saying where the text is no formula of x and y
+/// Parses a formula.
+/// \throw InputError with the position of the error, if the text is not a formula of x and y
 FormulaSubstrate formula_substrate(std::string_view sag_mm);
 
 using SubstrateShape = std::variant<PlaneSubstrate, CylinderSubstrate, SphereSubstrate, FormulaSubstrate>;
 
-/// How elements stand on a substrate.
+/// Orientation of elements on a substrate.
 enum class ElementAxes {
-  normal,   ///< each along the substrate's normal under its middle; sizes and gaps are arc lengths
-  parallel  ///< all upright, moved along z alone; sizes and gaps are those in plan
+  normal,   ///< along the substrate's normal at the element's centre; sizes and gaps are arc lengths
+  parallel  ///< all elements are upright and shifted along z; sizes and gaps are lengths in plan
 };
 
-/// The surface on which elements stand, in place of z = 0. What it is highest over the part is z = 0.
+/// Surface on which elements are placed. It is shifted along z such that its highest point over the part is on z = 0.
 struct Substrate {
   SubstrateShape shape;
   ElementAxes element_axes = ElementAxes::normal;

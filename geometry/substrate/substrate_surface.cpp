@@ -20,11 +20,13 @@
 namespace retrace::geometry {
 namespace {
 
-// Of a radius: how far from the middle circles are followed; beyond, only what the border cuts away stands.
+// Maximum distance from the centre at which circles are evaluated, relative to the radius. Only material that the
+// border cuts off is beyond this distance.
 constexpr double kMostSine = 0.999;
 
 Eigen::Matrix3d turn_of(const PlaneSubstrate& plane) {
-  // About the horizontal line across the azimuth, so that the plane rises towards it.
+  // The axis of rotation is the horizontal line at right angles to the azimuth. The plane then rises towards the
+  // azimuth.
   const Vec2 along = direction_at(Angle::from_deg(plane.azimuth_deg));
   return rotation_about({along.y(), -along.x(), 0.0}, Angle::from_deg(plane.incline_deg));
 }
@@ -56,7 +58,7 @@ Sag sag_of(const FormulaSubstrate& formula) {
   return sag;
 }
 
-/// The nearest place that is not so far from the middle that a circle stands up there.
+/// Returns the nearest point at which a circular cross section is not yet vertical.
 Vec2 short_of_upright(const SubstrateShape& shape, const Vec2& p) {
   if (const auto* const c = std::get_if<CylinderSubstrate>(&shape)) {
     const double most = kMostSine * std::abs(c->radius_mm);
@@ -78,7 +80,7 @@ double chord_of_arc(double radius, double s) {
   return r * std::sin(std::clamp(s / r, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
 }
 
-/// Slopes of the line x = 0, and of the line with that y.
+/// Return the slope along the line x = 0, and the slope along the line of constant y.
 auto middle_slope(const SubstrateSurface& surface) {
   return [&surface](double y) { return surface.at({0.0, y}).y; };
 }
@@ -86,12 +88,14 @@ auto row_slope(const SubstrateSurface& surface, double y) {
   return [&surface, y](double x) { return surface.at({x, y}).x; };
 }
 
-/// Arc length along a curve z(t) by its slope, from t = 0, and back.
+/// Table of the arc length along a curve z(t), measured from t = 0 and computed from the slope of the curve. The table
+/// is also inverted.
 class ArcTable {
  public:
   template <class Slope>
   ArcTable(double half_mm, double beyond_mm, double step_mm, const Slope& slope) {
-    // The border, beyond which a formula may be continued straight, is a node: nothing is integrated across a kink.
+    // The border is a node of the table. A formula may have a kink there, because it is continued along its tangent
+    // outside. No interval of integration contains this kink.
     const double within = std::ceil(half_mm / step_mm);
     step_ = half_mm / within;
     const double count = within + std::ceil(beyond_mm / step_);
@@ -110,7 +114,7 @@ class ArcTable {
     return t + excess_[k] + excess(place(k), t, slope);
   }
 
-  /// The place whose arc length is `s`.
+  /// Returns the parameter t at which the arc length is `s`.
   template <class Slope>
   double place_at(double s, const Slope& slope) const {
     std::size_t low = 0;
@@ -136,7 +140,8 @@ class ArcTable {
     return static_cast<std::size_t>(std::clamp(k, 0.0, static_cast<double>(excess_.size() - 1)));
   }
 
-  /// Of the arc over its projection: exactly 0 where the curve is level. Gauss and Legendre, five points.
+  /// Returns arc length minus projected length between two parameters, by Gauss-Legendre quadrature with five points.
+  /// The result is exactly 0 if the curve is horizontal.
   template <class Slope>
   static double excess(double from, double to, const Slope& slope) {
     constexpr std::array<double, 3> kPlaces = {0.0, 0.5384693101056831, 0.9061798459386640};
@@ -155,19 +160,19 @@ class ArcTable {
 
   double step_ = 1.0;
   std::size_t middle_ = 0;
-  std::vector<double> excess_;  ///< of the arc from the middle to each place over its projection
+  std::vector<double> excess_;  ///< for each node, arc length minus projected length, measured from the centre
 };
 
 }  // namespace
 
-/// Arc lengths of a formula: along x = 0, and along the rows that were requested.
+/// Arc lengths for a formula: along x = 0, and along the rows that were requested.
 struct SubstrateSurface::ArcTables {
   ArcTables(const SubstrateSurface& surface, double size_mm)
       : step_mm(std::max(0.5 * size_mm, surface.half_mm_.maxCoeff() / kMostSteps)),
         beyond_mm(8.0 * size_mm),
         along_y(surface.half_mm_.y(), beyond_mm, step_mm, middle_slope(surface)) {}
 
-  /// Tables of rows are kept: all elements of a row need the same.
+  /// Returns the table of a row. Tables are cached, because all elements of a row need the same table.
   const ArcTable& row(const SubstrateSurface& surface, double y) {
     const auto key = static_cast<std::int64_t>(std::llround(y / (1e-9 * step_mm)));
     if (const auto known = rows.find(key); known != rows.end()) return known->second;
@@ -201,8 +206,9 @@ SubstrateSurface::ArcTables& SubstrateSurface::tables() const {
 SubstrateSurface::~SubstrateSurface() = default;
 SubstrateSurface::SubstrateSurface(SubstrateSurface&&) noexcept = default;
 
-// Straight on beyond where a circle stands up, and beyond the part where a formula has no value or stands up; only
-// cells that the border cuts reach there.
+// Outside a valid region, the surface is continued along its tangent. The region ends where a circle becomes vertical.
+// It ends at the part's border where a formula has no value or is steep outside. Only cells that the border cuts extend
+// that far.
 Jet SubstrateSurface::at(const Vec2& plan) const {
   constexpr double kSteepBeyond = 4.0;
   Vec2 from = short_of_upright(substrate_.shape, plan);
@@ -301,8 +307,8 @@ bool SubstrateSurface::repeats_along_v() const {
 
 namespace {
 
-/// The larger of the two principal curvatures' magnitudes (do Carmo, Differential Geometry, 3-3): the eigenvalues of
-/// the shape operator I^-1 II.
+/// Returns the larger magnitude of the two principal curvatures. They are the eigenvalues of the shape operator I^-1 II
+/// (do Carmo, Differential Geometry, 3-3).
 double most_curvature(const Jet& jet) {
   const double w2 = 1.0 + jet.x * jet.x + jet.y * jet.y;
   const double w = std::sqrt(w2);
@@ -336,7 +342,7 @@ SubstrateMeasures measure_substrate(const SubstrateSurface& substrate, const Vec
       const double rise = std::hypot(jet.x, jet.y);
       steepness = std::max(steepness, rise);
       curvature = std::max(curvature, most_curvature(jet));
-      // Simpson's rule along both axes.
+      // Weights of Simpson's rule along both axes.
       const auto weight = [](int k) { return k == 0 || k == kSteps ? 1.0 : k % 2 == 1 ? 4.0 : 2.0; };
       area += weight(i) * weight(j) * std::hypot(1.0, rise);
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Substrates as surfaces that elements stand on: height, normal and local frame at every place, and the arc lengths by
-// which an array is laid out on them.
+// Substrates as surfaces for elements: heights, normals and local frames, and the arc lengths that are used to lay out
+// an array.
 
 #include <cstdint>
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace retrace::geometry {
 
-/// Where something stands on a substrate: three unit axes, the third along the substrate's normal towards the light.
+/// Local frame on a substrate: three unit vectors. The third is the substrate's normal, towards the light.
 struct SubstrateFrame {
   Vec3 origin = Vec3::Zero();
   Vec3 along_u = Vec3::UnitX();
@@ -21,34 +21,37 @@ struct SubstrateFrame {
   Vec3 normal = Vec3::UnitZ();
 };
 
-/// A substrate with the part's size: heights, normals and arc lengths. Coordinates are in mm from the middle of the
-/// part.
+/// Substrate over a part of a given size: heights, normals and arc lengths. Coordinates are in mm relative to the
+/// centre of the part.
 ///
-/// Arc coordinates (u, v) lie on the substrate as a sheet does that was laid on it. On planes and cylinders lengths are
-/// true. On others v is the arc length along x = 0, and u that along the line y = const through that place: rows have
-/// true lengths, and are as far apart as they should be along x = 0. Lines of equal v are straight in plan.
+/// Arc coordinates (u, v) are positions on a sheet that is laid on the substrate. On planes and cylinders they preserve
+/// lengths. On other substrates, v is the arc length along x = 0, and u is the arc length along the line y = const
+/// through the point. Lengths along rows are then exact, but distances between rows are exact only at x = 0. Lines of
+/// equal v are straight in plan.
 class SubstrateSurface {
  public:
-  /// \param half_mm half the part's size in plan \param size_mm of an element: how finely formulas are integrated
+  /// \param half_mm half of the part's size in plan
+  /// \param size_mm size of an element, which determines the step for the integration of formulas
   SubstrateSurface(const Substrate& substrate, const Vec2& half_mm, double size_mm);
   ~SubstrateSurface();
   SubstrateSurface(SubstrateSurface&&) noexcept;
 
-  /// Height over the part's xy plane and its derivatives; what has no value beyond the part goes on straight.
+  /// Returns the height over the part's xy plane and its derivatives. Outside the part, where the substrate may be
+  /// undefined, the surface is continued along its tangent.
   Jet at(const Vec2& plan) const;
   Vec3 normal_at(const Vec2& plan) const;
 
-  /// The place in plan of arc coordinates, which are those of the plan where elements stand parallel.
+  /// Returns the position in plan for arc coordinates. The two are equal if the elements are parallel to z.
   Vec2 plan_of(const Vec2& arc) const;
-  /// The other way round.
+  /// Returns the arc coordinates for a position in plan.
   Vec2 arc_of(const Vec2& plan) const;
-  /// Where the lines v = 0 and u = 0 end at the part's border.
+  /// Returns the arc coordinates at which the lines v = 0 and u = 0 cross the part's border.
   Rectangle arc_reach() const;
-  /// How an element stands at arc coordinates, and over a place in plan.
+  /// Return the frame at arc coordinates, and the frame at a position in plan.
   SubstrateFrame frame_at(const Vec2& arc) const { return frame_over(plan_of(arc)); }
   SubstrateFrame frame_over(const Vec2& plan) const;
 
-  /// Whether the substrate is the same, but for its height, at every u and at every v.
+  /// Return true if the substrate has the same shape, except for its height, at every u or at every v.
   bool repeats_along_u() const;
   bool repeats_along_v() const;
   bool is_upright() const { return substrate_.element_axes == ElementAxes::parallel; }
@@ -63,19 +66,21 @@ class SubstrateSurface {
   Sag sag_;
   Vec2 half_mm_;
   double size_mm_;
-  mutable std::unique_ptr<ArcTables> tables_;  ///< of formulas, from when they are needed: not to be shared by threads
+  /// for formulas only; created on first use, so not safe for several threads
+  mutable std::unique_ptr<ArcTables> tables_;
 };
 
-/// What a substrate is like over a part.
+/// Properties of a substrate over a part.
 struct SubstrateMeasures {
   double area_mm2 = 0.0;
-  double lowest_mm = 0.0;  ///< heights as the substrate itself has them
+  double lowest_mm = 0.0;  ///< heights of the substrate itself, before it is shifted to z = 0
   double highest_mm = 0.0;
   double steepest_deg = 0.0;
-  double least_radius_mm = 0.0;  ///< of curvature; infinite of a plane
+  double least_radius_mm = 0.0;  ///< minimum radius of curvature; infinite for a plane
 };
 
-/// Measured on a grid of 129 x 129 places. \throw InputError where the substrate is not finite
+/// Measures a substrate on a grid of 129 x 129 points.
+/// \throw InputError if the substrate is not finite
 SubstrateMeasures measure_substrate(const SubstrateSurface& substrate, const Vec2& half_mm);
 
 }  // namespace retrace::geometry
