@@ -1,6 +1,7 @@
 #pragma once
 
-// The form of a facet: a polynomial by which its surface departs from its plane, such as sink of a moulded part.
+// Form error of a facet: a polynomial that describes the deviation of its surface from a plane, such as sink marks of a
+// moulded part.
 
 #include <cstddef>
 #include <vector>
@@ -9,17 +10,19 @@
 
 namespace retrace::surface_models {
 
-/// Heights over a facet's plane, out of the body: the sum of c_ij x^i y^j, i + j <= kMostDegree, with x level and y
-/// down the facet from its middle. All lengths in mm.
+/// Height above a facet's plane, positive out of the body: the sum of c_ij x^i y^j with i + j <= kMostDegree. x is
+/// horizontal and y points down the facet. The origin is above the centroid of the facet. Lengths are in mm.
 class FacetForm {
  public:
   static constexpr int kMostDegree = 8;
 
-  /// Adds a term. \param coefficient in mm^(1 - i - j) \pre i, j >= 0, i + j <= kMostDegree
+  /// Adds a term.
+  /// \param coefficient in mm^(1 - i - j)
+  /// \pre i, j >= 0, i + j <= kMostDegree
   void add(int i, int j, double coefficient);
   void add(const FacetForm& other);
 
-  /// Whether it is the plane itself.
+  /// Returns true if there are no terms.
   bool is_plane() const { return coefficients_.empty(); }
   double height_mm(const geometry::Vec2& p) const;
   geometry::Vec2 slope(const geometry::Vec2& p) const;
@@ -27,7 +30,7 @@ class FacetForm {
  private:
   static constexpr std::size_t kSide = kMostDegree + 1;
 
-  std::vector<double> coefficients_;  ///< that of x^i y^j at kSide i + j; empty: all are 0
+  std::vector<double> coefficients_;  ///< coefficient of x^i y^j at index kSide i + j; empty if all are 0
   int degree_ = 0;
 };
 

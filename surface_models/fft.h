@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to surface_models/: discrete Fourier transforms of real fields, over FFTW, which no other file names.
+// Internal to surface_models/: discrete Fourier transforms of real fields. This is the only interface to FFTW.
 
 #include <complex>
 #include <cstddef>
@@ -9,12 +9,14 @@
 
 namespace retrace::surface_models {
 
-/// The smallest number from `least` on whose only prime factors are 2, 3, 5 and 7: lengths that transform quickly.
+/// Returns the smallest number >= `least` whose only prime factors are 2, 3, 5 and 7. Transforms of such lengths are
+/// fast.
 /// \pre least >= 1
 std::size_t fast_length(std::size_t least);
 
-/// A real field of rows x columns and its transform, F(j, k) = sum z(r, c) exp(-2 pi i (j r / rows + k c / columns)),
-/// of which the columns 0..columns / 2 are held. Plans are estimated, not timed, so the same field gives the same bits.
+/// Real field of rows x columns and its transform F(j, k) = sum z(r, c) exp(-2 pi i (j r / rows + k c / columns)). Only
+/// the columns 0..columns / 2 of the transform are stored. FFTW plans are estimated instead of timed, so that equal
+/// fields give bitwise equal results.
 class RealFft {
  public:
   RealFft(std::size_t rows, std::size_t columns);
@@ -26,13 +28,14 @@ class RealFft {
   std::size_t columns() const { return columns_; }
   std::size_t spectrum_columns() const { return columns_ / 2 + 1; }
 
-  std::span<double> field();                   ///< row by row; zero at first
-  std::span<std::complex<double>> spectrum();  ///< row by row, spectrum_columns() each
+  std::span<double> field();                   ///< row by row; initially zero
+  std::span<std::complex<double>> spectrum();  ///< row by row, with spectrum_columns() values each
   double& field(std::size_t column, std::size_t row) { return field()[row * columns_ + column]; }
 
-  /// Field to spectrum; keeps the field.
+  /// Computes the spectrum from the field. The field is preserved.
   void forward();
-  /// Spectrum to field, scaled so that it undoes forward(); the spectrum is lost.
+  /// Computes the field from the spectrum, scaled such that it is the inverse of forward(). The spectrum is
+  /// overwritten.
   void inverse();
 
  private:

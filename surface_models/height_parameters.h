@@ -1,6 +1,6 @@
 #pragma once
 
-// Height parameters of surface texture (Sa, Sq, Sz, Ssk, Sku), and mean and spread of repeated measurements.
+// Height parameters of surface texture (Sa, Sq, Sz, Ssk, Sku). Mean and standard deviation of repeated measurements.
 
 #include <cstddef>
 #include <span>
@@ -8,30 +8,32 @@
 
 namespace retrace::surface_models {
 
-/// Height parameters of ISO 25178-2 (of ISO 21920-2 for a profile), of deviations from the mean height.
+/// Height parameters of ISO 25178-2 (ISO 21920-2 for a profile), computed from deviations from the mean height.
 struct HeightParameters {
   double sa_nm = 0.0;  ///< arithmetical mean height
   double sq_nm = 0.0;  ///< root mean square height
   double sz_nm = 0.0;  ///< maximum height: highest minus lowest point
-  double ssk = 0.0;    ///< skewness; 0 for a surface without height, as for a symmetric one
-  double sku = 0.0;    ///< kurtosis; 3 for Gaussian heights, 0 for a surface without height
+  double ssk = 0.0;    ///< skewness; 0 for a symmetric surface and for a flat surface
+  double sku = 0.0;    ///< kurtosis; 3 for Gaussian heights, 0 for a flat surface
 };
 
-/// The parameters of the finite values of `heights_nm`. \pre there is one
+/// Returns the parameters of the finite values in `heights_nm`.
+/// \pre there is at least one finite value
 HeightParameters height_parameters(std::span<const double> heights_nm);
 
-/// The middle one of some values, of an even number the upper of two. \pre there is one
+/// Returns the median. For an even number of values, the larger of the two central values is returned.
+/// \pre there is at least one value
 double median(std::vector<double> values);
 
-/// Repeated measurements of one quantity.
+/// Statistics of repeated measurements of one quantity.
 struct Summary {
   std::size_t count = 0;
   double mean = 0.0;
-  double standard_deviation = 0.0;  ///< of one measurement (n - 1); 0 for a single one
+  double standard_deviation = 0.0;  ///< of a single measurement (n - 1); 0 if there is only one
   double median = 0.0;
 };
 
-/// Summary of the finite values; all zero if there is none.
+/// Returns the statistics of the finite values. All members are 0 if there are no finite values.
 Summary summarise(std::span<const double> values);
 
 }  // namespace retrace::surface_models

@@ -1,6 +1,6 @@
 #pragma once
 
-// Finds scratches and ridges in a measured surface: straight lines that stand out of its roughness.
+// Finds scratches and ridges in a measured surface: straight lines whose depth or height exceeds the roughness.
 
 #include <vector>
 
@@ -8,20 +8,24 @@
 
 namespace retrace::surface_models {
 
-/// A straight line on a surface that lies below (a scratch) or above (a ridge) what is beside it.
+/// Straight line on a surface that is below (scratch) or above (ridge) the surface next to it.
 struct Scratch {
-  Axis along = Axis::x;      ///< where it runs to
-  double position_um = 0.0;  ///< of its deepest line, across its direction, from the first row or column
-  double depth_nm = 0.0;     ///< mean depth of that line below those beside it; negative for a ridge
-  double width_um = 0.0;     ///< over which it stays beyond half of that depth
+  Axis along = Axis::x;  ///< direction of the line
+  /// position of its deepest grid line, measured across its direction from the first row or column
+  double position_um = 0.0;
+  double depth_nm = 0.0;  ///< mean depth of this grid line below the neighbouring surface; negative for a ridge
+  double width_um = 0.0;  ///< width over which the depth is more than half of depth_nm
 };
 
-/// Lines along `along` whose mean height lies off that of the lines beside it (the medians of both sides) by more than
-/// five robust standard deviations of all lines (1.4826 times the median deviation), and by half as much as its mean or
-/// more in at least three quarters of sixteen stretches of its length. In order of position. Regular marks of the feed
-/// raise that deviation and are no scratches: they are peaks of the spectrum. \param roughness a map without form and
-/// waviness; a profile has no lines \param beside_um how far the lines beside it reach to each side: wider scratches
-/// are not seen, longer waves do not matter
+/// Returns the grid lines along `along` that are scratches or ridges, in order of position. The height of a line is
+/// compared with the medians of the neighbouring lines on both sides. Two conditions must hold. The mean difference
+/// must exceed five robust standard deviations (1.4826 times the median absolute deviation) of all lines. Also, the
+/// difference must be at least half of its mean in at least three quarters of sixteen sections of the line.
+/// Regular feed marks increase the standard deviation and are therefore not reported as scratches. They appear as peaks
+/// of the spectrum.
+/// \param roughness a map without form and waviness; a profile has no lines
+/// \param beside_um range of neighbouring lines on each side; wider scratches are not detected, and longer waves have
+///     no effect
 std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, double beside_um);
 
 }  // namespace retrace::surface_models

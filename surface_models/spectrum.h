@@ -1,7 +1,6 @@
 #pragma once
 
-// Power spectral densities of height maps, along an axis or averaged over directions, and the periodic waves that stand
-// out of them.
+// Power spectral densities of height maps, along an axis or averaged over directions. Finds dominant periodic waves.
 
 #include <vector>
 
@@ -9,39 +8,41 @@
 
 namespace retrace::surface_models {
 
-/// Power spectral density over spatial frequency, 0 left out.
+/// Power spectral density over spatial frequency. The frequency 0 is omitted.
 struct Spectrum {
-  std::vector<double> frequency_per_mm;  ///< rising, evenly spaced
-  /// Along an axis: one-sided, nm^2 mm; its integral over frequency is Sq^2. Radial: nm^2 mm^2; its integral over the
-  /// plane of frequencies (2 pi f df) is Sq^2.
+  std::vector<double> frequency_per_mm;  ///< ascending, evenly spaced
+  /// Along an axis, the density is one-sided in nm^2 mm, and its integral over frequency is Sq^2. A radial density is
+  /// in nm^2 mm^2, and its integral over the plane of frequencies (2 pi f df) is Sq^2.
   std::vector<double> density;
 };
 
-/// The mean over all lines along `axis` of their spectra (Hann window, each line about its weighted mean; ISO 21920-2
-/// and Elson and Bennett, Applied Optics 34, 201, 1995). Missing points count as the mean and the density is scaled by
-/// the window that is left; lines with less than half of their points are left out. Empty if no line has 8 points.
+/// Returns the mean of the spectra of all lines along `axis`. A Hann window is applied, after the weighted mean of each
+/// line was subtracted (ISO 21920-2; Elson and Bennett, Applied Optics 34, 201, 1995). Missing points are replaced by
+/// the mean, and the density is scaled by the remaining window. Lines with less than half of their points are omitted.
+/// The result is empty if no line has 8 points.
 Spectrum line_spectrum(const HeightMap& map, Axis axis);
 
-/// The spectrum of the areal map (Hann window along both axes), averaged over directions: rings as wide as the finer
-/// frequency step. Empty for a profile and for maps of fewer than 8 points along an axis.
+/// Returns the spectrum of an areal map, averaged over directions, with a Hann window along both axes. The rings are as
+/// wide as the finer of the two frequency steps. The result is empty for a profile and for maps with fewer than 8
+/// points along an axis.
 Spectrum radial_spectrum(const HeightMap& map);
 
-/// A line of a spectrum that stands out of its surroundings.
+/// Peak of a spectrum above its surroundings.
 struct SpectralPeak {
   Axis axis = Axis::x;
   double frequency_per_mm = 0.0;
   double sq_nm = 0.0;  ///< root mean square height of the wave
 };
 
-/// Most peaks that dominant_peaks() returns.
+/// Maximum number of peaks that dominant_peaks() returns.
 inline constexpr std::size_t kMostPeaks = 8;
 
-/// The lines along x and y that rise above the densities around them (three times their median, and by 35 of their
-/// median deviations) and hold at least 1 % of the power of the strongest, strongest first; frequencies are
-/// interpolated between the bins.
+/// Returns the peaks along x and y, strongest first. The density of a peak must be above three times the median of the
+/// densities around it. It must also exceed this median by 35 median deviations, and have at least 1 % of the power of
+/// the strongest peak. Frequencies are interpolated between the bins.
 std::vector<SpectralPeak> dominant_peaks(const HeightMap& map);
 
-/// The same for one spectrum of line_spectrum().
+/// Returns the peaks of a single spectrum from line_spectrum(), by the criteria of dominant_peaks().
 std::vector<SpectralPeak> peaks_of(const Spectrum& spectrum, Axis axis);
 
 }  // namespace retrace::surface_models

@@ -1,7 +1,7 @@
 #pragma once
 
-// From a measured map to the four numbers of a design's [surface]: roughness with its correlation length, waviness with
-// its period.
+// Converts a measured map to the four texture parameters of a design's table [surface]: roughness and its correlation
+// length, waviness and its period.
 
 #include <optional>
 
@@ -10,19 +10,21 @@
 
 namespace retrace::surface_models {
 
-/// A surface as two independent textures: roughness with Gaussian autocorrelation, Sq^2 exp(-(distance / length)^2),
-/// and waviness with one period. This is what the table [surface] of a design file describes.
+/// Model of a surface as two independent textures: roughness with Gaussian autocorrelation, Sq^2 exp(-(distance /
+/// length)^2), and waviness with one period. The table [surface] of a design file describes this model.
 struct TextureModel {
-  double roughness_sq_nm = 0.0;  ///< 0 if no more is there than the filter leaves of the waviness
-  /// 1/e of the autocorrelation; nothing if it does not fall to that within a cut-off, or if the roughness is 0.
+  double roughness_sq_nm = 0.0;  ///< 0 if the roughness is not more than the waviness that the filter leaves in it
+  /// Distance at which the autocorrelation is 1/e. Not set if it does not fall to 1/e within a cut-off or if the
+  /// roughness is 0.
   std::optional<double> correlation_length_um;
-  double waviness_sq_nm = 0.0;               ///< 0 if no more is there than roughness explains
-  std::optional<double> waviness_length_um;  ///< period: 2 pi Sq over the rms slope; nothing without waviness
+  /// 0 if the waviness is not more than the roughness that the filter leaves in it
+  double waviness_sq_nm = 0.0;
+  std::optional<double> waviness_length_um;  ///< period: 2 pi Sq over the rms slope; not set without waviness
 };
 
-/// The model of a levelled map that was split at `cutoff_um`. The filter leaves long roughness in the waviness and some
-/// waviness in the roughness; both shares are known in closed form for the model and are put back where they belong, so
-/// the result does not depend on the cut-off as Sq of either part does (docs/theory/metrology.md).
+/// Returns the model of a levelled map that was split at `cutoff_um`. The filter leaves long roughness in the waviness
+/// and some waviness in the roughness. For this model, both fractions are known in closed form and are corrected. The
+/// result therefore does not depend on the cut-off, in contrast to Sq of the two maps (docs/theory/metrology.md).
 TextureModel texture_model(const Split& split, double cutoff_um);
 
 }  // namespace retrace::surface_models

@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to surface_models/io/: little-endian values from bytes, whatever the byte order of this machine.
+// Internal to surface_models/io/: reads little-endian values from bytes, independent of the byte order of the machine.
 
 #include <fmt/format.h>
 
@@ -13,10 +13,10 @@
 
 namespace retrace::surface_models {
 
-/// Reads from the start of `bytes` on. Every function throws InputError where the bytes end too early.
+/// Reads values from `bytes` in order. Each function throws InputError if there are not enough bytes.
 class ByteReader {
  public:
-  /// \param start where `bytes` begin in the file, for messages
+  /// \param start offset of `bytes` in the file, for messages
   ByteReader(const Source& source, std::string_view bytes, std::size_t start)
       : source_(&source), rest_(bytes), at_(start) {}
 
@@ -37,14 +37,14 @@ class ByteReader {
   std::uint64_t u64() { return unsigned_of(take(8)); }
   double f32() { return static_cast<double>(std::bit_cast<float>(u32())); }
   double f64() { return std::bit_cast<double>(u64()); }
-  /// A text that ends with a zero byte.
+  /// Reads a text that ends with a zero byte.
   std::string_view text() {
     const std::size_t end = rest_.find('\0');
     if (end == std::string_view::npos)
       source_->fail(0, fmt::format("the file is cut short: a text at byte {} has no end", at_));
     return take(end + 1).substr(0, end);
   }
-  /// A reader of the next `count` bytes, which this one passes over.
+  /// Returns a reader of the next `count` bytes. This reader skips them.
   ByteReader part(std::uint64_t count) {
     const std::size_t start = at_;
     return {*source_, take(count), start};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads height maps of instruments: text grids and point lists, SDF, and Gwyddion's GSF and GWY.
+// Reads height maps of instruments: text grids, lists of points, SDF, and the Gwyddion formats GSF and GWY.
 
 #include <cstddef>
 #include <filesystem>
@@ -14,14 +14,15 @@
 
 namespace retrace::surface_models {
 
-/// What the user says of a file; it goes before what the file itself says.
+/// Information from the user about a file. It takes precedence over the contents of the file.
 struct HeightMapOptions {
-  std::optional<double> x_pixel_um;         ///< distance of neighbours along x
-  std::optional<double> y_pixel_um;         ///< and along y
+  std::optional<double> x_pixel_um;         ///< distance between neighbours along x
+  std::optional<double> y_pixel_um;         ///< distance between neighbours along y
   std::optional<std::string> height_unit;   ///< m, mm, um, nm or pm
-  std::optional<std::string> lateral_unit;  ///< the same words, for files that give lengths without a unit
-  std::optional<std::size_t> channel;       ///< of a Gwyddion file; default: the first
-  bool can_be_given = true;                 ///< whether messages may ask for these as options of retrace metrology
+  std::optional<std::string> lateral_unit;  ///< m, mm, um, nm or pm; for files that contain lengths without a unit
+  std::optional<std::size_t> channel;       ///< channel of a Gwyddion file; default: the first
+  /// true if messages may suggest the options of `retrace metrology` for missing values
+  bool can_be_given = true;
 };
 
 struct HeightMapFile {
@@ -30,17 +31,18 @@ struct HeightMapFile {
   Warnings warnings;
 };
 
-/// Most points of a map: 5000 x 5000. Larger files are refused.
+/// Maximum number of points in a map: 5000 x 5000. Larger files are refused.
 inline constexpr std::size_t kMostPoints = 25'000'000;
-/// Fewest points along x.
+/// Minimum number of points along x.
 inline constexpr std::size_t kLeastColumns = 8;
 
-/// Reads a height map or profile: text grids and point lists, SDF (ISO 25178-71, ASCII), Gwyddion's GSF and GWY. The
-/// format is told from the content, but for `.xyz`, which makes three columns a list of points.
-/// \throw InputError naming file, line where it is text, and what is allowed
+/// Reads a height map or profile: text grids, lists of points, SDF (ISO 25178-71, ASCII), and the Gwyddion formats GSF
+/// and GWY. The format is detected from the content. There is one exception: in a `.xyz` file, three columns are a list
+/// of points.
+/// \throw InputError with the file, the line (in text files) and the allowed values
 HeightMapFile read_height_map(const std::filesystem::path& file, const HeightMapOptions& options);
 
-/// The same for the content of a file called `name`.
+/// Reads a height map from the content of a file with the name `name`.
 HeightMapFile parse_height_map(std::string_view content, const std::string& name, const HeightMapOptions& options);
 
 }  // namespace retrace::surface_models

@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to surface_models/io/: what the readers of single formats share.
+// Internal to surface_models/io/: types and functions that the readers of all formats use.
 
 #include <cstddef>
 #include <optional>
@@ -17,17 +17,18 @@ namespace retrace::surface_models {
 
 inline constexpr double kNmPerUm = 1e3;
 
-/// A file that is read.
+/// Content and name of a file that is read.
 struct Source {
   std::string_view content;
   const std::string& name;
   const HeightMapOptions& options;
 
-  /// \param line 0 where lines mean nothing
+  /// \param line number of the line; 0 for formats without lines
   [[noreturn]] void fail(int line, std::string_view text) const;
 };
 
-/// What a file says. Lengths that it gives without a unit are in the unit of `HeightMapOptions::lateral_unit`.
+/// Content of a file before its units are resolved. Lengths without a unit are in the unit of
+/// `HeightMapOptions::lateral_unit`.
 struct RawMap {
   std::string format;
   std::size_t columns = 0;
@@ -39,20 +40,22 @@ struct RawMap {
   Warnings warnings;
 };
 
-/// How many nanometres a unit has: m, mm, um (also with the Greek letter), nm, pm. Nothing for another word.
+/// Returns the number of nanometres in a unit: m, mm, um (also with the Greek letter), nm, pm. Returns nothing for
+/// another word.
 std::optional<double> nm_per(std::string_view unit);
-/// The units as messages name them.
+/// Names of the units for messages.
 inline constexpr std::string_view kUnits = "m, mm, um, nm or pm";
 
-/// Refuses sizes that no map has. \param line where they are given, 0 if unknown
+/// Refuses impossible numbers of columns and rows.
+/// \param line line of the file that contains them, or 0 if unknown
 void check_size(const Source& source, int line, double columns, double rows);
 
-/// Takes a text line by line, without its end (LF or CR LF).
+/// Reads a text line by line. The end of a line (LF or CR LF) is removed.
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}
   std::optional<std::string_view> next();
-  int number() const { return number_; }  ///< of the line that next() gave last
+  int number() const { return number_; }  ///< number of the line that next() returned last
   std::string_view rest() const { return rest_; }
 
  private:

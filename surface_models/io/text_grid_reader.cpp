@@ -1,7 +1,7 @@
-// Heights as text: a matrix, one row a line, or a list of points. Header lines "key = value", "key: value" or "key
-// value" may stand before, with or without a # in front, among them those of Gwyddion's text export ("# Width: 1.0 mm")
-// and of ESRI ASCII grids (ncols, nrows, cellsize, xllcorner, NODATA_value), whose first row has the largest y.
-// docs/commands.md lists them.
+// Reads heights from text files: a matrix with one row per line, or a list of points. Header lines "key = value", "key:
+// value" or "key value" may precede the heights, with or without # in front. Headers of two other programs are
+// accepted: those of Gwyddion's text export ("# Width: 1.0 mm") and those of ESRI ASCII grids (ncols, nrows, cellsize,
+// xllcorner, NODATA_value), whose first row has the largest y. docs/commands.md lists all keys.
 
 #include <fmt/format.h>
 
@@ -14,18 +14,18 @@
 namespace retrace::surface_models {
 namespace {
 
-/// What the columns of the text are.
+/// Meaning of the columns of the text.
 enum class Columns { matrix, xyz, xz };
 
-/// What the header says.
+/// Values of the header.
 struct Header {
   std::optional<double> x_pixel_um, y_pixel_um;
-  std::optional<double> cell_size;            ///< in the lateral unit
-  std::optional<double> width_um, height_um;  ///< of the whole map
+  std::optional<double> cell_size;            ///< distance between neighbours, in the lateral unit
+  std::optional<double> width_um, height_um;  ///< size of the whole map
   std::optional<double> height_unit_nm, lateral_unit_nm;
   std::optional<double> columns, rows, no_data;
   Columns layout = Columns::matrix;
-  bool is_esri = false;  ///< True if a key of ESRI ASCII grids is given, whose first row has the largest y.
+  bool is_esri = false;  ///< true if a key of ESRI ASCII grids is given; their first row has the largest y
 };
 
 bool is_missing_word(std::string_view word) {
@@ -33,12 +33,12 @@ bool is_missing_word(std::string_view word) {
   return word.empty() || std::find(words.begin(), words.end(), lower_case(word)) != words.end();
 }
 
-/// The character between values of a line: a semicolon, else a comma, else blanks.
+/// Returns the separator of a line: a semicolon if there is one, otherwise a comma, otherwise blanks.
 char separator_of(std::string_view line) {
   return line.find(';') != std::string_view::npos ? ';' : line.find(',') != std::string_view::npos ? ',' : ' ';
 }
 
-/// Gives `use` the values of a line one after another; an empty one stands between two separators.
+/// Calls `use` for each value of a line. Between two consecutive separators there is an empty value.
 template <class Use>
 void for_each_value(std::string_view line, Use use) {
   const char separator = separator_of(line);
@@ -82,7 +82,7 @@ class TextReader {
   }
 
  private:
-  /// Words that begin with a letter and stand for no missing height.
+  /// Returns true if a line begins with a letter and its first word is not a mark for a missing height.
   static bool is_header_line(std::string_view text) {
     const char c = text.front();
     if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'))) return false;
@@ -134,7 +134,7 @@ class TextReader {
     } else if (key == "columns") {
       header_.layout = layout(value);
     } else {
-      // The position of the map's corner has no effect.
+      // The position of the corner is ignored.
       const bool is_corner = key == "xllcorner" || key == "yllcorner" || key == "xllcenter" || key == "yllcenter";
       header_.is_esri |= is_corner;
       return is_corner;
@@ -157,7 +157,7 @@ class TextReader {
     if (!nm) source_.fail(lines_.number(), fmt::format("{}: must be {}, got {}", key, kUnits, in_quotes(value)));
     return *nm;
   }
-  /// A number and a unit, such as "1.5 mm".
+  /// Converts a number with a unit, such as "1.5 mm".
   double length_um(const std::string& key, std::string_view value) const {
     const std::size_t blank = value.find(' ');
     if (blank == std::string_view::npos)
@@ -207,7 +207,7 @@ class TextReader {
   }
 
   RawMap matrix() {
-    // Some programs end every line with a separator.
+    // Some programs write a separator at the end of each line, which causes an empty last column.
     if (all_end_empty_ && columns_ > 1) drop_last_column();
     if ((header_.columns && *header_.columns != static_cast<double>(columns_)) ||
         (header_.rows && *header_.rows != static_cast<double>(rows_)))
@@ -251,7 +251,7 @@ class TextReader {
 
   // ---- lists of points
 
-  /// The evenly spaced values of a coordinate.
+  /// Evenly spaced values of a coordinate.
   struct Grid {
     double first = 0.0;
     double step = 0.0;
@@ -271,7 +271,7 @@ class TextReader {
     std::sort(all.begin(), all.end());
     const double range = all.back() - all.front();
     if (!std::isfinite(range)) source_.fail(0, fmt::format("the values of {} spread too far", name));
-    // Written values differ in their last digits from row to row.
+    // The last digits of a coordinate may differ from row to row because of rounding.
     const double tolerance = 1e-7 * range + 1e-12 * std::max(std::abs(all.front()), std::abs(all.back()));
     std::vector<double> distinct = {all.front()};
     for (const double value : all)
@@ -324,7 +324,7 @@ class TextReader {
   std::vector<double> values_;
   std::size_t columns_ = 0;
   std::size_t rows_ = 0;
-  int first_line_ = 0;  ///< of the heights
+  int first_line_ = 0;  ///< first line with heights
   int last_line_ = 0;
   bool all_end_empty_ = true;
 };
