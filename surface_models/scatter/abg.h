@@ -1,6 +1,6 @@
 #pragma once
 
-// The ABG model of scatter: a BSDF fitted to measurements, where nothing is known of the surface itself.
+// ABG model of scatter: a BSDF that is fitted to measurements. It is used if the surface itself is not known.
 
 #include <string>
 #include <vector>
@@ -11,27 +11,27 @@
 
 namespace retrace::surface_models {
 
-/// The three-parameter fit to measured scatter, BSDF = A / (B + |dbeta|^g) per sr, with dbeta the difference of
-/// direction cosines from the specular direction (Pfisterer, Optics and Photonics News 22(10), 16 (2011)). It is taken
-/// relative to the lobe's Fresnel power, alike in reflection and transmission.
+/// Fit of measured scatter with three parameters: BSDF = A / (B + |dbeta|^g) per sr. dbeta is the difference of
+/// direction cosines from the specular direction (Pfisterer, Optics and Photonics News 22(10), 16 (2011)). The BSDF is
+/// relative to the Fresnel power of the lobe. It is the same function in reflection and transmission.
 ///
-/// The specular light is what the BSDF leaves; scatter that would go evanescent stays specular. Weights are 1 and
-/// energy is conserved exactly. Reciprocal in reflection.
+/// Light that is not scattered is specular. Scatter into evanescent directions is added to the specular light. Weights
+/// are 1, and energy is conserved exactly. The model is reciprocal in reflection.
 class Abg {
  public:
-  /// \param a > 0, per sr, small enough that no more than all light scatters: pi * 2 * integral of r A / (B + r^g) over
-  ///        r = |dbeta| from 0 to 2 is at most 1
+  /// \param a > 0, per sr. The total scattered fraction, pi * 2 * integral of r A / (B + r^g) over r = |dbeta| from 0
+  ///     to 2, must be at most 1
   /// \param b > 0
   /// \param g > 0
-  /// \throw InputError otherwise
+  /// \throw InputError if a parameter is out of range
   Abg(double a, double b, double g);
 
   Facet sample_facet(const ScatterEvent&, RandomStream&) const { return {}; }
-  /// By quadrature: for tests and tables, not for every ray.
+  /// Computed by quadrature. For tests and tables, but too slow for each ray.
   double specular_share(const ScatterEvent& event, const Facet&, Lobe lobe) const;
-  /// Of all directions of incidence.
+  /// Returns the minimum over all directions of incidence.
   double least_specular_share() const { return 1.0 - total_; }
-  /// Draws the direction of light that scatters; nothing for light that is specular.
+  /// Draws the direction of scattered light. Returns nothing if the light is specular.
   std::optional<Vec2> sample_scattered(const ScatterEvent& event, const Facet&, Lobe lobe, RandomStream& random) const;
   double scattered_density(const ScatterEvent& event, const Facet&, Lobe lobe, const Vec2& beta) const;
   double unmasked_share(const Vec3&) const { return 1.0; }
@@ -43,7 +43,7 @@ class Abg {
   double tail_integral(double from, double to) const;
 
   double a_, b_, g_;
-  double shoulder_;     ///< |dbeta| where both terms of the denominator are alike, at most 2
+  double shoulder_;     ///< |dbeta| at which the two terms of the denominator are equal, at most 2
   double total_ = 0.0;  ///< integral of the BSDF over |dbeta| < 2
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Light that a slightly rough interface between dielectrics scatters to both sides, by perturbation theory to first
-// order in its heights. Theory and sources: docs/theory/scatter.md, "First order at a dielectric".
+// Light that a slightly rough interface between dielectrics scatters to both sides, by first-order perturbation theory
+// in the heights. Theory and sources: docs/theory/scatter.md, "First order at a dielectric".
 
 #include <Eigen/Core>
 #include <array>
@@ -12,39 +12,45 @@
 
 namespace retrace::surface_models {
 
-/// Amplitudes or coherency of two components of the field, s before p.
+/// Amplitudes or coherency matrix of two field components, s before p.
 using Polarisation2 = Eigen::Matrix2cd;
 
-/// A plane interface between two dielectrics, one of whose sides light comes from. Wave vectors along the interface are
-/// in units of that of vacuum: index times sine.
+/// Plane interface between two dielectrics, for light from one of the sides. Wave vectors along the interface are in
+/// units of the vacuum wave number: index times sine.
 class DielectricInterface {
  public:
-  /// \param index_from of the side the light comes from, > 0; \param index_to of the other, > 0
+  /// \param index_from index on the side of the incident light, > 0
+  /// \param index_to index on the other side, > 0
   DielectricInterface(double index_from, double index_to);
 
-  /// What a wave in the interface feels of a field of unit amplitude: the components that are continuous there, of the
-  /// electric field along the interface (s and p) and of the displacement across it over both indices.
+  /// Field at the interface for light of unit amplitude. The components are those that are continuous across the
+  /// interface: the tangential electric field (s and p), and the normal displacement divided by both indices.
   struct Vertex {
     std::complex<double> s, p, across;
   };
-  /// Field at the interface of light that arrives with the wave vector `k` along it. \param k 0 <= k < index_from
+  /// Returns the field at the interface for incident light whose wave vector along the interface is `k`.
+  /// \param k 0 <= k < index_from
   Vertex arriving(double k) const;
-  /// Field at the interface of the reversed light of what leaves on the side of the lobe. \param k less than its index
+  /// Returns the field at the interface for the reversed light of a scattered wave on the side of the lobe.
+  /// \param k less than the index on this side
   Vertex leaving(double k, Lobe lobe) const;
 
-  /// Scattered amplitudes per amplitude that comes in: with F, a height spectrum N of variance s^2 and the coherency J
-  /// of incident light of power 1, the power that scatters into d2k is (2 pi s / w)^2 trace(F J F^+) N(k_out - k_in)
-  /// d2k. Rows: s and p of what leaves, with s = k x z over |k| and p = direction x s; columns those of what arrives.
-  /// \param along direction of the wave vector that arrives, a unit vector, also where k_in is 0
+  /// Returns the matrix F of scattered amplitudes per incident amplitude. Let N be a height spectrum of variance s^2,
+  /// and J the coherency of incident light of power 1. The power that is scattered into d2k is then (2 pi s / w)^2
+  /// trace(F J F^+) N(k_out - k_in) d2k.
+  /// The rows of F are s and p of the scattered light, where s = k x z / |k| and p = direction x s. The columns are s
+  /// and p of the incident light.
+  /// \param along unit vector of the incident wave vector along the interface, also if k_in is 0
   Polarisation2 amplitudes(double k_in, const Vec2& along, const Vec2& k_out, Lobe lobe) const;
 
-  /// Upper bound of trace(F J F^+) over all directions on both sides, added where there are two.
+  /// Returns an upper bound of trace(F J F^+) over all directions on both sides. If there are scattered waves on both
+  /// sides, the bounds of the sides are added.
   double bound(double k_in, const Polarisation2& coherency) const;
 
   double index_from() const { return index_from_; }
   double index_to() const { return index_to_; }
   double index_of(Lobe lobe) const { return lobe == Lobe::reflection ? index_from_ : index_to_; }
-  /// Component of the wave vector across the interface, on the side of the lobe.
+  /// Returns the component of the wave vector normal to the interface, on the side of the lobe.
   std::complex<double> across(double k, Lobe lobe) const;
 
  private:
@@ -52,14 +58,15 @@ class DielectricInterface {
   double contrast_;  ///< index_to^2 - index_from^2
 };
 
-/// Gaussian roughness of one correlation length on such an interface: how much it scatters of light of power 1, summed
-/// over both sides, by angle of incidence. A table of integrals, made once.
+/// Fraction of the power that an interface with Gaussian roughness scatters, summed over both sides, as a function of
+/// the angle of incidence. The integrals are tabulated in the constructor.
 class FirstOrderShare {
  public:
-  /// \param correlation_length where the autocorrelation is 1/e, in units of w / (2 pi), > 0
+  /// \param correlation_length distance at which the autocorrelation is 1/e, in units of w / (2 pi), > 0
   FirstOrderShare(const DielectricInterface& interface, double correlation_length);
 
-  /// Of s and of p, in units of (2 pi Sq / w)^2. \param k_in index times sine of the incidence
+  /// Returns the fractions for s and p, in units of (2 pi Sq / w)^2.
+  /// \param k_in index times sine of the angle of incidence
   std::array<double, 2> at(double k_in) const;
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
-// Scatter from a measured height map: by diffraction at its own spectrum, or by its slopes where it is high against the
-// wavelength.
+// Scatter from a measured height map. The map scatters by diffraction at its spectrum, or by its slopes if its heights
+// are large compared with the wavelength.
 
 #include <memory>
 #include <string>
@@ -13,26 +13,28 @@
 
 namespace retrace::surface_models {
 
-/// Most points of a map that scatters light: 2048 x 2048. Its spectrum takes about 100 bytes a point.
+/// Maximum number of points of a map that scatters light: 2048 x 2048. The spectrum needs about 100 bytes per point.
 inline constexpr std::size_t kMostScatterPoints = std::size_t{1} << 22;
 
-/// Scatter from a measured surface, taken as a sample of a larger one: statistics of the map, not its place on the
-/// part.
+/// Scatter from a measured surface. The map is a sample of a larger surface: only its statistics are used, not its
+/// position on the part.
 ///
-/// - The specular share is that of Gaussian heights of the map's Sq, exp(-(4 pi n s cos t / w)^2) in reflection; a
-///   warning says when the heights are not Gaussian.
-/// - Where that phase squared is below kSlopePhase2 the rest is diffracted (PhaseLobe): once by the map's own PSD,
-///   direction by direction; several times by a Gaussian of the same covariance (central limit theorem).
-/// - From there on every place of the map is a facet: one is drawn among those that face the light, in proportion to
-///   the cross-section it shows.
+/// - The specular fraction is that of Gaussian heights with the map's Sq, exp(-(4 pi n s cos t / w)^2) in reflection.
+/// There is a warning if the heights are not Gaussian.
+/// - If the squared phase is below kSlopePhase2, the rest of the light is diffracted (PhaseLobe). Light that is
+/// diffracted one time follows the map's own PSD (power spectral density). Light that is diffracted several times
+/// follows a Gaussian with the same covariance (central limit theorem).
+/// - Otherwise, each point of the map acts as a facet. A facet that faces the light is drawn with a probability
+/// proportional to its projected area.
 ///
-/// The map is levelled first. Its x and y are those of the event. Weights are 1 where light leaves to the right side.
+/// The map is levelled first. Its x and y axes are those of the event. Weights are 1 if light leaves to the correct
+/// side.
 class HeightMapScatter {
  public:
-  /// \param map areal, at least 8 x 8 and at most kMostScatterPoints points, of an rms slope up to kSlopeOfNoModel;
-  ///        missing points count as the mean
-  /// \param wavelength_nm slopes of facets are taken over at least this distance, > 0
-  /// \throw InputError
+  /// \param map areal map with at least 8 x 8 and at most kMostScatterPoints points, and an rms slope of at most
+  ///     kSlopeOfNoModel; missing points are replaced by the mean
+  /// \param wavelength_nm minimum distance over which slopes of facets are computed, > 0
+  /// \throw InputError if the map is outside these limits
   HeightMapScatter(const HeightMap& map, double wavelength_nm);
 
   double sq_nm() const;
@@ -40,13 +42,13 @@ class HeightMapScatter {
   /// \param event in the frame of the mean surface
   Facet sample_facet(const ScatterEvent& event, RandomStream& random) const;
   double specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
-  /// One less the same, to full precision where that is small.
+  /// Returns 1 - specular_share(), with full precision even if the result is small.
   double scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
-  /// Draws the direction of light, given that it scatters. Nothing if no direction can be found.
+  /// Draws the direction of light, given that it is scattered. Returns nothing if no direction is found.
   std::optional<Vec2> draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                      RandomStream& random) const;
   double scattered_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;
-  /// The density before scaling to the scattered share.
+  /// Returns the density before it is scaled to the scattered fraction.
   double unscaled_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;
   double unmasked_share(const Vec3&) const { return 1.0; }
   Warnings warnings(double index, double wavelength_nm) const;
@@ -54,7 +56,7 @@ class HeightMapScatter {
  private:
   struct Texture;
   struct Band;
-  std::shared_ptr<const Texture> texture_;  ///< never changed; copies of the model share it
+  std::shared_ptr<const Texture> texture_;  ///< constant; shared by copies of the model
 };
 
 }  // namespace retrace::surface_models

@@ -1,6 +1,6 @@
 #pragma once
 
-// Scatter from surfaces that are rough on a scale far above the wavelength, by geometrical optics of tilted
+// Scatter from surfaces whose roughness is coarse compared with the wavelength, by geometrical optics of tilted
 // microfacets.
 
 #include <string>
@@ -11,17 +11,19 @@
 
 namespace retrace::surface_models {
 
-/// Facets that are large against the wavelength and reflect and refract like planes: Walter, Marschner, Li, Torrance,
-/// EGSR 2007, with Smith's masking for each direction apart.
+/// Facets that are large compared with the wavelength and that reflect and refract like planes (Walter, Marschner, Li,
+/// Torrance, EGSR 2007). Smith's masking is applied to each direction separately.
 ///
-/// Light that a facet sends where other facets hide it, or to the wrong side of the mean surface, is lost: the weight
-/// is the visible share of the outgoing direction, energy <= 1. Reciprocal, with n^2 in transmission.
+/// Light that is masked by other facets or leaves to the wrong side of the mean surface is lost. The weight is the
+/// visible fraction for the outgoing direction, so the energy is at most 1. The model is reciprocal, with the factor
+/// n^2 in transmission.
 class Microfacet {
  public:
-  /// \param rms_slope areal, as waviness_rms_slope() gives it; >= 0
-  /// \throw InputError
+  /// \param rms_slope areal rms slope, as waviness_rms_slope() returns it; >= 0
+  /// \throw InputError if the slope is out of range
   Microfacet(SlopeShape shape, double rms_slope);
-  /// Facets of waves with this rms height and period. \throw InputError
+  /// Returns a model for waves with this rms height and period.
+  /// \throw InputError if the slope is out of range
   static Microfacet of_waviness(SlopeShape shape, double waviness_sq_nm, double waviness_length_um);
 
   Facet sample_facet(const ScatterEvent& event, RandomStream& random) const;
@@ -31,19 +33,19 @@ class Microfacet {
   double unmasked_share(const Vec3& direction) const { return slopes_.visible_share(direction); }
   Warnings warnings(double index, double wavelength_nm) const;
 
-  /// Normal of the facets that send the event's light to `direction`, if any do.
+  /// Returns the normal of facets that send the event's light to `direction`, or nothing if there is none.
   std::optional<Vec3> facet_towards(const ScatterEvent& event, Lobe lobe, const Vec3& direction) const;
-  /// BSDF per sr over all facets, without the Fresnel factor at facet_towards().
+  /// Returns the BSDF per sr over all facets, without the Fresnel factor at facet_towards().
   double bsdf_per_sr(const ScatterEvent& event, Lobe lobe, const Vec3& direction) const;
-  /// Density of directions that facets drawn by sample_facet() give.
+  /// Returns the density of directions when facets are drawn by sample_facet().
   double pdf_per_sr(const ScatterEvent& event, Lobe lobe, const Vec3& direction) const;
 
  private:
-  /// Solid angle of normals over that of directions.
+  /// Returns the ratio of the solid angle of normals to that of directions.
   double jacobian(const ScatterEvent& event, Lobe lobe, const Vec3& direction, const Vec3& normal) const;
 
   SlopeDistribution slopes_;
-  double waviness_sq_nm_ = 0.0;  ///< 0: not known, and no warning of waves too low for facets
+  double waviness_sq_nm_ = 0.0;  ///< 0 if unknown; there is then no warning about waves that are too low for facets
 };
 
 }  // namespace retrace::surface_models

@@ -1,35 +1,38 @@
 #pragma once
 
-// Closed forms that link rms height and scatter: phase of the reflected wave, specular share, total integrated scatter.
+// Closed-form relations between rms height and scatter: phase of the reflected wave, specular fraction, total
+// integrated scatter.
 
 #include <cmath>
 #include <numbers>
 
 namespace retrace::surface_models {
 
-/// Rms phase that a surface of rms height `sq_nm` puts on reflected light: 4 pi n s cos t / w (Bennett and Porteus, J.
-/// Opt. Soc. Am. 51, 123 (1961); Davies 1954). `index` and `cos_incidence` of the side the light is on, `wavelength_nm`
-/// in vacuum.
+/// Returns the rms phase of light reflected by a surface with the rms height `sq_nm`: 4 pi n s cos t / w (Bennett and
+/// Porteus, J. Opt. Soc. Am. 51, 123 (1961); Davies 1954).
+/// \param index index on the side of the light
+/// \param cos_incidence on the side of the light
+/// \param wavelength_nm in vacuum
 inline double reflection_phase_rad(double sq_nm, double index, double cos_incidence, double wavelength_nm) {
   return 4.0 * std::numbers::pi * index * sq_nm * cos_incidence / wavelength_nm;
 }
 
-/// Share of a lobe's power that stays specular when heights are Gaussian.
+/// Returns the specular fraction of a lobe's power for Gaussian heights.
 inline double specular_share_of_phase(double phase_rad) {
   return std::exp(-phase_rad * phase_rad);
 }
 
-/// Total integrated scatter: the rest.
+/// Returns the total integrated scatter: 1 minus the specular fraction.
 inline double scattered_share_of_phase(double phase_rad) {
   return -std::expm1(-phase_rad * phase_rad);
 }
 
-/// Sa, the mean of |height|, of Gaussian heights of standard deviation `sq`, same unit.
+/// Returns Sa, the mean of |height|, of Gaussian heights with the standard deviation `sq`, in the same unit.
 inline double gaussian_sa(double sq) {
   return std::sqrt(2.0 / std::numbers::pi) * sq;
 }
 
-/// From this square of the phase on, waves of a surface act by their slopes; below, by diffraction.
+/// Squared phase at and above which waves of a surface act by their slopes. Below this value they act by diffraction.
 inline constexpr double kSlopePhase2 = 10.0;
 
 }  // namespace retrace::surface_models

@@ -1,7 +1,7 @@
 #pragma once
 
-// The scattered lobe of generalized Harvey-Shack theory as a sum over orders of diffraction: what harvey_shack.h and
-// height_map_scatter.h have in common.
+// Scattered lobe of the generalized Harvey-Shack theory as a sum over orders of diffraction. Used by harvey_shack.h and
+// height_map_scatter.h.
 
 #include <functional>
 #include <optional>
@@ -11,21 +11,24 @@
 
 namespace retrace::surface_models {
 
-/// Logarithm of order!, from a table for the orders that matter. \pre order >= 0
+/// Returns the logarithm of order!, from a table for common orders.
+/// \pre order >= 0
 double log_factorial(int order);
 
-/// The scattered light about one specular direction in the generalized Harvey-Shack theory (Krywonos, Harvey, Choi, J.
-/// Opt. Soc. Am. A 28, 1121 (2011); two media: Harvey, Choi et al., Proc. SPIE 7794 (2010)).
+/// Scattered light about one specular direction in the generalized Harvey-Shack theory (Krywonos, Harvey, Choi, J. Opt.
+/// Soc. Am. A 28, 1121 (2011); two media: Harvey, Choi et al., Proc. SPIE 7794 (2010)).
 ///
-/// Light that leaves with cosine c carries the random phase of variance a = (2 pi s / w)^2 (n1 c1 + n1 c)^2, or
-/// (n1 c1 - n2 c)^2 in transmission. Expanding the surface transfer function exp(-a (1 - C / s^2)) in powers of a says
-/// that it has been diffracted m times, with Poisson's probability exp(-a) a^m / m!, each time by a spatial frequency
-/// drawn from the normalised PSD: in direction cosines, by w / n times that frequency. m = 0 is the specular light.
+/// Light that leaves with the cosine c has a random phase of the variance a = (2 pi s / w)^2 (n1 c1 + n1 c)^2 in
+/// reflection, or with (n1 c1 - n2 c)^2 in transmission. The surface transfer function exp(-a (1 - C / s^2)) is
+/// expanded in powers of a.
+/// Term m is light that was diffracted m times. Its probability is exp(-a) a^m / m! (Poisson). Each diffraction shifts
+/// the direction cosines by w / n times a spatial frequency, which is drawn from the normalised PSD. The term m = 0 is
+/// the specular light.
 class PhaseLobe {
  public:
   /// \param event in the frame of the facet
   /// \param sq_nm rms height of the spatial frequencies that scatter
-  /// \return nothing where the lobe has no specular direction (total reflection)
+  /// \return nothing if the lobe has no specular direction (total reflection)
   static std::optional<PhaseLobe> make(const ScatterEvent& event, Lobe lobe, double sq_nm);
 
   double specular_share() const;
@@ -33,9 +36,9 @@ class PhaseLobe {
   const Vec3& specular() const { return specular_; }
   Vec2 specular_beta() const { return specular_.head<2>(); }
 
-  /// Draws the direction cosines of light that has been diffracted `first` times or more. `diffract(m, random)` draws
-  /// the sum of m shifts of direction cosines. Exact: proposals that go evanescent are drawn again, so that those that
-  /// do not carry all.
+  /// Draws the direction cosines of light that was diffracted at least `first` times. Evanescent proposals are drawn
+  /// again, so that the propagating directions carry all power.
+  /// \param diffract diffract(m, random) draws the sum of m shifts of the direction cosines
   template <class Diffract>
   std::optional<Vec2> sample_scattered(RandomStream& random, Diffract&& diffract, int first = 1) const {
     const double total = envelope_sum(first);
@@ -48,8 +51,8 @@ class PhaseLobe {
     return std::nullopt;
   }
 
-  /// Sum over m >= `first` of the probability of m at `beta` times `shift_density(m)`, the density of the sum of m
-  /// shifts there.
+  /// Returns the sum over m >= `first` of the probability of order m at `beta` times `shift_density(m)`, the density of
+  /// the sum of m shifts.
   template <class ShiftDensity>
   double density(const Vec2& beta, int first, ShiftDensity&& shift_density) const {
     const double a = variance(beta);
@@ -63,18 +66,18 @@ class PhaseLobe {
     return sum;
   }
 
-  /// Variance of the phase of light that leaves with direction cosines `beta`.
+  /// Returns the variance of the phase of light that leaves with the direction cosines `beta`.
   double variance(const Vec2& beta) const;
-  /// Poisson's probability.
+  /// Returns the probability of an order (Poisson).
   static double order_probability(int order, double variance);
 
  private:
   static constexpr int kMaxTries = 1000000;
 
-  /// Orders outside these two have probabilities that add less than 1e-16.
+  /// First and last order of the sum. The probabilities of all other orders add to less than 1e-16.
   static int first_order(double variance);
   static int last_order(double variance);
-  /// Upper bound of the probability of `order` over all directions.
+  /// Returns an upper bound of the probability of `order` over all directions.
   double envelope(int order) const;
   double envelope_sum(int first) const;
   int pick_order(double cumulative, int first) const;
@@ -83,11 +86,11 @@ class PhaseLobe {
   double phase_per_cos_in_ = 0.0;   ///< rad
   double phase_per_cos_out_ = 0.0;  ///< rad, negative in transmission
   double cos_in_ = 0.0;
-  double lowest_ = 0.0, highest_ = 0.0;  ///< variance over all directions
+  double lowest_ = 0.0, highest_ = 0.0;  ///< minimum and maximum variance over all directions
 };
 
-/// Integral of `f` over the unit disc of direction cosines, in polar coordinates about `centre` (|centre| < 1), where
-/// `f` is concentrated within a few `width`. Relative error about 1e-6 for smooth f.
+/// Returns the integral of `f` over the unit disc of direction cosines, in polar coordinates about `centre` (|centre| <
+/// 1). `f` must be concentrated within a few `width` of the centre. The relative error is about 1e-6 for smooth f.
 double integrate_over_disc(const Vec2& centre, double width, const std::function<double(const Vec2&)>& f);
 
 }  // namespace retrace::surface_models

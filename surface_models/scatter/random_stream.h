@@ -1,6 +1,6 @@
 #pragma once
 
-// The random numbers of one scatter event, from counters, for models that sample by rejection.
+// Random numbers for one scatter event, generated from counters. For models that sample by rejection.
 
 #include <cstdint>
 
@@ -8,13 +8,14 @@
 
 namespace retrace::surface_models {
 
-/// As many uniform numbers as one event asks for, from the counters that name it. Rejection needs an unknown number of
-/// them; in return every sample has the weight that the model gives it, mostly 1. Independent for different (a, b, c).
+/// Stream of uniform random numbers for one event, which is identified by counters. Sampling by rejection needs a
+/// variable number of them. In return, most samples have the weight 1. Streams with different (a, b, c) are
+/// independent.
 class RandomStream {
  public:
   RandomStream(RandomKey key, std::uint32_t a, std::uint32_t b, std::uint32_t c) : key_(key), a_(a), b_(b), c_(c) {}
 
-  /// The next number, in [0, 1).
+  /// Returns the next number, in [0, 1).
   double next() {
     if (used_ % 4 == 0) words_ = philox(key_, a_, b_, c_, used_ / 4);
     return unit_interval(words_[used_++ % 4]);

@@ -1,7 +1,7 @@
 #pragma once
 
-// The terms in which tracers and scatter models speak: incident light in the local frame, the facet it meets, and the
-// direction that is drawn.
+// Types that tracers and scatter models exchange: the incident light in the local frame, the facet that it hits, and
+// the direction that is drawn.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,41 +15,42 @@ namespace retrace::surface_models {
 
 using geometry::Vec2, geometry::Vec3;
 
-/// What becomes of light at an interface: it stays on its side or goes to the other one.
+/// Light at an interface is either reflected to its own side or transmitted to the other side.
 enum class Lobe { reflection, transmission };
 
-/// Light that meets a textured interface.
+/// Light that is incident on a textured interface.
 ///
-/// Directions are unit vectors of travel in the local frame of the mean surface: z is its normal on the side that the
-/// light comes from; x and y are those of the texture where it has directions (height maps), any otherwise. For light
-/// inside the material, where z is against the texture's own, x is the texture's and y its reverse.
+/// Directions are unit vectors of propagation in the local frame of the mean surface. z is the surface normal on the
+/// side of the incident light. x and y are the axes of the texture, or arbitrary if the texture is isotropic. For light
+/// inside the material, z is opposite to the texture's own z. x is then the x axis of the texture, and y is opposite to
+/// its y axis.
 struct ScatterEvent {
   Vec3 direction_in = -Vec3::UnitZ();  ///< z < 0
-  double index_from = 1.0;             ///< of the side the light comes from, > 0
-  double index_to = 1.0;               ///< of the other side, > 0
+  double index_from = 1.0;             ///< index on the side of the incident light, > 0
+  double index_to = 1.0;               ///< index on the other side, > 0
   double wavelength_nm = 0.0;          ///< in vacuum, > 0
-  bool inside_material = false;        ///< which side of the texture the light comes from
+  bool inside_material = false;        ///< true if the light comes from the material side of the texture
 
   double cos_in() const { return std::clamp(-direction_in.z(), 0.0, 1.0); }
-  /// Index of the side that a lobe goes to.
+  /// Returns the index on the side to which a lobe goes.
   double index_of(Lobe lobe) const { return lobe == Lobe::reflection ? index_from : index_to; }
 };
 
-/// The piece of the surface that the light meets. Fresnel's formulas hold at its normal, not at the mean one.
+/// Surface element that the light hits. The Fresnel equations apply at its normal, not at the mean normal.
 struct Facet {
-  Vec3 normal = Vec3::UnitZ();  ///< local frame, z > 0, and against the light
-  bool is_tilted = false;       ///< drawn from slopes; else it is the mean surface
+  Vec3 normal = Vec3::UnitZ();  ///< local frame, z > 0, towards the incident light
+  bool is_tilted = false;       ///< true if the facet was drawn from slopes; false: the mean surface
 };
 
-/// The phase that a texture's heights put on the light of a lobe: a Gaussian random function of the place on the facet,
-/// with the covariance sum rms_rad^2 exp(-d^2 / length_mm^2) at the distance d. Of two lobes at one place the product
-/// of their rms_rad takes the place of the square.
+/// Random phase that the heights of a texture add to the light of a lobe. It is a Gaussian random function of the
+/// position on the facet. At the distance d its covariance is the sum of rms_rad^2 exp(-d^2 / length_mm^2) over all
+/// terms. For the covariance between two lobes, rms_rad^2 is replaced by the product of the two values of rms_rad.
 struct PhaseTexture {
   struct Term {
-    double rms_rad = 0.0;    ///< < 0 where heights out of the material shorten the way
+    double rms_rad = 0.0;    ///< negative if heights out of the material shorten the optical path
     double length_mm = 1.0;  ///< > 0
   };
-  std::array<Term, 2> terms;  ///< of roughness and of waviness
+  std::array<Term, 2> terms;  ///< terms for roughness and for waviness
 
   double variance() const {
     double sum = 0.0;
@@ -58,15 +59,16 @@ struct PhaseTexture {
   }
 };
 
-/// One direction drawn from a lobe.
+/// Direction that was drawn from a lobe.
 struct ScatterSample {
-  Vec3 direction;            ///< local frame
-  Vec3 specular_direction;   ///< where the facet's mean plane would send the light, same frame
+  Vec3 direction;            ///< in the local frame
+  Vec3 specular_direction;   ///< specular direction of the facet's mean plane, in the same frame
   double weight = 1.0;       ///< factor on the Fresnel power of the lobe at the facet: BSDF * cosine / pdf; <= 1
-  bool is_specular = false;  ///< exactly what the facet's plane does
+  bool is_specular = false;  ///< true if the direction is exactly specular
 };
 
-/// Direction that a plane with `normal` (against the light) sends the light to; nothing under total reflection.
+/// Returns the specular direction for a plane with `normal` (towards the incident light). Returns nothing in
+/// transmission under total reflection.
 inline std::optional<Vec3> specular_direction(const ScatterEvent& event, const Vec3& normal, Lobe lobe) {
   const double cos_in = -event.direction_in.dot(normal);
   if (lobe == Lobe::reflection) return event.direction_in + 2.0 * cos_in * normal;
@@ -76,12 +78,12 @@ inline std::optional<Vec3> specular_direction(const ScatterEvent& event, const V
   return ratio * event.direction_in + (ratio * cos_in - std::sqrt(cos2)) * normal;
 }
 
-/// Whether `direction` runs to the side of the mean surface that the lobe goes to.
+/// Returns true if `direction` is on the side of the mean surface to which the lobe goes.
 inline bool is_on_side(const Vec3& direction, Lobe lobe) {
   return lobe == Lobe::reflection ? direction.z() > 0.0 : direction.z() < 0.0;
 }
 
-/// Unit vector of the lobe's side with direction cosines `beta` along x and y, |beta| <= 1.
+/// Returns the unit vector on the lobe's side with the direction cosines `beta` along x and y, |beta| <= 1.
 inline Vec3 direction_of(const Vec2& beta, Lobe lobe) {
   const double z = std::sqrt(std::max(0.0, 1.0 - beta.squaredNorm()));
   return {beta.x(), beta.y(), lobe == Lobe::reflection ? z : -z};

@@ -1,7 +1,7 @@
 #pragma once
 
-// The interface of all scatter models to the tracers: draw a facet, draw a direction, tell specular shares, BSDF and
-// range of validity.
+// Interface of all scatter models for the tracers. It draws facets and directions, and returns specular fractions,
+// BSDFs and ranges of validity.
 
 #include <string>
 #include <variant>
@@ -16,10 +16,10 @@
 
 namespace retrace::surface_models {
 
-/// What a texture does to light. Copies are cheap; all functions are const, safe to call from any thread and, but where
-/// they say so, free of allocation.
+/// Model of the effect of a texture on light. Copies are cheap. All functions are const and may be called from any
+/// thread. They allocate no memory unless stated.
 ///
-/// One event in the tracer:
+/// An event in the tracer is processed as follows:
 ///
 ///     const Facet facet = sample_facet(model, event, random);
 ///     const auto f = materials::fresnel(event.index_from / event.index_to, -event.direction_in.dot(facet.normal));
@@ -28,74 +28,84 @@ namespace retrace::surface_models {
 ///     // ... scale by out->weight; turn the polarisation as specular_direction turns into direction
 using ScatterModel = std::variant<Smooth, HarveyShack, Abg, Microfacet, HeightMapScatter>;
 
-/// Draws the piece of the surface that the light meets.
+/// Draws the surface element that the light hits.
 Facet sample_facet(const ScatterModel& model, const ScatterEvent& event, RandomStream& random);
 
-/// Draws where a facet sends the light of a lobe. Nothing under total reflection in transmission, and where the
-/// direction runs to the wrong side of the mean surface: that light is lost.
+/// Draws the direction in which a facet sends the light of a lobe. Returns nothing in transmission under total
+/// reflection. Returns nothing, too, if the direction is on the wrong side of the mean surface: that light is lost.
 std::optional<ScatterSample> sample(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                     RandomStream& random);
 
-/// The specular and the scattered light of a lobe, each with its share of the power in its weight. Nothing in place of
-/// one that is lost to the wrong side.
+/// Specular and scattered light of a lobe. The weights include their fractions of the power. A member is not set if its
+/// light is lost to the wrong side.
 struct ScatterSplit {
   std::optional<ScatterSample> specular;
   std::optional<ScatterSample> scattered;
 };
 
-/// Draws both at once, in place of sample(): the same on average, with less chance. Nothing where either share is below
-/// `least_share`, and in models that cannot tell the shares of one event quickly (abg, microfacet).
+/// Draws both the specular and the scattered light. This replaces sample() with equal expectation and lower variance.
+/// Returns nothing if one of the fractions is below `least_share`. Returns nothing, too, for the models abg and
+/// microfacet, because they cannot compute the fractions of an event quickly.
 std::optional<ScatterSplit> sample_split(const ScatterModel& model, const ScatterEvent& event, const Facet& facet,
                                          Lobe lobe, double least_share, RandomStream& random);
 
-/// A texture between dielectrics whose light that is diffracted once belongs to no lobe alone; null for others.
+/// Returns the model if it is a texture between dielectrics that uses first-order theory; there, light that is
+/// diffracted one time belongs to both lobes. Returns null for other models.
 const HarveyShack* first_order_model(const ScatterModel& model);
 
-/// DiffractionMeans of an event. \param fresnel at the facet
+/// Returns the DiffractionMeans of an event.
+/// \param fresnel coefficients at the facet
 DiffractionMeans diffraction_means(const HarveyShack& model, const ScatterEvent& event, const Facet& facet,
                                    const materials::FresnelCoefficients& fresnel);
 
-/// Light that is diffracted once. Nothing where it runs to the wrong side of the mean surface. \param s_axis across the
-/// light and the facet's normal \param coherency of the incident light along s_axis and p, of trace 1 \param
-/// unmasked set to the share that waviness lets by
+/// Draws light that is diffracted one time. Returns nothing if it is on the wrong side of the mean surface.
+/// \param s_axis normal to the light and to the facet's normal
+/// \param coherency coherency of the incident light along s_axis and p, with the trace 1
+/// \param unmasked set to the fraction of light that waviness does not mask
 std::optional<DiffractedOnce> sample_diffracted_once(const HarveyShack& model, const ScatterEvent& event,
                                                      const Facet& facet, const Vec3& s_axis,
                                                      const Polarisation2& coherency, RandomStream& random,
                                                      double& unmasked);
 
-/// Light of a lobe that is diffracted more than once, as sample().
+/// Draws light of a lobe that is diffracted more than one time, as sample().
 std::optional<ScatterSample> sample_diffracted_again(const HarveyShack& model, const ScatterEvent& event,
                                                      const Facet& facet, Lobe lobe, RandomStream& random);
 
-/// Share of a lobe's power that leaves in the facet's specular direction, masking aside; 0 without such a direction.
+/// Returns the fraction of a lobe's power that leaves in the facet's specular direction, without masking. Returns 0 if
+/// there is no such direction.
 double specular_share(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe);
 
-/// Share of a lobe's power that the mean field over all textures of a model keeps: light that is specular to the
-/// mean surface. Facets that tilt (microfacet) keep less than 5e-5, and count as none; abg keeps at least what its
-/// BSDF leaves.
+/// Returns the fraction of a lobe's power in the mean field over all realisations of the texture: light that is
+/// specular relative to the mean surface. Tilted facets (microfacet) have less than 5e-5, which is treated as 0. For
+/// abg this is a lower bound, the power that its BSDF does not scatter.
 double mean_field_share(const ScatterModel& model, const ScatterEvent& event, Lobe lobe);
 
-/// Whether a model knows what its heights do to the phase of light, so that fields can be added up: harvey_shack alone.
-/// The measured scatter of abg and the slopes of microfacet say nothing of phases; of height_map only rays are made.
+/// Returns true if a model determines the phase of light, so that fields can be added. This holds only for harvey_shack
+/// without a lay (equal correlation lengths along x and y). The measured scatter of abg and the slopes of microfacet
+/// contain no phases, and height_map supports only rays.
 bool has_phases(const ScatterModel& model);
 
-/// Of a lobe's light at the mean surface, however high the waves are; none of its variance where there is no such lobe.
+/// Returns the random phase of a lobe's light at the mean surface, even if the waves are high. The variance is 0 if
+/// there is no such lobe.
 /// \pre has_phases()
 PhaseTexture phase_texture(const ScatterModel& model, const ScatterEvent& event, Lobe lobe);
 
-/// BSDF of the scattered light of a lobe given the facet, per sr, without Fresnel's factor and the specular light; its
-/// cosine is that to the facet's normal. By quadrature in some models: for tests and tables.
+/// Returns the BSDF of the scattered light of a lobe for a given facet, per sr, without the Fresnel factor and the
+/// specular light. Its cosine is relative to the facet's normal. Some models use quadrature, so this function is for
+/// tests and tables.
 double evaluate(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
                 const Vec3& direction);
 
-/// Density with which sample() draws `direction` as scattered light, per sr.
+/// Returns the density with which sample() draws `direction` as scattered light, per sr.
 double pdf(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& direction);
 
-/// \throw InputError for a texture that no model holds for. Most are refused when they are made; harvey_shack needs to
-/// know which of its roughness scatters. \param index of the denser side
+/// Checks that a model applies to a texture. Most models check this in their constructor. harvey_shack depends on the
+/// index and wavelength, because they determine which part of the roughness scatters.
+/// \param index of the denser side
+/// \throw InputError if no model applies
 void require_in_range(const ScatterModel& model, double index, double wavelength_nm);
 
-/// What lies outside the range in which the model holds, one sentence each. Allocates.
+/// Returns one sentence for each condition of the model that is violated. Allocates memory.
 /// \param index of the denser side
 Warnings warnings(const ScatterModel& model, double index, double wavelength_nm);
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Slopes of rough surfaces (Beckmann, GGX) with Smith's masking, for facets that act as small mirrors.
+// Slope distributions of rough surfaces (Beckmann, GGX) with Smith's masking, for microfacets that act as small
+// mirrors.
 
 #include "surface_models/scatter/random_stream.h"
 #include "surface_models/scatter/scatter_event.h"
@@ -12,30 +13,31 @@ enum class SlopeShape {
   ggx        ///< longer tails: Trowbridge and Reitz 1975, Walter et al. 2007
 };
 
-/// Light that meets a surface twice is left out here; its share grows with the square of the slope, about a tenth from
-/// this rms slope on.
+/// Maximum rms slope without a warning. Light that hits the surface more than one time is neglected. Its fraction
+/// increases with the square of the slope and is about a tenth at this value.
 inline constexpr double kLargestSlope = 0.3;
-/// No model holds for areal rms slopes above this one, 45 degrees: most light then meets the surface more than once.
+/// Maximum areal rms slope, 45 degrees, for which there is a model. On steeper surfaces, most light hits the surface
+/// more than one time.
 inline constexpr double kSlopeOfNoModel = 1.0;
 
-/// Isotropic distribution of the slopes of a surface with masking after Smith: facets are of different heights,
-/// independent of their slopes. Walter, Marschner, Li, Torrance, Microfacet Models for Refraction through Rough
-/// Surfaces, EGSR 2007; visible facets: Heitz and d'Eon, Computer Graphics Forum 33, 103 (2014).
+/// Isotropic distribution of the slopes of a surface, with Smith's masking. It assumes that heights and slopes of
+/// facets are independent (Walter, Marschner, Li, Torrance, Microfacet Models for Refraction through Rough Surfaces,
+/// EGSR 2007). Visible facets: Heitz and d'Eon, Computer Graphics Forum 33, 103 (2014).
 class SlopeDistribution {
  public:
-  /// \param rms_slope areal (Sdq of ISO 25178-2: root of the mean square of the gradient), >= 0; for `ggx` its width,
-  ///        as the variance has no bound there
+  /// \param rms_slope areal rms slope (Sdq of ISO 25178-2: root mean square of the gradient), >= 0. For `ggx` it is the
+  ///     width parameter, because the variance is infinite
   SlopeDistribution(SlopeShape shape, double rms_slope) : shape_(shape), width_(rms_slope) {}
 
   double rms_slope() const { return width_; }
 
-  /// Density of facets with `normal` (z > 0), per sr and area of the mean surface: D of Walter et al.
+  /// Returns the density of facets with `normal` (z > 0), per sr and per area of the mean surface: D of Walter et al.
   double normal_density_per_sr(const Vec3& normal) const;
-  /// Share of the facets turned to `direction` (either way along it) that others do not hide: Smith's G1.
+  /// Returns the fraction of facets that are visible along `direction`, in either sense: Smith's G1.
   double visible_share(const Vec3& direction) const;
-  /// Draws the normal of a facet that light from `towards_light` (z > 0) meets.
+  /// Draws the normal of a facet that is hit by light from `towards_light` (z > 0).
   Vec3 sample_visible_normal(const Vec3& towards_light, RandomStream& random) const;
-  /// Its density, per sr of normals.
+  /// Returns the density of sample_visible_normal(), per sr of normals.
   double visible_normal_pdf_per_sr(const Vec3& towards_light, const Vec3& normal) const;
 
  private:
@@ -43,13 +45,15 @@ class SlopeDistribution {
   double width_;
 };
 
-/// \throw InputError for a slope that is outside of every model; `what` has it, as in "roughness"
+/// Checks that a slope is within the range of the models.
+/// \param what name of the texture for the message, such as "roughness"
+/// \throw InputError if the slope is too large
 void require_modelled_slope(double rms_slope, const char* what);
 
-/// Areal rms slope of waves of one period in any direction: 2 pi Sq / L. 0 for no height.
+/// Returns the areal rms slope of waves with one period in all directions: 2 pi Sq / L. Returns 0 if the height is 0.
 double waviness_rms_slope(double waviness_sq_nm, double waviness_length_um);
 
-/// A pair of independent standard normal variates (Box and Muller 1958).
+/// Returns two independent standard normal variates (Box and Muller 1958).
 Vec2 normal_pair(RandomStream& random);
 
 }  // namespace retrace::surface_models

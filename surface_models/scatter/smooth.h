@@ -1,6 +1,6 @@
 #pragma once
 
-// The scatter model of facets without texture: all light goes on in the specular direction.
+// Scatter model of facets without texture: all light is specular.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace retrace::surface_models {
 
-/// An ideal plane: all light is specular.
+/// Ideal plane: all light is specular.
 class Smooth {
  public:
   Facet sample_facet(const ScatterEvent&, RandomStream&) const { return {}; }
