@@ -21,14 +21,14 @@ Numbers = ArrayLike  #: a number, or a list or an array of numbers
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
-_SHOWN = 60  # characters of a value that messages show
+_SHOWN = 60  # maximum number of characters of a value in messages
 
 
 def shown(value: object) -> str:
-    """A value as messages show it."""
+    """Returns a value as text for messages."""
     try:
         text = repr(value).replace("\n", " ")
-    except Exception:  # a repr() of somebody else
+    except Exception:  # repr() of a foreign class may raise anything
         text = f"a {type(value).__name__}"
     return text if len(text) <= _SHOWN else text[:_SHOWN] + "..."
 
@@ -38,7 +38,7 @@ def refuse(name: str, allowed: str, value: object) -> InputError:
 
 
 def nearest(word: object, words: Iterable[str]) -> str:
-    """Words that a mistaken one might stand for, as the end of a message."""
+    """Returns a suggestion for a misspelt word, as the end of a message."""
     close = difflib.get_close_matches(str(word), list(words), n=1, cutoff=0.6)
     return f"; did you mean {close[0]}?" if close else ""
 
@@ -52,7 +52,7 @@ def number(
     low_included: bool = True,
     high_included: bool = True,
 ) -> float:
-    """A finite number in a range."""
+    """Checks that a value is a finite number in a range."""
     allowed = "a number"
     if low > -math.inf:
         allowed += f" {'>=' if low_included else '>'} {low:g}"
@@ -75,7 +75,7 @@ def number(
 
 
 def whole(name: str, value: object, low: int = 0, high: int = 2**36) -> int:
-    """A whole number in a range."""
+    """Checks that a value is a whole number in a range."""
     allowed = f"a whole number from {low} to {high}"
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]
@@ -95,13 +95,13 @@ def number_list(
     included: bool = True,
     may_be_empty: bool = False,
 ) -> list[float]:
-    """One number, or a list or a one-dimensional array of them."""
+    """Converts one number, a list of numbers or a one-dimensional array to a list."""
     allowed = "a number or a list of numbers"
     if isinstance(values, (str, bytes, Mapping)):
         raise refuse(name, allowed, values)
     try:
         array = np.asarray(values)
-    except Exception:  # whatever an __array__ of somebody else raises
+    except Exception:  # __array__() of a foreign class may raise anything
         raise refuse(name, allowed, values) from None
     if array.dtype == object and array.ndim <= 1:
         items = array.tolist() if array.ndim else [array.item()]
@@ -122,7 +122,7 @@ def number_list(
 
 
 def pairs(name: str, values: object) -> list[tuple[float, float]]:
-    """Pairs of numbers, first the smaller."""
+    """Checks pairs of numbers. In each pair, the smaller number must be first."""
     if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
         raise refuse(name, "a list of pairs (from, to)", values)
     result = []
@@ -135,7 +135,7 @@ def pairs(name: str, values: object) -> list[tuple[float, float]]:
 
 
 def word(name: str, value: object, words: Sequence[str] = ()) -> str:
-    """A text, one of some words if there are such."""
+    """Checks that a value is a text, or one of the given words if there are any."""
     allowed = ", ".join(words) if words else "a text"
     if not isinstance(value, str) or not value:
         raise refuse(name, allowed, value)
@@ -151,7 +151,7 @@ def flag(name: str, value: object) -> bool:
 
 
 def path(name: str, value: object) -> str:
-    """The name of a file."""
+    """Converts the name of a file to a text."""
     if not isinstance(value, (str, os.PathLike)):
         raise refuse(name, "the name of a file", value)
     text = os.fspath(value)
@@ -161,18 +161,19 @@ def path(name: str, value: object) -> str:
 
 
 def thread_count(value: object) -> int:
-    """0: as many as there are cores."""
+    """Returns the number of threads; 0 means one per core."""
     return 0 if value is None else whole("threads", value, 1, 4096)
 
 
 def checked(
     options: Mapping[str, tuple[str, str]], names: Mapping[str, str] | None = None
 ) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
-    """Of a function whose keywords are the options of a command: tells what the command says of
-    them in its doc string,
-    and the nearest name of a keyword that it has not.
+    """Decorates a function whose keywords are the options of a command.
 
-    names: options of keywords that are called otherwise, empty for those that are none."""
+    The help of each option is appended to the docstring. If the function is called with an unknown
+    keyword, the message suggests the most similar keyword.
+
+    names: options of keywords whose names differ; an empty text if a keyword is not an option."""
 
     def wrap(function: Callable[_P, _R]) -> Callable[_P, _R]:
         keywords = [name for name in inspect.signature(function).parameters]
@@ -200,7 +201,7 @@ def checked(
 
 
 def give(request: Any, **values: object) -> Any:
-    """Sets what a request of the library is to have."""
+    """Sets attributes of a request of the library."""
     for name, value in values.items():
         setattr(request, name, value)
     return request

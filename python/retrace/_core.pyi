@@ -1,4 +1,4 @@
-"""The library of retrace, for the package."""
+"""The library of retrace, for internal use by the package."""
 
 from collections.abc import Callable
 from pathlib import Path

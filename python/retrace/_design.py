@@ -1,4 +1,4 @@
-"""Designs: arrays of retroreflectors as design files tell them (docs/design_file.md)."""
+"""Designs: arrays of retroreflectors, described by design files (docs/design_file.md)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Design"]
 
-_DEEPEST = 16  # lists and dicts in each other
+_DEEPEST = 16  # maximum depth of nested lists and dicts
 _IN_MEMORY = "Design(...)"  # stands for a file in messages of the library
 
 
@@ -30,14 +30,14 @@ def _key(name: object) -> str:
 
 
 def _text(value: str) -> str:
-    """As TOML's basic string."""
+    """Returns a text as a basic string of TOML."""
     if any(0xD800 <= ord(c) <= 0xDFFF for c in value):
         raise InputError(f"texts must be Unicode, got {shown(value)}")
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def toml_value(name: str, value: object, depth: int = 0) -> str:
-    """A value as TOML. name: for messages."""
+    """Returns a value as TOML. name: name of the value for messages."""
     allowed = "a number, a text, True, False, or a list or dict of such"
     if depth > _DEEPEST:
         raise InputError(f"lists and dicts may lie {_DEEPEST} deep in each other", key=name)
@@ -69,7 +69,7 @@ def toml_value(name: str, value: object, depth: int = 0) -> str:
 
 
 def toml_text(tables: Mapping[str, object]) -> str:
-    """A file with these keys and tables."""
+    """Returns a TOML file with these keys and tables."""
     plain, sections = [], []
     for key, value in tables.items():
         if isinstance(value, Mapping):
@@ -108,15 +108,14 @@ def overrides_of(changes: Mapping[str, object]) -> list[str]:
 
 
 class Design:
-    """A design, read and checked, with its defaults filled in. Nothing changes it.
+    """A design that was read and checked, with all defaults filled in. It is immutable.
 
         Design.load("honeycomb.toml").replace({"element.aperture_mm": 0.5})
         Design(element={"kind": "rtp", "base_mm": 2}, body={"thickness_mm": 2})
 
     Keys are those of design files (docs/design_file.md; retrace.files has them as TypedDicts).
-    Files that it names are
-    sought from the working directory, those of a design that was loaded from the folder of its
-    file.
+    Relative names of other files refer to the folder of the design file if the design was loaded,
+    and otherwise to the working directory.
     """
 
     __slots__ = ("_core", "_keeps")
@@ -127,11 +126,11 @@ class Design:
             self._core = _core.Design.parse(text, _IN_MEMORY, [])
         except InputError as error:
             raise _without_place(error) from None
-        self._keeps: object = None  # what must live as long as it does
+        self._keeps: object = None  # object that must live as long as the design
 
     @classmethod
     def from_dict(cls, tables: files.Design) -> Design:
-        """The same of a dict, which a type checker knows the keys of."""
+        """Makes a design from a dict. A type checker can then check the keys."""
         if not isinstance(tables, Mapping):
             raise refuse("tables", "a dict of tables", tables)
         for key in tables:
@@ -147,7 +146,7 @@ class Design:
     def parse(
         cls, text: str, source: str = "design", changes: Mapping[str, object] | None = None
     ) -> Design:
-        """The same of the text of a design file. source: stands for the file in messages."""
+        """Reads the text of a design file. source: name of the file in messages."""
         if not isinstance(text, str):
             raise refuse("text", "a text", text)
         return cls._of(
@@ -177,22 +176,22 @@ class Design:
 
     @property
     def title(self) -> str:
-        """Empty if it has none."""
+        """Title of the design, or an empty text."""
         return self._core.title
 
     @property
     def source(self) -> str:
-        """Its file, or what stands for it."""
+        """Name of the design file, or a replacement for it in messages."""
         return self._core.source
 
     @property
     def text(self) -> str:
-        """Of its file, as it was read; changes are not in it."""
+        """Text of the design file as it was read, without changes."""
         return self._core.text
 
     @property
     def files(self) -> list[str]:
-        """Every file that it names."""
+        """All files to which the design refers."""
         return [str(file) for file in self._core.files]
 
     @property
@@ -202,17 +201,17 @@ class Design:
 
     @property
     def json(self) -> str:
-        """Its keys as results quote them."""
+        """Keys of the design as JSON, in the form that results contain."""
         return self._core.json()
 
     @property
     def document(self) -> dict[str, Any]:
-        """The same as a dict."""
+        """Keys of the design as a dict."""
         result: dict[str, Any] = json.loads(self.json)
         return result
 
     def __getitem__(self, key: str) -> Any:
-        """The value of a key such as "element.base_mm", its default if it has none."""
+        """Returns the value of a key such as "element.base_mm", or its default."""
         value: Any = self.document
         for part in key.split("."):
             if not isinstance(value, dict) or part not in value:
@@ -240,7 +239,7 @@ class Design:
         )
 
     def _repr_svg_(self) -> str | None:
-        """Its plan, in a notebook."""
+        """Shows the plan of the design in a notebook."""
         try:
             return _core.inspect(self._core).plan.svg() or None
         except (InputError, OSError):
@@ -256,7 +255,7 @@ AnyDesign = Union[Design, PathLike]
 
 
 def design_of(value: object) -> Design:
-    """A design that was given, or the name of its file."""
+    """Returns a design from a design or from the name of its file."""
     if isinstance(value, Design):
         return value
     if isinstance(value, str) or hasattr(value, "__fspath__"):

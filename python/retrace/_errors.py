@@ -1,4 +1,4 @@
-"""Errors, one line of text each."""
+"""Errors. Each has one line of text."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 __all__ = ["BudgetError", "Error", "InputError", "OutputError"]
 
-# Keywords whose option of the command line is called otherwise.
+# Keywords whose option of the command line has a different name.
 _KEYWORDS = {
     "incidence": "incidence_deg",
     "azimuth": "azimuth_deg",
@@ -20,27 +20,27 @@ _KEYWORDS = {
 
 
 def _keyword(option: str) -> str:
-    """The keyword of an option, such as target_error of --target-error."""
+    """Returns the keyword of an option, such as target_error for --target-error."""
     name = option.removeprefix("--")
     return _KEYWORDS.get(name, name.replace("-", "_"))
 
 
 class Error(Exception):
-    """What retrace raises on purpose."""
+    """Base class of the errors that retrace raises intentionally."""
 
 
 class InputError(Error, ValueError):
-    """An input that cannot be used: a file, or an argument, which is then its key."""
+    """An invalid input: a file or an argument. In the latter case, key is the argument."""
 
     def __init__(
         self, message: str, file: str | None = None, line: int | None = None, key: str | None = None
     ) -> None:
         #: What is wrong, and what is allowed; without its place.
         self.message = re.sub(r"--[a-z][a-z-]+", lambda option: _keyword(option[0]), message)
-        # What a dict of changes says wrong is no file's, though the command line says so of its
-        # --set.
+        # The library reports an error in a dict of changes as an error in the file "--set". In
+        # Python there is no such file.
         changed = (file or "").startswith("--set ")
-        self.file = None if changed else file or None  #: in which it is wrong
+        self.file = None if changed else file or None  #: file that contains the error, or None
         self.line = line or None  #: of that file, from 1
         #: Key of the file, such as "element.base_mm", or name of the argument.
         self.key = (_keyword(key) if key.startswith("--") else key) if key else None
@@ -56,4 +56,4 @@ class OutputError(Error, OSError):
 
 
 class BudgetError(Error, RuntimeError):
-    """A limit on time, memory or accuracy that was reached before the answer was."""
+    """A limit on time, memory or accuracy was reached before the result was complete."""

@@ -1,4 +1,4 @@
-"""How a design is cut, and what NC programs really cut."""
+"""Fabrication jobs, NC programs, and simulation of the surface that the programs cut."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ AnyPrograms = Union[Fabrication, Mapping[str, str], PathLike, Sequence[PathLike]
 
 
 class _Folder:
-    """A temporary folder that goes when nobody holds it."""
+    """A temporary folder that is deleted together with this object."""
 
     def __init__(self) -> None:
         self.name = tempfile.mkdtemp(prefix="retrace-")
@@ -100,7 +100,7 @@ class _Folder:
 
 
 class Verification(Result):
-    """What NC programs really cut, against their job."""
+    """Comparison of the surface that NC programs cut with their job."""
 
     _told = ("verdict",)
     _costly = ("map",)
@@ -123,24 +123,24 @@ class Verification(Result):
 
     @property
     def findings(self) -> Columns:
-        """What programs do and should not, or do not and should: kind, program, line, message,
-        value, limit."""
+        """Errors of the programs: kind, program, line, message, value, limit. A program may do
+        something that is not allowed or omit something that is required."""
         names = ("kind", "program", "line", "message", "value", "limit")
         return Columns(self.document.get("findings", []), names)
 
     @property
     def as_machined(self) -> Design:
-        """The part that is left, as a design. After pickling the programs are carried out again."""
+        """The machined part as a design. After unpickling, the programs are simulated again."""
         folder = _Folder()
         file = os.path.join(folder.name, "as_machined.toml")
         if self._core is None:
             self._core = _core.verify(give(_core.VerificationRequest(), **self._asked), None, 0)
         _core.write_as_machined(self._core, file)
-        # Its facets may be in a table beside it.
+        # The table of its facets may be in a separate file of the folder.
         return Design._of(_core.Design.load(file, []), keeps=folder)
 
     def __getstate__(self) -> dict[str, Any]:
-        # The picture of what is left is one of pixels, as large as the part is.
+        # The picture of the machined part is omitted, because it consists of many pixels.
         return {**super().__getstate__(), "drawings": {}, "_core": None}
 
     def _repr_html_(self) -> str | None:
@@ -159,7 +159,7 @@ def job(
     workpiece: str = "mould",
     shrinkage_percent: float = 0.0,
 ) -> Job:
-    """The fabrication job of a design, as `retrace job`."""
+    """Computes the fabrication job of a design, as `retrace job`."""
     request = give(
         _core.JobRequest(),
         tool_width_mm=number("tool_width_mm", tool_width_mm, 0, low_included=False),
@@ -173,7 +173,7 @@ def job(
 
 
 def _job_file(value: object) -> tuple[str, str | None]:
-    """Name of a job's file, and its text if it is in memory."""
+    """Returns the name of a job's file, and its text if the job is in memory."""
     if isinstance(value, Job):
         return _IN_MEMORY, value.text
     if isinstance(value, str) or hasattr(value, "__fspath__"):
@@ -192,7 +192,7 @@ def fabricate(
     stop_every: int | None = None,
     split_hours: float | None = None,
 ) -> Fabrication:
-    """NC programs of a job, and the time that they take, as `retrace fabricate`."""
+    """Computes the NC programs of a job and their machining time, as `retrace fabricate`."""
     name, text = _job_file(job)
     request = give(
         _core.FabricationRequest(),
@@ -212,7 +212,7 @@ def fabricate(
 
 
 def _programs(value: object) -> tuple[list[str], dict[str, str]]:
-    """Names of programs, and the texts of those that are in memory."""
+    """Returns the names of programs, and the texts of programs that are in memory."""
     if isinstance(value, Fabrication):
         return list(value.programs), dict(value.programs)
     if isinstance(value, Mapping):
@@ -240,7 +240,7 @@ def verify(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Verification:
-    """What NC programs really cut, against their job, as `retrace verify`."""
+    """Simulates NC programs and compares the result with their job, as `retrace verify`."""
     name, text = _job_file(job)
     names, texts = _programs(programs)
     if not names:

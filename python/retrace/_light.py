@@ -1,4 +1,4 @@
-"""What becomes of light: efficiency, footprints, photometry."""
+"""Results of ray tracing: efficiency, footprints, photometry."""
 
 from __future__ import annotations
 
@@ -42,9 +42,8 @@ _LIGHT_NAMES = {
 
 
 class RreResult(Result):
-    """Retroreflective efficiency over directions: arrays with one value a point, in the order of
-    designs, azimuths,
-    incidences, acceptance cones."""
+    """Retroreflective efficiency over directions. Arrays have one value per point, in the order of
+    designs, azimuths, incidences and acceptance cones."""
 
     _rows = "points"
     _told = ("title", "rre", "engine")
@@ -66,7 +65,7 @@ class RreResult(Result):
 
     @property
     def title(self) -> str:
-        """Of the designs, or their files."""
+        """Titles of the designs, or names of their files."""
         return ", ".join(
             str(design.get("title") or design.get("source", ""))
             for design in self.document["designs"]
@@ -74,22 +73,22 @@ class RreResult(Result):
 
     @property
     def footprint(self) -> Footprint | None:
-        """Which regions of the entrance face send light back, if it was asked for."""
+        """Regions of the entrance face that return light, or None if not requested."""
         return Footprint(self) if self._footprint else None
 
     @property
     def far_field(self) -> dict[str, Any] | None:
-        """The document of the directions in which light leaves, if it was asked for."""
+        """Document of the directions in which light leaves, or None if not requested."""
         return json.loads(self._far_field) if self._far_field else None
 
     @property
     def engines(self) -> Any:
-        """That ran, for each point."""
+        """Engine that computed each point."""
         return self.points["engine"]
 
     def to_xarray(self) -> Any:
-        """An xarray.Dataset over design, azimuth, incidence and acceptance, with units; attrs has
-        seed and version."""
+        """Returns an xarray.Dataset over design, azimuth, incidence and acceptance, with units.
+        attrs contains the seed and the version."""
         dims = ["design", "azimuth_deg", "incidence_deg", "acceptance_half_angle_deg"]
         return dataset_of(self.points, dims, {**self._attributes(), "title": self.title})
 
@@ -98,7 +97,7 @@ class RreResult(Result):
 
 
 class Footprint(Result):
-    """Which regions of the entrance face send light back, of all directions of a result."""
+    """Regions of the entrance face that return light, for all directions of a result."""
 
     _told = ("regions",)
 
@@ -117,18 +116,18 @@ class Footprint(Result):
 
     @property
     def regions(self) -> int:
-        """How many there are."""
+        """Returns the number of regions."""
         return len(self._features)
 
     @property
     def polygons(self) -> list[Array]:
-        """Outlines of the regions, (n, 2) arrays of x and y in mm, the first point again at the
-        end."""
+        """Outlines of the regions: (n, 2) arrays of x and y in mm. The first point is repeated at
+        the end."""
         return [frozen(feature["geometry"]["coordinates"][0]) for feature in self._features]
 
     @property
     def holes(self) -> list[list[Array]]:
-        """Of each region."""
+        """Holes in each region, as arrays like those of the outlines."""
         return [
             [frozen(ring) for ring in feature["geometry"]["coordinates"][1:]]
             for feature in self._features
@@ -136,21 +135,21 @@ class Footprint(Result):
 
     @property
     def efficiency(self) -> Array:
-        """Share of what enters a region that comes back, for each."""
+        """For each region, the fraction of its incident power that returns."""
         return frozen([feature["properties"]["efficiency"] for feature in self._features])
 
     @property
     def properties(self) -> Columns:
-        """Direction and design of each region."""
+        """Direction of light and design for each region."""
         return Columns([feature["properties"] for feature in self._features])
 
     @property
     def geojson(self) -> dict[str, Any]:
-        """A GeoJSON feature collection, in mm."""
+        """The regions as a GeoJSON feature collection, in mm."""
         return self.document
 
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame with a row for each region."""
+        """Returns a pandas.DataFrame with one row per region."""
         return self.properties.to_pandas()
 
     def _repr_svg_(self) -> str | None:
@@ -176,13 +175,12 @@ def rre(
     threads: int | None = None,
     progress: Progress = None,
 ) -> RreResult:
-    """Retroreflective efficiency (RRE) over angles of incidence and azimuths, with its standard
-    error and a ledger of
-    where all other light went, as `retrace rre`.
+    """Computes the retroreflective efficiency (RRE) over angles of incidence and azimuths, with its
+    standard error and a ledger of all other light, as `retrace rre`.
 
-    designs: a design or several, or their files. incidence_spans_deg: pieces (from, to) in which
-    incidences are chosen
-    besides, as many as the curve needs. threads: at most [all cores]."""
+    designs: one or more designs or names of their files. incidence_spans_deg: ranges (from, to) in
+    which additional angles of incidence are chosen, as many as the curve requires. threads: maximum
+    number of threads [all cores]."""
     taken = designs_of(designs)
     request = give(
         _core.RreRequest(),
@@ -229,7 +227,7 @@ def footprint(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Footprint:
-    """Which regions of the entrance face send light back, as `retrace rre --footprint`."""
+    """Computes the regions of the entrance face that return light, as `retrace rre --footprint`."""
     result = rre(
         design_of(design),
         incidence_deg=incidence_deg,
@@ -244,7 +242,7 @@ def footprint(
 
 
 class PhotometryResult(Result):
-    """Coefficients of retroreflection at the test points of a standard: arrays with one value a
+    """Coefficients of retroreflection at the test points of a standard. Arrays have one value per
     point."""
 
     _rows = "points"
@@ -299,13 +297,12 @@ def photometry(
     threads: int | None = None,
     progress: Progress = None,
 ) -> PhotometryResult:
-    """Coefficients of retroreflection at the test points of a standard, their limits and a verdict,
-    as
-    `retrace photometry`.
+    """Computes the coefficients of retroreflection at the test points of a standard, with limits
+    and a verdict, as `retrace photometry`.
 
-    diffraction: False: geometric far field alone. advice: what to change if a point fails.
-    pictures: drawings
-    "far_field" and "r_a", which take time."""
+    diffraction: False for the geometric far field without diffraction. advice: suggest changes of
+    the design if a point fails. pictures: make the drawings "far_field" and "r_a", which takes
+    time."""
     taken = design_of(design)
     request = give(
         _core.PhotometryRequest(),

@@ -1,4 +1,4 @@
-"""What a design is: figures, drawings, solids."""
+"""Properties of a design: dimensions, drawings, solids."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SOLIDS = ("element", "array", "mould")
 
 
 class FaceKind(enum.IntEnum):
-    """What a face of a part is: labels of a mesh."""
+    """Types of faces of a part, used as labels of a mesh."""
 
     ENTRANCE = 0
     RETRO_FACET = 1
@@ -43,9 +43,9 @@ class FaceKind(enum.IntEnum):
 
 
 class Mesh:
-    """A closed triangle mesh in the part's frame: `vertices, faces, labels = mesh`.
+    """A closed triangle mesh in the part frame: `vertices, faces, labels = mesh`.
 
-    Arrays hold the library's own numbers and cannot be changed."""
+    The arrays use the memory of the library and are read-only."""
 
     vertices_mm: Array  #: (n, 3)
     faces: NDArray[np.uint32]  #: (m, 3), counter-clockwise seen from outside
@@ -68,7 +68,7 @@ class Mesh:
         return iter((self.vertices_mm, self.faces, self.labels))
 
     def to_trimesh(self) -> Any:
-        """A trimesh.Trimesh with the labels as face attribute."""
+        """Returns a trimesh.Trimesh with the labels as a face attribute."""
         trimesh = needed("trimesh", "to_trimesh()")
         return trimesh.Trimesh(
             np.array(self.vertices_mm),
@@ -82,19 +82,19 @@ class Mesh:
 
 
 class ExportResult(Result):
-    """A solid that was written."""
+    """Result of writing a solid to a file."""
 
     _told = ("file", "triangles", "volume_mm3")
 
 
 class MaterialResult(Result):
-    """A part's reflection that was written as a material."""
+    """Result of writing the reflection of a part to a file as a material."""
 
     _told = ("file", "directions")
 
 
 class Inspection(Result):
-    """What a design is, before any light is traced. Drawings: plan, section, front, view."""
+    """Properties of a design that need no ray tracing. Drawings: plan, section, front, view."""
 
     _told = ("elements_full", "element_depth_mm", "tir_limit_deg")
 
@@ -108,7 +108,7 @@ def _block(block_mm: float | None) -> float | None:
 
 @checked(OPTIONS["export"])
 def mesh(design: AnyDesign, *, what: str = "array", block_mm: float | None = None) -> Mesh:
-    """A design's solid as triangles."""
+    """Returns the solid of a design as a triangle mesh."""
     return Mesh(_core.mesh(design_of(design)._core, word("what", what, _SOLIDS), _block(block_mm)))
 
 
@@ -116,8 +116,8 @@ def mesh(design: AnyDesign, *, what: str = "array", block_mm: float | None = Non
 def export(
     design: AnyDesign, file: PathLike, *, what: str = "array", block_mm: float | None = None
 ) -> ExportResult:
-    """Writes a design's solid as STL, OBJ, glTF or STEP, by the ending of the file's name, as `retrace
-    export`."""
+    """Writes the solid of a design as STL, OBJ, glTF or STEP, as `retrace export`. The ending of
+    the file name determines the format."""
     return ExportResult(
         _core.export_solid(
             design_of(design)._core,
@@ -142,8 +142,9 @@ def export_material(
     threads: int | None = None,
     progress: Progress = None,
 ) -> MaterialResult:
-    """Writes how a part sends light back as a material for renderers and simulators: a table (.json, with
-    a .csv beside it), a BSDF of Radiance (.xml) or lobes in a shader (.glsl), as `retrace export`."""
+    """Writes the reflection of a part as a material for renderers and simulators, as `retrace
+    export`. The formats are a table (.json and a .csv file), a BSDF for Radiance (.xml), and lobes
+    in a shader (.glsl)."""
     taken = design_of(design)
     request = give(
         _core.MaterialRequest(),
@@ -163,8 +164,8 @@ def export_material(
 
 @checked(OPTIONS["inspect"])
 def inspect(design: AnyDesign) -> Inspection:
-    """What a design is, before any light is traced: counts, areas, limits of total reflection, as
-    `retrace inspect`."""
+    """Computes properties of a design that need no ray tracing, as `retrace inspect`: counts,
+    areas, limits of total reflection."""
     core = _core.inspect(design_of(design)._core)
     return Inspection(
         core,

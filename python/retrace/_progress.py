@@ -1,4 +1,4 @@
-"""How far long work has come."""
+"""Progress of long computations."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Progress = Union[None, bool, Callable[[float], object]]
 
 
 def _line(doing: str) -> Callable[[float], None]:
-    """One line of a terminal, written over itself; nothing where there is no terminal."""
+    """Shows the progress in one line of a terminal. Without a terminal, nothing is shown."""
 
     def tell(share: float) -> None:
         if sys.stderr.isatty():
@@ -28,7 +28,7 @@ def _line(doing: str) -> Callable[[float], None]:
 
 @contextlib.contextmanager
 def teller(progress: Progress, doing: str) -> Iterator[Callable[[float], object] | None]:
-    """What is to be called with the share that is done."""
+    """Yields the function to call with the completed fraction, or None."""
     if progress is None or progress is False:
         yield None
     elif callable(progress):

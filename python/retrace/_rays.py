@@ -1,4 +1,4 @@
-"""Rays through a part: those of files or an emitter, and those of memory."""
+"""Traces rays through a part. The rays come from files, from an emitter or from arrays."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _NAMES = {"incidence_deg": "incidence", "azimuth_deg": "azimuth", "design": "", 
 
 
 class RayAccount(enum.IntEnum):
-    """Where a ray has left the part, or missed it."""
+    """Ledger account of a ray: how the ray left the part, or why it did not leave."""
 
     RETROREFLECTED = 0
     FRONT_SPECULAR = 1
@@ -52,7 +52,7 @@ class RayAccount(enum.IntEnum):
 
 
 class RaysResult(Result):
-    """Where the power of rays has gone; the rays that left are in the file that was asked for."""
+    """Power of the rays by ledger account. The rays that left are in the requested file."""
 
     _told = ("rays", "power", "power_unit")
 
@@ -62,7 +62,7 @@ class RaysResult(Result):
 
 
 class TracedRays(RaysResult):
-    """Every ray that left: arrays with one row a ray, in the order of the incident rays."""
+    """All rays that left: arrays with one row per ray, in the order of the incident rays."""
 
     power_out: Array  #: (m,) of each ray
     origins: Array  #: (m, 3) where it left, in mm in the part's frame
@@ -85,11 +85,11 @@ class TracedRays(RaysResult):
 
 
 def _array(name: str, values: object, width: int) -> Array:
-    """Numbers in rows of some length."""
+    """Converts numbers to an array with rows of a given length."""
     allowed = f"an array of numbers of shape (n, {width})"
     try:
         array = np.asarray(values)
-    except Exception:  # whatever an __array__ of somebody else raises
+    except Exception:  # __array__() of a foreign class may raise anything
         raise refuse(name, allowed, values) from None
     if array.dtype.kind not in "iuf" or array.ndim != 2 or array.shape[1] != width:
         raise InputError(
@@ -123,11 +123,12 @@ def trace(
     threads: int | None = None,
     progress: Progress = None,
 ) -> TracedRays:
-    """What becomes of rays in memory, as `retrace rays` does of those of files.
+    """Traces rays from arrays through a part, as `retrace rays` does for rays from files.
 
-    origins, directions: (n, 3), in mm in the part's frame; directions of any length above 0.
-    stokes: (n, 4), or four numbers for all, the first the power; along `axes` (n, 3) [+x, seen
-    across each direction]. wavelength_nm: one, or one a ray [the design's light]."""
+    origins, directions: (n, 3) arrays in mm in the part frame; directions may have any length
+    above 0. stokes: (n, 4) array, or four numbers for all rays; the first number is the power.
+    axes: (n, 3) array, reference axes of the Stokes parameters [+x, projected at right angles to
+    each direction]. wavelength_nm: one number, or one per ray [wavelength of the design]."""
     taken = design_of(design)
     places = _array("origins", origins, 3)
     ways = _array("directions", directions, 3)
@@ -188,9 +189,9 @@ def rays(
     threads: int | None = None,
     progress: Progress = None,
 ) -> RaysResult:
-    """What becomes of the rays of a file or an emitter, as `retrace rays`.
+    """Traces the rays of a file or an emitter through a part, as `retrace rays`.
 
-    out: the file that rays are written to, .tm25ray or .csv; without one they are counted alone."""
+    out: file for the rays that leave, .tm25ray or .csv; without it, only the power is summed."""
     taken = design_of(design)
     if (source is None) == (emitter is None):
         raise InputError("one of source and emitter must be given", key="source")

@@ -1,4 +1,4 @@
-"""One page of several results."""
+"""Reports: several results on one HTML page."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Page:
 
 
 def _parts(result: Result, number: int) -> list[tuple[str, Union[str, bytes]]]:
-    """Names of files that a result might be in, and their contents."""
+    """Returns the names and contents of the files that a result would be saved in."""
     behind = "" if number == 1 else f"_{number}"
     kind = str(result.document.get("schema", "")).removeprefix("retrace.").partition("/")[0]
     parts: list[tuple[str, Union[str, bytes]]] = [(f"{kind}{behind}.json", result.json)]
@@ -49,7 +49,7 @@ def report(
     title: str = "",
     read: Sequence[PathLike] = (),
 ) -> Page:
-    """Makes one self-contained HTML page of results, as `retrace report`, and writes it if a file
+    """Makes one self-contained HTML page of results, as `retrace report`. Writes the page if a file
     is given.
 
     title: title of the page [title of the design]

@@ -1,4 +1,4 @@
-"""What questions come to: documents of the program, their numbers as arrays."""
+"""Results: documents of the program whose numbers are available as arrays."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _VERDICTS = {
     "fail": "#f8d7da",
 }
 _ELAPSED = re.compile(r'"elapsed_s": [^,\n]*')
-_MOST_ROWS = 60  # of a table in a notebook
+_MOST_ROWS = 60  # maximum number of rows of a table in a notebook
 _UNITS = {
     "deg": "degree",
     "arcmin": "arcmin",
@@ -46,7 +46,7 @@ _UNITS = {
 
 
 def needed(package: str, purpose: str) -> Any:
-    """A package that retrace takes if it is there."""
+    """Imports an optional package."""
     try:
         return importlib.import_module(package)
     except ImportError as error:
@@ -57,7 +57,7 @@ def needed(package: str, purpose: str) -> Any:
 
 
 def unit_of(name: str) -> str:
-    """The unit that a name ends in; "1" if it has none."""
+    """Returns the unit at the end of a name, or "1" if there is none."""
     for most in (3, 2, 1):  # r_a_cd_per_lx_m2, psd_per_mm, base_mm
         tail = name.split("_")[-most:]
         if len(tail) == most > 1 and tail[0] == "per" and tail[1] in _UNITS:
@@ -70,7 +70,7 @@ def unit_of(name: str) -> str:
 
 
 def frozen(values: Any) -> Array:
-    """Numbers as an array that nobody can change."""
+    """Returns numbers as a read-only array."""
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)
     return array
@@ -81,8 +81,8 @@ def _is_number(value: object) -> bool:
 
 
 def column_of(values: Sequence[Any]) -> Any:
-    """Values of one key: numbers as float64, what is missing (None) as NaN; tables as Columns; else
-    as they are."""
+    """Converts the values of one key. Numbers become a float64 array in which missing values (None)
+    are NaN. Tables become Columns. Other values are not changed."""
     there = [value for value in values if value is not None]
     if all(map(_is_number, there)):
         return frozen([np.nan if value is None else value for value in values])
@@ -106,12 +106,12 @@ def column_of(values: Sequence[Any]) -> Any:
 
 
 class Columns(Mapping[str, Any]):
-    """A list of objects with the same keys, by columns: numbers are read-only float64 arrays, NaN
-    where a key is missing."""
+    """Columns of a list of objects with equal keys. Numbers are read-only float64 arrays with NaN
+    for missing values."""
 
     def __init__(self, rows: Sequence[Mapping[str, Any]], names: Sequence[str] = ()) -> None:
-        """names: of columns that are there even without rows."""
-        #: As the document has them.
+        """names: columns that exist even if there are no rows."""
+        #: Rows as in the document.
         self.rows = rows
         self._names = list(dict.fromkeys([*names, *(name for row in rows for name in row)]))
         self._columns: dict[str, Any] = {}
@@ -147,7 +147,7 @@ class Columns(Mapping[str, Any]):
         return html_table(self.rows)
 
     def flat(self, prefix: str = "") -> dict[str, Any]:
-        """Its columns, those of inner tables as table_key; lists of numbers as columns of lists."""
+        """Returns all columns. Those of inner tables are named table_key."""
         flat: dict[str, Any] = {}
         for name in self._names:
             column = self[name]
@@ -158,7 +158,7 @@ class Columns(Mapping[str, Any]):
         return flat
 
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame with a row for each."""
+        """Returns a pandas.DataFrame with one row per object."""
         pandas = needed("pandas", "to_pandas()")
         return pandas.DataFrame(
             {
@@ -173,7 +173,7 @@ def _cell(value: object) -> str:
 
 
 def html_table(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Objects as a table, verdicts in their colours; what is no number or text is left out."""
+    """Returns objects as an HTML table with coloured verdicts. Only numbers and texts are shown."""
     names = [
         name
         for name in dict.fromkeys(name for row in rows for name in row)
@@ -198,7 +198,7 @@ def html_table(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 class Drawing:
-    """A drawing of a result, made when it is asked for."""
+    """A drawing of a result. It is made on first use."""
 
     def __init__(self, source: Any) -> None:
         self._source = source
@@ -206,7 +206,7 @@ class Drawing:
 
     @property
     def svg(self) -> str:
-        """As an SVG document; empty if it is a picture of pixels alone."""
+        """The drawing as an SVG document; empty if it consists only of pixels."""
         if self._svg is None:
             self._svg = self._made().svg()
         return self._svg or ""
@@ -218,12 +218,12 @@ class Drawing:
 
     @property
     def png(self) -> bytes:
-        """As a PNG file."""
+        """The drawing as a PNG file."""
         result: bytes = self._made().png()
         return result
 
     def save(self, file: PathLike) -> None:
-        """Writes it, as SVG or PNG by the ending of the file's name."""
+        """Writes the drawing as SVG or PNG, depending on the ending of the file name."""
         name = path("file", file)
         write_file(name, self.png if name.lower().endswith(".png") else self.svg.encode())
 
@@ -232,12 +232,12 @@ class Drawing:
 
     @property
     def is_there(self) -> bool:
-        """It is not after pickling, unless it was made before."""
+        """Whether the drawing is available. After unpickling, only drawings made before are."""
         return self._source is not None or self._svg is not None
 
     @property
     def is_made(self) -> bool:
-        """It was asked for before."""
+        """Whether the drawing was already made."""
         return self._svg is not None
 
     def _repr_svg_(self) -> str | None:
@@ -263,17 +263,16 @@ def drawing_of(source: Any) -> Drawing | None:
 
 
 class Result:
-    """What a question came to. Its attributes are the keys of its document; those of the objects in
-    its list, such as
-    the points of a curve, are read-only arrays with one value each, NaN where the document leaves a
-    key out.
+    """A result. The keys of its document are attributes. If the document contains a list of
+    objects, such as the points of a curve, their keys are attributes, too. These are read-only arrays with
+    one value per object, and NaN where a key is missing.
     """
 
     #: Key of the list of objects whose keys are attributes as well.
     _rows: ClassVar[str] = ""
-    #: Drawings that take long: pages have them only if they were made.
+    #: Drawings that take long to make: pages contain them only if they were made before.
     _costly: ClassVar[Sequence[str]] = ()
-    #: What of it is told in one line.
+    #: Keys that the one-line description contains.
     _told: ClassVar[Sequence[str]] = ()
 
     json: str  #: its document, as the program prints it with --json
@@ -301,7 +300,7 @@ class Result:
 
     @property
     def document(self) -> dict[str, Any]:
-        """The document, read."""
+        """The document as a dict."""
         document: dict[str, Any] | None = self.__dict__.get("_document")
         if document is None:
             document = self.__dict__["_document"] = json.loads(self.json)
@@ -336,7 +335,7 @@ class Result:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         made_by = str(state.pop("_version", "an unknown version"))
-        # Minor versions count until 1.0, as the library's do.
+        # Before version 1.0, minor versions may be incompatible, as for the library.
         if made_by.split(".")[:2] != version().split(".")[:2]:
             raise InputError(
                 f"was pickled by retrace {made_by}, must be of {version()}; "
@@ -346,7 +345,7 @@ class Result:
         self.__dict__.update(state)
 
     def __eq__(self, other: object) -> bool:
-        """Whether it says the same, however long it took."""
+        """Whether two results are equal, except for their computing times."""
         if not isinstance(other, type(self)):
             return NotImplemented
         return _ELAPSED.sub("", self.json) == _ELAPSED.sub("", other.json)
@@ -354,11 +353,11 @@ class Result:
     __hash__ = None  # type: ignore[assignment]
 
     def save(self, file: PathLike) -> None:
-        """Writes its document."""
+        """Writes the document."""
         write_file(path("file", file), self.json.encode())
 
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame with a row for each point; attrs has seed, version and so on."""
+        """Returns a pandas.DataFrame with one row per point. attrs contains seed, version, etc."""
         if not self._rows:
             raise Error(f"{type(self).__name__} is no list of points")
         frame = getattr(self, self._rows).to_pandas()
@@ -366,7 +365,7 @@ class Result:
         return frame
 
     def _attributes(self) -> dict[str, Any]:
-        """What is said of the whole, texts and numbers alone."""
+        """Returns the texts and numbers that apply to the whole result."""
         return {
             name: value
             for name, value in self.document.items()
@@ -374,7 +373,7 @@ class Result:
         }
 
     def _summary(self) -> str:
-        """Of the one line."""
+        """Returns the parts of the one-line description."""
         parts = []
         for name in self._told:
             value = getattr(self, name, None)
@@ -393,7 +392,7 @@ class Result:
         return f"<{type(self).__name__}: {', '.join(part for part in parts if part)}>"
 
     def _shown_drawing(self, *names: str) -> str | None:
-        """The SVG of the first of these drawings that there is."""
+        """Returns the first of these drawings that is available, as SVG."""
         for name in names:
             if name in self.drawings and self.drawings[name].is_there and self.drawings[name].svg:
                 return self.drawings[name].svg
@@ -412,8 +411,8 @@ def dataset_of(
     attributes: Mapping[str, Any],
     exclude: Callable[[str], bool] = lambda name: False,
 ) -> Any:
-    """An xarray.Dataset over the values of some columns. A dimension with one value stays, as
-    coordinate of length 1."""
+    """Returns an xarray.Dataset over the values of some columns. A dimension with a single value is
+    kept as a coordinate of length 1."""
     xarray = needed("xarray", "to_xarray()")
     flat = columns.flat()
     coordinates = {dim: list(dict.fromkeys(np.asarray(flat[dim]).tolist())) for dim in dims}

@@ -1,4 +1,4 @@
-"""The search for the best design by a function of a result, in Python."""
+"""Searches for the best design, using a Python function of a result as the objective."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ._results import Columns, html_table
 
 
 def number_of(name: str, value: object) -> float:
-    """What a function of a result has returned."""
+    """Checks the value that a function of a result returned."""
     array = np.asarray(value)
     if array.size != 1 or array.dtype.kind not in "iufb":
         raise InputError(f"must return one number, has returned {shown(value)}", key=name)
@@ -25,7 +25,7 @@ def number_of(name: str, value: object) -> float:
 
 
 class FoundOptimum:
-    """The best design by a function of a result."""
+    """Result of a search with a Python function as the objective."""
 
     def __init__(
         self,
@@ -53,9 +53,8 @@ class FoundOptimum:
 def _compass(
     function: Callable[[list[float]], float], start: list[float], step: float, evaluations: int
 ) -> None:
-    """Looks for the least value in the unit cube along its axes, the step halved where no side is
-    better (Kolda, Lewis
-    and Torczon 2003)."""
+    """Searches for the minimum in the unit cube by steps along the axes. If no step improves the
+    value, the step size is halved (compass search; Kolda, Lewis and Torczon 2003)."""
     best, at = function(start), start
     left = evaluations - 1
     while step > 1e-4 and left > 0:
@@ -74,7 +73,7 @@ def _compass(
 
 
 def _first_look(dimensions: int, scan: int) -> Iterator[list[float]]:
-    """Middles of equal parts of the unit cube, about `scan` of them."""
+    """Yields the centres of about `scan` equal cells of the unit cube."""
     side = max(2, round(scan ** (1 / dimensions)))
     for point in itertools.product(range(side), repeat=dimensions):
         yield [(k + 0.5) / side for k in point]

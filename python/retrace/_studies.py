@@ -1,4 +1,4 @@
-"""Studies: designs over ranges, in manufacture, and the best of them."""
+"""Studies: parameter sweeps, manufacturing tolerances, and optimization of designs."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ _KEY = '{"element.base_mm": [0.5, 1, 2]}'
 
 
 class SweepResult(Result):
-    """Designs over ranges: arrays with one value a point, `result["element.base_mm"]`,
-    `result["rre"]`."""
+    """Result of a parameter sweep. Arrays such as `result["element.base_mm"]` and `result["rre"]`
+    have one value per point."""
 
     _rows = "points"
     _told = ("points_in_all", "failed")
@@ -68,8 +68,8 @@ class SweepResult(Result):
         return self.points[name]
 
     def to_xarray(self) -> Any:
-        """An xarray.Dataset over the parameters where their values are a grid, else over the
-        points."""
+        """Returns an xarray.Dataset. Its dimensions are the parameters if their values form a grid,
+        otherwise the points."""
         sizes = [len(dict.fromkeys(map(str, self.points[name]))) for name in self.parameters]
         is_grid = math.prod(sizes) == len(self.points.rows) > 0
         dims = self.parameters if is_grid else ["point"]
@@ -82,7 +82,7 @@ class SweepResult(Result):
 
 
 class ToleranceResult(Result):
-    """What becomes of a design in manufacture: a row for each quantity."""
+    """Result of a tolerance study, with one row per quantity."""
 
     _rows = "quantities"
     _told = ("title", "parts", "failed")
@@ -98,7 +98,7 @@ class ToleranceResult(Result):
 
 
 class Optimum(Result):
-    """The best design within constraints; rows of the Pareto front are `pareto`."""
+    """Best design within constraints. `pareto` contains the rows of the Pareto front."""
 
     _rows = "pareto"
     _told = ("title", "objective_at_best")
@@ -114,12 +114,12 @@ class Optimum(Result):
 
     @property
     def objective_at_best(self) -> float:
-        """NaN if no design is feasible."""
+        """Objective of the best design, or NaN if no design is feasible."""
         return float(self.document.get("best", {}).get("objective", math.nan))
 
     @property
     def best_design(self) -> Design:
-        """Of the keys that the chosen one has."""
+        """The original design with the keys of the best design."""
         if self.design is None or not self.is_feasible:
             raise InputError(
                 "there is one only where a design was given, and a feasible one was found",
@@ -130,7 +130,7 @@ class Optimum(Result):
 
 
 def _parameter(key: object, values: Values) -> dict[str, Any]:
-    """A table [[parameter]]."""
+    """Returns a table [[parameter]] of a study file."""
     if not isinstance(key, str) or not key:
         raise refuse("parameters", f"a dict such as {_KEY}", key)
     if isinstance(values, Mapping):
@@ -153,7 +153,7 @@ def _name_of(function: Callable[..., Any]) -> str:
 
 
 def _split(quantities: object) -> tuple[list[dict[str, Any]], dict[str, Callable[[Any], Any]]]:
-    """Tables [[quantity]], and functions by their names."""
+    """Returns the tables [[quantity]], and the functions by name."""
     if isinstance(quantities, str) or callable(quantities):
         quantities = [quantities]
     if isinstance(quantities, Mapping) and all(map(callable, quantities.values())):
@@ -181,7 +181,7 @@ def _split(quantities: object) -> tuple[list[dict[str, Any]], dict[str, Callable
 
 
 def _constraints(constraints: object) -> list[dict[str, Any]]:
-    """Tables [[constraint]] of {"quantity": (least, most)}."""
+    """Converts {"quantity": (minimum, maximum)} to tables [[constraint]]."""
     if not isinstance(constraints, Mapping):
         raise refuse("constraints", 'a dict such as {"machining_time_h": (None, 5)}', constraints)
     tables = []
@@ -201,7 +201,7 @@ def _constraints(constraints: object) -> list[dict[str, Any]]:
 
 
 def _settings(**tables: object) -> dict[str, Any]:
-    """Tables of a study that were given."""
+    """Returns the tables of a study that were given."""
     given: dict[str, Any] = {}
     for name, table in tables.items():
         if table is None:
@@ -215,7 +215,7 @@ def _settings(**tables: object) -> dict[str, Any]:
 def _study_of(
     design: Design, parameters: object, quantities: list[dict[str, Any]], tables: Mapping[str, Any]
 ) -> tuple[_core.Study, list[str]]:
-    """A study of a design in memory, and the changes that the design has."""
+    """Returns a study of a design in memory, and the changes of the design."""
     if not isinstance(parameters, Mapping) or not parameters:
         raise refuse("parameters", f"a dict such as {_KEY}", parameters)
     rows = [_parameter(key, values) for key, values in parameters.items()]
@@ -251,7 +251,7 @@ def _request(
 
 
 def _from_file(study: object, parameters: object) -> bool:
-    """Whether a study file is meant; else a design is."""
+    """Whether the argument is a study file; otherwise it is a design."""
     is_name = isinstance(study, str) or hasattr(study, "__fspath__")
     if parameters is None and not is_name:
         raise InputError(f"are required with a design, a dict such as {_KEY}", key="parameters")
@@ -259,7 +259,7 @@ def _from_file(study: object, parameters: object) -> bool:
 
 
 def _grid(parameters: object) -> list[dict[str, Any]]:
-    """Every value with every other, the last parameter fastest."""
+    """Returns all combinations of values. The last parameter varies fastest."""
     if not isinstance(parameters, Mapping) or not parameters:
         raise refuse("parameters", f"a dict such as {_KEY}", parameters)
     lists = []
@@ -279,7 +279,7 @@ def _with_functions(
     of: Callable[[Design], Any],
     tell: Any,
 ) -> None:
-    """Adds to points what functions say of the result of each."""
+    """Adds the values of functions of the result to each point."""
     for k, point in enumerate(points):
         if point["status"] == "done":
             try:
@@ -296,7 +296,7 @@ def _with_functions(
 
 
 def _swept(study: Any, seed: int) -> dict[str, Any]:
-    """The document of a sweep that functions alone are asked of."""
+    """Returns the document of a sweep whose quantities are all Python functions."""
     return {
         "schema": "retrace.sweep/1",
         "study": "study",
@@ -328,21 +328,20 @@ def sweep(
     threads: int | None = None,
     progress: Progress = None,
 ) -> SweepResult:
-    """Designs over ranges, as `retrace sweep`: of a study file, or of a design and what is varied.
+    """Runs a parameter sweep, as `retrace sweep`. The sweep is given by a study file, or by a design
+    and parameters.
 
         sweep("study.toml", store="s.sqlite", resume=True)
         sweep(design, {"element.base_mm": [0.5, 1, 2]}, quantities=["rre", "machining_time_h"])
         sweep(design, {"element.base_mm": [0.5, 1, 2]}, quantities={"worst": lambda r: r.rre.min()},
               of=lambda d: rre(d, incidence_deg=[0, 10, 20]))
 
-    quantities: kinds of [[quantity]] of a study file, such tables, or functions of a result. of:
-    what makes the result
-    that functions get [rre at normal incidence]. combine: grid, zip, sobol, latin_hypercube or
-    monte_carlo, as [sweep]
-    of a study file; samples: of the last three. analysis, machining: these tables of a study file.
-    changes: values of
-    keys of designs and of these tables, of a study file. store: SQLite file that keeps finished
-    points."""
+    quantities: kinds of [[quantity]] as in a study file, tables [[quantity]], or functions of a
+    result. of: function that computes the result for these functions from a design [rre at normal
+    incidence]. combine: grid, zip, sobol, latin_hypercube or monte_carlo, as in [sweep] of a study
+    file. samples: number of points for the last three. analysis, machining: tables of these names
+    in a study file. changes: values that replace keys of the design and of these tables, for study
+    files. store: SQLite file for finished points."""
     count = thread_count(threads)
     if _from_file(study, parameters):
         request = _request(overrides_of(changes or {}), seed, store, resume, overwrite)
@@ -394,7 +393,7 @@ def sweep(
 
 
 def _text_table(columns: Columns) -> str:
-    """For people."""
+    """Returns the points as a table for reading."""
     names = [name for name in columns if name not in ("point", "status")]
     rows = [names] + [
         [
@@ -427,17 +426,15 @@ def tolerance(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ToleranceResult:
-    """What becomes of a design in manufacture, as `retrace tolerance`: of a study file, or of a
-    design and how its keys
-    are spread.
+    """Computes the effect of manufacturing tolerances on a design, as `retrace tolerance`, from a
+    study file or from a design and the distributions of its keys.
 
         tolerance(design, {"surface.dihedral_error_arcmin": {"distribution": "normal", "mean": 0,
         "sigma": 3}},
                   constraints={"rre": (0.96, None)})
 
-    constraints: least and most of quantities that a good part has. tolerance, analysis, machining:
-    these tables of a
-    study file. Else as sweep()."""
+    constraints: minimum and maximum of quantities for a good part. tolerance, analysis, machining:
+    tables of these names in a study file. Other arguments are those of sweep()."""
     count = thread_count(threads)
     if _from_file(study, parameters):
         read, given = _core.Study.load(path("study", study)), overrides_of(changes or {})
@@ -483,8 +480,8 @@ def optimize(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Union[Optimum, FoundOptimum]:
-    """The best design within constraints, as `retrace optimize`: of a study file, or of a design
-    and what is varied.
+    """Finds the best design within constraints, as `retrace optimize`, from a study file or from a
+    design and parameters.
 
         optimize("study.toml")
         optimize(design, {"element.base_mm": {"from": 0.1, "to": 5}},
@@ -492,13 +489,12 @@ def optimize(
         optimize(design, {"element.base_mm": (0.1, 5)}, objective=lambda r: r.rre.min(),
                  of=lambda d: rre(d, incidence_deg=[0, 10, 20]))
 
-    objective: a quantity of retrace, or a function of a result: then parameters are pairs (least,
-    most) and scipy looks
-    (Nelder-Mead; without scipy a compass search), from the best of `scan` designs on, at
-    `evaluations` of them at most.
-    of: what makes the result that it gets. quantities: what else is computed. optimize, analysis,
-    machining: these
-    tables of a study file. Else as sweep() and tolerance()."""
+    objective: a quantity of retrace, or a function of a result. With a function, parameters must be
+    pairs (minimum, maximum). The search then starts at the best of `scan` designs and uses at most
+    `evaluations` designs (Nelder-Mead of scipy, or a compass search without scipy). of: function
+    that computes the result for this function. quantities: additional quantities to compute.
+    optimize, analysis, machining: tables of these names in a study file. Other arguments are those
+    of sweep() and tolerance()."""
     count = thread_count(threads)
     flag("minimize", minimize)
     if _from_file(study, parameters):

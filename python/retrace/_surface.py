@@ -32,8 +32,7 @@ _UNITS = ("m", "mm", "um", "nm", "pm")
 
 class MetrologyResult(Result):
     """Roughness, waviness, dominant waves and edges of a surface. Maps are read-only (rows,
-    columns) arrays, NaN where
-    nothing was measured."""
+    columns) arrays with NaN where nothing was measured."""
 
     _told = ("roughness_sa_nm", "waviness_sa_nm")
 
@@ -54,7 +53,7 @@ class MetrologyResult(Result):
 
     @property
     def changes(self) -> dict[str, float]:
-        """What gives a design such a surface: `design.replace(measured.changes)`."""
+        """Changes that give a design this surface: `design.replace(measured.changes)`."""
         return {
             f"surface.{name}": value for name, value in self.document.get("surface", {}).items()
         }
@@ -64,11 +63,11 @@ class MetrologyResult(Result):
 
 
 def _heights(value: object) -> Array:
-    """Heights in nm, rows along x."""
+    """Converts heights in nm to an array whose rows are along x."""
     allowed = "the name of a file, or an array of heights in nm, one row a profile along x"
     try:
         heights = np.asarray(value)
-    except Exception:  # whatever an __array__ of somebody else raises
+    except Exception:  # __array__() of a foreign class may raise anything
         raise refuse("heights", allowed, value) from None
     if heights.dtype.kind not in "iuf" or heights.ndim not in (1, 2):
         raise InputError(
@@ -93,13 +92,12 @@ def metrology(
     feed_mm_per_min: float | None = None,
     edge: bool = False,
 ) -> MetrologyResult:
-    """Roughness, waviness, dominant waves, scratches and edge radius of a measured height map or
-    profile, as
-    `retrace metrology`.
+    """Computes roughness, waviness, dominant waves, scratches and edge radius of a measured height
+    map or profile, as `retrace metrology`.
 
     heights: file (text, SDF, GSF or GWY), or an array of heights in nm, positive out of the
-    material, NaN where nothing
-    was measured; an array needs pixel_um: one number, or two for x and y."""
+    material, NaN where nothing was measured. pixel_um: required for arrays; one number, or two for
+    x and y."""
     request = give(
         _core.MetrologyRequest(),
         form=word("form", form),

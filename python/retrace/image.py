@@ -1,4 +1,4 @@
-"""Pictures: what a detector or a camera sees, and a driver at night."""
+"""Pictures as seen by a detector, by a camera, and by a driver at night."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ _MOST = 2**32 - 1
 
 
 class Picture(Mapping[str, Array]):
-    """Numbers in pixels, by the names of its channels: read-only (rows, columns) arrays, the
-    uppermost row first."""
+    """Channels of a picture by name: read-only (rows, columns) arrays, beginning with the top
+    row."""
 
     def __init__(self, name: str, channels: dict[str, Array], drawing: Any) -> None:
         self.name = name
         self._channels = channels
-        #: As a picture to look at.
+        #: Drawing of the picture for viewing.
         self.drawing = Drawing(drawing)
 
     def __getitem__(self, channel: str) -> Array:
@@ -50,7 +50,7 @@ class Picture(Mapping[str, Array]):
         return len(self._channels)
 
     def to_xarray(self) -> Any:
-        """An xarray.Dataset over rows and columns."""
+        """Returns an xarray.Dataset over rows and columns."""
         xarray = needed("xarray", "to_xarray()")
         return xarray.Dataset(
             {
@@ -69,7 +69,7 @@ class Picture(Mapping[str, Array]):
 
 
 class ImageResult(Result):
-    """Pictures, by the names that their files have."""
+    """Pictures by the names of their files."""
 
     _told = ("kind", "engine")
 
@@ -110,8 +110,8 @@ def detector(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
-    """Maps of the light that comes back, by place ("irradiance") and by direction ("angular"), as
-    `retrace image --detector`."""
+    """Computes maps of the returned light by position ("irradiance") and by direction ("angular"),
+    as `retrace image --detector`."""
     request = give(
         _core.DetectorRequest(),
         incidence_deg=number(
@@ -167,10 +167,11 @@ def camera(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
-    """The part in the light of a lamp, as a camera sees it ("camera": luminance Y in cd/m2), as
-    `retrace image --camera`.
+    """Computes a camera picture of the part in the light of a lamp ("camera": luminance Y in
+    cd/m2), as `retrace image --camera`.
 
-    eye_mm, lamp_mm, film_mm: three, three and two numbers. lamp: a photometric file."""
+    eye_mm, lamp_mm: positions, three numbers each. film_mm: two numbers. lamp: a photometric
+    file."""
     if not isinstance(pixels, (tuple, list)) or len(pixels) != 2:
         raise InputError("must be a pair (columns, rows)", key="pixels")
     request = give(
@@ -226,8 +227,8 @@ def road(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
-    """Two such reflectors on a car ahead at night, from a driver's eye ("road"), as `retrace image
-    --road`."""
+    """Computes a driver's view at night of a car ahead with two such reflectors ("road"), as
+    `retrace image --road`."""
     request = give(
         _core.RoadRequest(),
         distance_m=number_list("distance_m", distance_m),
