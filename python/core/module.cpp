@@ -1,5 +1,5 @@
-// retrace._core: the library (docs/library.md) for the package retrace, which checks what goes in and shapes what comes
-// out. Functions here are thin: they take requests of the library and give its results.
+// Module retrace._core: binds the library (docs/library.md) for the package retrace. The package checks arguments and
+// converts results. The functions here only pass requests to the library and return its results.
 
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
@@ -34,7 +34,7 @@ namespace {
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Raises what the package calls it.
+/// Raises an exception of the package by the name of its class.
 void raise(const char* name, const py::args& arguments) {
   const py::object type = py::module_::import("retrace._errors").attr(name);
   PyErr_SetObject(type.ptr(), type(*arguments).ptr());
@@ -57,7 +57,7 @@ void translate(std::exception_ptr error) {
   }
 }
 
-/// What the results of most questions have.
+/// Binds the members that most result classes have in common.
 template <class Result>
 py::class_<Result> result_class(py::module_& module, const char* name) {
   return py::class_<Result>(module, name)
@@ -277,7 +277,7 @@ void bind_making(py::module_& module) {
   });
 }
 
-/// sweep, tolerance or optimize.
+/// Type of the functions sweep, tolerance and optimize.
 using StudyFunction = StudyResult (*)(const Study&, const StudyRequest&, const Running&);
 
 void bind_studies(py::module_& module) {
@@ -307,7 +307,7 @@ void bind_studies(py::module_& module) {
     });
 }
 
-/// Maps as (rows, columns) arrays by the names of their channels.
+/// Returns the channels of a picture by name, as (rows, columns) arrays.
 py::dict channels_of(Picture& picture) {
   py::dict channels;
   for (auto& [name, values] : picture.channels)
@@ -316,7 +316,7 @@ py::dict channels_of(Picture& picture) {
   return channels;
 }
 
-/// The result and its pictures by name: channels, drawing.
+/// Returns a result and a dict of its pictures. Each picture consists of its channels and its drawing.
 py::tuple told(ImageResult result) {
   py::dict pictures;
   for (Picture& picture : result.pictures)
@@ -389,7 +389,7 @@ std::vector<double> numbers_of(const Numbers& array) {
   return {array.data(), array.data() + array.size()};
 }
 
-/// The result and its arrays.
+/// Returns a result and its arrays.
 py::tuple told(TracedRays traced) {
   const auto count = static_cast<py::ssize_t>(traced.accounts.size());
   py::dict arrays;
@@ -453,7 +453,7 @@ py::array_t<double> heights_of(HeightMap& map) {
                           {static_cast<py::ssize_t>(map.rows), static_cast<py::ssize_t>(map.columns)});
 }
 
-/// The result and its maps.
+/// Returns a result and its maps.
 py::tuple told(Metrology measured) {
   const py::tuple maps =
       py::make_tuple(heights_of(measured.surface), heights_of(measured.roughness), heights_of(measured.waviness));

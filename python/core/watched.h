@@ -1,7 +1,7 @@
 #pragma once
 
-// Runs work of the library on a thread of its own while Python's waits: without the interpreter's lock, told of
-// interrupts, and telling how far it has come.
+// Runs a computation of the library in a separate thread while the Python thread waits without the interpreter's lock.
+// Interrupts stop the computation, and its progress is reported.
 
 #include <pybind11/pybind11.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@
 namespace retrace::python {
 namespace py = pybind11;
 
-/// A process that was forked has none of the threads that its parent computed with.
+/// Error in a forked process: the threads that its parent used for computations do not exist there.
 class Forked : public std::runtime_error {
  public:
   Forked()
@@ -31,14 +31,15 @@ class Forked : public std::runtime_error {
             "use multiprocessing.get_context(\"forkserver\") or \"spawn\", or fork before") {}
 };
 
-/// Remembers which process has computed. \throw Forked in a child of it
+/// Stores the process that computes.
+/// \throw Forked in a forked child of this process
 inline void refuse_after_fork() {
   static std::atomic<pid_t> computing{0};
   pid_t expected = 0;
   if (!computing.compare_exchange_strong(expected, ::getpid()) && expected != ::getpid()) throw Forked();
 }
 
-/// How far work has come, as told by any of its threads.
+/// Completed fraction of the computation, set by its threads.
 class Share : public Progress {
  public:
   void at(double share) override { share_.store(share, std::memory_order_relaxed); }
@@ -48,7 +49,7 @@ class Share : public Progress {
   std::atomic<double> share_{0.0};
 };
 
-/// Work, shared by its thread and the one that waits.
+/// State shared by the computation's thread and the waiting thread.
 template <class Result>
 struct Work {
   Share share;
@@ -59,7 +60,9 @@ struct Work {
   std::optional<Result> result;
   std::exception_ptr error;
 
-  /// \return whether it has ended by then. \pre the interpreter's lock is held; it is given up meanwhile
+  /// Waits for some time. The interpreter's lock is released meanwhile.
+  /// \pre the interpreter's lock is held
+  /// \return true if the computation has ended
   bool wait(std::chrono::milliseconds time) {
     const py::gil_scoped_release others_run;
     std::unique_lock lock(mutex);
@@ -67,9 +70,10 @@ struct Work {
   }
 };
 
-/// Runs compute(const Running&). It must hold copies of all that it needs and nothing of Python: work that does not
-/// stop within a second of an interrupt is left to itself. \param progress called with the share that is done, from the
-/// thread that waits; or None \throw what compute throws; py::error_already_set of a signal's handler, or of `progress`
+/// Runs compute(const Running&) in a separate thread. `compute` must own copies of all its data and must not use Python
+/// objects: if it does not stop within a second of an interrupt, it is abandoned and continues to run.
+/// \param progress Python function that the waiting thread calls with the completed fraction, or None
+/// \throw any exception of `compute`; py::error_already_set from a signal handler or from `progress`
 template <class Compute>
 auto watched(const py::object& progress, unsigned threads, Compute compute) {
   using Result = decltype(compute(std::declval<const Running&>()));

@@ -35,13 +35,13 @@ class InputError(Error, ValueError):
     def __init__(
         self, message: str, file: str | None = None, line: int | None = None, key: str | None = None
     ) -> None:
-        #: What is wrong, and what is allowed; without its place.
+        #: What is wrong and what is allowed, without file and line.
         self.message = re.sub(r"--[a-z][a-z-]+", lambda option: _keyword(option[0]), message)
         # The library reports an error in a dict of changes as an error in the file "--set". In
         # Python there is no such file.
         changed = (file or "").startswith("--set ")
         self.file = None if changed else file or None  #: file that contains the error, or None
-        self.line = line or None  #: of that file, from 1
+        self.line = line or None  #: line of this file, counted from 1
         #: Key of the file, such as "element.base_mm", or name of the argument.
         self.key = (_keyword(key) if key.startswith("--") else key) if key else None
         place = ":".join(str(part) for part in (self.file, self.line) if part is not None)

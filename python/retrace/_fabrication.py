@@ -40,9 +40,9 @@ class Job(Result):
 
     _told = ("elements", "machine", "strategy")
 
-    text: str  #: of the job file
-    elements: int  #: that are cut
-    partial_elements: int  #: that the design has and the job leaves out
+    text: str  #: text of the job file
+    elements: int  #: number of elements that are cut
+    partial_elements: int  #: number of partial elements of the design, which the job omits
 
     def __init__(self, core: Any) -> None:
         super().__init__(core)
@@ -60,7 +60,7 @@ class Fabrication(Result):
 
     programs: dict[
         str, str
-    ]  #: texts by the usual names of their files, in the order in which they run
+    ]  #: texts of the programs by file name, in the order of execution
 
     def __init__(self, core: Any) -> None:
         super().__init__(
@@ -86,8 +86,8 @@ class Fabrication(Result):
 
 #: A job, or the name of its file.
 AnyJob = Union[Job, PathLike]
-#: What fabricate() gave, texts by names, or names of files in the order in which they run;
-#: FILE@LINE: stopped behind it.
+#: Result of fabricate(), texts by name, or names of files in the order of execution. FILE@LINE: the
+#: program was stopped after this line.
 AnyPrograms = Union[Fabrication, Mapping[str, str], PathLike, Sequence[PathLike]]
 
 

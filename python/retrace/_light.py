@@ -48,12 +48,12 @@ class RreResult(Result):
     _rows = "points"
     _told = ("title", "rre", "engine")
 
-    rre: Array  #: share of the incident power that comes back, 0 to 1
+    rre: Array  #: retroreflected fraction of the incident power, 0 to 1
     std_error: Array
     incidence_deg: Array
     azimuth_deg: Array
     acceptance_half_angle_deg: Array
-    ledger: Columns  #: shares of the incident power by account, which add up to 1
+    ledger: Columns  #: fractions of the incident power by account; the sum is 1
     points: Columns
     engine: str
     complete: bool
@@ -106,7 +106,7 @@ class Footprint(Result):
         self.drawings = {
             name: drawing for name, drawing in rre.drawings.items() if name == "footprint"
         }
-        #: The efficiency of the same directions.
+        #: The efficiency for the same directions of light.
         self.rre = rre
 
     @property
@@ -249,7 +249,7 @@ class PhotometryResult(Result):
     _told = ("verdict", "margin")
 
     verdict: str  #: pass, unconfirmed, undetermined or fail
-    passes: bool  #: every point and the area, and the colour is none that fails
+    passes: bool  #: true if no point, area or colour fails
     points: Columns
     complete: bool
 

@@ -48,11 +48,11 @@ class Mesh:
     The arrays use the memory of the library and are read-only."""
 
     vertices_mm: Array  #: (n, 3)
-    faces: NDArray[np.uint32]  #: (m, 3), counter-clockwise seen from outside
+    faces: NDArray[np.uint32]  #: (m, 3), counter-clockwise as seen from outside
     labels: NDArray[np.int32]  #: (m,), values of FaceKind
     volume_mm3: float
     area_mm2: float
-    is_manifold: bool  #: it touches itself along no edge
+    is_manifold: bool  #: true if no edge is shared by more than two triangles
     warnings: tuple[str, ...]
 
     def __init__(self, made: dict[str, Any]) -> None:

@@ -10,8 +10,8 @@ from typing import Any, Union
 
 from ._errors import InputError
 
-#: None: nothing is told; True: a bar, by tqdm where that is installed; or a function of the share
-#: that is done, 0 to 1.
+#: None: no progress is shown. True: a progress bar, by tqdm if it is installed. Otherwise a
+#: function, which is called with the completed fraction, 0 to 1.
 Progress = Union[None, bool, Callable[[float], object]]
 
 

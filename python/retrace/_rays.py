@@ -56,22 +56,22 @@ class RaysResult(Result):
 
     _told = ("rays", "power", "power_unit")
 
-    ledger: dict[str, float]  #: shares of the power of all rays by account, which add up to 1
-    power: float  #: of all rays
+    ledger: dict[str, float]  #: fractions of the total power by account; the sum is 1
+    power: float  #: total power of all rays
     complete: bool
 
 
 class TracedRays(RaysResult):
     """All rays that left: arrays with one row per ray, in the order of the incident rays."""
 
-    power_out: Array  #: (m,) of each ray
-    origins: Array  #: (m, 3) where it left, in mm in the part's frame
+    power_out: Array  #: (m,) power of each ray
+    origins: Array  #: (m, 3) points where rays left, in mm in the part frame
     directions: Array  #: (m, 3) unit vectors
-    stokes: Array  #: (m, 4) the first the power
-    axes: Array  #: (m, 3) of the Stokes parameters: along the long axis of the polarisation ellipse
+    stokes: Array  #: (m, 4) Stokes parameters; the first is the power
+    axes: Array  #: (m, 3) reference axes: the major axes of the polarisation ellipses
     wavelength_nm: Array  #: (m,)
     account: NDArray[np.uint8]  #: (m,) values of RayAccount
-    incident: NDArray[np.uint64]  #: (m,) which of the incident rays it comes from
+    incident: NDArray[np.uint64]  #: (m,) index of the incident ray
 
     def __init__(self, made: tuple[Any, dict[str, Any]]) -> None:
         core, arrays = made

@@ -264,21 +264,21 @@ def drawing_of(source: Any) -> Drawing | None:
 
 class Result:
     """A result. The keys of its document are attributes. If the document contains a list of
-    objects, such as the points of a curve, their keys are attributes, too. These are read-only arrays with
-    one value per object, and NaN where a key is missing.
+    objects, such as the points of a curve, their keys are attributes, too. These are read-only
+    arrays with one value per object, and NaN where a key is missing.
     """
 
-    #: Key of the list of objects whose keys are attributes as well.
+    #: Key of the list of objects whose keys also become attributes.
     _rows: ClassVar[str] = ""
     #: Drawings that take long to make: pages contain them only if they were made before.
     _costly: ClassVar[Sequence[str]] = ()
     #: Keys that the one-line description contains.
     _told: ClassVar[Sequence[str]] = ()
 
-    json: str  #: its document, as the program prints it with --json
-    table: str  #: for people, as the program prints it
-    warnings: tuple[str, ...]  #: what is to be known about it
-    csv: str  #: one line a point; empty if it has none
+    json: str  #: the document, as the program prints it with --json
+    table: str  #: table for reading, as the program prints it
+    warnings: tuple[str, ...]  #: limitations of the result
+    csv: str  #: one line per point; empty if there are no points
     drawings: dict[str, Drawing]  #: by name
 
     def __init__(

@@ -35,10 +35,10 @@ class FoundOptimum:
         points: Columns,
         method: str,
     ) -> None:
-        self.design = design  #: the best
-        self.values = values  #: of the parameters
+        self.design = design  #: best design
+        self.values = values  #: values of its parameters
         self.objective = objective
-        self.points = points  #: every design that was looked at
+        self.points = points  #: all designs that were evaluated
         self.method = method
 
     def __repr__(self) -> str:

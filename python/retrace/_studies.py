@@ -42,7 +42,7 @@ __all__ = [
     "tolerance",
 ]
 
-#: What is asked of every design: the kind of a quantity, a table [[quantity]] of a study file, or a
+#: Quantity that is computed for each design: its kind, a table [[quantity]] of a study file, or a
 #: function of a result.
 Quantity = Union[str, Mapping[str, Any], Callable[[Any], Any]]
 #: Values, or keys of a table [[parameter]] such as {"from": 0.1, "to": 5}.
@@ -87,7 +87,7 @@ class ToleranceResult(Result):
     _rows = "quantities"
     _told = ("title", "parts", "failed")
 
-    is_enough: bool  #: the yield is what the study asks for
+    is_enough: bool  #: true if the yield is at least the required yield
 
     def __init__(self, core: Any) -> None:
         super().__init__(core, drawings={"tolerance": core.drawing})
@@ -103,8 +103,8 @@ class Optimum(Result):
     _rows = "pareto"
     _told = ("title", "objective_at_best")
 
-    is_feasible: bool  #: there is a design that holds the constraints
-    #: What was varied, if it was given as a design.
+    is_feasible: bool  #: true if a design satisfies the constraints
+    #: The design that was varied, or None if a study file was given.
     design: Design | None
 
     def __init__(self, core: Any, design: Design | None = None) -> None:
@@ -328,8 +328,8 @@ def sweep(
     threads: int | None = None,
     progress: Progress = None,
 ) -> SweepResult:
-    """Runs a parameter sweep, as `retrace sweep`. The sweep is given by a study file, or by a design
-    and parameters.
+    """Runs a parameter sweep, as `retrace sweep`. The sweep is given by a study file, or by a
+    design and parameters.
 
         sweep("study.toml", store="s.sqlite", resume=True)
         sweep(design, {"element.base_mm": [0.5, 1, 2]}, quantities=["rre", "machining_time_h"])

@@ -36,10 +36,10 @@ class MetrologyResult(Result):
 
     _told = ("roughness_sa_nm", "waviness_sa_nm")
 
-    surface: dict[str, float]  #: keys of [surface] of a design that such a surface has
-    surface_toml: str  #: the same as text of a design file
+    surface: dict[str, float]  #: keys of the table [surface] of a design with this surface
+    surface_toml: str  #: table [surface] as text of a design file
     spectra_csv: str  #: power spectral densities
-    heights_nm: Array  #: less the form
+    heights_nm: Array  #: heights without the form
     roughness_nm: Array
     waviness_nm: Array
     pixel_um: tuple[float, float]  #: spacing along x and y
