@@ -12,13 +12,14 @@
 namespace retrace::geometry {
 namespace {
 
-/// Lengths this close to a whole number of elements (relative) are whole.
+/// A length counts as a whole number of elements if it differs from it by at most this fraction.
 constexpr double kWhole = 1e-9;
-// Size of an endless sheet, in periods and in reaches of the sheet: far more than any tracer or drawing looks at.
+// Size of the sheet of an infinite array, in periods and in multiples of its extent. It is larger than any region that
+// is traced or drawn.
 constexpr double kEndlessPeriods = 1e3;
 constexpr double kEndlessReaches = 10.0;
 
-/// A bound of the array that meets the part's up to the tolerance is the part's.
+/// Sets a bound of the block to that of the part if the two differ only by rounding errors.
 void snap(Rectangle& part, const Rectangle& block, const Vec2& length) {
   const auto one = [](double& bound, double to, double scale) {
     if (std::abs(bound - to) <= 2.0 * kWhole * scale) bound = to;
@@ -43,7 +44,7 @@ Element without_cant(Element element) {
   return element;
 }
 
-/// How far the corners of an element's nominal outline lie from the substrate.
+/// Returns the heights of the corners of an element's nominal outline above the substrate.
 std::vector<double> rim_heights(const Cell& cell, const Element& element) {
   constexpr double kRounding = 1e-12;
   const double depth_mm = element_depth_mm(element);
@@ -61,7 +62,7 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// What two convex polygons have in common; empty if it is no wider than the tolerance.
+/// Returns the intersection of two convex polygons, or an empty polygon if it is not wider than the tolerance.
 Polygon common(Polygon polygon, const Polygon& other, double tolerance_mm) {
   for (std::size_t k = 0; k < other.size() && !polygon.empty(); ++k) {
     const Vec2 along = (other[(k + 1) % other.size()] - other[k]).normalized();
@@ -112,7 +113,7 @@ void ArraySheet::lay_on_substrate() {
   reach_mm = arcs_of_border();
 }
 
-/// As a flat array that is as large as the substrate is, rolled out.
+/// Lays out prisms as in a flat array with the size of the unrolled substrate.
 void ArraySheet::lay_out_prisms(const RtpElement& prism) {
   const Rectangle all = is_upright ? part_mm : moved(surface->arc_reach(), middle_mm);
   ArrayLayout array = spec->array;
@@ -132,7 +133,7 @@ void ArraySheet::lay_out_cubes() {
   lattice = make_lattice(*spec, false);
 }
 
-/// Round the part's border, with an element's room to spare.
+/// Returns the bounding box of the part's border in arc coordinates, enlarged by the size of an element.
 Rectangle ArraySheet::arcs_of_border() const {
   constexpr int kSteps = 128;
   Rectangle box;

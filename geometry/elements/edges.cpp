@@ -1,4 +1,4 @@
-// Rounded and chamfered edges of elements: edges become rows of plane strips, corners of them small plane faces.
+// Rounds and chamfers the edges of elements. Edges become rows of plane strips; their corners become small plane faces.
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -13,12 +13,13 @@ namespace retrace::geometry {
 
 namespace {
 
-// Of an element's size: what is narrower cannot be told from rounding, and no edge of that width is built.
+// Relative to an element's size. Facets narrower than kSliver result from rounding errors. Edges narrower than
+// kLeastEdge are not built.
 constexpr double kSliver = 1e-9;
 constexpr double kLeastEdge = 1e-7;
-// How often the spherical triangle at a corner is halved: 16 faces.
+// Number of times that the spherical triangle at a corner is subdivided: 16 faces.
 constexpr int kSphereHalvings = 2;
-// Planes closer to each other than this (radians, roughly) make no rim worth rounding.
+// Minimum angle between two planes (approximately, in radians) for a rim to be rounded.
 constexpr double kLeastTurn = 1e-3;
 
 double size_of(const Polygon& outline) {
@@ -46,14 +47,14 @@ bool is_sliver(const Polygon& polygon, double width_mm) {
   return area(polygon) <= 0.5 * width_mm * bounding_box(polygon).size().norm();
 }
 
-/// Of several planes the highest at every place of an outline.
+/// Returns the upper envelope of several planes over an outline.
 std::vector<CellFacet> upper_envelope(const Polygon& outline, const std::vector<CellFacet>& planes, double sliver_mm) {
   std::vector<CellFacet> facets = highest_of(outline, planes);
   std::erase_if(facets, [&](const CellFacet& facet) { return is_sliver(facet.outline, sliver_mm); });
   return facets;
 }
 
-/// Cuts a facet down to planes that lie below it.
+/// Clips a facet to the planes that are below it, and adds the resulting facets.
 void add_lower_envelope(std::vector<CellFacet>& facets, const CellFacet& facet, const std::vector<CellFacet>& planes,
                         double sliver_mm) {
   std::vector<CellFacet> cutting;
@@ -71,12 +72,12 @@ void add_lower_envelope(std::vector<CellFacet>& facets, const CellFacet& facet, 
   }
 }
 
-/// How edges of one kind are shaped.
+/// Shape of edges of one kind.
 struct Rounding {
   double radius_mm = 0.0;
   double chamfer_mm = 0.0;
   int chords = 0;
-  double side = 1.0;  ///< 1: the material ends in the edge (root); -1: the air does (rim)
+  double side = 1.0;  ///< 1 for a root, a convex edge of the material; -1 for a rim, a concave edge
 };
 
 Rounding root_rounding(const EdgeShape& edges) {
@@ -87,8 +88,9 @@ Rounding rim_rounding(const EdgeShape& edges) {
   return {edges.rim_radius_mm, edges.rim_chamfer_mm, edges.chords, -1.0};
 }
 
-/// Strips over an edge of two planes that meet in `on_edge`, on a circle that touches both, from the first plane to the
-/// second or, `half`, to the middle. A chamfer is one strip.
+/// Adds strips over the edge of two planes that meet in `on_edge`. The strips approximate a circle that is tangent to
+/// both planes. They extend from the first plane to the second, or only to the centre if `half` is true. A chamfer is a
+/// single strip.
 void add_arc(std::vector<CellFacet>& planes, const Vec3& normal_a, const Vec3& normal_b, const Vec3& on_edge,
              const Rounding& how, bool half) {
   const double between = std::acos(std::clamp(normal_a.dot(normal_b), -1.0, 1.0));
@@ -105,7 +107,7 @@ void add_arc(std::vector<CellFacet>& planes, const Vec3& normal_a, const Vec3& n
   }
 }
 
-/// Faces with their corners on a sphere, over the spherical triangle of three directions.
+/// Adds faces with their corners on a sphere, over the spherical triangle of three directions.
 void add_sphere_faces(std::vector<CellFacet>& planes, const Vec3& centre, double radius_mm,
                       const std::array<Vec3, 3>& triangle, int halvings) {
   const auto& [a, b, c] = triangle;
@@ -123,10 +125,12 @@ void add_sphere_faces(std::vector<CellFacet>& planes, const Vec3& centre, double
     add_sphere_faces(planes, centre, radius_mm, quarter, halvings - 1);
 }
 
-/// A ball that touches three planes which meet in `corner`: where three rounded edges meet. Chamfers have none.
+/// Adds a ball where three rounded edges meet. It touches the three planes that meet in `corner`. Chamfers have no
+/// ball.
 void add_sphere(std::vector<CellFacet>& planes, const std::array<Vec3, 3>& normals, const Vec3& corner,
                 const Rounding& how) {
-  constexpr double least_volume = 0.05;  // of the normals' parallelepiped: planes that nearly share a line have no ball
+  // minimum volume of the normals' parallelepiped; planes that nearly share a line have no ball
+  constexpr double least_volume = 0.05;
   if (how.radius_mm <= 0.0) return;
   Eigen::Matrix3d rows;
   for (Eigen::Index k = 0; k < 3; ++k) rows.row(k) = normals[static_cast<std::size_t>(k)];
@@ -136,7 +140,7 @@ void add_sphere(std::vector<CellFacet>& planes, const std::array<Vec3, 3>& norma
   add_sphere_faces(planes, centre, radius_mm, normals, kSphereHalvings);
 }
 
-/// Where all planes of an element meet: its apex, or a point of its roof.
+/// Returns the point at which all planes of an element meet: its apex, or a point of its roof edge.
 Vec3 lowest_point(const Cell& cell) {
   const HeightPlane& a = cell.facets[0].plane;
   const HeightPlane& b = cell.facets[1].plane;
@@ -147,12 +151,13 @@ Vec3 lowest_point(const Cell& cell) {
     slopes.row(1) = a.slope - cell.facets[2].plane.slope;
     heights.y() = cell.facets[2].plane.height_mm - a.height_mm;
   } else {
-    slopes.row(1) = Vec2(-slopes(0, 1), slopes(0, 0));  // across: any point of the roof serves
+    // direction across the roof; any point of the roof edge may be used
+    slopes.row(1) = Vec2(-slopes(0, 1), slopes(0, 0));
   }
   return lifted(slopes.fullPivLu().solve(heights), a);
 }
 
-/// Planes of the facets and of what rounds the edges between them: their upper envelope is the element.
+/// Returns the planes of the facets and of the rounded roots. The element is their upper envelope.
 std::vector<CellFacet> planes_with_roots(const Cell& cell, const EdgeShape& edges) {
   std::vector<CellFacet> planes = cell.facets;
   if (!edges.rounds_roots()) return planes;
@@ -165,16 +170,17 @@ std::vector<CellFacet> planes_with_roots(const Cell& cell, const EdgeShape& edge
   return planes;
 }
 
-/// What the neighbour beyond a rim is taken for.
+/// Assumption about the neighbour beyond a rim.
 enum class Beyond { mirror_image, land };
 
-/// One rim of a facet: where it lies, and the plane beyond.
+/// Rim of a facet: a point on it and the normal of the plane beyond it.
 struct Rim {
   Vec3 from;
   Vec3 normal_beyond;
 };
 
-/// The rim over one side of a facet's outline; none over roots and gables, nor where the facet falls towards it.
+/// Returns the rim over a side of a facet's outline. Returns nothing for roots and gables, and if the facet descends
+/// towards this side.
 std::optional<Rim> rim_over(const Cell& cell, const CellFacet& facet, std::size_t side, Beyond beyond) {
   const Vec2& a = facet.outline[side];
   const Vec2& b = facet.outline[(side + 1) % facet.outline.size()];
@@ -196,7 +202,7 @@ std::optional<Rim> rim_over(const Cell& cell, const CellFacet& facet, std::size_
              beyond == Beyond::land ? Vec3(-Vec3::UnitZ()) : Vec3(normal - 2.0 * normal.dot(outward) * outward)};
 }
 
-/// The rim's arc in as many strips whether it goes on into a mirror image or ends on land.
+/// Adds the strips of a rim. Their number is equal whether the rim continues as a mirror image or ends on land.
 void add_rim_arc(std::vector<CellFacet>& planes, const Vec3& normal, const Rim& rim, const EdgeShape& edges,
                  Beyond beyond) {
   Rounding how = rim_rounding(edges);
@@ -204,7 +210,7 @@ void add_rim_arc(std::vector<CellFacet>& planes, const Vec3& normal, const Rim& 
   add_arc(planes, normal, rim.normal_beyond, rim.from, how, beyond == Beyond::mirror_image);
 }
 
-/// Planes that round the rims of one facet: over it the surface is nowhere higher.
+/// Returns the planes that round the rims of one facet. They are an upper bound of the surface over this facet.
 std::vector<CellFacet> rim_planes(const Cell& cell, const CellFacet& facet, const EdgeShape& edges, Beyond beyond) {
   std::vector<CellFacet> planes;
   const Vec3 normal = outward_normal(facet.plane);
@@ -225,7 +231,7 @@ EdgeShape without_negligible(EdgeShape edges, double size_mm) {
   return edges;
 }
 
-/// Where land keeps the rims of a prism apart from its neighbours.
+/// Returns whether land separates a prism from its neighbours.
 Beyond beyond_rims(const PartSpec& spec, bool rotated) {
   return (rotated ? spec.array.y_gap_mm : spec.array.x_gap_mm) > 0.0 ? Beyond::land : Beyond::mirror_image;
 }
@@ -261,7 +267,8 @@ Cell land_cell(const Rectangle& rectangle, const PartSpec& spec, Eigen::Index ax
   const Cell element = element_cell(spec.element, spec.angle_errors);
   const EdgeShape edges = without_negligible(spec.edges, size_of(element.outline));
   std::vector<CellFacet> planes;
-  // Towards the land rises, from below, the second facet of one prism and, from above, the first of the next.
+  // The second facet of one prism rises towards the land from the lower side, and the first facet of the next prism
+  // from the upper side.
   for (const bool from_below : {true, false}) {
     if (!edges.rounds_rims() || !(from_below ? lower : upper)) continue;
     const double steepness = element.facets[from_below ? 1 : 0].plane.slope.norm();

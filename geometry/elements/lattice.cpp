@@ -14,7 +14,8 @@ void add_element(Lattice& lattice, Cell cell) {
   ++lattice.elements_per_period;
 }
 
-/// One prism and the land that separates it from the next in x and y. In a checker the next ones are rotated.
+/// Adds one prism and the land between it and the next prisms in x and y. In a checker arrangement, the next prisms are
+/// rotated.
 void add_prism_with_gaps(Lattice& lattice, const PartSpec& spec, const Vec2& corner, bool rotated) {
   const auto& element = std::get<RtpElement>(spec.element);
   const Vec2 gap(spec.array.x_gap_mm, spec.array.y_gap_mm);
@@ -58,7 +59,8 @@ Lattice rtp_lattice(const PartSpec& spec, bool rows_are_shifted) {
   return lattice;
 }
 
-// Hexagons with corners on +-x: rows of spacing sqrt(3) R along y, neighbouring columns 1.5 R apart and half a row up.
+// Hexagons with corners on +-x. The spacing along y is sqrt(3) R. Neighbouring columns are 1.5 R apart and shifted by
+// half a hexagon along y.
 Lattice honeycomb_lattice(const HexagonalCube& element, const AngleErrors& errors) {
   const double radius = 0.5 * element.aperture_mm;
   Lattice lattice;
@@ -68,7 +70,7 @@ Lattice honeycomb_lattice(const HexagonalCube& element, const AngleErrors& error
   return lattice;
 }
 
-// Every triangle shares its sides with three rotated ones; the centres of neighbours are R apart.
+// Each triangle shares its sides with three rotated triangles. The centres of neighbouring triangles are R apart.
 Lattice triangular_lattice(const TriangularCube& element, const AngleErrors& errors) {
   const double radius = 0.5 * element.aperture_mm;
   Lattice lattice;

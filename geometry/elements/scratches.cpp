@@ -1,4 +1,4 @@
-// Scratches that run up the facets of prisms.
+// Scratches along the facets of prisms, from root to rim.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -10,10 +10,10 @@
 namespace retrace::geometry {
 namespace {
 
-// Of an element's size: what is narrower cannot be told from rounding.
+// Relative to an element's size. Narrower facets result from rounding errors.
 constexpr double kSliver = 1e-9;
 
-/// A stretch of the roof edge over which the surface rises evenly above its facet's plane.
+/// Interval along the roof edge in which the height of the surface above the facet's plane is linear.
 struct Stretch {
   double from_mm = 0.0;
   double to_mm = 0.0;
@@ -23,8 +23,8 @@ struct Stretch {
   bool is_scratch() const { return from_height_mm != 0.0 || to_height_mm != 0.0; }
 };
 
-/// The profile of a facet along the roof edge, from one gable to the other, at 0 in the middle.
-/// \param height_per_depth of a plane that is moved along its normal
+/// Returns the profile of a facet along the roof edge, from one gable to the other. The origin is the centre.
+/// \param height_per_depth change of height when a plane is moved by a unit along its normal
 std::vector<Stretch> profile_of(const std::vector<Scratch>& scratches, std::size_t facet, double half_length_mm,
                                 double height_per_depth) {
   std::vector<Scratch> own;
@@ -46,14 +46,14 @@ std::vector<Stretch> profile_of(const std::vector<Scratch>& scratches, std::size
   return profile;
 }
 
-/// The roof edge of a prism's cell, and places along it.
+/// Roof edge of a prism's cell, with coordinates along it.
 struct RoofEdge {
-  Eigen::Index axis = 1;  ///< along it
-  double sign = 1.0;      ///< of that axis where the prism's own +y points
+  Eigen::Index axis = 1;  ///< axis along the edge
+  double sign = 1.0;      ///< sign of this axis in the direction of the prism's own +y
   double middle_mm = 0.0;
   double half_length_mm = 0.0;
 
-  /// The band of the plane that a stretch takes.
+  /// Returns the strip of the plane that an interval occupies.
   Rectangle band(const Stretch& stretch) const {
     constexpr double far = 1e9;
     Rectangle band{Vec2::Constant(-far), Vec2::Constant(far)};
@@ -75,7 +75,8 @@ RoofEdge roof_edge_of(const Cell& cell) {
   return edge;
 }
 
-/// What a stretch makes of a facet; no outline if it does not reach it.
+/// Returns the portion of a facet in an interval, at the height of the scratch. The outline is empty if the interval
+/// does not overlap the facet.
 CellFacet piece_of(const CellFacet& facet, const Stretch& stretch, const RoofEdge& edge, double sliver_mm) {
   CellFacet piece = facet;
   piece.outline = clip(facet.outline, edge.band(stretch), sliver_mm);
@@ -99,7 +100,7 @@ Cell with_scratches(const Cell& cell, const PartSpec& spec) {
   scratched.facets.clear();
   for (const CellFacet& facet : cell.facets) {
     const double across = facet.plane.slope[1 - edge.axis];
-    // The flat of a chamfered root belongs to neither facet.
+    // The flat of a chamfered root belongs to no facet and is therefore not scratched.
     if (across == 0.0) {
       scratched.facets.push_back(facet);
       continue;

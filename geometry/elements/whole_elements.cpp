@@ -12,10 +12,10 @@
 namespace retrace::geometry {
 namespace {
 
-/// What crosses the border by less than this share of its size lies within it.
+/// An element counts as inside if it crosses the border by at most this fraction of its size.
 constexpr double kWholeShare = 1e-9;
 
-/// Goes through the elements of a sheet.
+/// Iterates over the elements of a sheet.
 class Walk {
  public:
   explicit Walk(ArraySheet sheet) : sheet_(std::move(sheet)), piece_(sheet_, 0, 0, false) {
@@ -64,7 +64,7 @@ class Walk {
     visit(PlacedElement{element, standing, frame});
   }
 
-  /// As multiples of half a period, so that what is symmetric is so to the last bit.
+  /// Returns the apex as a multiple of half a period, so that symmetric positions are exactly symmetric.
   Vec2 apex_mm(std::size_t cell, const Vec2& shift) const {
     const Vec2 half = 0.5 * sheet_.lattice.period_mm;
     const Vec2 aside(sheet_.lattice.cells[cell].rotated ? 0.5 * width_across_mm(sheet_.spec->element) : 0.0, 0.0);
@@ -74,8 +74,8 @@ class Walk {
 
   const ArraySheet sheet_;
   const SheetPiece piece_;
-  std::map<double, std::map<double, std::size_t>> rows_;  ///< of a period: cells by y and x
-  std::int32_t row_ = 0;                                  ///< of those that are whole
+  std::map<double, std::map<double, std::size_t>> rows_;  ///< cells of a period by y and x
+  std::int32_t row_ = 0;                                  ///< row number among the rows with complete elements
   std::int32_t column_ = 0;
 };
 
@@ -87,7 +87,7 @@ double whole_count(double length_mm, double offset_mm, double gap_mm, double pit
 }
 
 bool PrismBlock::is_shifted(std::int64_t row) const {
-  // Rows count from 1 where their parity is named.
+  // Where the parity of rows is specified, rows are counted from 1.
   return shift_mm > 0.0 && (row % 2 == 0) == (shifted_rows == RowParity::odd);
 }
 

@@ -16,16 +16,16 @@
 namespace retrace::geometry {
 namespace {
 
-// Height of the unit normal below which a triangle stands upright.
+// Largest z component of the unit normal at which a triangle counts as vertical.
 constexpr double kUpright = 1e-6;
-// Share of the outline that single precision may leave open along its border, or cover twice.
+// Largest fraction of the outline that may be uncovered or covered twice along its border, because of single precision.
 constexpr double kSameArea = 1e-5;
-// Of the largest coordinate: what single precision and a few operations leave.
+// Rounding error of single precision after a few operations, relative to the largest coordinate.
 constexpr double kSingleRounding = 1e-6;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// What lies on the left of the line through a and b; corners need not lie in one level plane.
+/// Returns the portion of a polygon on the left of the line through a and b. The corners may have different heights.
 std::vector<Vec3> cut(const std::vector<Vec3>& polygon, const Vec2& a, const Vec2& b) {
   const Vec2 inward = Vec2(a.y() - b.y(), b.x() - a.x()).normalized();
   const auto depth = [&](const Vec3& p) { return inward.dot(p.head<2>() - a); };
@@ -41,7 +41,7 @@ std::vector<Vec3> cut(const std::vector<Vec3>& polygon, const Vec2& a, const Vec
   return left;
 }
 
-/// The part of a triangle over a convex outline.
+/// Returns the portion of a triangle over a convex outline.
 std::vector<Vec3> over(const Polygon& outline, const std::vector<Vec3>& vertices, const Triangle& t) {
   std::vector<Vec3> polygon = {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
   for (std::size_t k = 0; k < outline.size() && !polygon.empty(); ++k)
@@ -65,7 +65,7 @@ Vec3 normal_of(const std::vector<Vec3>& vertices, const Triangle& t) {
   return length > 0.0 ? Vec3(twice / length) : Vec3(Vec3::Zero());
 }
 
-/// The mesh with the wanted side up.
+/// Returns the triangles of the mesh, oriented such that the requested side faces up.
 std::vector<Triangle> turned_up(const TriangleMesh& mesh, MeshSide side) {
   std::vector<Triangle> triangles = mesh.triangles;
   if (side == MeshSide::bottom)
@@ -73,14 +73,14 @@ std::vector<Triangle> turned_up(const TriangleMesh& mesh, MeshSide side) {
   return triangles;
 }
 
-/// How far single precision may have moved a corner.
+/// Returns how far rounding to single precision may have moved a corner.
 double rounding_mm(const TriangleMesh& mesh) {
   double largest_mm = 0.0;
   for (const Vec3& p : mesh.vertices) largest_mm = std::max(largest_mm, p.cwiseAbs().maxCoeff());
   return kSingleRounding * largest_mm;
 }
 
-/// Those that look towards +z and meet the outline.
+/// Returns the triangles that face +z and overlap the outline.
 std::vector<Triangle> wanted(const TriangleMesh& mesh, const std::vector<Vec3>& vertices, MeshSide side,
                              const Vec3& move_mm, const Polygon& outline) {
   const std::vector<Triangle> all = turned_up(mesh, side);
@@ -128,7 +128,7 @@ SurfacePatch entrance_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec
   SurfacePatch patch;
   for (const Vec3& p : mesh.vertices) patch.vertices.push_back(p + move_mm);
   const std::vector<Triangle> triangles = wanted(mesh, patch.vertices, side, move_mm, outline);
-  // Triangles that stand near each other make a cell: some sixteen.
+  // Group nearby triangles into cells of about sixteen triangles.
   const double cell_mm = 4.0 * std::sqrt(area(outline) / static_cast<double>(triangles.size()));
   std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Triangle>> bins;
   for (const Triangle& t : triangles) {

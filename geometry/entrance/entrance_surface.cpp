@@ -16,11 +16,11 @@ namespace {
 
 constexpr int kCellsPerFeature = 8;
 constexpr int kFewestCells = 64;
-// Grids that see the same features agree in their mean bend to this ratio.
+// Maximum ratio of the mean curvatures of two grids that resolve the same features.
 constexpr double kSameBend = 1.3;
-// Slopes that change by less over the part are those of a plane but for rounding.
+// Changes of slope below this value are rounding errors of a plane.
 constexpr double kFlat = 1e-9;
-// Of a cell: how near to a corner the bend there is measured.
+// Distance from a corner at which the local curvature is measured, relative to the cell.
 constexpr double kSmall = 1e-3;
 
 bool is_inside(const Polygon& outline, const Vec2& p) {
@@ -32,7 +32,7 @@ bool is_inside(const Polygon& outline, const Vec2& p) {
   return true;
 }
 
-/// Grid points over the outline, and points of its edges.
+/// Returns the grid points over the outline and points on its edges.
 std::vector<Vec2> sample_points(const Polygon& outline, int cells) {
   const Rectangle box = bounding_box(outline);
   std::vector<Vec2> points;
@@ -52,11 +52,13 @@ std::vector<Vec2> sample_points(const Polygon& outline, int cells) {
   return points;
 }
 
-/// The mean over a grid's cells of how much slopes change from their corners to places within, a mm.
-/// \param reach 1: as far within as the grid tells; less: nearer to the corners by so much
+/// Returns the mean change of slope per mm from the corners of a grid's cells to points within the cells.
+/// \param reach scale of the distance from the corner: 1 for points well within the cell, less for points nearer to the
+///     corner
 double mean_bend(const EntranceSurface& surface, const Rectangle& box, int cells, double reach) {
   const Vec2 cell_mm = box.size() / cells;
-  // Two, as what repeats just so often between a corner and one of them does not between it and the other.
+  // Two displacements are used. If a surface repeats with the period of one displacement, it does not repeat with that
+  // of the other.
   const std::array<Vec2, 2> ways = {reach * Vec2(kWithinEntranceCell[0], kWithinEntranceCell[1]).cwiseProduct(cell_mm),
                                     reach * Vec2(0.7548776662, 0.5698402910).cwiseProduct(cell_mm)};
   double sum = 0.0;
@@ -76,8 +78,9 @@ bool same_bend(double a, double b, double size_mm) {
   return std::max(a, b) * size_mm < kFlat || (a <= kSameBend * b && b <= kSameBend * a);
 }
 
-/// Climbs from a point to the nearest place that is highest (sign 1) or lowest (-1) over the outline: a search in ever
-/// smaller steps along the axes, the diagonals and the outline's edges (R. Hooke, T. A. Jeeves, J. ACM 8 (1961), 212).
+/// Searches for the nearest local maximum (sign 1) or minimum (sign -1) over the outline, beginning at a point. The
+/// search uses decreasing steps along the axes, the diagonals and the edges of the outline (R. Hooke, T. A. Jeeves, J.
+/// ACM 8 (1961), 212).
 Vec2 climb(const EntranceSurface& surface, const Polygon& outline, Vec2 from, double step_mm, double sign) {
   std::vector<Vec2> directions = {Vec2(1, 0), Vec2(0, 1), Vec2(1, 1).normalized(), Vec2(1, -1).normalized()};
   for (std::size_t k = 0; k < outline.size() && k < 8; ++k)
@@ -144,7 +147,8 @@ EntranceSurface::Place EntranceSurface::at(const Vec2& point_mm) const {
   return {origin_mm_.z() + surface_.height_mm(place.x(), place.y()), slope_across(place)};
 }
 
-/// A formula of r has no slope at the very centre, though its surface may be smooth there: from both sides.
+/// Returns the slope from central differences. At r = 0, a formula of r has no derivative although its surface may be
+/// smooth.
 Vec2 EntranceSurface::slope_across(const Vec2& p) const {
   constexpr double kStep = 1e-5;
   return Vec2(surface_.height_mm(p.x() + kStep, p.y()) - surface_.height_mm(p.x() - kStep, p.y()),
@@ -170,7 +174,7 @@ int cells_to_show(const EntranceSurface& surface, const Polygon& outline) {
     }
     cells *= 2;
     const double bend = mean_bend(surface, box, cells, 1.0);
-    // What a grid does not see bends more in the small than from place to place of the grid.
+    // Features below the grid spacing have a higher local curvature than the grid shows.
     const double in_the_small = mean_bend(surface, box, cells, kSmall);
     const bool sees_all = in_the_small <= bend || same_bend(in_the_small, bend, size_mm);
     same = sees_all && same_bend(before, bend, size_mm) ? same + 1 : 0;

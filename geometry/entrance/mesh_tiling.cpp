@@ -10,10 +10,10 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-// Height of the unit normal within which a triangle stands upright.
+// Largest z component of the unit normal at which a triangle counts as vertical.
 constexpr double kStandsUpright = 1e-6;
 
-/// A side of a triangle, which lies on its left.
+/// Directed side of a triangle, with the triangle on its left.
 struct SheetSide {
   std::uint32_t from = 0;
   std::uint32_t to = 0;
@@ -45,7 +45,7 @@ class GapFinder {
  private:
   Vec2 plan(std::uint32_t vertex) const { return vertices_[vertex].head<2>(); }
 
-  /// The middle of what of a side lies inside the outline, if anything does.
+  /// Returns the centre of the portion of a side that is inside the outline, or nothing if no portion is inside.
   std::optional<Vec2> middle_inside(const SheetSide& side) const {
     const Vec2 a = plan(side.from);
     const Vec2 along = plan(side.to) - a;
@@ -64,7 +64,8 @@ class GapFinder {
     return a + 0.5 * (begin + end) * along;
   }
 
-  /// Sides inside the outline that are passed more often one way than the other, by the numbers of their corners.
+  /// Returns the sides inside the outline that are traversed more often in one direction than in the other, sorted by
+  /// the indices of their corners.
   std::vector<SheetSide> open_sides() const {
     std::vector<std::tuple<std::uint32_t, std::uint32_t, int>> passes;
     for (const Corners& t : sheet_)
@@ -123,7 +124,7 @@ class GapFinder {
     }));
   }
 
-  /// By how many triangles lie over places on either hand.
+  /// Describes a gap by the number of triangles above the points on both sides of it.
   std::string_view name_by_cover(const SheetSide& side, const Vec2& middle) const {
     constexpr double kBeside = 1e-4;
     const Vec2 along = plan(side.to) - plan(side.from);

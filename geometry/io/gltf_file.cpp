@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers of the format (glTF 2.0, 3.6.2 and 4.4.3).
+// Constants of the format (glTF 2.0, 3.6.2 and 4.4.3).
 constexpr int kFloat = 5126;
 constexpr int kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962;
@@ -44,9 +44,9 @@ Json material(std::optional<double> refractive_index, double absorption_per_mm) 
                 {"extensions",
                  {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}},
                   {"KHR_materials_ior", {{"ior", *refractive_index}}},
-                  // Of a closed mesh any thickness above 0 says that light is bent at its faces.
+                  // For a closed mesh, any thickness above 0 means that light is refracted at its faces.
                   {"KHR_materials_volume", {{"thicknessFactor", 1.0}}}}}};
-  // White light falls to the attenuation colour, here 1 / e, over the attenuation distance, in metres.
+  // White light is attenuated to the attenuation colour, here 1 / e, over the attenuation distance in metres.
   constexpr double kMetresPerMm = 1e-3;
   constexpr double kOneOverE = 0.36787944117144233;
   if (absorption_per_mm > 0.0)
@@ -55,13 +55,13 @@ Json material(std::optional<double> refractive_index, double absorption_per_mm) 
   return clear;
 }
 
-/// The description and the numbers of a file, which grow together.
+/// JSON description and binary data of a file, which are built together.
 class GltfFile {
  public:
   GltfFile(std::string_view title, std::optional<double> refractive_index, double absorption_per_mm) {
     json_ = {{"asset", {{"version", "2.0"}, {"generator", "retrace " + std::string(kVersion)}}}, {"scene", 0}};
     json_["scenes"] = {{{"name", title}, {"nodes", {0}}}};
-    // A quarter turn about x, as a quaternion x y z w.
+    // Rotation by 90 degrees about x, as a quaternion (x, y, z, w).
     constexpr double kHalfRoot = 0.70710678118654752;
     json_["nodes"] = {{{"name", "part"},
                        {"rotation", {-kHalfRoot, 0.0, 0.0, kHalfRoot}},
@@ -73,7 +73,7 @@ class GltfFile {
     for (const char* const list : {"accessors", "bufferViews", "meshes"}) json_[list] = Json::array();
   }
 
-  /// The first accessor: what all faces name the numbers of.
+  /// Adds the vertices as the first accessor. All faces refer to them.
   void add_vertices(const std::vector<Vec3>& vertices) {
     Eigen::Vector3f lower = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
     Eigen::Vector3f upper = -lower;
@@ -91,7 +91,7 @@ class GltfFile {
                   {"max", vector_json(upper)}});
   }
 
-  /// A mesh of the faces of a role, and its node; none if there are no such faces.
+  /// Adds a mesh of the faces with a role, and its node. Nothing is added if there are no such faces.
   void add_faces(const BoundaryMesh& mesh, FacetRole role, std::string_view name) {
     const std::size_t begin = binary_.size();
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -107,7 +107,7 @@ class GltfFile {
     json_["nodes"].push_back({{"name", name}, {"mesh", json_["meshes"].size() - 1}});
   }
 
-  /// Head, description, numbers.
+  /// Returns the file: header, description, binary data.
   std::string text() {
     json_["buffers"] = {{{"byteLength", binary_.size()}}};
     std::string description = json_.dump();
@@ -125,7 +125,8 @@ class GltfFile {
   }
 
  private:
-  /// Of the numbers from `begin` on. \return its number
+  /// Adds an accessor for the binary data from `begin` on.
+  /// \return index of the accessor
   std::size_t add_accessor(std::size_t begin, int target, Json accessor) {
     accessor["bufferView"] = json_["bufferViews"].size();
     json_["bufferViews"].push_back(
@@ -142,7 +143,7 @@ class GltfFile {
 
 std::string gltf_text(const BoundaryMesh& mesh, std::string_view title, std::optional<double> refractive_index,
                       double absorption_per_mm) {
-  // The head and what describes the mesh take far less than this.
+  // Upper bound of the size of the header and the description.
   constexpr std::size_t kHead = 16384;
   if (12 * (mesh.vertices.size() + mesh.triangles.size()) + kHead > kMostGltfBytes)
     throw InputError("the mesh is too large for glTF, which ends at 4 GiB; OBJ takes it");

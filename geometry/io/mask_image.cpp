@@ -15,11 +15,11 @@
 namespace retrace::geometry {
 namespace {
 
-/// Grey 0..255 of a pixel with `channels` channels of 0..255.
+/// Returns the grey value, 0..255, of a pixel with `channels` channels of 0..255.
 long grey_of(const std::uint8_t* pixel, std::size_t channels, int alpha_channel) {
   const bool coloured = channels >= 3;
   double grey = coloured ? 0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2] : pixel[0];
-  // Colours come multiplied by their opacity.
+  // Colours are premultiplied by their opacity.
   if (alpha_channel >= 0 && static_cast<std::size_t>(alpha_channel) < channels) grey += 255.0 - pixel[alpha_channel];
   return std::lround(std::min(grey, 255.0));
 }

@@ -9,8 +9,8 @@
 #include "core/module.h"
 #include "core/number_format.h"
 
-// OpenCASCADE stands in a module that is loaded when the first STEP file is written: its libraries would cost every run
-// of the program time and memory.
+// OpenCASCADE is used in a module that is loaded when the first STEP file is written. If the program were linked to its
+// libraries, every run would need more time and memory.
 
 namespace retrace::geometry {
 namespace {

@@ -1,4 +1,4 @@
-// The module that is loaded for STEP. The one place that names OpenCASCADE.
+// Module that writes STEP. It is the only file that uses OpenCASCADE.
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRep_Builder.hxx>
@@ -45,7 +45,8 @@ gp_Pnt point(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-/// Faces are set together with the vertices and edges they share: nothing is sewn or fused, so nothing can be missed.
+/// Builds a solid from faces that share vertices and edges by construction. No sewing or fusing is needed, which might
+/// miss connections.
 class SolidBuilder {
  public:
   explicit SolidBuilder(const FacetedSolid& source) : source_(source) {
@@ -100,7 +101,7 @@ Handle(TCollection_HAsciiString) text_of(const std::string& text) {
   return new TCollection_HAsciiString(text.c_str());
 }
 
-/// OpenCASCADE numbers the products of a process.
+/// Sets the names of products. By default, OpenCASCADE numbers the products of a process.
 void name_product(const Handle(StepData_StepModel) & model, const std::string& name) {
   for (int k = 1; k <= model->NbEntities(); ++k) {
     const Handle(StepBasic_Product) product = Handle(StepBasic_Product)::DownCast(model->Value(k));
@@ -110,7 +111,7 @@ void name_product(const Handle(StepData_StepModel) & model, const std::string& n
   }
 }
 
-/// The header of the file, without author and with a fixed time stamp, so that the same solid gives the same file.
+/// Sets the header of the file, without an author and with a fixed time stamp. Equal solids then give equal files.
 void set_header(const Handle(StepData_StepModel) & model, const std::string& name) {
   APIHeaderSection_MakeHeader header(model);
   header.SetName(text_of(name));
@@ -123,12 +124,13 @@ void set_header(const Handle(StepData_StepModel) & model, const std::string& nam
 }
 
 std::string written(const TopoDS_Solid& solid, const std::string& name) {
-  // The program's standard output is its own.
+  // OpenCASCADE must not write to the program's standard output.
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   STEPControl_Controller::Init();
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
   Interface_Static::SetCVal("write.step.unit", "MM");
-  Interface_Static::SetIVal("write.surfacecurve.mode", 0);  // lines in planes need no second description
+  // lines in planes need no additional curves in parameter space
+  Interface_Static::SetIVal("write.surfacecurve.mode", 0);
   STEPControl_Writer writer;
   if (writer.Transfer(solid, STEPControl_ManifoldSolidBrep) != IFSelect_RetDone)
     throw std::runtime_error("OpenCASCADE could not put the solid into STEP");

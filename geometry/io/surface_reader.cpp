@@ -20,7 +20,7 @@ Asphere conic_of(const Document& file, const std::string& table) {
   return {1.0 / radius, file.number(table + ".conic"), {}};
 }
 
-/// Coefficients of r^4, r^6, ...
+/// Returns the coefficients of r^4, r^6, ...
 std::vector<double> even_terms(const Document& file, const std::string& key) {
   constexpr int kMostPower = 20;
   std::vector<double> terms;
@@ -36,14 +36,15 @@ std::vector<double> even_terms(const Document& file, const std::string& key) {
   return terms;
 }
 
-/// Two whole numbers and a coefficient.
+/// Term with two whole numbers and a coefficient.
 struct Term {
   int i = 0;
   int j = 0;
   double coefficient = 0.0;
 };
 
-/// \param is_signed the second number may be from minus the first to the first
+/// Reads terms.
+/// \param is_signed true if the second number may be negative, down to minus the first number
 std::vector<Term> terms_of(const Document& file, const std::string& key, bool is_signed) {
   const auto whole = [&](double value, int low, int high) {
     if (value != std::floor(value) || value < low || value > high)
@@ -82,12 +83,13 @@ XyPolynomial zernike(const Document& file, const std::string& table) {
   return polynomial_of(terms, file.number(table + ".aperture_radius_mm"));
 }
 
-/// \param variables in their order
+/// Reads a formula.
+/// \param variables names of the variables in their order
 Formula formula_of(const Document& file, const std::string& key, const std::vector<std::string>& variables) {
   return parse_formula(file.text(key), variables, file.where(key));
 }
 
-/// The sag of `[base]` or `[lenslets]`.
+/// Reads the sag of `[base]` or `[lenslets]`.
 Sag read_sag(const Document& file, const std::string& table) {
   const std::string kind = file.text(table + ".kind");
   Sag sag;
@@ -99,14 +101,15 @@ Sag read_sag(const Document& file, const std::string& table) {
   return sag;
 }
 
-/// Of a key with rows [x, y].
+/// Reads a key with rows [x, y].
 std::vector<Vec2> read_points(const Document& file, std::string_view key) {
   std::vector<Vec2> points;
   for (const auto& row : file.rows(key)) points.emplace_back(row[0], row[1]);
   return points;
 }
 
-/// The curve of `[boundary]`. \pre it was given
+/// Reads the curve of `[boundary]`.
+/// \pre the table exists
 Boundary read_boundary(const Document& file) {
   const auto number = [&](const char* key) { return file.number(schema::path_in("boundary", key)); };
   const std::string kind = file.text("boundary.kind");
@@ -129,7 +132,7 @@ Boundary read_boundary(const Document& file) {
       middle, [&](double theta) { return r.evaluate(&theta); }, options, file.where("boundary.formula"));
 }
 
-/// Centres of a hexagonal or square grid within a circle round the origin.
+/// Returns the centres of a hexagonal or square grid within a circle about the origin.
 std::vector<Vec2> grid(double pitch, double within, bool hexagonal) {
   const double row_pitch = hexagonal ? pitch * std::sqrt(0.75) : pitch;
   std::vector<Vec2> places;
@@ -157,14 +160,14 @@ std::vector<Vec2> read_places(const Document& file) {
   return grid(pitch, within, hexagonal);
 }
 
-/// What is asked of the boundaries of all lenslets.
+/// Specification of the boundaries of all lenslets.
 struct BoundaryRequest {
   bool is_intersection = false;
   BoundaryOptions options;
-  double radius_mm = 0.0;    ///< of circles
-  double within_mm = 0.0;    ///< search for the intersection
-  double inner_share = 1.0;  ///< of the curve's radius, where the blend leaves the lenslet
-  double outer_share = 1.0;  ///< where it reaches the base
+  double radius_mm = 0.0;    ///< radius of circles
+  double within_mm = 0.0;    ///< radius within which the intersection is searched
+  double inner_share = 1.0;  ///< radius at which the blend leaves the lenslet, relative to the curve's radius
+  double outer_share = 1.0;  ///< radius at which the blend reaches the base, relative to the curve's radius
   InputLocation where;
 };
 
@@ -198,7 +201,8 @@ void set_boundaries(Lenslet& lenslet, const FreeformSurface& base, const Vec2& c
   check_nested(lenslet.inner, lenslet.outer, request.where);
 }
 
-/// Positions, the sag that all have (its formula may go by their place), and their boundaries.
+/// Reads the positions of the lenslets, their common sag and their boundaries. The formula of the sag may depend on the
+/// position.
 std::vector<Lenslet> read_lenslets(const Document& file, const FreeformSurface& base) {
   if (!file.has("lenslets")) return {};
   const std::vector<Vec2> places = read_places(file);
@@ -225,7 +229,7 @@ std::optional<Extrapolation> read_extrapolation(const Document& file) {
   return Extrapolation{read_boundary(file), static_cast<int>(file.number("extrapolation.order"))};
 }
 
-/// A table whose keys are not read here.
+/// Describes a table whose keys are not read here.
 constexpr schema::Table left_to_others(std::string_view name) {
   return {.name = name, .meaning = "How it is made.", .presence = schema::Presence::optional, .is_open = true};
 }
@@ -236,7 +240,7 @@ constexpr schema::Table kMade[] = {left_to_others("tool"),
                                    left_to_others("machine"),
                                    left_to_others("inspect")};
 
-/// Of the format of turned parts what is read here.
+/// Returns the keys of the format of turned parts that are read here.
 const schema::Format& front_format() {
   static const std::vector<schema::Table> tables = [] {
     std::vector<schema::Table> all(surface_tables().begin(), surface_tables().end());

@@ -12,16 +12,16 @@
 namespace retrace::geometry {
 namespace {
 
-// Relative to the solid's size: what rounding leaves of planes and straight lines.
+// Maximum deviation of points from planes and straight lines because of rounding errors, relative to the solid's size.
 constexpr double kFlatTolerance = 1e-10;
 
 using Loop = std::vector<std::uint32_t>;
 
-/// Half-edge 3 t + k runs from corner k of triangle t to the next one.
+/// Index of a half-edge. Half-edge 3 t + k is from corner k of triangle t to the next corner.
 using HalfEdge = std::uint32_t;
 using EdgeMap = std::unordered_map<std::uint64_t, HalfEdge>;
 
-/// Every directed edge; nothing if one is passed twice.
+/// Returns all directed edges, or nothing if an edge occurs twice.
 std::optional<EdgeMap> edges_of(const BoundaryMesh& mesh) {
   EdgeMap edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -61,7 +61,7 @@ class FaceBuilder {
     grow_regions();
     for (std::uint32_t r = 0; r < members_.size(); ++r) {
       std::vector<Loop> loops = loops_of(r);
-      // Copied: regions that are taken apart add to the list.
+      // The list is copied, because regions that are split are appended to it.
       const std::vector<std::uint32_t> members = members_[r];
       if (is_simple(loops) || members.size() == 1) {
         add_face(r, std::move(loops));
@@ -80,7 +80,7 @@ class FaceBuilder {
  private:
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
-  /// The largest triangles come first: their planes are the most certain.
+  /// Grows regions from the largest triangles first, because their planes are the most accurate.
   void grow_regions() {
     std::vector<std::uint32_t> order(mesh_.triangles.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -117,7 +117,7 @@ class FaceBuilder {
   static HalfEdge after(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
   bool is_border(HalfEdge h) const { return region_[twin_[h] / 3] != region_[h / 3]; }
 
-  /// The borders of a region, each with the region on its left.
+  /// Returns the borders of a region, each with the region on its left.
   std::vector<Loop> loops_of(std::uint32_t r) const {
     std::vector<Loop> loops;
     std::unordered_map<HalfEdge, bool> done;
@@ -130,7 +130,7 @@ class FaceBuilder {
         do {
           done[h] = true;
           loop.push_back(from(h));
-          // Round the vertex at its end, through the region, to the border on the other side.
+          // Rotate around the end vertex, through the region, until the next border edge.
           for (h = after(h); !is_border(h); h = after(twin_[h])) {
           }
         } while (h != first);
@@ -162,7 +162,7 @@ class FaceBuilder {
     solid_.faces.push_back(std::move(face));
   }
 
-  /// A vertex that only two faces have, within a straight edge of both, is none.
+  /// Removes vertices that only two faces share and that are within a straight edge of both faces.
   void drop_straight_vertices() {
     std::vector<std::uint8_t> faces_at(mesh_.vertices.size(), 0);
     std::vector<std::uint8_t> straight_at(mesh_.vertices.size(), 0);
@@ -200,7 +200,7 @@ class FaceBuilder {
 
   const BoundaryMesh& mesh_;
   std::vector<HalfEdge> twin_;
-  std::vector<std::uint32_t> region_;  ///< of each triangle
+  std::vector<std::uint32_t> region_;  ///< region of each triangle
   std::vector<std::vector<std::uint32_t>> members_;
   double tolerance_mm_ = 0.0;
   FacetedSolid solid_;
@@ -210,7 +210,7 @@ class FaceBuilder {
 
 double volume_mm3(const BoundaryMesh& mesh) {
   if (mesh.vertices.empty()) return 0.0;
-  const Vec3& origin = mesh.vertices.front();  // near the mesh, so that little cancels
+  const Vec3& origin = mesh.vertices.front();  // an origin near the mesh avoids cancellation
   double six = 0.0;
   for (const auto& t : mesh.triangles)
     six += (mesh.vertices[t[0]] - origin).dot((mesh.vertices[t[1]] - origin).cross(mesh.vertices[t[2]] - origin));

@@ -18,11 +18,12 @@
 namespace retrace::geometry {
 namespace {
 
-/// Up to this many elements the surface is one patch; beyond, blocks of at most this many are shared.
+/// Maximum number of elements for which the surface is a single patch. Larger arrays use shared blocks of at most this
+/// number.
 constexpr double kElementsPerPatch = 2048.0;
 constexpr double kAllInOnePatch = 1e18;
 
-/// Where the surface is nowhere cut off or left out.
+/// Sets the region in which no element is cut or omitted.
 void find_lattice_region(Part& part, const ArraySheet& sheet, const Vec2& origin_mm) {
   Rectangle region = moved(sheet.block_mm, origin_mm);
   if (part.spec.array.partial_elements == PartialElements::omit)
@@ -47,13 +48,14 @@ void add_surface(Part& part, const FacetPlanes* planes, const Vec2& origin_mm, d
     find_lattice_region(part, sheet, origin_mm);
 }
 
-/// Whether the back surface lies where the nominal element does.
+/// Returns true if the back surface has the nominal heights.
 bool is_nominal(const PartSpec& spec, const FacetPlanes* planes) {
   return planes == nullptr && !spec.substrate && !(spec.random_tilts.sigma_arcmin > 0.0) && spec.edges.is_sharp() &&
          spec.scratches.empty();
 }
 
-/// Lowest and highest place of a patch. On a substrate its vertices tell of z = 0, too, where borders end on the plane.
+/// Returns the lowest and highest height of a patch. On a substrate, its vertices include points of z = 0 where borders
+/// end on that plane.
 std::array<double, 2> heights_of(const SurfacePatch& patch, bool on_substrate) {
   std::array<double, 2> range{INFINITY, -INFINITY};
   const auto add = [&](double z) { range = {std::min(range[0], z), std::max(range[1], z)}; };
@@ -66,7 +68,7 @@ std::array<double, 2> heights_of(const SurfacePatch& patch, bool on_substrate) {
   return range;
 }
 
-/// Where the back surface lies if elements are not the nominal ones on z = 0.
+/// Sets the range of heights of the back surface if elements are not the nominal elements on z = 0.
 void measure_layer(Part& part) {
   constexpr double kRounding = 1e-12;
   std::vector<std::array<double, 2>> of_patch;

@@ -20,24 +20,25 @@
 namespace retrace::geometry {
 namespace {
 
-// Where a sheet repeats along one axis alone, patches are kept short along the other.
+// If a sheet repeats along only one axis, patches are short along the other axis.
 constexpr double kElementsPerColumnPatch = 256.0;
-// Patches that are shared have about so many facets, rounded edges among them, but so many periods: neighbours all
-// round are laid out with each.
+// Approximate number of facets, including rounded edges, in a shared patch, and minimum number of periods. A patch
+// should not be smaller, because the neighbours on all sides are laid out together with each patch.
 constexpr double kFacetsPerPatch = 16384.0;
 constexpr double kFewestPeriods = 4.0;
-// An infinite array is a patch of this many periods round the central one: rays seldom have to be brought back.
+// An infinite array is a patch with this number of periods on each side of the central period. Rays then rarely have to
+// be moved back to the central period.
 constexpr int kPeriodsBeyond = 2;
 constexpr std::uint32_t kNoPatch = UINT32_MAX;
 
-/// The errors of the element at (i, j), the `number`th of the period: those of all, and its own random tilts.
+/// Returns the errors of element number `number` of period (i, j): the common errors plus random tilts.
 AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std::uint32_t number) {
   constexpr std::uint32_t kTiltStream = 3;
   AngleErrors errors = spec.angle_errors;
   if (!(spec.random_tilts.sigma_arcmin > 0.0)) return errors;
   const auto words = philox({spec.random_tilts.seed, kTiltStream}, static_cast<std::uint32_t>(i),
                             static_cast<std::uint32_t>(j), number);
-  // Box and Muller; the shift keeps 0 out of the logarithm.
+  // Box-Muller transform. The small addend avoids the logarithm of 0.
   const auto radius = [&](std::size_t k) { return std::sqrt(-2.0 * std::log(unit_interval(words[k]) + 0x1p-33)); };
   const auto angle = [&](std::size_t k) { return 2.0 * std::numbers::pi * unit_interval(words[k]); };
   const std::array<double, 3> normal = {radius(0) * std::cos(angle(1)), radius(0) * std::sin(angle(1)),
@@ -46,7 +47,7 @@ AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std:
   return errors;
 }
 
-/// The four strips of the extent that the block leaves free; any of them may be empty.
+/// Returns the four strips between the extent and the block. Strips may be empty.
 std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block) {
   return {Rectangle{extent.lower, {block.lower.x(), extent.upper.y()}},
           Rectangle{{block.upper.x(), extent.lower.y()}, extent.upper},
@@ -54,7 +55,7 @@ std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block
           Rectangle{{block.lower.x(), block.upper.y()}, {block.upper.x(), extent.upper.y()}}};
 }
 
-/// A plane that is told in a frame of its own.
+/// Converts a plane from a local frame to the part frame.
 HeightPlane placed_plane(const HeightPlane& own, const SubstrateFrame& frame) {
   const Vec3 normal = own.slope.x() * frame.along_u + own.slope.y() * frame.along_v - frame.normal;
   const Vec3 point = frame.origin + own.height_mm * frame.normal;
@@ -64,12 +65,12 @@ HeightPlane placed_plane(const HeightPlane& own, const SubstrateFrame& frame) {
   return plane;
 }
 
-/// In plan, a point that is told in such a frame.
+/// Converts a point from a local frame to the part frame and returns it in plan.
 Vec2 placed(const Vec2& own, double height_mm, const SubstrateFrame& frame) {
   return (frame.origin + own.x() * frame.along_u + own.y() * frame.along_v + height_mm * frame.normal).head<2>();
 }
 
-/// The cell moved in plan, and up.
+/// Moves a cell in plan and along z.
 void move_facets(Cell& cell, const Vec2& shift_mm, double height_mm) {
   for (CellFacet& facet : cell.facets) {
     facet.outline = moved(std::move(facet.outline), shift_mm);
@@ -137,12 +138,12 @@ class Tiler {
   }
 
  private:
-  /// What a patch is made of; others like it share it.
+  /// A patch and the numbers of its elements. Equal portions of the array share it.
   struct Piece {
-    std::uint32_t patch = kNoPatch;  ///< of nothing that is within the part: none
+    std::uint32_t patch = kNoPatch;  ///< kNoPatch if nothing of it is within the part
     std::int64_t full = 0;
     std::int64_t partial = 0;
-    double area_mm2 = 0.0;  ///< of all tiles in plan
+    double area_mm2 = 0.0;  ///< area of all tiles in plan
   };
   using Key = std::array<std::int64_t, 12>;
 
@@ -159,7 +160,7 @@ class Tiler {
     return {side, side};
   }
 
-  /// Whether pieces may be alike.
+  /// Returns true if portions of the array may be equal and share a patch.
   bool are_shared() const { return planes_ == nullptr && !(spec_.random_tilts.sigma_arcmin > 0.0); }
 
   double facets_of_period() const {
@@ -181,8 +182,8 @@ class Tiler {
     covered_mm2_ += piece.area_mm2;
   }
 
-  /// Tells pieces apart by where borders cross them and what the substrate does there. Borders beyond the neighbourhood
-  /// do not matter.
+  /// Returns a key that is equal for equal portions of the array. It contains the positions of borders and the shape of
+  /// the substrate. Borders outside the neighbourhood are ignored.
   Key key_of(const IndexRange& range) const {
     const double quantum = 1e-7 * sheet_.lattice.period_mm.minCoeff();
     const Vec2 reach = 2.0 * sheet_.lattice.period_mm;
@@ -207,7 +208,8 @@ class Tiler {
     return key;
   }
 
-  /// The tiles of a range of the lattice and of one more cell all round, welded to a patch.
+  /// Builds a patch from the tiles in a range of the lattice. The tiles of one additional period on all sides are used
+  /// as neighbours.
   void fill(Piece& piece, const IndexRange& range) {
     collect(piece, range);
     for (const Tile& tile : tiles_) piece.area_mm2 += tile.owned ? area(tile.outline) : 0.0;
@@ -216,15 +218,15 @@ class Tiler {
     part_.patches.push_back(build_patch(tiles_, here_->block_in_plan(), part_.size_mm));
   }
 
-  /// A cell of the lattice: its period, and which of the period's it is.
+  /// Cell of the lattice: its period and its number within the period.
   struct Index {
     std::int64_t i = 0;
     std::int64_t j = 0;
     std::uint32_t number = 0;
   };
 
-  /// The cells of a range and of one more period all round, each with its number, how far the lattice's is moved to it
-  /// and whether it is of the range.
+  /// Visits the cells of a range and of one additional period on all sides. `visit` gets the cell, a consecutive
+  /// number, its shift from the lattice, and whether it is within the range.
   template <class Visit>
   void visit_cells(const IndexRange& range, const Visit& visit) const {
     std::uint32_t number = 0;
@@ -237,7 +239,7 @@ class Tiler {
       }
   }
 
-  /// \param piece counts its elements
+  /// \param piece its elements are counted
   void collect(Piece& piece, const IndexRange& range) {
     tiles_.clear();
     visit_cells(range, [&](const Index& index, std::uint32_t number, const Vec2& shift_mm, bool owned) {
@@ -250,14 +252,14 @@ class Tiler {
     });
   }
 
-  /// Begins the one piece that is the whole array.
+  /// Begins the single portion that is the whole array.
   IndexRange begin_whole() {
     const IndexRange all = sheet_.indices();
     here_.emplace(sheet_, all.lower[0], all.lower[1], true);
     return all;
   }
 
-  /// Its tiles, in the part frame.
+  /// Returns the tiles of the single portion in the part frame.
   std::vector<Tile> tiles_of_part() {
     for (Tile& tile : tiles_) {
       tile.outline = moved(std::move(tile.outline), here_->origin_mm());
@@ -267,7 +269,8 @@ class Tiler {
     return std::move(tiles_);
   }
 
-  /// Appends what the borders leave of a cell. \param piece counts it; null: it belongs to a neighbour
+  /// Appends the remainder of a cell after the borders have cut it.
+  /// \param piece counts the cell; null if the cell belongs to a neighbour
   void add_cell(Piece* piece, const Index& index, const Vec2& shift_mm) {
     const CellPlace place = here_->place(index.number, shift_mm);
     if (here_->is_clear_of_part(place)) return;
@@ -295,7 +298,7 @@ class Tiler {
     if (!outline.empty()) tiles_.push_back({std::move(outline), plane, role, 0, true, middle_mm});
   }
 
-  /// The land beside the block of elements.
+  /// Adds the land between the block of elements and the border.
   void add_margins(const CellPlace& place, const Polygon& outline) {
     for (const Rectangle& margin : margins(here_->reach(), here_->block()))
       if (!margin.empty())
@@ -312,7 +315,7 @@ class Tiler {
     }
   }
 
-  /// The cell as it stands in its place.
+  /// Returns the cell at its position on the substrate.
   Cell cell_at(const Index& index, const CellPlace& place) const {
     if (!sheet_.is_upright) return cell_along_normal(index, place);
     Cell cell = upright_cell(index);
@@ -328,7 +331,7 @@ class Tiler {
     return finished_cell(element_in_place_of(cell, spec_.element, errors), spec_);
   }
 
-  /// The element of the lattice with its own planes, or land where there is none.
+  /// Returns the element with individual planes, or land if the element is missing.
   Cell own_cell(const Cell& cell, const Index& index) const {
     const Vec2 place = place_of(spec_, cell);
     const ElementPlanes* const planes = planes_->at(sheet_.at_mm(index.i, index.j) + place);
@@ -340,7 +343,8 @@ class Tiler {
     return land;
   }
 
-  /// An element as a rigid body along the substrate's normal, cut by the vertical walls over its corners.
+  /// Returns an element that is placed as a rigid body along the substrate's normal. It is cut by the vertical walls
+  /// through its corners.
   Cell cell_along_normal(const Index& index, const CellPlace& place) const {
     Cell cell = sheet_.lattice.cells[index.number];
     if (!cell.is_element) {
@@ -369,7 +373,7 @@ class Tiler {
                     at.x(), at.y()));
   }
 
-  /// Cells on a substrate may leave gaps or overlap.
+  /// Checks that the cells cover the part, because cells on a substrate may leave gaps or overlap.
   void check_cover() const {
     constexpr double kAreaRounding = 1e-7;
     const double whole_mm2 = sheet_.part_mm.size().prod();
@@ -383,9 +387,9 @@ class Tiler {
   const PartSpec& spec_;
   const FacetPlanes* planes_;
   std::map<Key, Piece> known_;
-  bool is_one_ = false;             ///< a single piece is the whole array
-  std::optional<SheetPiece> here_;  ///< the piece at work
-  std::vector<Tile> tiles_;         ///< its tiles
+  bool is_one_ = false;             ///< true if a single portion is the whole array
+  std::optional<SheetPiece> here_;  ///< portion that is being built
+  std::vector<Tile> tiles_;         ///< tiles of this portion
   double covered_mm2_ = 0.0;
 };
 

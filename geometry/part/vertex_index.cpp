@@ -22,7 +22,8 @@ VertexIndex::Key VertexIndex::key(double x, double y) const {
 }
 
 std::uint32_t VertexIndex::add(const Vec2& point) {
-  // A point near a grid line may have its twin in the next cell: look at the four corners of its tolerance box.
+  // A point near a grid line may have an equal point in the next cell. Therefore the cells at the four corners of its
+  // tolerance box are searched.
   Key last = 0;
   bool first = true;
   for (const double dx : {-tolerance_mm_, tolerance_mm_}) {
@@ -50,7 +51,7 @@ std::vector<std::uint32_t> VertexIndex::on_segment(std::uint32_t a, std::uint32_
   const Vec2 upper = start.cwiseMax(points_[b]).array() + tolerance_mm_;
   std::vector<std::pair<double, std::uint32_t>> found;
   for (std::int64_t i = cell_of(lower.x(), cell_mm_); i <= cell_of(upper.x(), cell_mm_); ++i) {
-    // Of the column, the cells that the segment goes through.
+    // Range of cells in this column that the segment crosses.
     double from_mm = lower.y();
     double to_mm = upper.y();
     if (std::abs(along.x()) > tolerance_mm_) {

@@ -13,21 +13,22 @@ using jets::Series;
 
 using Enclosure = Series<Interval, 2>;
 
-constexpr int kDeepest = 6;  ///< halvings of a box along each side
+constexpr int kDeepest = 6;  ///< maximum number of times that a box is halved along each side
 
-/// The larger eigenvalue of a symmetric matrix rises with its diagonal and with the size of what stands beside it.
+/// Returns an upper bound of the larger eigenvalue of a symmetric matrix. The eigenvalue increases with the diagonal
+/// and with the magnitude of the off-diagonal element.
 double largest_eigenvalue(const Interval& xx, const Interval& xy, const Interval& yy) {
   const double a = xx.upper();
   const double d = yy.upper();
   return 0.5 * (a + d) + std::hypot(0.5 * (a - d), norm(xy));
 }
 
-/// Height, slopes and second derivatives of a sag over a box.
+/// Enclosures of height, slopes and second derivatives of a sag over a box.
 struct Bend {
   Interval z;
   Interval x;
   Interval y;
-  double largest = 0.0;  ///< second derivative, in any direction; not a number where there is none
+  double largest = 0.0;  ///< maximum second derivative in any direction; NaN if undefined
 };
 
 Bend bend_over(const Sag& sag, const Interval& x, const Interval& y) {
@@ -48,9 +49,9 @@ Interval along_y(const PlanBox& box) {
   return {box.low_mm.y(), box.high_mm.y()};
 }
 
-/// Half the side of a square in the lenslet's frame over which its surface covers the disc of radius `reach` about its
-/// origin in plan: the rim of the disc of that radius has cos(tilt) rho - sin(tilt) |w| > reach. Nothing if none of
-/// those tried does.
+/// Returns half the side of a square in the lenslet's frame over which the surface covers the disc of radius `reach_mm`
+/// about the origin in plan. A disc with the radius rho in the lenslet's frame is sufficient if cos(tilt) rho -
+/// sin(tilt) |w| > reach on its rim. Returns nothing if no tried value is sufficient.
 std::optional<double> covering(const Lenslet& lenslet, double reach_mm) {
   const double cosine = lenslet.part_from_lenslet(2, 2);
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
@@ -101,11 +102,13 @@ bool is_concavity_bounded(const Lenslet& lenslet, double limit_per_mm) {
   if (!rho) return false;
   const auto holds = [&](const PlanBox& box) {
     const Bend bend = bend_over(lenslet.sag, along_x(box), along_y(box));
-    // Of n = (-h_u, -h_v, 1), the part's z component: the slope of w - h by the part's z.
+    // z component, in the part frame, of n = (-h_u, -h_v, 1). This is the derivative of w - h with respect to the
+    // part's z.
     const Interval upright = r(2, 2) - bend.x * r(2, 0) - bend.y * r(2, 1);
     if (!(upright.lower() > 0.0) || !std::isfinite(bend.largest)) return false;
     const double square = 1.0 + std::pow(norm(bend.x), 2) + std::pow(norm(bend.y), 2);
-    // Along a curve over the part's plan z'' = h'' / upright, and h'' takes (u', v') of length up to |n| / upright.
+    // Along a curve above the part's plan, z'' = h'' / upright. The direction (u', v') has at most the length |n| /
+    // upright.
     return std::max(0.0, bend.largest) * square / std::pow(upright.lower(), 3) < limit_per_mm;
   };
   bool is_proved = true;

@@ -19,7 +19,7 @@ using jets::line_series;
 using jets::Series;
 using jets::value_of;
 
-/// A place in polar coordinates about a centre.
+/// Point in polar coordinates about a centre.
 template <class T>
 struct Polar {
   T radius;
@@ -52,7 +52,7 @@ FreeformSurface::FreeformSurface(Sag base, std::optional<Extrapolation> extrapol
 
 namespace {
 
-/// A line through the place at that radius, outwards, as a pair of series in the distance along it.
+/// Radial line through a point at a given radius, outward, as series in the distance along the line.
 template <class T, int N = kAnyOrder>
 struct RadialLine {
   Series<T, N> x;
@@ -65,7 +65,8 @@ RadialLine<T, N> radial_line(const Polar<T>& p, const Vec2& centre, const T& rad
           line_series<T, N>(T(radius * p.sine + centre.y()), p.sine, order)};
 }
 
-/// The blend round a lenslet at a place in polar coordinates. \param base z of the base along a line
+/// Returns the blend around a lenslet at a point in polar coordinates.
+/// \param base returns z of the base along a line
 template <int N, class T, class Base>
 T blend_at(const Lenslet& lenslet, const Polar<T>& p, const Base& base) {
   const Vec2& centre = lenslet.outer.centre_mm;
@@ -108,7 +109,7 @@ T FreeformSurface::evaluate_blend(const Lenslet& lenslet, const T& x_mm, const T
   if (!lenslet.ends_on_base)
     return blend_at<kAnyOrder>(lenslet, p, [&self](const auto& x, const auto& y) { return self.evaluate_base(x, y); });
   if constexpr (std::is_same_v<T, Jet2> || std::is_same_v<T, double>) {
-    // Paths spend most of their time here.
+    // Tool paths spend most of their time here, so common orders are compiled with a fixed length.
     if (lenslet.blend_order == 1) return blend_at<1>(lenslet, p, base);
     if (lenslet.blend_order == 2) return blend_at<2>(lenslet, p, base);
     if (lenslet.blend_order == 3) return blend_at<3>(lenslet, p, base);
@@ -154,7 +155,8 @@ const Lenslet* FreeformSurface::lenslet_at(double x_mm, double y_mm) const {
 
 namespace {
 
-/// \throw InputError if two blends reach into each other: a point of one's outer boundary lies inside the other's
+/// Checks that two blends do not overlap.
+/// \throw InputError if a point of one outer boundary is inside the other outer boundary
 void check_apart(const std::vector<Lenslet>& lenslets, std::uint32_t a, std::uint32_t b, const InputLocation& where) {
   const Boundary& first = lenslets[a].outer;
   const Boundary& second = lenslets[b].outer;
@@ -169,7 +171,7 @@ void check_apart(const std::vector<Lenslet>& lenslets, std::uint32_t a, std::uin
   }
 }
 
-/// Whether a boundary lies inside another all round.
+/// Returns true if a boundary is inside another boundary at all angles.
 bool is_inside(const Boundary& inner, const Boundary& outer) {
   constexpr int kAngles = 360;
   for (int i = 0; i < kAngles; ++i) {
@@ -234,7 +236,7 @@ void check_surface(const FreeformSurface& surface, double radius_mm, const Input
       const double y = r * std::sin(angle);
       if (!std::isfinite(surface.height_mm(x, y)))
         throw InputError(where, "must be finite all over the part, is not at " + place(x, y));
-      // At the centre a formula of r may have no slope, as that of a cone.
+      // At the centre, a formula of r may have no slope, such as that of a cone.
       if (i == 0) continue;
       const Gradient z = surface.gradient(x, y);
       const double slope = std::hypot(z.x, z.y);

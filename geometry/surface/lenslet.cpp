@@ -13,7 +13,8 @@ using jets::line_series;
 using jets::Series;
 using jets::value_of;
 
-/// The height z over the origin solves F(z) = w - sag(u, v) = 0 with (u, v, w) the point in the lenslet's frame.
+/// Residual F(z) = w - sag(u, v), where (u, v, w) is the point (x, y, z) in the lenslet's frame. The surface is at F(z)
+/// = 0.
 template <class T>
 T residual(const Lenslet& lenslet, const T& x, const T& y, const T& z) {
   const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
@@ -22,7 +23,7 @@ T residual(const Lenslet& lenslet, const T& x, const T& y, const T& z) {
   return x * r(0, 2) + y * r(1, 2) + z * r(2, 2) - lenslet.sag.evaluate(u, v);
 }
 
-/// F and its slope by z, with the derivatives that T carries.
+/// Returns F and its derivative with respect to z, with the derivatives of the type T.
 template <class T>
 Series<T, 1> residual_and_slope(const Lenslet& lenslet, const T& x, const T& y, const T& z) {
   const T none = constant_like(x, 0.0);
@@ -30,10 +31,10 @@ Series<T, 1> residual_and_slope(const Lenslet& lenslet, const T& x, const T& y, 
                   line_series<T, 1>(z, constant_like(x, 1.0), 1));
 }
 
-/// A place on the lenslet, from its origin along the part's axes.
+/// Point on the lenslet, relative to its origin along the axes of the part.
 struct Root {
-  double z = 0.0;      ///< not a number under an overhang
-  double slope = 0.0;  ///< of F by z
+  double z = 0.0;      ///< NaN under an overhang
+  double slope = 0.0;  ///< derivative of F with respect to z
 };
 
 Root root_at(const Lenslet& lenslet, double x, double y) {
@@ -51,7 +52,7 @@ Root root_at(const Lenslet& lenslet, double x, double y) {
       break;
     last = std::abs(change);
   }
-  // F falling there would be the underside of an overhang.
+  // A decreasing F means that the point is on the underside of an overhang.
   if (!(root.slope > 0.0)) root.z = std::numeric_limits<double>::quiet_NaN();
   return root;
 }
@@ -60,7 +61,7 @@ double height_over(const Lenslet& lenslet, double x, double y) {
   return root_at(lenslet, x, y).z;
 }
 
-/// One corrector more for each power to which derivatives vanish: each makes the next order exact.
+/// Applies one corrector step per order of derivatives. Each step makes the next order exact.
 template <class T>
 T corrected(const Lenslet& lenslet, const T& x, const T& y, int orders) {
   const Root root = root_at(lenslet, value_of(x), value_of(y));
@@ -75,7 +76,7 @@ Jet2 height_over(const Lenslet& lenslet, const Jet2& x, const Jet2& y) {
   return corrected(lenslet, x, y, 2);
 }
 
-/// First at t = 0 with all derivatives of T, then one order of t after the other.
+/// Computes the term t = 0 with all derivatives of T, then the orders of t one after the other.
 template <class T, int N>
 Series<T, N> height_over(const Lenslet& lenslet, const Series<T, N>& x, const Series<T, N>& y) {
   Series<T, N> z = constant_like(x, 0.0);

@@ -1,6 +1,6 @@
 #pragma once
 
-// A surface of its own that stands on another one, and the blend between the two.
+// A lenslet is a surface that is placed on a base surface. A blend connects the two.
 
 #include <Eigen/Core>
 
@@ -10,14 +10,15 @@
 
 namespace retrace::geometry {
 
-/// Most derivatives that a blend matches.
+/// Maximum order of the derivatives that a blend matches.
 inline constexpr int kMostBlendOrder = 4;
 
-/// The polynomial of degree 2 d + 1 between two radii that has the first d + 1 Taylor coefficients of a curve at each
-/// end: Hermite's, in the share of the way between them, so that no system is solved (W. Gautschi, Numerical Analysis,
+/// Returns the polynomial of degree 2 d + 1 between two radii that has the first d + 1 Taylor coefficients of a given
+/// curve at each end. Hermite's formula is used, so no system of equations is solved (W. Gautschi, Numerical Analysis,
 /// 2nd ed., section 2.2.7, two-point case).
-/// \param share 0 at the first end, 1 at the second \param width of the interval
-/// \param first, second Taylor coefficients by radius at the ends, `order` + 1 each
+/// \param share relative position in the interval: 0 at the first end, 1 at the second
+/// \param width width of the interval
+/// \param first, second Taylor coefficients in the radius at the two ends, `order` + 1 each
 template <class T, int N>
 T hermite_blend(const T& share, const T& width, const jets::Series<T, N>& first, const jets::Series<T, N>& second,
                 int order) {
@@ -45,17 +46,18 @@ T hermite_blend(const T& share, const T& width, const jets::Series<T, N>& first,
   return sum;
 }
 
-/// A surface of its own on the base, with a blend round it.
+/// Surface on the base, with a blend around it.
 struct Lenslet {
-  Sag sag;                                                          ///< in its own frame
-  Vec3 origin_mm = Vec3::Zero();                                    ///< of its frame, in that of the part
-  Eigen::Matrix3d part_from_lenslet = Eigen::Matrix3d::Identity();  ///< its z is the base's normal if it is tilted
-  Boundary inner;                                                   ///< where the blend leaves it
-  Boundary outer;                                                   ///< where the blend reaches the base
-  int blend_order = 2;                                              ///< d: C^d at both
-  bool ends_on_base = true;  ///< the blend ends where the base is not extrapolated; found by the surface
+  Sag sag;                        ///< in the frame of the lenslet
+  Vec3 origin_mm = Vec3::Zero();  ///< origin of this frame in the part frame
+  /// its z axis is the base's normal if the lenslet is tilted
+  Eigen::Matrix3d part_from_lenslet = Eigen::Matrix3d::Identity();
+  Boundary inner;            ///< inner end of the blend, at the lenslet
+  Boundary outer;            ///< outer end of the blend, at the base
+  int blend_order = 2;       ///< order d: the surface is C^d at both ends
+  bool ends_on_base = true;  ///< true if the blend ends where the base is not extrapolated; set by FreeformSurface
 
-  /// Its surface as z(x, y) in the part's frame, for double, Gradient, Jet2 and series of them.
+  /// Returns the lenslet's surface as z(x, y) in the part frame. T is double, Gradient, Jet2 or a series of them.
   template <class T>
   T evaluate(const T& x_mm, const T& y_mm) const;
 };

@@ -14,7 +14,7 @@ using jets::Series;
 
 constexpr double kPeriod = 2.0 * std::numbers::pi;
 
-/// Knots continued with their period to both sides.
+/// Knots, continued periodically in both directions.
 struct Knots {
   const std::vector<double>& base;
 
@@ -25,8 +25,8 @@ struct Knots {
   }
 };
 
-/// The degree + 1 B-splines that are not 0 between knots m and m + 1, the first being that of index m - degree, at x
-/// (Cox - de Boor recurrence, de Boor ch. X eq. 4).
+/// Returns the degree + 1 B-splines that are not 0 between the knots m and m + 1, evaluated at x. The first has the
+/// index m - degree (Cox-de Boor recurrence, de Boor ch. X eq. 4).
 template <class T>
 std::vector<T> basis_at(const Knots& knots, long m, int degree, const T& x) {
   std::vector<T> b(static_cast<std::size_t>(degree) + 1, constant_like(x, 0.0));
@@ -70,14 +70,14 @@ void check_sites(const std::vector<double>& sites, std::size_t values, int degre
     throw std::invalid_argument("sites of a periodic spline must lie within one period");
 }
 
-/// The weights of the B-splines that interpolate.
+/// Returns the weights of the B-splines for interpolation.
 Eigen::VectorXd weights(const std::vector<double>& sites, const std::vector<double>& values, const Knots& knots,
                         int degree) {
   const std::size_t n = sites.size();
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right(static_cast<Eigen::Index>(n));
   for (std::size_t j = 0; j < n; ++j) {
-    // Of an even degree site j lies between the knots j - 1 and j.
+    // For even degrees, site j is between the knots j - 1 and j.
     const long m = static_cast<long>(j) - (degree % 2 == 0 ? 1 : 0);
     const std::vector<double> b = basis_at(knots, m, degree, sites[j]);
     for (int k = 0; k <= degree; ++k)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Splines of an angle, for curves round a centre.
+// Splines as functions of an angle, for curves around a centre.
 
 #include <cmath>
 #include <numbers>
@@ -13,26 +13,28 @@ namespace retrace::geometry {
 
 inline constexpr int kMostSplineDegree = jets::kMostOrder;
 
-/// An interpolating spline of period 2 pi: degree p, C^(p - 1) everywhere, the seam included (C. de Boor, A Practical
-/// Guide to Splines, Springer 1978, ch. IX and XIII). Knots are the sites for odd degrees and lie midway between them
-/// for even ones, which keeps the periodic problem regular.
+/// Interpolating spline of period 2 pi and degree p. It is C^(p - 1) everywhere, including the point where the period
+/// closes (C. de Boor, A Practical Guide to Splines, Springer 1978, ch. IX and XIII). Knots are the sites for odd
+/// degrees. For even degrees they are midway between the sites, which keeps the periodic problem regular.
 class PeriodicSpline {
  public:
-  /// \param sites_rad strictly rising, within one period \param values as many \param degree 2 to kMostSplineDegree
-  /// \throw std::invalid_argument for fewer than degree + 2 sites, or sites that do not rise within one period, or so
-  /// uneven that no spline of that degree is determined
+  /// \param sites_rad strictly ascending, within one period
+  /// \param values one per site
+  /// \param degree 2 to kMostSplineDegree
+  /// \throw std::invalid_argument if there are fewer than degree + 2 sites, if the sites do not ascend within one
+  ///     period, or if they are so uneven that the spline is not determined
   PeriodicSpline(const std::vector<double>& sites_rad, const std::vector<double>& values, int degree);
 
-  /// The spline that is constant.
+  /// Returns a constant spline.
   static PeriodicSpline constant(double value, int degree = 3);
 
-  /// factor times this one plus offset.
+  /// Returns the spline with the values factor * value + offset.
   PeriodicSpline mapped(double factor, double offset) const;
 
   int degree() const { return degree_; }
   const std::vector<double>& knots_rad() const { return knots_; }
 
-  /// The value at any angle, with all derivatives that T carries.
+  /// Returns the value at any angle, with all derivatives of the type T.
   template <class T>
   T evaluate(const T& angle_rad) const {
     const double turns = std::floor((jets::value_of(angle_rad) - knots_.front()) / (2.0 * std::numbers::pi));
@@ -41,7 +43,7 @@ class PeriodicSpline {
     return jets::horner(&coefficients_[piece * stride()], degree_ + 1, local);
   }
 
-  /// Coefficients of the piece that starts at that knot, in powers of the angle from it.
+  /// Returns the coefficients of the piece that begins at a knot, in powers of the angle relative to the knot.
   const double* piece(std::size_t index) const { return &coefficients_[index * stride()]; }
 
  private:
@@ -50,9 +52,9 @@ class PeriodicSpline {
   void index_pieces();
 
   int degree_ = 3;
-  std::vector<double> knots_;         // as many as sites, rising, within one period
-  std::vector<double> coefficients_;  // degree + 1 a piece
-  std::vector<std::size_t> buckets_;  // piece at the start of each equal part of the period
+  std::vector<double> knots_;         // ascending, within one period; as many as sites
+  std::vector<double> coefficients_;  // degree + 1 coefficients per piece
+  std::vector<std::size_t> buckets_;  // piece at the beginning of each of several equal parts of the period
 };
 
 }  // namespace retrace::geometry

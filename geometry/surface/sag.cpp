@@ -22,13 +22,13 @@ double factorial(int n) {
   return f;
 }
 
-/// Adds value * x^i y^j (x^2 + y^2)^power.
+/// Adds value * x^i y^j (x^2 + y^2)^power to a polynomial.
 void add_ring(XyPolynomial& p, int i, int j, int power, double value) {
   for (int k = 0; k <= power; ++k)
     p.coefficients[p.index(i + 2 * (power - k), j + 2 * k)] += value * binomial(power, k);
 }
 
-/// Adds one term: its radial polynomial times the real or imaginary part of (x + i y)^|m|.
+/// Adds a Zernike term: its radial polynomial times the real or imaginary part of (x + i y)^|m|.
 void add_term(XyPolynomial& p, const ZernikeTerm& term) {
   const int m = std::abs(term.m);
   const double norm = std::sqrt((term.n + 1.0) * (m == 0 ? 1.0 : 2.0));
@@ -57,7 +57,7 @@ T evaluate_asphere(const Asphere& a, const T& x, const T& y) {
   return z;
 }
 
-/// Horner's rule in y within Horner's rule in x.
+/// Evaluates a polynomial by Horner's rule in y, nested in Horner's rule in x.
 template <class T>
 T evaluate_polynomial(const XyPolynomial& p, const T& x_mm, const T& y_mm) {
   const T x = x_mm * (1.0 / p.scale_mm);
@@ -72,7 +72,7 @@ T evaluate_formula(const Formula& formula, const T& x, const T& y, const std::ar
   using std::atan2;
   using std::sqrt;
   const T none = constant_like(x, 0.0);
-  // Polar variables have no derivatives at the centre; there they must not spoil a formula that has none of them.
+  // Polar variables have no derivatives at the centre. They are computed only if the formula uses them.
   const std::array<T, 6> variables = {x,
                                       y,
                                       formula.uses(2) ? sqrt(x * x + y * y) : none,
@@ -107,7 +107,7 @@ T Sag::evaluate(const T& x, const T& y) const {
   return formula ? z + evaluate_formula(*formula, x, y, place_mm) : z;
 }
 
-/// What heights are evaluated with: numbers of lenslets, blends and extrapolations, and of proofs.
+/// Types with which heights are evaluated, for lenslets, blends, extrapolations and proofs.
 template <class T>
 using Line = Series<T>;
 template <class T>

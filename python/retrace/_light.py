@@ -249,7 +249,7 @@ class PhotometryResult(Result):
     _told = ("verdict", "margin")
 
     verdict: str  #: pass, unconfirmed, undetermined or fail
-    passes: bool  #: true if no point, area or colour fails
+    passes: bool  #: true if all points and the area pass, and the colour does not fail
     points: Columns
     complete: bool
 
