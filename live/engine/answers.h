@@ -1,6 +1,7 @@
 #pragma once
 
-// What the page asks of an opened design, as JSON: README.md of live/ says what each answer holds.
+// Answers to requests of the page about an opened design, as JSON. README.md of live/ describes the contents of each
+// answer.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -11,27 +12,27 @@ namespace retrace::live {
 
 using Json = nlohmann::ordered_json;
 
-/// What a design says, and what of it the page can do.
+/// Returns the keys of a design, and what the page can compute for it.
 Json design_json(const OpenedDesign& opened);
-/// The part to look at, and its plan.
+/// Returns the three-dimensional part for display, and its plan.
 Json part_json(const OpenedDesign& opened);
-/// Binary STL of one element on its plate.
+/// Returns binary STL of one element on its plate.
 Json stl_json(const OpenedDesign& opened);
 
 // Of a request. \throw InputError for what it lacks
 
-/// What becomes of the light from one direction.
+/// Traces the light from one direction.
 Json direction_json(const OpenedDesign& opened, const Json& request, const TimeLimit& limit);
-/// RRE from many, as far as there is time.
+/// Computes RRE (retroreflective efficiency) for many directions until the time limit is reached.
 Json rre_json(const OpenedDesign& opened, const Json& request, const TimeLimit& limit);
-/// The way of light that enters at one place.
+/// Traces the light that enters at one position.
 Json path_json(const OpenedDesign& opened, const Json& request);
-/// The most frequent ways.
+/// Returns the most frequent light paths.
 Json stories_json(const OpenedDesign& opened, const Json& request);
 
-/// The standards whose limits are shipped.
+/// Returns the standards whose limits are included.
 Json standards_json();
-/// Test points of a standard.
+/// Computes the test points of a standard.
 Json photometry_json(const OpenedDesign& opened, const Json& request, TimeLimit& limit);
 
 }  // namespace retrace::live

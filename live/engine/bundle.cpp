@@ -1,11 +1,11 @@
-// The engine of the live page as the browser calls it.
+// Interface of the live page's engine for the browser.
 #include <emscripten/emscripten.h>
 
 #include <string>
 
 #include "live/engine/engine.h"
 
-/// The answer to a request; it lasts until the next call.
+/// Returns the answer to a request. The pointer is valid until the next call.
 extern "C" EMSCRIPTEN_KEEPALIVE const char* retrace_call(const char* request) {
   static retrace::live::Engine engine;
   static std::string answer;

@@ -1,5 +1,5 @@
-// What the bundle offers to the page: `retraceEngine(wasm)` takes the bytes of engine.wasm and returns a promise of a
-// function from requests to answers, both JSON texts.
+// Interface of the bundle for the page. `retraceEngine(wasm)` takes the bytes of engine.wasm. It returns a promise of a
+// function that maps requests to answers; both are JSON texts.
 function retraceEngine(wasm) {
   return makeRetrace({ wasmBinary: wasm, print() {}, printErr() {} }).then((engine) => {
     const call = engine.cwrap("retrace_call", "string", ["string"]);

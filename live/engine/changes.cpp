@@ -20,7 +20,7 @@ namespace {
 
 using namespace schema;
 
-/// The paths of all keys and tables that a document gives; those within a table after it.
+/// Adds the paths of all keys and tables that a document contains. The keys of a table follow the table.
 void add_given(const Document& document, const Table& table, const std::string& path, std::vector<std::string>& paths) {
   for (const Row& row : table.rows)
     if (std::string key = path_in(path, row.key); document.has(key) && (paths.empty() || paths.back() != key))
@@ -47,13 +47,13 @@ bool lies_in(std::string_view path, std::string_view table) {
   return path == table || (path.starts_with(table) && (path[table.size()] == '.' || path[table.size()] == '['));
 }
 
-/// Takes back a key, or a table with all that is in it.
+/// Removes a key, or a table with all its keys.
 void drop(Document& document, const std::string& path) {
   for (const std::string& given : given_of(document))
     if (lies_in(given, path)) document.drop(given);
 }
 
-/// A document and what is to be changed of it.
+/// A document and the changes to be applied.
 class Changes {
  public:
   Changes(Document document, const Json& changes) : document_(std::move(document)) {
@@ -67,19 +67,19 @@ class Changes {
     }
   }
 
-  /// Until nothing changes any more: what one key means may depend on others.
+  /// Repeats until nothing changes, because the validity of a key may depend on other keys.
   void adapt() {
     for (bool goes_on = true; goes_on;) goes_on = drop_meaningless() || give_missing();
   }
 
-  /// \throw InputError where it is no design
+  /// \throw InputError if the result is not a valid design
   ChangedText result() const {
     try {
       const Document read =
           read_document(studies::design_format(), text(), document_.source(), kMostTextBytes, overrides());
       return {document_text(studies::design_format(), read), adapted_};
     } catch (const InputError& error) {
-      // A change has no place in a file.
+      // A change has no position in a file, so file and line are removed.
       const InputLocation& at = error.where();
       if (!at.file.starts_with("--set")) throw;
       throw InputError({document_.source(), 0, at.key}, error.text());
@@ -97,12 +97,12 @@ class Changes {
     for (const auto& [path, toml] : values_) all.push_back(path + "=" + toml);
     return all;
   }
-  /// What it would be, its values unchecked.
+  /// Returns the changed document without checking its values.
   Document unchecked() const {
     return unchecked_names(studies::design_format(), text(), document_.source(), kMostTextBytes, overrides());
   }
 
-  /// Whether a key or table that was given means something beside the others.
+  /// Returns true if a key or table in the document has an effect, given the other keys.
   static bool has_meaning(const Document& document, const std::string& path) {
     const auto [around, name] = split_path(path);
     const Table* const outer = table_at(document.table(), around);
@@ -131,7 +131,7 @@ class Changes {
     return false;
   }
 
-  /// Gives a key that is required and not there the value that it has in the template of that kind of element.
+  /// Adds missing required keys, with the values in the template for this kind of element.
   bool give_missing() {
     const Document all = unchecked();
     const std::optional<Document> model = template_for(all);

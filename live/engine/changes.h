@@ -1,6 +1,6 @@
 #pragma once
 
-// Changes that the form makes to a design.
+// Applies changes that the form makes to a design.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -10,15 +10,17 @@
 
 namespace retrace::live {
 
-/// A design file with some keys changed.
+/// Text of a design file after changes of some keys.
 struct ChangedText {
   std::string toml;
-  std::vector<std::string> adapted;  ///< paths of keys that were taken back, or given, because of the changes
+  std::vector<std::string> adapted;  ///< paths of keys that were removed or added because of the changes
 };
 
-/// \param changes values by the paths of keys; null takes one back
-/// \param adapt what means nothing beside the changes is taken back, and what they make necessary is given as
-/// `retrace init` has it \throw InputError where the result is no design
+/// Returns the changed text of a design.
+/// \param changes values by the paths of keys; null removes a key
+/// \param adapt true: keys without effect after the changes are removed, and required keys are added with the values of
+///     `retrace init`
+/// \throw InputError if the result is not a valid design
 ChangedText changed(const schema::Document& document, const nlohmann::ordered_json& changes, bool adapt);
 
 }  // namespace retrace::live

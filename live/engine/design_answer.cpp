@@ -1,4 +1,4 @@
-// The answer about a design that was opened: its keys, and whether its light can be followed.
+// Answers about an opened design: its keys, and whether its light can be traced.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@
 namespace retrace::live {
 namespace {
 
-// Elements of a finite array from which on a direction takes longer than a drag allows.
+// Number of elements of a finite array above which tracing a direction is too slow for dragging.
 constexpr std::int64_t kManyElements = 100;
 
 std::vector<std::string> notes_of(const OpenedDesign& opened) {

@@ -37,7 +37,7 @@ Json failure(const InputError& error) {
   return json;
 }
 
-/// Without what is not finite.
+/// Returns the JSON value without numbers that are not finite.
 Json finite(Json json) {
   if (json.is_array())
     for (Json& item : json) item = finite(std::move(item));
@@ -55,7 +55,7 @@ Json materials_json(const materials::MaterialLibrary& library) {
   return list;
 }
 
-/// The template of `retrace init`, made endless if that is asked.
+/// Returns the template of `retrace init`. If requested, the array is made infinite.
 std::string template_of(const std::string& kind, const std::string& extent) {
   std::string text = studies::design_template(kind);
   if (extent.empty() || extent == "finite") return text;
@@ -153,7 +153,7 @@ Json Engine::changed(const Json& request) {
     json["adapted"] = text.adapted;
     return json;
   } catch (const InputError& error) {
-    // Nobody has seen the lines of that text.
+    // The user has not seen this text, so its line numbers are removed.
     throw InputError({error.where().file, 0, error.where().key}, error.text());
   }
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The door to retrace for the live page: requests and answers are JSON texts (README.md of live/).
+// Entry point of retrace for the live page. Requests and answers are JSON texts (README.md of live/).
 
 #include <cstddef>
 #include <map>
@@ -13,16 +13,16 @@
 
 namespace retrace::live {
 
-/// Keeps the designs that a page has opened, and answers what it asks. For one thread.
+/// Stores the designs that a page has opened, and answers requests. Use in a single thread only.
 class Engine {
  public:
-  /// Designs that are kept open.
+  /// Maximum number of designs that are kept open.
   static constexpr std::size_t kMostOpen = 64;
 
   Engine();
   ~Engine();
 
-  /// The answer to a request, one line of JSON, whatever the request is.
+  /// Returns the answer to any request, including invalid ones, as one line of JSON.
   std::string call(std::string_view request);
 
  private:

@@ -92,7 +92,7 @@ void add_default(Json& json, const Default& otherwise) {
              otherwise);
 }
 
-/// What is escaped for tables in Markdown.
+/// Removes the escapes that Markdown tables need.
 std::string plain(std::string_view sentence) {
   std::string text(sentence);
   for (std::size_t at = 0; (at = text.find("\\|", at)) != std::string::npos;) text.erase(at, 1);
@@ -108,7 +108,7 @@ Json row_json(const Row& row, const std::string& around) {
   return json;
 }
 
-/// \param path of an entry where the table is one of a list: "coating.facets[]"
+/// \param path path of an entry if the table belongs to a list, such as "coating.facets[]"
 void add_groups(const Table& table, const std::string& path, Json& groups) {
   Json rows = Json::array();
   for (const Row& row : table.rows) rows.push_back(row_json(row, path));

@@ -1,6 +1,6 @@
 #pragma once
 
-// The rows of the design format as the page's form wants them, and the values that a document has for them.
+// Describes the keys of the design format for the page's form, and returns the values of a document for them.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -11,13 +11,14 @@ namespace retrace::live {
 
 using Json = nlohmann::ordered_json;
 
-/// All tables with their rows: `groups` of the ask `form`.
+/// Returns all tables and their keys, as `groups` of the answer `form`.
 Json form_json();
 
-/// The keys that mean something beside what a design says, in the order of the form, with the values that hold.
+/// Returns the keys that have an effect in a design, in the order of the form, with their current values.
 Json keys_json(const schema::Document& document);
 
-/// A value of a JSON request as TOML, on one line. \throw InputError for what TOML has not
+/// Returns a JSON value of a request as TOML on one line.
+/// \throw InputError for values that do not exist in TOML
 std::string toml_of(const Json& value);
 
 }  // namespace retrace::live

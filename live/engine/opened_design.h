@@ -1,6 +1,6 @@
 #pragma once
 
-// A design that the page has opened, with what is made of it once and asked for often.
+// A design that the page has opened, with cached objects that many answers need.
 
 #include <memory>
 #include <optional>
@@ -16,26 +16,26 @@ namespace retrace::live {
 
 class OpenedDesign {
  public:
-  /// \throw InputError where the text is no design, or no part can be made of it
+  /// \throw InputError if the text is not a valid design, or if no part can be built from it
   OpenedDesign(std::string toml, const std::string& source, const materials::MaterialLibrary& library);
   OpenedDesign(const OpenedDesign&) = delete;
   OpenedDesign& operator=(const OpenedDesign&) = delete;
 
   const std::string& toml() const { return toml_; }
   const studies::Design& design() const { return design_; }
-  /// Why beams cannot follow its light; empty if they can.
+  /// Returns the reason why the exact engine cannot trace this design, or an empty text.
   const std::string& why_not() const { return why_not_; }
-  /// The command that asks the same of the program.
+  /// Returns the command line that computes the same result with the program.
   std::string command() const;
 
-  /// None of balls.
+  /// Returns the optical model, or null for balls.
   const studies::OpticalModel* model() const { return model_ ? &*model_ : nullptr; }
-  /// \throw InputError where there is none
+  /// \throw InputError if there is no optical model
   const studies::OpticalModel& require_model() const;
-  /// \throw InputError where beams do not serve
+  /// \throw InputError if the exact engine cannot trace this design
   const raytrace::BeamTracer& require_tracer() const;
-  /// What is shown in three dimensions, made when it is first asked for. \throw InputError where there is nothing to
-  /// show
+  /// Returns the three-dimensional shape for display, which is built on first use.
+  /// \throw InputError if there is nothing to display
   const studies::Piece& piece() const;
 
  private:

@@ -1,4 +1,4 @@
-// Answers about photometry: which standards there are, and what a design does at their test points.
+// Answers about photometry: available standards, and the results of a design at the test points of a standard.
 #include <nlohmann/json.hpp>
 #include <set>
 

@@ -1,5 +1,5 @@
-// The engine of the live page as a native program: a request a line of standard input, an answer a line of standard
-// output. What the bundle in the browser says is held against it.
+// The live page's engine as a native program. It reads one request per line from standard input and writes one answer
+// per line to standard output. Tests compare the engine in the browser with this program.
 #include <iostream>
 #include <string>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Values of a request, checked.
+// Reads and checks the values of a request.
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ namespace retrace::live {
 
 using Json = nlohmann::ordered_json;
 
-/// \throw InputError naming the key where it is missing or of another type
+/// \throw InputError with the key, if it is missing or has another type
 template <class Type>
 Type get(const Json& request, const char* key) {
   const auto found = request.find(key);
@@ -30,7 +30,7 @@ Type get(const Json& request, const char* key, const Type& otherwise) {
   return request.contains(key) ? get<Type>(request, key) : otherwise;
 }
 
-/// \throw InputError for one that does not lie between
+/// \throw InputError unless the value is between 0 and 1
 inline double share_of(const Json& request, const char* key, double otherwise) {
   const double value = get<double>(request, key, otherwise);
   if (!(value > 0.0 && value < 1.0)) throw InputError({"", 0, key}, "must lie between 0 and 1");

@@ -1,4 +1,4 @@
-// Answers about the part: its shape, its plan, and light paths through a piece of it.
+// Answers about the part: its shape, its plan, and light paths through a portion of it.
 #include <nlohmann/json.hpp>
 
 #include "core/base64.h"
@@ -14,10 +14,10 @@ namespace {
 
 using raytrace::PathEvent;
 
-// Elements of a finite array beyond which its plan is not drawn.
+// Maximum number of elements of a finite array for which the plan is drawn.
 constexpr std::int64_t kMostDrawn = 5000;
 
-/// In the order of geometry::FacetRole.
+/// Names in the order of geometry::FacetRole.
 constexpr std::string_view kRoleNames[] = {"entrance", "retro_facet", "flat_back", "inner_wall", "border_wall", "side"};
 
 std::string_view event_name(PathEvent event) {
@@ -62,7 +62,7 @@ Json plan_json(const geometry::Part& part) {
           {"roots", flat(face.roots_mm)}};
 }
 
-/// Light that comes from the denser side of a face, and the angle from which on it is reflected totally.
+/// Returns the critical angle of total reflection if the light comes from the denser side of a face.
 std::optional<double> critical_deg(const raytrace::Optics& optics, const raytrace::PathStep& step) {
   const bool is_back = step.role != geometry::FacetRole::entrance && step.role != geometry::FacetRole::side;
   if (step.event == PathEvent::enters || step.event == PathEvent::enters_again || step.event == PathEvent::escapes ||

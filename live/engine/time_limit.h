@@ -1,6 +1,6 @@
 #pragma once
 
-// The time that an answer may take.
+// Limits the computing time of an answer.
 
 #include <chrono>
 
@@ -8,7 +8,7 @@
 
 namespace retrace::live {
 
-/// Stops work once its time is over, when it next tells how far it is.
+/// Cancels a computation after a time limit, at its next report of progress.
 class TimeLimit : public Progress {
  public:
   explicit TimeLimit(double seconds)

@@ -1,7 +1,7 @@
 #pragma once
 
-// Algorithms over ranges that the standard library of emscripten 3.1.6 does not have yet, as far as the bundle's
-// sources use them; included before each of them (cmake/RetraceLivePage.cmake).
+// Range algorithms that are missing in the standard library of emscripten 3.1.6. Only those that the engine's sources
+// use are defined. The file is included before each source file (cmake/RetraceLivePage.cmake).
 
 #include <algorithm>
 #include <cstddef>
@@ -17,7 +17,7 @@ template <class To, class From>
 constexpr To bit_cast(const From& from) {
   return __builtin_bit_cast(To, from);
 }
-/// \pre nu is whole
+/// \pre nu is a whole number
 inline double cyl_bessel_j(double nu, double x) {
   return ::jn(static_cast<int>(nu), x);
 }

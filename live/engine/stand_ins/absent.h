@@ -1,7 +1,7 @@
 #pragma once
 
-// What the stand-ins say of what the live page has not. Files of this folder define functions of other folders, in
-// place of the sources that need libraries which a browser cannot have.
+// Reports features that the live page does not have. Files in this folder define functions of other folders. They
+// replace sources whose libraries are not available in a browser.
 
 #include <string_view>
 
@@ -9,7 +9,9 @@
 
 namespace retrace::live {
 
-/// \param what is not there, such as "no formulas" \throw InputError that says so
+/// Fails because a feature is missing.
+/// \param what missing feature, such as "no formulas"
+/// \throw InputError always
 [[noreturn]] inline void fail_as_absent(std::string_view what) {
   throw InputError("the live page has " + std::string(what) + ": use the program retrace");
 }

@@ -1,4 +1,4 @@
-// In place of turned parts and meshes as fronts, which are files.
+// Replaces turned parts and meshes as entrance surfaces, because they are read from files.
 #include "live/engine/stand_ins/absent.h"
 #include "studies/design/entrance_of_design.h"
 

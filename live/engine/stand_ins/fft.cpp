@@ -1,4 +1,4 @@
-// In place of FFTW: maps of measured surfaces are files, which the live page does not have.
+// Replaces FFTW. It is needed only for maps of measured surfaces, which are files that the live page cannot read.
 #include "surface_models/fft.h"
 
 #include "live/engine/stand_ins/absent.h"

@@ -1,4 +1,4 @@
-// In place of the readers of measured maps.
+// Replaces the readers of measured height maps.
 #include "live/engine/stand_ins/absent.h"
 #include "surface_models/io/height_map_reader.h"
 

@@ -1,4 +1,4 @@
-// In place of yaml-cpp.
+// Replaces the reader of refractiveindex.info records, which needs yaml-cpp.
 #include "live/engine/stand_ins/absent.h"
 #include "materials/io/index_record.h"
 

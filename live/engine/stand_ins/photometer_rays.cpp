@@ -1,4 +1,4 @@
-// In place of Monte Carlo.
+// Replaces Monte Carlo photometry.
 #include "live/engine/stand_ins/absent.h"
 #include "studies/photometry/photometer.h"
 

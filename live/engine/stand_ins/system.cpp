@@ -1,4 +1,4 @@
-// In place of muParser, loaded modules and the place of the program.
+// Replaces muParser, loaded modules and the search for the program's folder.
 #include "core/installation.h"
 #include "core/math/formula.h"
 #include "core/pictures.h"
@@ -14,7 +14,7 @@ const PictureFiles& picture_files() {
   live::fail_as_absent("no pictures");
 }
 
-/// Of the files that are in the bundle.
+/// Returns the folder of the files in the bundle.
 const std::filesystem::path& installation_folder() {
   static const std::filesystem::path folder = "/retrace";
   return folder;

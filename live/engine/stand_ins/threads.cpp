@@ -1,4 +1,4 @@
-// In place of TBB: the live page computes on the one thread of its worker.
+// Replaces TBB: the live page computes in a single worker thread.
 #include "core/threads.h"
 
 namespace retrace {

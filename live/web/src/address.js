@@ -1,7 +1,7 @@
-// The whole state in the address: packed JSON behind the "#", so that a link is a design, byte for byte.
+// Stores the complete state as packed JSON after the "#" of the address, so that a link contains the exact design.
 
-const PACKED = "#z"; // deflated
-const PLAIN = "#j"; // where the browser cannot deflate
+const PACKED = "#z"; // prefix of compressed state
+const PLAIN = "#j"; // prefix of uncompressed state, if the browser cannot compress
 
 function toBase64(bytes) {
   let text = "";
@@ -23,7 +23,7 @@ export async function packed(state) {
   return PACKED + toBase64(await through(bytes, new CompressionStream("deflate-raw")));
 }
 
-/** \return null where the address holds no state, or one that cannot be read */
+/** Returns the state in an address, or null if there is none or it cannot be read. */
 export async function unpacked(hash) {
   try {
     const bytes = fromBase64(hash.slice(2));

@@ -1,14 +1,17 @@
-// RRE against incidence at the azimuth that is pointed at: a coarse curve first, which is finished even while the
-// design moves on, then finer ones, at rest each place once more and surer.
+// Computes RRE against incidence at the current azimuth. A coarse curve is computed first, and is finished even while
+// the design changes. Finer curves follow. If nothing changes, all points are then computed again with higher accuracy.
 import { directionOf, nameOf } from "./directions.js";
 import { AT_ONCE, MOVING } from "./session.js";
 
 const PIECE_S = 0.012;
-const PATIENCE_MS = 700; // after which a coarse curve is shown that is not whole
-const QUICK_MS = 60; // of the engine's time: a curve that takes longer begins with wider steps
+const PATIENCE_MS = 700; // time after which an incomplete coarse curve is shown
+const QUICK_MS = 60; // engine time; a curve that takes longer begins with larger steps
 export const CURVE_STEPS_DEG = [10, 5, 2.5, 1];
 
-/** From -`to` to `to`, those first that stand farther apart, so that a few say something of the whole. */
+/**
+ * Returns the multiples of `step` from -`to` to `to`. Widely spaced values come first, so that the first few cover the
+ * whole range.
+ */
 function range(to, step) {
   const most = Math.floor(to / step + 1e-9);
   const all = Array.from({ length: 2 * most + 1 }, (_, k) => k - most);
@@ -16,19 +19,22 @@ function range(to, step) {
   return all.sort((a, b) => rank(a) - rank(b)).map((k) => k * step);
 }
 
-/** A curve of one design that is being traced, from coarse to fine. \param level that it begins with */
+/**
+ * Curve of one design that is computed from coarse to fine steps.
+ * \param level index of the first step size in CURVE_STEPS_DEG
+ */
 export class CurvePass {
   constructor(design, azimuth_deg, half_range_deg, stamp, level = 1) {
     Object.assign(this, { design, azimuth_deg, half_range_deg, stamp });
     this.key = `${design.source}\n${design.toml}\n${azimuth_deg}\n${half_range_deg}`;
-    this.points = new Map(); // by the name of the direction that is traced: [rre, truncated, std_error]
+    this.points = new Map(); // by the name of the traced direction: [rre, truncated, std_error]
     this.incidences = new Set();
     this.first = level;
     this.level = level - 1;
     this.target_error = AT_ONCE;
     this.begun = performance.now();
     this.queue = []; // names of directions
-    this.ms = 0; // of the engine's time at AT_ONCE
+    this.ms = 0; // engine time at AT_ONCE
     this.advance();
   }
 
@@ -40,7 +46,10 @@ export class CurvePass {
     return this.queue.length === 0;
   }
 
-  /** The next finer steps. \return whether there are any */
+  /**
+   * Adds the points of the next finer step.
+   * \return false if there is no finer step
+   */
   advance() {
     if (this.level + 1 >= CURVE_STEPS_DEG.length) return false;
     this.level += 1;
@@ -50,7 +59,7 @@ export class CurvePass {
     return true;
   }
 
-  /** All places once more, surer. */
+  /** Queues all points again with higher accuracy. */
   refine() {
     if (this.target_error === MOVING) return false;
     this.target_error = MOVING;
@@ -70,13 +79,13 @@ export class CurvePass {
     if (this.target_error === AT_ONCE) this.ms += answer.ms;
   }
 
-  /** The level that the next curve is to begin with, by what this one took. */
+  /** Returns the level at which the next curve begins, from the computing time of this curve. */
   firstLevel() {
     const directions = 2 * Math.floor(this.half_range_deg / CURVE_STEPS_DEG[1]) + 1;
     return (this.ms / this.incidences.size) * directions > QUICK_MS ? 0 : 1;
   }
 
-  /** Rising incidences and what was found there. */
+  /** Returns the points in order of incidence. */
   rows() {
     return [...this.incidences]
       .sort((a, b) => a - b)
@@ -91,13 +100,13 @@ export class Curve {
     this.session = session;
     this.half_range_deg = 60;
     this.pass = null;
-    this.level = 1; // that the next pass begins with
-    this.shown = null; // the last pass that was whole once
+    this.level = 1; // level at which the next pass begins
+    this.shown = null; // the last pass that was complete at one level
     this.lane = session.engine.lane({ next: () => this.next(), done: (job, data) => this.take(job, data) });
     for (const event of ["moving", "design"]) session.on(event, () => this.review());
   }
 
-  /** Finer curves of what has changed since are left. */
+  /** Stops a finer curve if the design has changed. */
   review() {
     if (this.lane.running === 0 || this.pass.level === this.pass.first || this.wanted().key === this.pass.key) return;
     this.session.engine.withdraw(this.lane);
@@ -125,7 +134,7 @@ export class Curve {
     const answer = data.answers && data.answers[0];
     if (job.pass !== this.pass) return;
     if (!answer || !answer.ok) {
-      this.pass.failed = true; // what one direction cannot, the others will not
+      this.pass.failed = true; // if one direction fails, all others fail, too
       return;
     }
     this.pass.take(answer);

@@ -1,10 +1,10 @@
-// Directions of the light that mean the same to a design: of those that are alike by its symmetry one is traced.
+// Finds directions of light that are equivalent by symmetry of the design. Only one of them is traced.
 
 function turned(azimuth_deg) {
   return ((azimuth_deg % 360) + 360) % 360;
 }
 
-/** The azimuth that stands for all that are alike. */
+/** Returns the azimuth that represents all equivalent azimuths. */
 function representative(azimuth_deg, symmetry) {
   let azimuth = turned(azimuth_deg);
   if (!symmetry) return azimuth;
@@ -17,14 +17,17 @@ function representative(azimuth_deg, symmetry) {
   return azimuth;
 }
 
-/** The name of the direction that is traced for this one. \param symmetry of the design; none: null */
+/**
+ * Returns the name of the direction that is traced instead of this direction.
+ * \param symmetry symmetry of the design, or null
+ */
 export function nameOf(incidence_deg, azimuth_deg, symmetry) {
   const azimuth = incidence_deg < 0 ? azimuth_deg + 180 : azimuth_deg;
   const at = incidence_deg === 0 && symmetry ? 0 : representative(azimuth, symmetry);
   return `${Math.abs(incidence_deg)} ${Number(at.toFixed(6))}`;
 }
 
-/** Incidence and azimuth of a name. */
+/** Returns incidence and azimuth from a name. */
 export function directionOf(name) {
   return name.split(" ").map(Number);
 }

@@ -1,4 +1,4 @@
-// Elements of the document, made in one expression.
+// Creates HTML and SVG elements.
 const SVG = "http://www.w3.org/2000/svg";
 
 function fill(node, attributes, children) {
@@ -11,29 +11,32 @@ function fill(node, attributes, children) {
   return node;
 }
 
-/** h("button", { type: "button", onclick: run }, "Run"); attributes that are null or false are left out. */
+/**
+ * Creates an HTML element, such as h("button", { type: "button", onclick: run }, "Run"). Attributes that are null or
+ * false are omitted.
+ */
 export function h(name, attributes, ...children) {
   return fill(document.createElement(name), attributes, children);
 }
 
-/** The same in SVG. */
+/** Creates an SVG element in the same manner as h(). */
 export function s(name, attributes, ...children) {
   return fill(document.createElementNS(SVG, name), attributes, children);
 }
 
 let count = 0;
-/** A name for an element that labels refer to. */
+/** Returns a unique id for an element that labels refer to. */
 export function newId(what) {
   count += 1;
   return `live-${what}-${count}`;
 }
 
-/** A canvas that fills its element sharply; `draw` is called when its size changes. */
+/** Canvas with the size and resolution of its element. `draw` is called when the size changes. */
 export class Canvas {
   constructor(element, draw) {
     this.element = element;
     this.node = h("canvas", { "aria-hidden": "true" });
-    // Few strokes and many frames: drawn by the processor it costs less than its way through the graphics card.
+    // For few lines and many frames, drawing on the CPU is faster than on the graphics card.
     this.context = this.node.getContext("2d", { willReadFrequently: true });
     element.append(this.node);
     new ResizeObserver(() => {
@@ -53,14 +56,14 @@ export class Canvas {
     return true;
   }
 
-  /** An empty canvas in units of CSS pixels. */
+  /** Clears the canvas and sets its units to CSS pixels. */
   begin() {
     this.context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     this.context.clearRect(0, 0, this.width, this.height);
     return this.context;
   }
 
-  /** Where a pointer is, from the upper left corner. */
+  /** Returns the position of a pointer relative to the top left corner. */
   placeOf(event) {
     const box = this.node.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];

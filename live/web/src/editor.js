@@ -1,4 +1,4 @@
-// The design as text: what is typed is tried at once, and what is wrong is said beside its line in the program's own words.
+// Text editor for the design. Each change is tested immediately, and errors are shown next to the line.
 import { h } from "./dom.js";
 
 const TYPING_MS = 250;

@@ -1,9 +1,9 @@
-// Controls of the form: one for each kind of key. A control shows a value and says when it is changed.
+// Controls of the form, one for each type of key. A control shows a value and reports when the user changes it.
 import { h, newId } from "./dom.js";
 import { clean, sliderOf } from "./sliders.js";
 import { short, words } from "./units.js";
 
-/** A number with a slider beside it. */
+/** Creates a number field with a slider. */
 function numberField(row, entry, { id, size_mm, change }) {
   const slider = sliderOf(row, entry.value, size_mm);
   const step = row.kind === "whole" ? 1 : "any";
@@ -57,7 +57,7 @@ function textField(row, entry, { id, change, materials }) {
   return { nodes: [input, options], show: (value) => (input.value = value ?? ""), holds: [input] };
 }
 
-/** Numbers in a row, with commas between. */
+/** Creates a field for several numbers, separated by commas. */
 function numbersField(row, entry, { id, change }) {
   const input = h("input", {
     type: "text",
@@ -73,7 +73,10 @@ function numbersField(row, entry, { id, change }) {
   return { nodes: [input], show, holds: [input] };
 }
 
-/** What only the text can say: it is shown, and the text is where it is changed. Of a list it is told how long it is. */
+/**
+ * Creates a read-only field for values that can be changed only in the text. For a list, the number of entries is
+ * shown.
+ */
 function writtenField(row, entry, { edit }) {
   const text = h("code", {});
   const show = (value) => (text.textContent = entry.list ? entry.entries || "none" : value == null ? "–" : JSON.stringify(value).slice(0, 60));
@@ -89,7 +92,12 @@ const FIELDS = {
   numbers: numbersField,
 };
 
-/** \param row of the form \param entry of the design's keys \param given id, size_mm, materials, change(value), edit() */
+/**
+ * Creates the control for a key.
+ * \param row description of the key in the form
+ * \param entry entry of the design's keys
+ * \param given id, size_mm, materials, change(value), edit()
+ */
 export function fieldOf(row, entry, given) {
   const isList = Array.isArray(entry.value) && row.kind === "number";
   return (isList ? numbersField : FIELDS[row.kind] || writtenField)(row, entry, given);

@@ -1,4 +1,4 @@
-// What goes out of the page as a file, or to the clipboard.
+// Saves files and copies text to the clipboard.
 import { colour } from "../../../report/page/web/src/theme.js";
 
 export function save(name, type, content) {
@@ -9,7 +9,7 @@ export function save(name, type, content) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-/** \return whether it is there; a browser may refuse a page that was opened from disk */
+/** Copies text to the clipboard. Returns false if the browser refuses, for example if the page was opened from disk. */
 export async function copy(text) {
   try {
     await navigator.clipboard.writeText(text);
@@ -33,7 +33,10 @@ function quoted(text) {
   return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }
 
-/** \param curves list of {title, rows} */
+/**
+ * Returns the curves as CSV.
+ * \param curves list of {title, rows}
+ */
 export function curveCsv(curves, azimuth_deg) {
   const lines = ["design,incidence_deg,azimuth_deg,rre,truncated,std_error"];
   for (const { title, rows } of curves)
@@ -66,7 +69,10 @@ function svgAxes([low, high]) {
   return parts.join("\n");
 }
 
-/** The curves as a drawing. \param curves list of {title, rows, name of a colour} */
+/**
+ * Returns the curves as an SVG drawing.
+ * \param curves list of {title, rows, name of a colour}
+ */
 export function curveSvg(curves, azimuth_deg, [low, high]) {
   const { left, top, width, height } = BOX;
   const at = ({ x, rre }) => `${(left + (width * (x - low)) / (high - low)).toFixed(2)},${(top + height * (1 - rre)).toFixed(2)}`;

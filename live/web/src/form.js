@@ -1,4 +1,4 @@
-// The form: the keys of the design that mean something for its shape, in groups, as the schema tells them.
+// Form with the keys that apply to a design of this kind, in groups. Keys and texts come from the schema.
 import { h, newId } from "./dom.js";
 import { fieldOf } from "./fields.js";
 import { named, words } from "./units.js";
@@ -14,7 +14,7 @@ function allowedText(row) {
   return ends.join(" ");
 }
 
-/** What a key means, in which range, and what holds without it. */
+/** Returns the description of a key, its range and its default. */
 function meaningOf(row) {
   const without = row.default != null ? `Without it: ${row.default}.` : row.otherwise ? `Without it: ${row.otherwise}.` : "";
   const allowed = allowedText(row);
@@ -22,7 +22,7 @@ function meaningOf(row) {
 }
 
 export class Form {
-  /** \param edit shows the text of the design */
+  /** \param edit function that shows the text of the design */
   constructor(session, edit) {
     this.session = session;
     this.edit = edit;
@@ -31,7 +31,7 @@ export class Form {
     this.node = h("div", {}, this.keys, this.help);
     for (const event of ["pointerover", "focusin"]) this.keys.addEventListener(event, ({ target }) => this.explain(target));
     this.controls = new Map();
-    this.states = new Map(); // of groups: whether they are open
+    this.states = new Map(); // for each group, whether it is open
     this.built = "";
   }
 
@@ -44,7 +44,7 @@ export class Form {
     this.session.on("refused", ({ error, changes }) => this.blame(error, changes));
   }
 
-  /** The key under the pointer, or in use: what it means stands at the foot of the form. */
+  /** Shows the description of the key under the pointer, or of the focused key, at the bottom of the form. */
   explain(target) {
     const field = target.closest(".field");
     const control = field && this.controls.get(field.dataset.key);
@@ -58,7 +58,7 @@ export class Form {
     return (this.rows.get(path) || [])[row || 0];
   }
 
-  /** The form is made anew where other keys apply; otherwise its values are those of the design. */
+  /** Updates the form. It is rebuilt if other keys apply; otherwise only the values are updated. */
   show(design, isOpened) {
     const built = JSON.stringify(design.keys.map(({ path, row, value, entries }) => [path, row, Array.isArray(value), entries]));
     if (built !== this.built || isOpened) this.build(design);
@@ -104,7 +104,7 @@ export class Form {
     return node;
   }
 
-  /** Files are only for the text, and of what is not given: a page has none. */
+  /** Keys for files are shown only if they are given, because the page has no files. */
   isShown(entry) {
     const row = this.rowOf(entry);
     return Boolean(row) && (row.kind !== "file" || entry.given);
@@ -126,7 +126,7 @@ export class Form {
     return node;
   }
 
-  /** How many keys of each group are given. */
+  /** Shows the number of given keys in each group. */
   count(design) {
     const given = new Set(design.keys.filter((entry) => entry.given).map(({ path }) => path));
     for (const { count, paths } of this.groupNodes) {
@@ -135,7 +135,7 @@ export class Form {
     }
   }
 
-  /** A value that cannot be: the message stands with its key, or with that which was changed. */
+  /** Shows the message about an invalid value next to its key, or next to the key that was changed. */
   blame(error, changes) {
     if (!changes) return;
     const control = this.controls.get(error.key) || this.controls.get(Object.keys(changes)[0]);

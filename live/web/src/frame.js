@@ -1,7 +1,7 @@
-// The parts of the page, and where they stand: header, design, readout, panels.
+// Layout of the page: header, design, results, panels.
 import { h, newId } from "./dom.js";
 
-/** A panel with a title, tools beside it and a caption below. */
+/** Creates a panel with a title, tools next to the title and a caption below. */
 export function panel(name, title, { tools = [], caption = null } = {}, ...content) {
   const id = newId(name);
   return h(
@@ -17,7 +17,7 @@ export function button(text, run, attributes = {}) {
   return h("button", { type: "button", onclick: run, ...attributes }, text);
 }
 
-/** Which of the pictures is shown where there is room for one. */
+/** Creates tabs to choose the picture on screens that have room for only one. */
 function stageTabs(results, names, number) {
   const tabs = names.map(([name, text]) =>
     h("button", { type: "button", "data-show": name, "aria-pressed": "false", onclick: () => choose(name) }, text),

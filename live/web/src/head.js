@@ -1,4 +1,4 @@
-// The head of the page: what it is about, and what goes in and out.
+// Header of the page: title, import and export.
 import { h } from "./dom.js";
 import { bytesOf, copy, save } from "./files.js";
 import { button } from "./frame.js";

@@ -1,4 +1,4 @@
-// The live page: the engine in a worker, the design, and what shows it.
+// Live page: the engine in a worker, the design, and the panels that show the results.
 import { packed, unpacked } from "./address.js";
 import { h } from "./dom.js";
 import { Editor } from "./editor.js";
@@ -20,9 +20,9 @@ import { Session } from "./session.js";
 import { startReport } from "../../../report/page/web/src/report.js";
 import { addThemeSwitch } from "../../../report/page/web/src/theme.js";
 
-const FIRST = { kind: "hexagonal_icc", incidence_deg: 12, azimuth_deg: 30 }; // what a page without a design begins with
+const FIRST = { kind: "hexagonal_icc", incidence_deg: 12, azimuth_deg: 30 }; // state of a page without a design
 
-/** The form and the text of the design, one of which is shown. Arrow keys go from tab to tab. */
+/** Creates the panel with two tabs: the form and the text of the design. Arrow keys switch between tabs. */
 function designPanel(form, editor) {
   const pages = {
     form: h("div", { id: "live-form", role: "tabpanel", "aria-labelledby": "live-tab-form" }, form.node),
@@ -101,7 +101,7 @@ class LivePage {
     window.addEventListener("hashchange", () => this.restore());
   }
 
-  /** The design of the address, else that of the page, else a template. */
+  /** Opens the design in the address, or the design of the page, or a template. */
   async begin() {
     const { incidence_deg, azimuth_deg } = FIRST;
     this.session.direction = { incidence_deg, azimuth_deg };
@@ -164,7 +164,7 @@ class LivePage {
   }
 }
 
-/** The whole page, or a section of a report, whose own scripts then run first. */
+/** Starts the live page. It may also be a section of a report, whose own scripts are run first. */
 function start() {
   const page = new LivePage(document.getElementById("live"), JSON.parse(document.getElementById("start").textContent));
   const recolour = () => page.panels.forEach((panel) => panel.recolour && panel.recolour());

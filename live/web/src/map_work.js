@@ -1,22 +1,22 @@
-// RRE over all directions: rings of incidence with more places the wider they are, from coarse to fine. Where the engine
-// knows that directions are alike by symmetry, one of them is traced.
+// Computes RRE over all directions on rings of constant incidence, from coarse to fine. The number of points increases
+// with the radius of the ring. Of directions that are equivalent by symmetry, only one is traced.
 import { directionOf, nameOf } from "./directions.js";
 import { AT_ONCE } from "./session.js";
 
 const PIECE_S = 0.004;
 const RING_STEPS_DEG = [20, 10, 5, 2.5];
-const WHILE_MOVING = 1; // the level that is waited for before another design is begun,
-const PATIENCE_MS = 700; // unless that takes longer
-const PLACES = 6; // of the first ring; the k-th has k times as many
+const WHILE_MOVING = 1; // level that must be complete before another design is started,
+const PATIENCE_MS = 700; // unless it takes longer than this time
+const PLACES = 6; // number of points of the first ring; ring k has k times this number
 
 export class MapPass {
   constructor(design, most_deg, stamp) {
     Object.assign(this, { design, most_deg, stamp });
     this.key = `${design.source}\n${design.toml}\n${most_deg}`;
-    this.values = new Map(); // by direction: rre
+    this.values = new Map(); // RRE by direction
     this.level = -1;
     this.begun = performance.now();
-    this.rings = null; // of the finest level that is whole: [{incidence_deg, values}]
+    this.rings = null; // rings of the finest complete level: [{incidence_deg, values}]
     this.advance();
   }
 
@@ -34,7 +34,7 @@ export class MapPass {
     return this.queue.length === 0;
   }
 
-  /** Fine enough to be left for another design; what is whole but not yet so goes on. */
+  /** Returns true if the map is fine enough to be abandoned for another design. */
   isEnough() {
     return this.level > WHILE_MOVING || (this.isWhole() && (this.level === WHILE_MOVING || performance.now() - this.begun > PATIENCE_MS));
   }
@@ -80,7 +80,7 @@ export class DirectionMap {
     return new MapPass(base, this.most_deg, measure.drawn.point);
   }
 
-  /** A map of what has changed since is left, unless it is too coarse yet. */
+  /** Stops the map if the design has changed, unless it is still too coarse. */
   review() {
     if (this.lane.running === 0 || !this.pass.isEnough() || this.wanted().key === this.pass.key) return;
     this.session.engine.withdraw(this.lane);
@@ -104,11 +104,11 @@ export class DirectionMap {
     const answer = data.answers && data.answers[0];
     if (pass !== this.pass) return;
     if (!answer || !answer.ok) {
-      pass.failed = true; // what one direction cannot, the others will not
+      pass.failed = true; // if one direction fails, all others fail, too
       return;
     }
     pass.take(answer);
-    // While something moves a coarse map does not take the place of a finer one.
+    // During changes, a coarse map does not replace a finer one.
     const isShown = pass.isWhole() && (!this.shown || !this.session.isMoving || pass.isEnough());
     if (isShown) this.shown = pass;
     this.session.tell(isShown ? "map" : "map_progress", pass);

@@ -1,12 +1,12 @@
-// How long it takes from a change to what shows it, for tests and for who wants to know: window.retraceLive.measure.
+// Measures the time from a change to its display, for tests and for users: window.retraceLive.measure.
 
 export class Measure {
   constructor() {
-    this.stamp = 0; // of the last change
+    this.stamp = 0; // number of the last change
     this.times = new Map();
     this.latencies_ms = { point: [], curve: [], map: [] };
-    this.first_ms = null; // from the opening of the page to its first picture
-    this.drawn = { point: 0, curve: 0, map: 0 }; // the stamp of what is shown
+    this.first_ms = null; // time from opening the page to the first picture
+    this.drawn = { point: 0, curve: 0, map: 0 }; // number of the change that is displayed
   }
 
   touched() {
@@ -15,7 +15,7 @@ export class Measure {
     this.times.delete(this.stamp - 5000);
   }
 
-  /** What the change of that stamp asked for is on the screen. */
+  /** Records that the result of change `stamp` is displayed. */
   shown(what, stamp) {
     if (stamp <= this.drawn[what]) return;
     this.drawn[what] = stamp;

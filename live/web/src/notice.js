@@ -1,9 +1,9 @@
-// What the page has to say of the design: errors, what it cannot do and what does, warnings.
+// Messages about the design: errors, limitations of the page with alternatives, and warnings.
 import { h } from "./dom.js";
 import { copy } from "./files.js";
 import { button } from "./frame.js";
 
-/** A command line that does what the page cannot, to be copied. */
+/** Creates a command line that the user can copy, for computations that the page does not support. */
 function commandLine(command, source) {
   const text = command.replaceAll("DESIGN", source || "design.toml");
   return h("span", { class: "command" }, h("code", {}, text), button("Copy", (event) => copy(text).then((done) => (event.target.textContent = done ? "Copied" : "Copy"))));
@@ -26,7 +26,7 @@ export class Notice {
     this.session.on("answer", () => this.blame());
   }
 
-  /** The last design stays in view; this says why the new one is not. */
+  /** Explains why the new design cannot be shown. The last valid design stays visible. */
   refuse(error) {
     const shown = this.session.base ? " The last design that can be built stays in view." : "";
     this.refusal.replaceChildren(h("p", {}, h("strong", {}, "Not like this: "), error.text, h("span", { class: "quiet" }, shown)));
@@ -45,7 +45,7 @@ export class Notice {
     this.remarks.replaceChildren(...lines);
   }
 
-  /** A direction that was not traced, of a design that is: the readout says why, here is what does it. */
+  /** Shows a command for a direction that the page could not trace, although the design is valid. */
   blame() {
     const { why, base } = this.session;
     this.trouble.replaceChildren();

@@ -1,5 +1,5 @@
-// What is worked out when nothing moves: the direction to full accuracy, the test points of a standard, the curves of
-// designs that are pinned.
+// Computations while nothing changes: the direction at full accuracy, the test points of a standard, and the curves of
+// pinned designs.
 import { CurvePass } from "./curve_work.js";
 import { RESTING } from "./session.js";
 
@@ -9,7 +9,7 @@ const PHOTOMETRY_S = 60;
 export class Rest {
   constructor(session) {
     this.session = session;
-    this.programme = null; // {standard, class, colour, area_cm2}, once its panel is open
+    this.programme = null; // {standard, class, colour, area_cm2} when the photometry panel is open
     this.pins = []; // {toml, source, title, pass}
     this.isDue = false;
     session.on("rest", () => {
@@ -24,13 +24,13 @@ export class Rest {
 
   stop() {
     this.isDue = false;
-    if (this.isJudging) this.judged = null; // to be asked again
+    if (this.isJudging) this.judged = null; // request it again later
     this.isJudging = false;
     this.session.engine.drop();
     this.session.engine.withdraw(this.pinned);
   }
 
-  /** What a job is of: its answer is of no use once that has changed. */
+  /** Returns a text that identifies design and direction. An answer is discarded if this text has changed. */
   stampOf() {
     const { base, direction } = this.session;
     return `${base.source}\n${base.toml}\n${direction.incidence_deg} ${direction.azimuth_deg}`;

@@ -1,41 +1,41 @@
-// What the page is about: a design, a direction of the light, perhaps a spot of the plan - and what the engine has said of
-// them. Everything that changes goes through here; what shows it listens.
+// State of the page: design, direction of light, optional spot on the plan, and the engine's answers. All changes go
+// through this class. Panels listen to its events.
 import { Curve } from "./curve_work.js";
 import { DirectionMap } from "./map_work.js";
 import { Measure } from "./measure.js";
 import { Rest } from "./rest_work.js";
 
-// By how much RRE may be off: its standard error where weak beams are resampled, else what is left untraced.
-export const MOVING = 1e-4; // while something moves
-export const RESTING = 1e-6; // at rest
-export const AT_ONCE = 1e-3; // of the many directions of curves and maps, at first
-const REST_MS = 260; // without a change, until the picture is traced in full
-const MOST_S = 1.5; // for one direction while moving
-const PACE_MS = 66; // between two directions while something moves: the page needs the time in between to draw
-const SOON_MS = 30; // a change that is this old is the last one for now: a drag would have brought the next
-const FRESH_MS = 3; // a change that is no older has just been made
-const QUICK_MS = 45; // that a direction may take while something moves; what takes longer is first traced to AT_ONCE,
-const RATIO = 4; // which is so many times quicker
+// Target errors of RRE. They are standard errors if weak beams are resampled, and otherwise the untraced power.
+export const MOVING = 1e-4; // while the user makes changes
+export const RESTING = 1e-6; // when nothing changes
+export const AT_ONCE = 1e-3; // first accuracy for the many directions of curves and maps
+const REST_MS = 260; // time without changes before the picture is computed at full accuracy
+const MOST_S = 1.5; // maximum time for one direction during changes
+const PACE_MS = 66; // minimum time between two directions during changes, so that the page has time to draw
+const SOON_MS = 30; // age of a change above which no further change of the drag is expected immediately
+const FRESH_MS = 3; // maximum age of a change that counts as new
+const QUICK_MS = 45; // maximum time of a direction during changes; slower designs are first traced to AT_ONCE,
+const RATIO = 4; // which is faster by this factor
 
 export class Session {
   constructor(engine) {
     this.engine = engine;
     this.listeners = new Map();
-    this.base = null; // the design that is shown, as the engine opened it
-    this.changes = {}; // keys that are to be other than in `base`, but have not been traced yet
-    this.refused = {}; // keys whose values could not be: they are tried again together with the next that is changed
+    this.base = null; // the displayed design, as the engine opened it
+    this.changes = {}; // changes of keys of `base` that have not been traced yet
+    this.refused = {}; // changes that were rejected; they are tried again together with the next change
     this.adapt = false;
-    this.wanted = null; // a text that is to take the place of `base`
+    this.wanted = null; // design text that will replace `base`
     this.direction = { incidence_deg: 0, azimuth_deg: 0 };
     this.spot = null;
-    this.answer = null; // of the direction, while moving
+    this.answer = null; // answer for the direction during changes
     this.part = null;
     this.isDue = false;
     this.isMoving = false;
-    this.sent = -Infinity; // when the last direction was asked for
-    this.touched = -Infinity; // when something moved last
-    this.isSlow = false; // whether a direction to MOVING takes too long to follow the hand
-    this.target_error = MOVING; // of the next direction
+    this.sent = -Infinity; // time of the last request for a direction
+    this.touched = -Infinity; // time of the last change
+    this.isSlow = false; // true if tracing a direction to MOVING is too slow to follow the pointer
+    this.target_error = MOVING; // for the next direction
     this.revision = 0;
     this.measure = new Measure();
     this.point = engine.lane({ next: () => this.nextPoint(), done: (job, data) => this.takePoint(job, data) });
@@ -53,7 +53,7 @@ export class Session {
     for (const listener of this.listeners.get(event) || []) listener(value);
   }
 
-  /** A key of the form; nothing takes it back. `adapt`: what no longer means anything beside it goes too. */
+  /** Changes a key; null removes it. If `adapt` is true, keys that lose their effect are removed, too. */
   change(path, value, adapt = false) {
     Object.assign(this.changes, this.refused, { [path]: value });
     this.refused = {};
@@ -61,7 +61,7 @@ export class Session {
     this.touch();
   }
 
-  /** Another design. `then` is called with the engine's answer. */
+  /** Opens another design. `then` is called with the engine's answer. */
   open(toml, source, then = () => {}) {
     this.wanted = { toml, source, then };
     this.changes = {};
@@ -82,7 +82,7 @@ export class Session {
     this.touch();
   }
 
-  /** Something has moved: a quick picture at once, a full one when all is at rest. */
+  /** Registers a change: a quick picture is computed immediately, and an accurate picture when changes stop. */
   touch() {
     this.isDue = true;
     this.isMoving = true;
@@ -116,8 +116,11 @@ export class Session {
 
   // --- the lane of the direction that is pointed at
 
-  /** How long to wait before the next direction is asked for, in ms; 0 or less: not at all. First until PACE_MS have gone
-   * since the last one, then for the next change of a drag, so that what is shown is as new as can be. */
+  /**
+   * Returns the time in ms before the next direction is requested; 0 or less means immediately. At least PACE_MS must
+   * pass after the last request. Then the next change of a drag is awaited, so that the displayed result is as recent
+   * as possible.
+   */
   pace() {
     const now = performance.now();
     const early_ms = this.sent + PACE_MS - now;
@@ -162,11 +165,11 @@ export class Session {
     this.isSlow = direction.ms > (job.target_error > MOVING ? QUICK_MS / RATIO : QUICK_MS);
     this.why = direction.ok ? null : direction;
     this.paths = !paths.ok ? [] : job.spot ? [{ ...paths, spot: job.spot }] : paths.paths;
-    this.engine.pump(); // the next is worked on while this is drawn
+    this.engine.pump(); // the next direction is computed while this one is drawn
     this.tell("answer", { isNewPart: Boolean(part && part.ok), stamp: job.stamp });
   }
 
-  /** What was asked for cannot be: it is said, and the last picture stays. */
+  /** Reports that a request failed. The last picture stays visible. */
   refuse(job, error) {
     if (job.wanted && this.wanted === job.wanted) this.wanted = null;
     for (const [path, value] of Object.entries(job.changes || {})) {
@@ -174,7 +177,7 @@ export class Session {
       delete this.changes[path];
       this.refused[path] = value;
     }
-    // Where the light comes from, or the spot, may have changed as well.
+    // The direction of light or the spot may have changed, too.
     if (this.base && this.shownOf !== JSON.stringify([job.at, job.spot])) this.isDue = true;
     this.tell("refused", { error, changes: job.changes || null, text: job.wanted ? job.wanted.toml : null });
     if (job.wanted) job.wanted.then(error);

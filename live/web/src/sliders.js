@@ -1,4 +1,4 @@
-// How far the slider of a number reaches: what is sensible, not what is allowed.
+// Ranges of the sliders. They are useful ranges, not the allowed ranges.
 
 const BY_NAME = {
   apex_angle_deg: [80, 100],
@@ -26,20 +26,26 @@ const BY_UNIT = {
 const NO_SLIDER = /_seed$|^seed$/;
 const STEPS = 200;
 
-/** The step of 1, 2 or 5 that makes some 200 of a range. */
+/** Returns the step (1, 2 or 5 times a power of ten) that divides a range into about 200 steps. */
 function niceStep(range) {
   const decade = 10 ** Math.floor(Math.log10(range / STEPS));
   return decade * [1, 2, 5, 10].find((f) => f * decade >= range / STEPS - 1e-15);
 }
 
-/** Round a length: from nothing to some times as much. A length that may be 0 goes from there to the size of an element. */
+/**
+ * Returns the range for a length: from 0 to a multiple of the value. For the value 0, the range ends at the size of an
+ * element.
+ */
 function roundLength(value, size_mm) {
   if (value > 0) return [0, 2.5 * value];
   return [0, size_mm];
 }
 
-/** \param row of the form \param value that holds at opening, may be none \return {low, high, step}, or nothing where a
- * slider makes no sense */
+/**
+ * Returns the range and step of a slider, {low, high, step}, or nothing if a slider is not useful.
+ * \param row description of the key in the form
+ * \param value initial value; may be null
+ */
 export function sliderOf(row, value, size_mm) {
   if (!["number", "whole"].includes(row.kind) || NO_SLIDER.test(row.name)) return null;
   const suffix = Object.keys(BY_UNIT).find((unit) => row.name.endsWith(`_${unit}`));
@@ -59,7 +65,7 @@ export function sliderOf(row, value, size_mm) {
   return high > low ? { low, high, step } : null;
 }
 
-/** A value of a slider, without the dust of its steps. */
+/** Rounds a slider value to remove floating-point errors of its steps. */
 export function clean(value, step) {
   const digits = Math.max(0, Math.ceil(-Math.log10(step)) + 1);
   return Number(value.toFixed(Math.min(12, digits)));

@@ -1,12 +1,15 @@
-// Changes values in the text of a design where they stand, so that its comments and its order stay. What is written in
-// another way than "key = value" on a line below its "[table]" is left to the engine, which writes the text anew.
+// Changes values in the text of a design in place, so that comments and order are kept. Only lines "key = value" below
+// a "[table]" are supported. For other forms, the engine writes a new text.
 
 function headerOf(line) {
   const found = /^\s*\[([A-Za-z0-9_.-]+)\]\s*(#.*)?\r?$/.exec(line);
   return found ? found[1] : null;
 }
 
-/** From the line after the header of a table to that of the next; of the root from the first line. Null where it is not there. */
+/**
+ * Returns the lines of a table, from the line after its header to the next header. The root table begins at line 0.
+ * Returns null if the table does not exist.
+ */
 function reachOf(lines, table) {
   const begin = table === "" ? 0 : lines.findIndex((line) => headerOf(line) === table) + 1;
   if (begin === 0 && table !== "") return null;
@@ -21,7 +24,10 @@ function textOf(value) {
 
 const SCALAR = `("(?:[^"\\\\]|\\\\.)*"|'[^']*'|\\[[^\\]\\n]*\\]|[^\\s#"'\\[{]+)`;
 
-/** The line with that key; of several none. \param mark what stands before the key */
+/**
+ * Returns the line with a key, or nothing if there are several.
+ * \param mark text before the key
+ */
 function find(lines, [from, to], key, mark) {
   const shape = new RegExp(`^(\\s*)(${mark})(${key})(\\s*=\\s*)${SCALAR}([ \\t]*)(#.*)?(\\r?)$`);
   const places = [];
@@ -33,7 +39,7 @@ function mentions(lines, [from, to], key) {
   return lines.slice(from, to).some((line) => new RegExp(`^\\s*["']?${key}["']?\\s*[=.]`).test(line));
 }
 
-/** A comment stays where it stood, if there is room. */
+/** Returns the line with a new value. A comment keeps its column if there is room. */
 function rewritten([, indent, mark, key, equals, old, gap, comment, end], value) {
   const text = textOf(value);
   if (!comment) return `${indent}${key}${equals}${text}${gap}${end}`;
@@ -41,13 +47,16 @@ function rewritten([, indent, mark, key, equals, old, gap, comment, end], value)
   return `${indent}${key}${equals}${text}${room}${comment}${end}`;
 }
 
-/** After the last line of the table that is neither empty nor a comment. */
+/** Returns the position after the last line of the table that is neither empty nor a comment. */
 function insertAt(lines, [from, to]) {
   for (let k = to; k > from; --k) if (/^\s*[^\s#]/.test(lines[k - 1])) return k;
   return from;
 }
 
-/** The lines with a header for that table, empty or one that was a comment; null where the table is written in another way. */
+/**
+ * Returns the lines with an added header for the table. A commented-out header is used if there is one. Returns null if
+ * the table is written in another form.
+ */
 function withTable(lines, table) {
   const name = table.split(".")[0];
   if (table === "" || lines.some((line) => new RegExp(`^\\s*\\[*\\s*["']?${name}["']?\\s*[\\].=]`).test(line))) return null;
@@ -78,7 +87,7 @@ function changed(lines, path, value) {
   return [...lines.slice(0, place), `${key} = ${textOf(value)}`, ...lines.slice(place)];
 }
 
-/** \return the text with those values, null where it cannot be done line by line */
+/** Returns the text with the new values, or null if this is not possible line by line. */
 export function edited(toml, changes) {
   let lines = toml.split("\n");
   for (const [path, value] of Object.entries(changes)) {

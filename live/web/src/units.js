@@ -1,4 +1,4 @@
-// Names and numbers as people read them.
+// Formats names and numbers for display.
 
 const SUFFIXES = [
   ["_per_mm", "1/mm"],
@@ -11,7 +11,7 @@ const SUFFIXES = [
   ["_c", "°C"],
 ];
 
-/** "apex_angle_deg" is an "apex angle" in "°". */
+/** Splits a key into label and unit: "apex_angle_deg" becomes "apex angle" and "°". */
 export function named(key) {
   for (const [suffix, unit] of SUFFIXES)
     if (key.endsWith(suffix)) return { label: key.slice(0, -suffix.length).replaceAll("_", " "), unit };
@@ -22,7 +22,7 @@ export function words(name) {
   return name.replaceAll("_", " ");
 }
 
-/** The shortest text of a number with so many digits that count. */
+/** Returns the shortest text of a number with a given number of significant digits. */
 export function short(value, digits = 4) {
   return value == null ? "–" : String(Number(value.toPrecision(digits))).replace("-", "−");
 }
@@ -31,7 +31,7 @@ export function percent(share, decimals = 2) {
   return share == null ? "–" : `${(100 * share).toFixed(decimals).replace("-", "−")} %`;
 }
 
-/** Degrees, or minutes of arc where they are small. */
+/** Formats an angle in degrees, or in minutes of arc if it is small. */
 export function angle(deg) {
   if (deg === 0) return "0°";
   const size = Math.abs(deg);

@@ -1,11 +1,11 @@
-// Runs in the worker: the engine, and the designs that it has open. A job is a design - a text, and keys that are changed -
-// and what is asked of it; each answer goes back with the time it took. Jobs that are `long` are done piece by piece, each
-// of which goes back, so that others come between; `urgent` ones before all that wait.
+// Runs in the worker: the engine and its open designs. A job contains a design (a text and changed keys) and requests.
+// Each answer is returned with its computing time. `long` jobs are done in steps, each with an answer, so that other
+// jobs can run in between. `urgent` jobs run before all waiting jobs.
 import { edited } from "./toml_edit.js";
 
 const MOST_OPEN = 40;
 let call = null;
-const opened = new Map(); // by source and text, the latest last
+const opened = new Map(); // by source and text, most recent last
 
 function ask(request) {
   const begin = performance.now();
@@ -30,12 +30,12 @@ function open({ toml, source }) {
   return response;
 }
 
-/** A number and a list of it alone are the same. */
+/** Compares two values. A number equals a list that contains only this number. */
 function sameValue(a, b) {
   return JSON.stringify([].concat(a)) === JSON.stringify([].concat(b));
 }
 
-/** The design with other values written into its text; nothing where the text cannot be changed line by line. */
+/** Returns the design with new values in its text, or nothing if the text cannot be changed line by line. */
 function rewritten(job) {
   const toml = job.adapt ? null : edited(job.toml, job.changes);
   if (toml == null) return null;
@@ -45,7 +45,7 @@ function rewritten(job) {
   return Object.entries(job.changes).every(([path, value]) => sameValue(values.get(path) ?? null, value)) ? response : null;
 }
 
-/** The design of a job, opened; or what is wrong with it. */
+/** Returns the opened design of a job, or the error. */
 function designOf(job) {
   const base = open(job);
   if (!base.ok || !job.changes) return base;
@@ -66,7 +66,7 @@ function run(job) {
 const waiting = [];
 let isAtWork = false;
 
-/** Lets messages in that have come meanwhile. */
+/** Lets the worker receive messages that arrived in the meantime. */
 function breath() {
   const { port1, port2 } = new MessageChannel();
   return new Promise((resolve) => {
@@ -75,7 +75,10 @@ function breath() {
   });
 }
 
-/** One piece of a job. \return whether there is more of it */
+/**
+ * Does one step of a job.
+ * \return true if further steps remain
+ */
 function work(job) {
   const result = run(job);
   const answer = job.long && !result.error ? result.answers[0] : null;

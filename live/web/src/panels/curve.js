@@ -1,4 +1,4 @@
-// RRE against incidence: the curve of the design, ghosts of those that are pinned, and the incidence that is pointed at.
+// Plot of RRE against incidence: the current design, pinned designs, and the current incidence.
 import uPlot from "uplot";
 import { h } from "../dom.js";
 import { button, panel } from "../frame.js";
@@ -10,13 +10,16 @@ import { colour } from "../../../../report/page/web/src/theme.js";
 export const GHOSTS = ["--curve-1", "--curve-2", "--curve-3", "--curve-4"];
 const RANGES_DEG = [30, 60, 85];
 
-/** A curve as charts take it. \param pass may be none */
+/**
+ * Converts a curve for the chart library.
+ * \param pass computed curve; may be null
+ */
 function seriesOf(label, pass) {
   const rows = pass ? pass.rows() : [];
   return { label, x: rows.map((row) => row.x), y: rows.map((row) => 100 * row.rre) };
 }
 
-/** What a curve says at an incidence, linear between its places; nothing outside. */
+/** Returns the value of a curve at an incidence by linear interpolation, or nothing outside the curve. */
 function valueAt(pass, incidence) {
   const rows = pass ? pass.rows() : [];
   const k = rows.findIndex(({ x }) => x >= incidence);
@@ -88,7 +91,7 @@ export class CurvePanel {
     if (width !== this.plot.width || height !== this.plot.height) this.plot.setSize({ width, height });
   }
 
-  /** Pressing or dragging in the plot points at an incidence. */
+  /** Clicking or dragging in the plot selects an incidence. */
   point() {
     const { over } = this.plot;
     const at = (event) => {
@@ -164,7 +167,7 @@ export class CurvePanel {
     context.restore();
   }
 
-  /** The designs whose curves are shown: this one, and what it is compared with. */
+  /** Lists the designs whose curves are shown: the current design and the pinned designs. */
   listPins() {
     const { pins } = this.session.rest;
     const line = (name) => h("span", { class: "stroke", style: `border-color: var(${name})` });

@@ -1,12 +1,12 @@
-// The directions in which light comes back, seen from the source: spots round the cone that counts.
+// Directions of the returned light as seen from the source: spots around the acceptance cone.
 import { h, s } from "../dom.js";
 import { panel } from "../frame.js";
 import { angle, percent, short } from "../units.js";
 
-const MOST = 6; // spots that are named
-const HALF = 110; // of the drawing, in its units
+const MOST = 6; // maximum number of spots in the list
+const HALF = 110; // half width of the drawing in its units
 const REACHES_DEG = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 90, 180];
-const LEAST = 1e-5; // power of a spot that decides how far the drawing reaches
+const LEAST = 1e-5; // minimum power of a spot that influences the range of the drawing
 
 export class FarFieldPanel {
   constructor(session) {
@@ -40,7 +40,7 @@ export class FarFieldPanel {
     this.show();
   }
 
-  /** The half width of the drawing: the cone and the spots near it, or the farthest. */
+  /** Returns the half width of the drawing in degrees. It contains the cone and the near spots, or all spots. */
   width() {
     const away = this.field.spots.filter(({ power }) => power > LEAST).map(({ deviation_deg }) => deviation_deg);
     const near = this.reach.value === "near" ? away.filter((deg) => deg <= Math.max(5, 3 * this.cone_deg)) : away;

@@ -1,8 +1,8 @@
-// Where all of the light ends: one bar, each account as wide as its share.
+// Energy ledger: one bar in which the width of each account is its fraction of the power.
 import { h } from "../dom.js";
 import { percent, words } from "../units.js";
 
-const LEAST = 5e-5; // of the light, for an account to be named
+const LEAST = 5e-5; // minimum fraction of the power for an account to be labelled
 
 export class Ledger {
   constructor(session) {

@@ -1,16 +1,16 @@
-// RRE over all directions, as the source sees the part: the middle is light along its normal, +x to the right.
+// Map of RRE over all directions, as seen from the source. The centre is normal incidence; +x is to the right.
 import { Canvas, h } from "../dom.js";
 import { panel } from "../frame.js";
 import { percent, short } from "../units.js";
 import { colour, isDark } from "../../../../report/page/web/src/theme.js";
 
-// ColorBrewer's YlGnBu, as maps of reports have it; turned over in the dark, so that nothing is the colour of the paper.
+// ColorBrewer YlGnBu, as for maps in reports. It is reversed in the dark theme, so that zero has the background colour.
 const SCALE = ["#ffffd9", "#edf8b1", "#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8", "#253494", "#081d58"].map((text) =>
   [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)),
 );
-const SIZE = 240; // of the picture that is stretched over the disc, in pixels
+const SIZE = 240; // size in pixels of the picture that is scaled to the disc
 
-/** 256 colours from least to most. */
+/** Returns 256 colours from minimum to maximum. */
 function coloursOf(dark) {
   const scale = dark ? [...SCALE].reverse() : SCALE;
   return Array.from({ length: 256 }, (_, k) => {
@@ -20,7 +20,7 @@ function coloursOf(dark) {
   });
 }
 
-/** For each pixel of the picture how far from the middle it lies, as a share of the radius, and its turn. */
+/** Returns, for each pixel, the distance from the centre relative to the radius, and the azimuth in turns. */
 function polarPixels() {
   const away = new Float32Array(SIZE * SIZE);
   const turn = new Float32Array(SIZE * SIZE);
@@ -33,7 +33,7 @@ function polarPixels() {
   return { away, turn };
 }
 
-/** The value on a ring, linear between its places. */
+/** Returns the value on a ring by linear interpolation. */
 function onRing(values, turn) {
   const at = turn * values.length;
   const k = Math.floor(at) % values.length;
@@ -99,7 +99,7 @@ export class MapPanel {
     this.bar.querySelector("i").style.background = `linear-gradient(to right, ${stops.map((c) => `rgb(${c})`).join(",")})`;
   }
 
-  /** In other colours. */
+  /** Redraws after a change of the colour theme. */
   recolour() {
     this.paintBar();
     if (this.pass) this.paint();
@@ -127,7 +127,7 @@ export class MapPanel {
     this.caption.textContent = `Pick a direction. The rim is ${pass.most_deg}° from the normal; ${done} directions at 10⁻³${finer}.`;
   }
 
-  /** The disc in pixels, linear between rings; what lies outside stays clear. */
+  /** Draws the disc, interpolated linearly between rings. Pixels outside are transparent. */
   paint() {
     const context = this.picture.getContext("2d");
     const image = context.createImageData(SIZE, SIZE);

@@ -1,4 +1,4 @@
-// The entrance face seen from the light: where light enters that comes back, and the dead zones between.
+// Entrance face as seen from the light: the regions whose light returns, and the dead zones between them.
 import { Canvas, h } from "../dom.js";
 import { button, panel } from "../frame.js";
 import { percent, short } from "../units.js";
@@ -15,7 +15,10 @@ function contains(polygon, [x, y]) {
   });
 }
 
-/** How an outline that tiles the plane is repeated: from the middle of each side to that of the opposite one. */
+/**
+ * Returns the translations by which an outline tiles the plane: from the centre of each side to that of the opposite
+ * side.
+ */
 function translationsOf(outline) {
   const count = outline.length;
   if (count % 2) return [];
@@ -29,9 +32,9 @@ function boxOf(points) {
   return { x: Math.min(...xs), y: Math.min(...ys), width: Math.max(...xs) - Math.min(...xs), height: Math.max(...ys) - Math.min(...ys) };
 }
 
-const MOST_TILES = 3; // to each side of the period in the middle
+const MOST_TILES = 3; // number of periods on each side of the central period
 
-/** The plan of a part: what stays while the light moves. */
+/** Plan of a part. It does not change while the direction of light changes. */
 class Plan {
   constructor(part) {
     this.outline = corners(part.outline);
@@ -43,7 +46,9 @@ class Plan {
     this.periods = this.isPeriodic ? translationsOf(this.outline).slice(0, 2) : [];
   }
 
-  /** What is seen: the part with a margin, of an endless one the period and its neighbours. */
+  /**
+   * Returns the visible area: the part with a margin, or the central period of an infinite array with its neighbours.
+   */
   seen() {
     const { x, y, width, height } = this.box;
     const size = Math.max(width, height);
@@ -58,7 +63,7 @@ class Plan {
     return steps.flatMap((i) => steps.map((j) => [i * a[0] + j * b[0], i * a[1] + j * b[1]]));
   }
 
-  /** Those of which something lies between two corners. */
+  /** Returns the tiles that overlap the rectangle between two corners. */
   tilesWithin([left, bottom], [right, top]) {
     const { x, y, width, height } = this.box;
     return this.tiles().filter(
@@ -66,7 +71,7 @@ class Plan {
     );
   }
 
-  /** The same place in the period in the middle. */
+  /** Returns the equivalent position in the central period. */
   home([x, y]) {
     if (contains(this.outline, [x, y])) return [x, y];
     for (const [dx, dy] of this.tiles()) if (contains(this.outline, [x - dx, y - dy])) return [x - dx, y - dy];
@@ -154,7 +159,7 @@ export class PlanPanel {
     this.tell();
   }
 
-  /** Regions are opaque, from the colour of the paper to that of light. */
+  /** Draws the regions in opaque colours between the background colour and the colour of light. */
   paintRegions() {
     const [paper, light] = ["--paper", "--active"].map((name) => [1, 3, 5].map((k) => parseInt(colour(name).slice(k, k + 2), 16)));
     for (const region of this.regions || []) {
@@ -163,7 +168,7 @@ export class PlanPanel {
     }
   }
 
-  /** One sentence below the picture. */
+  /** Writes a sentence about the result below the picture. */
   tell() {
     const { answer, spot } = this.session;
     if (!answer || !answer.footprint) {
@@ -206,7 +211,7 @@ export class PlanPanel {
     this.drawScale(context, scale);
   }
 
-  /** One period, or the whole of a finite part. */
+  /** Draws one period of an infinite array, or a complete finite part. */
   drawTile(context, [dx, dy], unit) {
     context.save();
     context.translate(dx, dy);
@@ -217,7 +222,7 @@ export class PlanPanel {
     for (const { outline, paint } of this.regions) {
       this.trace(context, outline);
       context.fillStyle = context.strokeStyle = paint;
-      context.lineWidth = 0.6 * unit; // over the seams between regions
+      context.lineWidth = 0.6 * unit; // covers the seams between regions
       context.fill();
       context.stroke();
     }
@@ -226,7 +231,7 @@ export class PlanPanel {
     context.restore();
   }
 
-  /** What is repeated without end, and what all numbers are of. */
+  /** Draws the outline of the period, to which all numbers refer. */
   drawPeriod(context, unit) {
     context.save();
     this.trace(context, this.plan.outline);
@@ -243,14 +248,14 @@ export class PlanPanel {
     context.closePath();
   }
 
-  /** Dead zones: what no region covers stays hatched. */
+  /** Hatches the dead zones. Regions are drawn over the hatching later. */
   hatch(context, unit) {
     context.fillStyle = this.hatching;
     this.hatching.setTransform(new DOMMatrix([unit / this.canvas.ratio, 0, 0, unit / this.canvas.ratio, 0, 0]));
     context.fill();
   }
 
-  /** A pattern of lines aslant, in pixels of the screen. */
+  /** Creates a pattern of oblique lines, in screen pixels. */
   makeHatching() {
     const size = Math.round(8 * this.canvas.ratio);
     const tile = document.createElement("canvas");
@@ -280,7 +285,7 @@ export class PlanPanel {
     context.restore();
   }
 
-  /** Where the ray of the spot enters, its way in plan, and where it leaves. */
+  /** Draws the point at which the selected ray enters, its path in plan, and the point at which it leaves. */
   drawRay(context, unit) {
     const { spot, paths } = this.session;
     if (!spot) return;

@@ -1,5 +1,4 @@
-// The ways of the light in words: which there are, and one of them interface by interface, its angles against the critical
-// one.
+// Light paths as text: the list of paths, and one path interface by interface with its angles and critical angles.
 import { h } from "../dom.js";
 import { panel } from "../frame.js";
 import { percent, short, words } from "../units.js";
@@ -19,7 +18,7 @@ const EVENTS = {
   ends: "ends",
 };
 
-/** From 0 to 90 degrees: where the light stands, and beyond what angle all of it is reflected. */
+/** Draws a scale from 0 to 90 degrees with the angle of incidence and the range of total reflection. */
 function gauge({ incidence_deg, critical_deg, event }) {
   if (incidence_deg == null) return "";
   const share = (deg) => `${((100 * deg) / 90).toFixed(1)}%`;
@@ -34,7 +33,7 @@ function gauge({ incidence_deg, critical_deg, event }) {
 export class RayPanel {
   constructor(session) {
     this.session = session;
-    this.chosen = 0; // of the paths; -1 is all of them
+    this.chosen = 0; // index of the chosen path; -1 means all paths
     this.listed = "";
     this.list = h("fieldset", { class: "paths" });
     this.rows = h("tbody", {});
@@ -71,7 +70,7 @@ export class RayPanel {
     this.tell();
   }
 
-  /** The paths to choose from; they stay while only their angles change. */
+  /** Lists the paths to choose from. The list is rebuilt only if more than the angles has changed. */
   listPaths() {
     const { paths, spot } = this.session;
     const texts = paths.map((path) => (path.share == null ? path.fate : `${path.fate} · ${percent(path.share, 0)}`));

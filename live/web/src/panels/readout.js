@@ -1,8 +1,11 @@
-// The number that all is about, how sure it is while something moves and at rest, and the direction that it is of.
+// Shows RRE with its accuracy during and after changes, and the direction of light.
 import { h, newId } from "../dom.js";
 import { short } from "../units.js";
 
-/** RRE and how sure it is, in percent: "76.235 ± 0.008" of two standard errors, or "76.231 … 76.240" where light is left. */
+/**
+ * Returns RRE and its accuracy in percent as text. "76.235 ± 0.008" is two standard errors; "76.231 … 76.240" is a
+ * range, if some light was not traced.
+ */
 function bounds({ rre, truncated, std_error = 0 }) {
   if (std_error > truncated) {
     const decimals = std_error > 1e-5 ? 3 : 5;
@@ -18,7 +21,7 @@ function milliseconds(answer) {
   return answer.ms < 1000 ? `${answer.ms.toFixed(answer.ms < 10 ? 1 : 0)} ms` : `${(answer.ms / 1000).toFixed(1)} s`;
 }
 
-/** A line of the accuracies: which, between what RRE lies, how long it took. */
+/** Line that shows an accuracy level: its name, the range of RRE and the computing time. */
 class Accuracy {
   constructor(name, title) {
     this.value = h("output", {}, "–");
@@ -49,7 +52,8 @@ export class Readout {
   constructor(session, ledger) {
     this.session = session;
     this.number = h("output", { class: "number" }, "–");
-    this.small = h("output", { "aria-hidden": "true" }, "–"); // beside the pictures of a phone
+    // copy of the value next to the pictures on narrow screens
+    this.small = h("output", { "aria-hidden": "true" }, "–");
     this.what = h("span", { class: "what" }, "of the light comes back");
     this.moving = new Accuracy("moving", "While something moves: a standard error of at most 1e-4 of the light, or as much left untraced; 1e-3 where that takes too long to follow the hand");
     this.resting = new Accuracy("resting", "At rest: at most 1e-6 of the light left untraced");

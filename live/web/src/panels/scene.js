@@ -1,4 +1,4 @@
-// The part in three dimensions, with its lit places and the ways of the light.
+// Three-dimensional view of the part with illuminated regions and light paths.
 import { h } from "../dom.js";
 import { panel } from "../frame.js";
 import { openView } from "../../../../report/page/web/src/view.js";
@@ -11,7 +11,7 @@ function inTwos(list) {
   return Array.from({ length: list.length / 2 }, (_, k) => list.slice(2 * k, 2 * k + 2));
 }
 
-/** A part as the view takes it, and the ball round it with room for the light above. */
+/** Converts a part for the view, with a bounding sphere that includes space for the light above. */
 function solidOf(part) {
   const vertices = inThrees(part.vertices);
   const low = [0, 1, 2].map((k) => Math.min(...vertices.map((v) => v[k])));
