@@ -25,7 +25,8 @@ std::size_t lags(std::size_t points, double pixel_um, double most_um) {
   return std::min(wanted, points / 2 + 1);
 }
 
-/// Wiener and Khinchin: the sum of products at each distance is the transform of the power.
+/// Replaces a field by its autocorrelation, with the Wiener-Khinchin theorem: the sum of products at each distance is
+/// the transform of the power.
 void correlate(RealFft& fft) {
   fft.forward();
   for (auto& value : fft.spectrum()) value = std::norm(value);
@@ -40,7 +41,7 @@ Autocorrelation autocorrelation(const HeightMap& map, double most_um) {
                     map.x_pixel_um,
                     map.y_pixel_um,
                     {}};
-  // Zeros beyond the borders, so that no pair reaches over them.
+  // The fields are padded with zeros, so that no pair of points extends across a border.
   RealFft products(fast_length(map.rows + r.y_lags), fast_length(map.columns + r.x_lags));
   RealFft pairs(products.rows(), products.columns());
   const double mean = mean_height(map);

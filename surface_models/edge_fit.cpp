@@ -17,15 +17,15 @@ using Eigen::VectorXd;
 constexpr double kNmPerMicrometre = 1e3;
 constexpr double kLeastTurn = 0.5 * std::numbers::pi / 180.0;
 
-/// Measured points in um. Heights are mirrored for a valley, so that the edge is always convex.
+/// Measured points in um. For a valley, heights are mirrored, so that the edge is always convex.
 struct Points {
   std::vector<double> x_um;
   std::vector<double> z_um;
 };
 
-/// Two facets, left and right of the crest: z = z0 + slope (x - x0) with slope = tan(tilt).
+/// Facets to the left and right of the edge: z = z0 + slope (x - x0), where slope = tan(tilt).
 struct Facets {
-  double x0_um = 0.0;  ///< where they would meet
+  double x0_um = 0.0;  ///< x0 and z0: point at which the facets would meet
   double z0_um = 0.0;
   double left_rad = 0.0;  ///< tilts; left > right
   double right_rad = 0.0;
@@ -33,18 +33,18 @@ struct Facets {
   double height(double x_um) const { return z0_um + (x_um - x0_um) * std::tan(x_um < x0_um ? left_rad : right_rad); }
 };
 
-/// Parameters of both shapes: x0, z0, left and right tilt, then the size or sizes. Sizes enter by their absolute value,
-/// so that the search may cross 0.
+/// Parameters of both shapes: x0, z0, left tilt, right tilt, then one or two sizes. The absolute value of a size is
+/// used, so that the search may cross 0.
 Facets facets_of(const VectorXd& p) {
   return {p[0], p[1], p[2], p[3]};
 }
 
-/// The circle of radius r that touches both facets from below meets them at x0 - r (..) by tangency: its centre lies
-/// below the crest on the bisector, and a facet of tilt t is touched at centre + r (-sin t, cos t).
+/// Returns the height of the facets with a circle of radius r that is tangent to both. The centre of the circle is on
+/// the bisector below the edge. The tangent point on a facet of tilt t is at centre + r (-sin t, cos t).
 double rounded_height(const VectorXd& p, double x_um) {
   const Facets f = facets_of(p);
   const double r = std::abs(p[4]);
-  // The centre is at distance r below both facets: z0 + (xc - x0) tan t - zc = r / cos t for both tilts.
+  // The centre is at the distance r below both facets: z0 + (xc - x0) tan t - zc = r / cos t for both tilts.
   const double xc = f.x0_um + r * (1.0 / std::cos(f.right_rad) - 1.0 / std::cos(f.left_rad)) /
                                   (std::tan(f.right_rad) - std::tan(f.left_rad));
   const double zc = f.z0_um + (xc - f.x0_um) * std::tan(f.left_rad) - r / std::cos(f.left_rad);
@@ -55,7 +55,7 @@ double rounded_height(const VectorXd& p, double x_um) {
   return zc + std::sqrt(std::max(0.0, r * r - d * d));
 }
 
-/// The flat from x0 - |p4| on the left facet to x0 + |p5| on the right one.
+/// Returns the height of the facets with a flat from x0 - |p4| on the left facet to x0 + |p5| on the right facet.
 double chamfered_height(const VectorXd& p, double x_um) {
   const Facets f = facets_of(p);
   const double from = f.x0_um - std::abs(p[4]);
@@ -73,7 +73,7 @@ double chamfer_width(const VectorXd& p) {
 
 using Shape = double (*)(const VectorXd&, double);
 
-/// Residuals in the form that Eigen's Levenberg-Marquardt asks for.
+/// Residuals in the form that Eigen's Levenberg-Marquardt method requires.
 struct Residuals {
   using Scalar = double;
   using InputType = VectorXd;
@@ -100,7 +100,7 @@ struct Solution {
 };
 
 Solution solve(const Points& points, Shape shape, VectorXd start) {
-  // Differences over 1e-6 of a parameter cross kinks at few points only.
+  // The step of the numerical derivative is 1e-6 of a parameter. It crosses kinks at few points only.
   Eigen::NumericalDiff<Residuals, Eigen::Central> residuals(Residuals{&points, shape, static_cast<int>(start.size())},
                                                             1e-12);
   Eigen::LevenbergMarquardt<decltype(residuals)> search(residuals);
@@ -114,7 +114,8 @@ Solution solve(const Points& points, Shape shape, VectorXd start) {
   return {start, std::sqrt(values.squaredNorm() / freedom) * kNmPerMicrometre};
 }
 
-/// The better of the solutions from several first sizes: a search that starts far off may end in a local minimum.
+/// Returns the best of several searches with different initial sizes. A search with a poor initial value may end in a
+/// local minimum.
 template <class Start>
 Solution best_of(const Points& points, Shape shape, double first_size, Start start) {
   Solution best;
@@ -125,7 +126,7 @@ Solution best_of(const Points& points, Shape shape, double first_size, Start sta
   return best;
 }
 
-/// Line through the points first..last: height at x = 0 and slope.
+/// Fits a line to the points first..last. Returns its height at x = 0 and its slope.
 std::array<double, 2> line_through(const Points& points, std::size_t first, std::size_t last) {
   double n = 0.0;
   double x = 0.0;
@@ -157,7 +158,7 @@ Points measured(const std::vector<double>& heights_nm, double pixel_um) {
   return points;
 }
 
-/// The facets as the outer fifths of the profile show them.
+/// Returns initial facets from the outer fifths of the profile.
 Facets first_facets(const Points& points) {
   const std::size_t fifth = std::max<std::size_t>(3, points.x_um.size() / 5);
   const auto [left_z, left_slope] = line_through(points, 0, fifth);
@@ -184,7 +185,8 @@ EdgeFit fit_edge(const std::vector<double>& heights_nm, double pixel_um) {
     for (double& z : points.z_um) z = -z;
     first = first_facets(points);
   }
-  // How far the profile stays below the crest where the facets would meet, and the radius and flat that do so.
+  // Height of the crest at which the facets would meet above the profile, and the radius and flat that cause this
+  // height.
   const auto nearest = std::min_element(points.x_um.begin(), points.x_um.end(), [&](double a, double b) {
     return std::abs(a - first.x0_um) < std::abs(b - first.x0_um);
   });

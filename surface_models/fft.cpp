@@ -13,7 +13,7 @@ struct Release {
   void operator()(void* memory) const { fftw_free(memory); }
 };
 
-/// FFTW's planner is the one part of it that threads must not enter together.
+/// Returns the mutex for FFTW's planner, which is the only part of FFTW that is not thread-safe.
 std::mutex& planner() {
   static std::mutex mutex;
   return mutex;
@@ -45,7 +45,7 @@ RealFft::RealFft(std::size_t rows, std::size_t columns)
   if (!hidden_->field || !hidden_->spectrum) throw std::bad_alloc();
   auto* const spectrum_data = reinterpret_cast<fftw_complex*>(hidden_->spectrum.get());
   const std::lock_guard lock(planner());
-  // FFTW counts in int; maps are far smaller than that (kMostPoints of the readers).
+  // FFTW uses int for sizes. Maps are much smaller than its limit (kMostPoints of the readers).
   const int n_rows = static_cast<int>(rows_);
   const int n_columns = static_cast<int>(columns_);
   hidden_->forward = fftw_plan_dft_r2c_2d(n_rows, n_columns, hidden_->field.get(), spectrum_data, FFTW_ESTIMATE);

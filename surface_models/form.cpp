@@ -6,8 +6,8 @@
 namespace retrace::surface_models {
 namespace {
 
-/// Legendre polynomials P_0..P_degree at the `count` points of an axis scaled to -1..1: nearly orthogonal on the grid,
-/// so that the normal equations keep their accuracy.
+/// Returns the Legendre polynomials P_0..P_degree at `count` points of an axis that is scaled to -1..1. They are nearly
+/// orthogonal on the grid, so that the normal equations stay accurate.
 Eigen::MatrixXd legendre(std::size_t count, int degree) {
   Eigen::MatrixXd p(static_cast<Eigen::Index>(count), degree + 1);
   for (Eigen::Index i = 0; i < p.rows(); ++i) {
@@ -19,7 +19,7 @@ Eigen::MatrixXd legendre(std::size_t count, int degree) {
   return p;
 }
 
-/// The products P_a(x) P_b(y), a + b <= degree, over the grid.
+/// Products P_a(x) P_b(y) with a + b <= degree over the grid.
 class Basis {
  public:
   Basis(const HeightMap& map, int degree)
@@ -60,7 +60,7 @@ Eigen::VectorXd fitted_coefficients(const HeightMap& map, const Basis& basis) {
   return full.completeOrthogonalDecomposition().solve(right);
 }
 
-/// Coefficients of the powers of x in P_0..P_degree, one a row.
+/// Returns the coefficients of the powers of x in P_0..P_degree, one polynomial per row.
 Eigen::MatrixXd legendre_powers(int degree) {
   Eigen::MatrixXd p = Eigen::MatrixXd::Zero(degree + 1, degree + 1);
   p(0, 0) = 1.0;

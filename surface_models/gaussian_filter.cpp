@@ -9,7 +9,8 @@
 namespace retrace::surface_models {
 namespace {
 
-/// The sampled weighting function of one axis, its middle first, scaled so that all samples add to 1.
+/// Returns the sampled weighting function of one axis, beginning with its centre. It is scaled such that all samples
+/// add to 1.
 std::vector<double> weights(double pixel_um, double cutoff_um, std::size_t points) {
   const auto reach = static_cast<std::size_t>(std::ceil(kGaussianReach * cutoff_um / pixel_um));
   std::vector<double> s;
@@ -23,7 +24,7 @@ std::vector<double> weights(double pixel_um, double cutoff_um, std::size_t point
   return s;
 }
 
-/// The transform of symmetric weights for `length` points, real as they are symmetric.
+/// Returns the transform of symmetric weights for `length` points. It is real because of the symmetry.
 std::vector<double> transfer(const std::vector<double>& s, std::size_t length) {
   std::vector<double> cosine(length);
   for (std::size_t i = 0; i < length; ++i)
@@ -50,7 +51,8 @@ double gaussian_transmission(double frequency_per_um, double cutoff_um) {
 Split gaussian_split(const HeightMap& map, double cutoff_um) {
   const std::vector<double> sx = weights(map.x_pixel_um, cutoff_um, map.columns);
   const std::vector<double> sy = weights(map.y_pixel_um, cutoff_um, map.rows);
-  // Zeros beyond the borders, as wide as the weights reach, keep opposite borders apart.
+  // The fields are padded with zeros over the width of the weights, so that opposite borders do not influence each
+  // other.
   RealFft heights(fast_length(map.rows + sy.size()), fast_length(map.columns + sx.size()));
   RealFft measured(heights.rows(), heights.columns());
   for (std::size_t row = 0; row < map.rows; ++row)

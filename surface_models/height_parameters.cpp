@@ -36,7 +36,7 @@ HeightParameters height_parameters(std::span<const double> heights_nm) {
   p.sa_nm = absolute / count;
   p.sq_nm = std::sqrt(second / count);
   p.sz_nm = high - low;
-  // What rounding of the mean leaves of a constant surface has no shape.
+  // The remaining height of a constant surface is a rounding error of the mean, so skewness and kurtosis stay 0.
   if (p.sq_nm <= 1e-12 * std::max(std::abs(low), std::abs(high))) return p;
   p.ssk = third / count / (p.sq_nm * p.sq_nm * p.sq_nm);
   p.sku = fourth / count / (p.sq_nm * p.sq_nm * p.sq_nm * p.sq_nm);

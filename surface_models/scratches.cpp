@@ -11,13 +11,13 @@ namespace {
 constexpr std::size_t kStretches = 16;
 constexpr double kSameSide = 0.75;
 constexpr double kDeviations = 5.0;
-/// From the median absolute deviation to the standard deviation of Gaussian values.
+/// Ratio of the standard deviation to the median absolute deviation of Gaussian values.
 constexpr double kGaussianMad = 1.4826;
 constexpr std::size_t kLeastLines = 16;
-/// Lines to each side that a line is compared with, at least.
+/// Minimum number of lines on each side with which a line is compared.
 constexpr double kLeastBeside = 4.0;
 
-/// One line of the map: its mean height and those of its stretches, NaN where nothing was measured.
+/// Grid line of the map: its mean height and the mean heights of its sections. NaN where nothing was measured.
 struct Line {
   double mean_nm = kMissing;
   std::array<double, kStretches> stretches_nm{};
@@ -45,7 +45,7 @@ Line line_of(const HeightMap& map, Axis along, std::size_t index) {
   return line;
 }
 
-/// Whether the line lies on the side of its mean in most of its stretches.
+/// Returns true if most sections of a line deviate in the same direction as its mean.
 bool is_consistent(const Line& line, double beside_nm) {
   const double side = line.mean_nm < beside_nm ? -1.0 : 1.0;
   double same = 0.0;
@@ -53,14 +53,15 @@ bool is_consistent(const Line& line, double beside_nm) {
   for (const double z : line.stretches_nm) {
     if (!std::isfinite(z)) continue;
     measured += 1.0;
-    // Half of the line's own depth: a few deep places do not make a scratch.
+    // A section counts if its depth is more than half of the line's mean depth. A few deep points are therefore not a
+    // scratch.
     if (side * (z - beside_nm) > 0.5 * side * (line.mean_nm - beside_nm)) same += 1.0;
   }
   return same >= kSameSide * measured;
 }
 
-/// What each line is compared with: the mean of the medians of the lines before and after it, `near` to `far` lines
-/// away, in which slopes cancel. NaN where one of the two is missing.
+/// Returns the reference height for each line: the mean of the medians of the lines before and after it, `near` to
+/// `far` lines away. Slopes cancel in this mean. The result is NaN if one of the medians is missing.
 std::vector<double> beside(const std::vector<Line>& lines, std::size_t near, std::size_t far) {
   const auto median_of = [&](std::size_t begin, std::size_t end) {
     std::vector<double> means;
@@ -102,7 +103,7 @@ std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, doub
       ++i;
       continue;
     }
-    // One scratch takes all neighbouring lines that stand out to its side.
+    // A scratch includes all neighbouring lines that deviate in the same direction.
     std::size_t deepest = i;
     std::size_t end = i;
     for (; end < count && stands_out(end) && (depth(end) > 0.0) == (depth(i) > 0.0); ++end)
@@ -111,7 +112,7 @@ std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, doub
     std::size_t low = deepest;
     std::size_t high = deepest;
     while (low > 0 && within(low - 1)) --low;
-    while (high + 1 < count && within(high + 1)) ++high;  // NaN, outside of what is compared, ends it too
+    while (high + 1 < count && within(high + 1)) ++high;  // ends at NaN, too, where there is no reference height
     scratches.push_back({along, static_cast<double>(deepest) * pixel_um, depth(deepest),
                          static_cast<double>(high - low + 1) * pixel_um});
     i = std::max(end, high + 1);

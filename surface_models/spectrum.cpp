@@ -12,17 +12,18 @@ namespace {
 
 constexpr double kMmPerUm = 1e-3;
 constexpr std::size_t kLeastPoints = 8;
-/// A peak's density over the median of its surroundings, and above it in median deviations. Bins of one line of noise
-/// are distributed exponentially and reach 35 deviations once in 2e7; the mean of many lines scatters less, and weaker
-/// peaks show in it.
+/// Criteria for a peak: ratio of its density to the median of its surroundings, and height above it in median
+/// deviations. The bins of one line of noise have an exponential distribution, and exceed 35 deviations with a
+/// probability of 1 in 2e7. The mean of many lines scatters less, so weaker peaks are detected.
 constexpr double kPeakHeight = 3.0;
 constexpr double kPeakDeviations = 35.0;
 constexpr double kLeastPeakPower = 0.01;
-/// The bins that the main lobe of a Hann window fills to each side, and those whose median is the surroundings.
+/// Number of bins on each side that the main lobe of a Hann window occupies, and number of bins whose median is the
+/// surroundings.
 constexpr std::size_t kLobe = 2;
 constexpr std::size_t kSurroundings = 12;
 
-/// Hann window in its periodic form, without its zero.
+/// Returns the Hann window in its periodic form, without its zero.
 std::vector<double> hann(std::size_t points) {
   std::vector<double> w(points);
   for (std::size_t i = 0; i < points; ++i) {
@@ -32,8 +33,8 @@ std::vector<double> hann(std::size_t points) {
   return w;
 }
 
-/// Puts `at(i)` about its weighted mean and times the window into the field, missing points as 0.
-/// \return the sum of squares of the weights of what is measured, 0 if that is less than half of the points
+/// Writes the values `at(i)`, minus their weighted mean and times the window, to the field. Missing points become 0.
+/// \return sum of the squared weights of measured points, or 0 if less than half of the points are measured
 template <class At>
 double put_windowed(std::span<double> field, const std::vector<double>& window, At at) {
   double sum = 0.0;
@@ -56,9 +57,9 @@ double put_windowed(std::span<double> field, const std::vector<double>& window, 
   return squares;
 }
 
-/// The densities around a bin, its own lobe left out, about the line through the medians of both sides.
+/// Densities around a bin without its own lobe, relative to the line through the medians of both sides.
 struct Surroundings {
-  double middle = 0.0;     ///< at the bin
+  double middle = 0.0;     ///< value of the line at the bin
   double deviation = 0.0;  ///< median deviation from the line
 };
 
@@ -72,7 +73,7 @@ Surroundings surroundings(const std::vector<double>& density, std::size_t k) {
   if (below.empty() && above.empty()) return {};
   const double left = median(below.empty() ? above : below);
   const double right = median(above.empty() ? below : above);
-  // A side's median stands for its middle.
+  // The median of a side is assigned to the centre of this side.
   const double slope = (right - left) / static_cast<double>(kSurroundings + 2 * kLobe + 1);
   const double middle = 0.5 * (left + right);
   std::vector<double> deviations;
@@ -88,8 +89,8 @@ bool is_highest_in_its_lobe(const std::vector<double>& density, std::size_t k) {
   return true;
 }
 
-/// Where between the bins a line lies: under a Hann window the amplitudes a, b of its two highest bins obey
-/// offset = (2 b - a) / (a + b) (Grandke, IEEE Trans. Instrum. Meas. 32, 350, 1983).
+/// Returns the position of a spectral line between the bins. With a Hann window, the amplitudes a and b of the two
+/// highest bins determine the offset: (2 b - a) / (a + b) (Grandke, IEEE Trans. Instrum. Meas. 32, 350, 1983).
 double offset_of(const std::vector<double>& density, std::size_t k, double floor) {
   const auto line = [&](std::size_t i) { return std::max(0.0, density[i] - floor); };
   const double below = k > 0 ? line(k - 1) : 0.0;
@@ -124,7 +125,8 @@ Spectrum line_spectrum(const HeightMap& map, Axis axis) {
   if (used == 0) return spectrum;
   for (std::size_t k = 1; k < sum.size(); ++k) {
     spectrum.frequency_per_mm.push_back(static_cast<double>(k) / (static_cast<double>(points) * pixel_mm));
-    // Both signs of the frequency in one, but for the highest of an even number of points, which is its own mirror.
+    // Positive and negative frequencies are combined. The highest frequency of an even number of points occurs only one
+    // time.
     const double sides = 2 * k == points ? 1.0 : 2.0;
     spectrum.density.push_back(sides * sum[k] / static_cast<double>(used));
   }
@@ -149,7 +151,7 @@ Spectrum radial_spectrum(const HeightMap& map) {
   const double fx = 1.0 / (static_cast<double>(map.columns) * dx_mm);
   const double fy = 1.0 / (static_cast<double>(map.rows) * dy_mm);
   const double ring = std::min(fx, fy);
-  // Beyond the lower of the two highest frequencies rings are no longer whole.
+  // Rings beyond the lower of the two highest frequencies would be incomplete.
   const auto rings = static_cast<std::size_t>(0.5 / std::max(dx_mm, dy_mm) / ring);
   std::vector<double> sum(rings + 1, 0.0);
   std::vector<double> count(rings + 1, 0.0);

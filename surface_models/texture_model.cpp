@@ -12,18 +12,18 @@
 namespace retrace::surface_models {
 namespace {
 
-/// How far the fit reaches, in correlation lengths: where the Gaussian has ended only the waviness is left.
+/// Range of the fit in correlation lengths. Beyond it, only the waviness remains.
 constexpr double kFitReach = 3.5;
 constexpr double kLeastFitPoints = 3.0;
-/// Most pairs of distances that a fit takes; of more every n-th is taken.
+/// Maximum number of distances in a fit. If there are more, every n-th distance is used.
 constexpr std::size_t kMostSamples = 20000;
-/// A roughness of no more variance than this times what the waviness leaves there is that waviness alone.
+/// Roughness is set to 0 if its variance is at most this factor times the waviness that the filter leaves in it.
 constexpr double kExplained = 1.2;
-/// Heights below are rounding.
+/// Heights below this value are rounding errors.
 constexpr double kRoundingNm = 1e-6;
 
-/// What the filter makes of Gaussian roughness of length l in `dimensions` dimensions. With the transmission
-/// exp(-ln2 (L f)^2) the autocorrelations stay Gaussian, or sums of Gaussians.
+/// Effect of the filter on Gaussian roughness with the correlation length l in `dimensions` dimensions. For the
+/// transmission exp(-ln2 (L f)^2), all autocorrelations are Gaussians or sums of Gaussians.
 class FilteredGaussian {
  public:
   FilteredGaussian(double length_um, double cutoff_um, int dimensions) : l2_(length_um * length_um), d_(dimensions) {
@@ -32,16 +32,16 @@ class FilteredGaussian {
     twice_ = l2_ + 2.0 * widening;
   }
 
-  /// Autocorrelation of the roughness that is left, unit variance before the filter.
+  /// Returns the autocorrelation of the remaining roughness, for unit variance before the filter.
   double roughness(double distance2_um2) const {
     return std::exp(-distance2_um2 / l2_) - 2.0 * share(once_) * std::exp(-distance2_um2 / once_) +
            share(twice_) * std::exp(-distance2_um2 / twice_);
   }
-  /// Variance that passes into the waviness.
+  /// Returns the variance that passes into the waviness.
   double waviness() const { return share(twice_); }
-  /// Mean square of its gradient, per um^2.
+  /// Returns the mean square gradient of this waviness, per um^2.
   double waviness_gradient() const { return 2.0 * d_ * share(twice_) / twice_; }
-  /// Length of the autocorrelation of what passes.
+  /// Returns the correlation length of this waviness.
   double waviness_length_um() const { return std::sqrt(twice_); }
 
  private:
@@ -55,10 +55,10 @@ class FilteredGaussian {
 struct Sample {
   double distance2_um2 = 0.0;
   double roughness_nm2 = 0.0;
-  double waviness = 0.0;  ///< as a share of its value at distance 0
+  double waviness = 0.0;  ///< relative to its value at distance 0
 };
 
-/// Both autocorrelations, on the same grid, within a circle.
+/// Returns both autocorrelations at the same distances within a circle.
 std::vector<Sample> samples_within(const Autocorrelation& roughness, const Autocorrelation& waviness, double reach_um) {
   std::vector<Sample> samples;
   const double scale = waviness.variance_nm2() > 0.0 ? 1.0 / waviness.variance_nm2() : 0.0;
@@ -67,7 +67,7 @@ std::vector<Sample> samples_within(const Autocorrelation& roughness, const Autoc
     for (std::size_t dx = 0; dx < roughness.x_lags; ++dx) {
       const double x = static_cast<double>(dx) * roughness.x_pixel_um;
       const double y = static_cast<double>(dy) * roughness.y_pixel_um;
-      // Distances along -x are those along x turned by 180 degrees: once is enough.
+      // Distances along -x equal those along x rotated by 180 degrees, so they are omitted.
       if ((dx == 0 && dy < 0) || x * x + y * y > reach_um * reach_um || !std::isfinite(roughness.at(dx, dy))) continue;
       samples.push_back({x * x + y * y, roughness.at(dx, dy), scale * waviness.at(dx, dy)});
     }
@@ -78,12 +78,12 @@ std::vector<Sample> samples_within(const Autocorrelation& roughness, const Autoc
   return fewer;
 }
 
-/// The autocorrelation of the roughness part as the sum of FilteredGaussian and of the waviness that the filter left in
-/// it, which has the shape of the waviness' own.
+/// Fit of the autocorrelation of the roughness map. It is the sum of FilteredGaussian and of the waviness that the
+/// filter left, whose shape is that of the waviness map.
 struct Fit {
   double length_um = 0.0;
-  double variance_nm2 = 0.0;  ///< of the roughness before the filter
-  double waviness_nm2 = 0.0;  ///< variance of the waviness that is left, >= 0
+  double variance_nm2 = 0.0;  ///< variance of the roughness before the filter
+  double waviness_nm2 = 0.0;  ///< variance of the remaining waviness, >= 0
   double squares = 0.0;
 };
 
@@ -106,7 +106,7 @@ Fit fit_at(double length_um, const std::vector<Sample>& samples, double cutoff_u
   return fit;
 }
 
-/// The first estimate of the length: the mean of both axes' 1/e.
+/// Returns a first estimate of the correlation length: the mean of the 1/e lengths of both axes.
 std::optional<double> rough_length_um(const Autocorrelation& r, int dimensions) {
   const std::optional<double> x = correlation_length_um(r, Axis::x);
   if (dimensions == 1) return x;

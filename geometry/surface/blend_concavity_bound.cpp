@@ -10,9 +10,10 @@
 #include "core/math/jets.h"
 #include "geometry/surface/concavity_bound.h"
 
-// Between its two boundaries a blend is a polynomial of the share v of the way. In Bernstein's form its values lie
-// between its coefficients and those of its derivatives between their differences (G. Farin, Curves and Surfaces for
-// CAGD, 5th ed., sections 5.3 and 6.3), which are enclosed over pieces of the azimuth.
+// Between its two boundaries, a blend is a polynomial in the relative position v. In Bernstein form, its values are
+// between the smallest and largest coefficient. Values of its derivatives are between those of the differences of
+// coefficients (G. Farin, Curves and Surfaces for CAGD, 5th ed., sections 5.3 and 6.3). These are enclosed over
+// intervals of the azimuth.
 
 namespace retrace::geometry {
 namespace {
@@ -27,7 +28,7 @@ using jets::Series;
 constexpr int kMostDegree = 2 * kMostBlendOrder + 1;
 constexpr int kHalvings = 4;
 
-/// A spline's coefficients on one piece.
+/// Coefficients of a spline on one piece.
 struct Piece {
   double start_rad = 0.0;
   const double* coefficients = nullptr;
@@ -42,7 +43,7 @@ Piece piece_of(const PeriodicSpline& spline, double angle_rad) {
   return {knots[index] + turns * kTurn, spline.piece(index), spline.degree() + 1};
 }
 
-/// The blend along one ray, and what it does as the azimuth changes: C is double or Interval, the series are in the
+/// Blend along a radial line, and its dependence on the azimuth. C is double or Interval; the series are in the
 /// azimuth.
 template <class C>
 struct Ray {
@@ -51,7 +52,7 @@ struct Ray {
   std::array<Series<C, 2>, kMostDegree + 1> node;  ///< Bernstein coefficients of z
 };
 
-/// Heights on the lenslet along a line over doubles; nothing is enclosed, so that it always is there.
+/// Returns the height on the lenslet along a line, in doubles. It always exists, because nothing is enclosed.
 template <int N>
 std::optional<Series<Jet2, N>> on_lenslet(const Lenslet& lenslet, const Series<Jet2, N>& x, const Series<Jet2, N>& y) {
   return lenslet.evaluate(x, y);
@@ -59,8 +60,9 @@ std::optional<Series<Jet2, N>> on_lenslet(const Lenslet& lenslet, const Series<J
 
 using Enclosure = Series<Interval, 2>;
 
-/// Where the lenslet's surface is over a box of plan: Newton's rule for intervals (R. E. Moore, Methods and
-/// Applications of Interval Analysis, SIAM 1979, section 5.2), which also proves that there is one such height near.
+/// Enclosure of the lenslet's surface over a box in plan. It is computed with the interval Newton method (R. E. Moore,
+/// Methods and Applications of Interval Analysis, SIAM 1979, section 5.2). The method also proves that exactly one such
+/// height exists nearby.
 struct Enclosed {
   Interval z;
   Interval slope;
@@ -88,7 +90,8 @@ std::optional<Enclosed> enclosed_height(const Lenslet& lenslet, const Interval& 
   return std::nullopt;
 }
 
-/// Derivatives follow order by order, as those of the residual must vanish: each is linear in its own.
+/// Derivatives are computed order by order. All derivatives of the residual vanish, and each is linear in the
+/// derivative of its own order.
 template <int N>
 std::optional<Series<Enclosure, N>> on_lenslet(const Lenslet& lenslet, const Series<Enclosure, N>& x,
                                                const Series<Enclosure, N>& y) {
@@ -160,15 +163,15 @@ std::optional<Ray<C>> ray_at(const Lenslet& lenslet, const Sag& base, const C& a
   }
 }
 
-/// The second difference of the nodes as a derivative by the radius.
+/// Returns the second derivative with respect to the radius, from the second difference of the nodes.
 template <class C>
 Series<C, 2> second_by_radius(const Ray<C>& ray, int degree, std::size_t j) {
   const double factor = static_cast<double>(degree * (degree - 1));
   return (ray.node[j + 2] - ray.node[j + 1] * 2.0 + ray.node[j]) / (ray.width * ray.width) * factor;
 }
 
-/// Above all values on [0, 1] of the polynomial with those Bernstein coefficients, after halvings by de Casteljau's
-/// rule.
+/// Returns an upper bound on [0, 1] of the polynomial with the given Bernstein coefficients, after several subdivisions
+/// by de Casteljau's algorithm.
 double above(std::array<double, kMostDegree> node, int degree, int halvings) {
   if (halvings == 0) return *std::max_element(node.begin(), node.begin() + degree + 1);
   std::array<double, kMostDegree> first{};
@@ -176,12 +179,13 @@ double above(std::array<double, kMostDegree> node, int degree, int halvings) {
     first[static_cast<std::size_t>(k)] = node[0];
     for (std::size_t j = 0; j < static_cast<std::size_t>(degree - k); ++j) node[j] = 0.5 * (node[j] + node[j + 1]);
   }
-  // What is left in `node` is the second half from its end back.
+  // `node` now contains the second half in reversed order.
   return std::max(above(first, degree, halvings - 1), above(node, degree, halvings - 1));
 }
 
-/// The largest second derivative on the rays of an interval of azimuth. \param middle the ray in its middle: with it
-/// only how the nodes bend over the interval is left to enclosures, not how they tilt
+/// Returns an upper bound of the second derivative on the radial lines in an interval of azimuth.
+/// \param middle radial line at the centre of the interval; with it, only the second-order change of the nodes over the
+///     interval must be enclosed
 double largest_bend(const Ray<Interval>& ray, const Ray<double>& middle, double half_rad, int degree) {
   const Interval share(0.0, 1.0);
   const Interval turn(-half_rad, half_rad);
@@ -202,7 +206,7 @@ double largest_bend(const Ray<Interval>& ray, const Ray<double>& middle, double 
     zrr = hull(zrr, second);
     upper[at(j)] = second.upper();
   }
-  // v = (radius - inner) / width changes with the azimuth where the boundaries are no circles.
+  // If the boundaries are not circles, v = (radius - inner) / width depends on the azimuth.
   const Interval& w = ray.width[0];
   const Interval v_t = -(ray.inner[1] + share * ray.width[1]) / w;
   const Interval v_tt = -(2.0 * (ray.inner[2] + share * ray.width[2])) / w - 2.0 * ray.width[1] * v_t / w;
@@ -213,7 +217,7 @@ double largest_bend(const Ray<Interval>& ray, const Ray<double>& middle, double 
   const Interval radius = hull(ray.inner[0], ray.inner[0] + w);
   const Interval across = zv / w / radius + z_tt / (radius * radius);
   const Interval mixed = z_rt / radius - z_t / (radius * radius);
-  // Bernstein's polynomials are nowhere below 0, so that those of the upper ends lie above the others.
+  // Bernstein polynomials are not negative, so the polynomial of the upper bounds is an upper bound.
   const double most = above(upper, degree - 2, 3);
   return 0.5 * (most + across.upper()) + std::hypot(0.5 * (most - across.upper()), norm(mixed));
 }
@@ -232,7 +236,8 @@ bool is_proved_between(const Lenslet& lenslet, const Sag& base, double limit_per
          is_proved_between(lenslet, base, limit_per_mm, middle, to_rad, halvings - 1);
 }
 
-/// Where a piece of one of the boundaries begins, rising within one turn, and the first once more a turn later.
+/// Returns the angles at which a piece of a boundary begins, ascending within one turn. The first angle is repeated
+/// after a full turn.
 std::vector<double> breaks_of(const Lenslet& lenslet) {
   std::vector<double> breaks;
   const double start = lenslet.inner.radius_mm.knots_rad().front();
@@ -243,7 +248,7 @@ std::vector<double> breaks_of(const Lenslet& lenslet) {
   return breaks;
 }
 
-/// An interval in equal parts none of which is so wide that nothing could be proved of it.
+/// Divides an interval into equal parts that are small enough for a proof. Returns true if all parts are proved.
 bool is_proved_in_parts(const Lenslet& lenslet, const Sag& base, double limit_per_mm, double from_rad, double to_rad) {
   constexpr double kWidest = kTurn / 20.0;
   const int parts = static_cast<int>(std::ceil((to_rad - from_rad) / kWidest - 1e-9));
@@ -256,10 +261,10 @@ bool is_proved_in_parts(const Lenslet& lenslet, const Sag& base, double limit_pe
 }  // namespace
 
 bool is_blend_concavity_bounded(const Lenslet& lenslet, const Sag& base, double limit_per_mm) {
-  // Without a common slope the surface has an edge there.
+  // Without a common slope, the surface has a sharp edge there.
   if (lenslet.blend_order < 1 || !lenslet.ends_on_base || lenslet.sag.formula || base.formula) return false;
   const std::vector<double> breaks = breaks_of(lenslet);
-  constexpr double kNone = 1e-12;  // between knots that both boundaries have
+  constexpr double kNone = 1e-12;  // smaller intervals are between knots that both boundaries share
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
     if (breaks[i + 1] - breaks[i] > kNone && !is_proved_in_parts(lenslet, base, limit_per_mm, breaks[i], breaks[i + 1]))
       return false;

@@ -68,7 +68,7 @@ class GsfReader {
     return *nm;
   }
 
-  /// The spacing, if the file has a size and a unit for it.
+  /// Returns the spacing if the file contains a size and a unit.
   std::optional<double> pixel_um(const std::string& key, double points) const {
     const std::optional<double> size = number(key);
     if (!size || !keys_.contains("XYUnits")) return std::nullopt;

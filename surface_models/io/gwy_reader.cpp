@@ -23,7 +23,7 @@ Object read_object(ByteReader& bytes) {
   return {type, bytes.part(size)};
 }
 
-/// Passes over a value. Arrays are upper case: their number of items comes first.
+/// Skips a value. Types of arrays are upper-case letters; an array begins with its number of items.
 void skip_value(const Source& source, ByteReader& bytes, char type) {
   const auto skip_one = [&](char kind) {
     if (kind == 's') bytes.text();
@@ -51,7 +51,7 @@ void skip_value(const Source& source, ByteReader& bytes, char type) {
   }
 }
 
-/// What of a GwyDataField is of use here.
+/// Members of a GwyDataField that are used here.
 struct DataField {
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
@@ -104,7 +104,7 @@ DataField read_field(const Source& source, ByteReader bytes) {
   return field;
 }
 
-/// The number of a channel if `name` is "/N/data".
+/// Returns the channel number if `name` has the form "/N/data".
 std::optional<std::size_t> channel_of(std::string_view name) {
   if (!name.starts_with('/') || !name.ends_with("/data") || name.size() < 7) return std::nullopt;
   const std::string_view digits = name.substr(1, name.size() - 6);
@@ -112,7 +112,7 @@ std::optional<std::size_t> channel_of(std::string_view name) {
   return static_cast<std::size_t>(std::stoul(std::string(digits)));
 }
 
-/// All channels of a file, and which of them have a mask.
+/// All channels of a file, and whether any of them has a mask.
 struct Channels {
   std::map<std::size_t, ByteReader> fields;
   bool has_mask = false;

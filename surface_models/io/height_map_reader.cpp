@@ -14,7 +14,7 @@ namespace retrace::surface_models {
 namespace {
 
 constexpr std::string_view kFormats = "a text grid, a list of points, SDF in ASCII (ISO 25178-71), Gwyddion GSF or GWY";
-/// A kilometre: heights beyond are a wrong unit.
+/// Maximum height: one kilometre. Larger values are caused by a wrong unit.
 constexpr double kMostHeightNm = 1e12;
 constexpr double kLeastPixelUm = 1e-6;
 constexpr double kMostPixelUm = 1e6;
@@ -36,7 +36,8 @@ RawMap parse_known(const Source& source) {
   return parse_text_grid(source);
 }
 
-/// The option if it is given, else what the file says. \throw InputError if neither does
+/// Returns the spacing from the option, or else from the file.
+/// \throw InputError if neither is given
 double pixel_um(const Source& source, const std::optional<double>& option, const std::optional<double>& in_file,
                 const char* axis, Warnings& warnings) {
   if (!option && !in_file)
@@ -70,7 +71,7 @@ double nm_per_unit(const Source& source, RawMap& raw) {
   return *given;
 }
 
-/// A single column is a profile as well.
+/// Converts a single column to a profile along x.
 void lay_along_x(RawMap& raw) {
   if (raw.columns != 1 || raw.rows == 1) return;
   std::swap(raw.columns, raw.rows);

@@ -15,7 +15,7 @@ void Source::fail(int line, std::string_view text) const {
 std::optional<double> nm_per(std::string_view unit) {
   if (unit == "m") return 1e9;
   if (unit == "mm") return 1e6;
-  // The micro sign and the Greek letter in UTF-8, and the sign in Latin-1, which instruments write as well.
+  // Instruments write the micro sign or the Greek letter in UTF-8, or the micro sign in Latin-1.
   if (unit == "um" || unit == "\xc2\xb5m" || unit == "\xce\xbcm" || unit == "\xb5m") return 1e3;
   if (unit == "nm") return 1.0;
   if (unit == "pm") return 1e-3;

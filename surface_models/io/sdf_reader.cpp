@@ -1,5 +1,6 @@
-// Surface data files in ASCII form: ISO 25178-71:2017 (aISO-1.0), and the older aBCR-1.0 of the same layout. A line
-// with the version, lines "key = value" up to a "*", the heights up to another "*".
+// Reads surface data files (SDF) in ASCII form: ISO 25178-71:2017 (aISO-1.0), and the older aBCR-1.0 with the same
+// layout. A file consists of a line with the version, lines "key = value" up to a "*", and the heights up to another
+// "*".
 
 #include <fmt/format.h>
 

@@ -12,7 +12,8 @@ namespace {
 
 using std::numbers::pi;
 constexpr double kLargestShift = 2.0;
-// Smooth surfaces, (4 pi n s / w)^2 << 1 (Stover, Optical Scattering, 3rd ed., SPIE 2012): about the phase squared.
+// Maximum total scatter of a smooth surface, approximately its squared phase: (4 pi n s / w)^2 << 1 (Stover, Optical
+// Scattering, 3rd ed., SPIE 2012).
 constexpr double kMostScatterOfSmooth = 0.1;
 
 }  // namespace
@@ -23,7 +24,7 @@ Abg::Abg(double a, double b, double g) : a_(a), b_(b), g_(g) {
   if (!(g > 0.0)) throw InputError({"", 0, "g"}, "must be > 0, got " + shortest(g));
   shoulder_ = std::min(std::pow(b, 1.0 / g), kLargestShift);
   const auto ring = [this](double r) { return 2.0 * pi * r * bsdf_per_sr(r); };
-  // In the logarithm of r beyond the shoulder, which may be very small.
+  // Beyond the shoulder, which may be very small, the integration variable is the logarithm of r.
   boost::math::quadrature::tanh_sinh<double> quadrature;
   total_ = quadrature.integrate(ring, 0.0, shoulder_);
   if (shoulder_ < kLargestShift)
@@ -35,14 +36,15 @@ Abg::Abg(double a, double b, double g) : a_(a), b_(b), g_(g) {
                                        shortest(a));
 }
 
-/// Integral of r^(1 - g).
+/// Returns the integral of r^(1 - g).
 double Abg::tail_integral(double from, double to) const {
   const double power = 2.0 - g_;
   const double log_ratio = std::log(to / from);
   return std::pow(from, power) * (power == 0.0 ? log_ratio : std::expm1(power * log_ratio) / power);
 }
 
-/// |dbeta| with density r / (B + r^g): drawn from r / max(B, r^g), which bounds it and is at most twice it.
+/// Draws |dbeta| with the density r / (B + r^g). Proposals have the density r / max(B, r^g), which is at least as large
+/// and at most twice as large.
 double Abg::sample_shift(RandomStream& random) const {
   const double core = 0.5 * shoulder_ * shoulder_ / b_;
   const double tail = shoulder_ < kLargestShift ? tail_integral(shoulder_, kLargestShift) : 0.0;
@@ -64,7 +66,7 @@ double Abg::sample_shift(RandomStream& random) const {
 std::optional<Vec2> Abg::sample_scattered(const ScatterEvent& event, const Facet&, Lobe lobe,
                                           RandomStream& random) const {
   const auto specular = specular_direction(event, Vec3::UnitZ(), lobe);
-  // The BSDF continued to shifts of 2 is drawn from; what it sends beyond the unit disc is the specular light's.
+  // Shifts up to 2 are drawn from the BSDF. Light that would leave the unit disc becomes specular.
   if (!specular || random.next() >= total_) return std::nullopt;
   const double shift = sample_shift(random);
   const double angle = 2.0 * pi * random.next();

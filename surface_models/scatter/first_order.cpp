@@ -17,10 +17,10 @@ double square(double x) {
   return x * x;
 }
 
-/// Amplitude factors of an interface at which light comes from index `from`, for H along the interface and for E.
+/// Amplitude factors of the total field at an interface, for light from the side with the index `from`.
 struct Total {
-  Complex electric;  ///< 1 + r of s
-  Complex magnetic;  ///< 1 + r of p, which is that of H
+  Complex electric;  ///< 1 + r for s
+  Complex magnetic;  ///< 1 + r for p, where r is the coefficient of the magnetic field
 };
 Total total(double from, Complex across_from, double to, Complex across_to) {
   const double from2 = from * from, to2 = to * to;
@@ -28,9 +28,10 @@ Total total(double from, Complex across_from, double to, Complex across_to) {
           2.0 * to2 * across_from / (to2 * across_from + from2 * across_to)};
 }
 
-/// |F|^2 of s and of p, that leaves as either, at an angle phi between both wave vectors.
+/// Values of |F|^2 for incident s and p and scattered s and p, as functions of the angle phi between the two wave
+/// vectors.
 struct Squares {
-  double ss, sp, ps;     ///< the second letter is what arrives
+  double ss, sp, ps;     ///< the second letter is the incident polarisation
   double pp, mixed, nn;  ///< |a cos phi + b|^2 = pp cos^2 + mixed cos + nn
 
   Squares(const DielectricInterface::Vertex& in, const DielectricInterface::Vertex& out, double factor)
@@ -47,11 +48,11 @@ struct Squares {
   }
 };
 
-/// Integral of the scattered power over both sides, for one wave vector that comes in.
+/// Returns the scattered power for one incident wave vector, integrated over both sides.
 std::array<double, 2> scattered_share(const DielectricInterface& interface, double length, double k_in) {
   using boost::math::quadrature::gauss;
-  const double variance = 2.0 / (length * length);  // of the shift of k along each axis
-  const double reach = 6.5 * std::sqrt(variance);   // beyond lies less than 1e-9
+  const double variance = 2.0 / (length * length);  // variance of the shift of k along each axis
+  const double reach = 6.5 * std::sqrt(variance);   // less than 1e-9 is beyond this distance
   const double contrast2 = square(square(interface.index_to()) - square(interface.index_from()));
   const double q_in = interface.across(k_in, Lobe::reflection).real();
   const DielectricInterface::Vertex in = interface.arriving(k_in);
@@ -92,7 +93,8 @@ std::array<double, 2> scattered_share(const DielectricInterface& interface, doub
     if (to <= from) continue;
     for (std::size_t n = 0; n < nodes.size(); ++n)
       for (const double side : {-1.0, 1.0}) {
-        // k as from + (to - from) sin^2: roots at the ends of the range become smooth.
+        // k is expressed as from + (to - from) sin^2. Square roots at the ends of the range then become smooth
+        // functions.
         const double u = 0.5 * pi * 0.5 * (1.0 + side * nodes[n]);
         const double k = from + (to - from) * square(std::sin(u));
         const std::array<double, 2> found = ring(k);
@@ -148,8 +150,8 @@ Polarisation2 DielectricInterface::amplitudes(double k_in, const Vec2& along, co
 }
 
 double DielectricInterface::bound(double k_in, const Polarisation2& coherency) const {
-  // Cauchy and Schwarz; over all directions the field of what leaves, squared over q and added over both sides, is
-  // largest at the critical angle (docs/theory/scatter.md).
+  // The bound follows from the Cauchy-Schwarz inequality. Over all directions, the squared field of the scattered light
+  // divided by q, added over both sides, is largest at the critical angle (docs/theory/scatter.md).
   const Vertex in = arriving(k_in);
   const double felt =
       std::norm(in.s) * coherency(0, 0).real() + (std::norm(in.p) + std::norm(in.across)) * coherency(1, 1).real();
@@ -159,13 +161,13 @@ double DielectricInterface::bound(double k_in, const Polarisation2& coherency) c
 
 struct FirstOrderShare::Table {
   using Spline = boost::math::interpolators::cardinal_cubic_b_spline<double>;
-  /// A range of k_in over which the shares are smooth functions of an angle psi in 0..pi/2: k^2 = low2 + (high2 -
-  /// low2) sin^2 psi.
+  /// Range of k_in in which the fractions are smooth functions of an angle psi in 0..pi/2: k^2 = low2 + (high2 - low2)
+  /// sin^2 psi.
   struct Range {
     double low2 = 0.0, high2 = 0.0;
     Spline s, p;
   };
-  std::vector<Range> ranges;  ///< to the critical angle, and beyond it if there is one
+  std::vector<Range> ranges;  ///< up to the critical angle, and beyond it if there is one
 
   void add(const DielectricInterface& interface, double length, double low, double high) {
     constexpr std::size_t kNodes = 97;
@@ -177,7 +179,7 @@ struct FirstOrderShare::Table {
     for (std::size_t n = 0; n < kNodes; ++n) {
       const double sine = std::sin(kStep * static_cast<double>(n));
       const double k = std::sqrt(range.low2 + (range.high2 - range.low2) * sine * sine);
-      if (k >= interface.index_from()) continue;  // grazing light meets no heights
+      if (k >= interface.index_from()) continue;  // light at grazing incidence is not scattered
       const std::array<double, 2> found = scattered_share(interface, length, k);
       s[n] = found[0];
       p[n] = found[1];

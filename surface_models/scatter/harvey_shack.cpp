@@ -11,34 +11,36 @@ namespace {
 
 using std::numbers::pi;
 
-// Of the phase squared at normal incidence: 5 % of what scatters is then diffracted more than once.
+// Maximum squared phase at normal incidence for first-order theory. At this value, 5 % of the scattered light is
+// diffracted more than one time.
 constexpr double kMostPhase2OfFirstOrder = 0.1;
 
 void require(bool holds, const char* key, const char* allowed, double given) {
   if (!holds) throw InputError({"", 0, key}, std::string(allowed) + ", got " + shortest(given));
 }
 
-// Roughness with a lay has the phase alone, 9 % too much at 45 degrees from here down (docs/theory/scatter.md).
+// Correlation length in um below which there is a warning for roughness with a lay. The phase model is used there; it
+// overestimates scatter by 9 % at 45 degrees (docs/theory/scatter.md).
 constexpr double kLongOfLay = 2.0;
 
-/// Gaussian waves of this correlation length have the slope of waves of period `length_um`.
+/// Returns the correlation length of Gaussian waves that have the same slope as waves with the period `length_um`.
 double equivalent_correlation_um(double length_um) {
   return length_um / pi;
 }
 
-/// pi l n / w, which compares a length with the waves that it scatters.
+/// Returns pi l n / w: the correlation length relative to the wavelength.
 double length_in_waves(double correlation_um, double index, double wavelength_nm) {
   return pi * correlation_um * 1e3 * index / wavelength_nm;
 }
 
-/// Along x and along y.
+/// Returns the correlation lengths along x and along y.
 Vec2 correlation_lengths_um(const Roughness& r) {
   return {r.correlation_length_um, r.is_isotropic() ? r.correlation_length_um : r.y_correlation_length_um};
 }
 
-/// Mean over an ellipse of frequencies: of f(t, u), with t the square of the frequency n / w in units of the deviation
-/// of frequencies in a direction, halved, and u the variance of slopes there in units of 2 Sq^2 / um^2. Smooth and
-/// periodic, so that equal steps serve.
+/// Returns the mean of f(t, u) over the directions of an ellipse of frequencies. t is half of the square of the
+/// frequency n / w, divided by the variance of the frequencies in this direction. u is the variance of the slopes in
+/// this direction, in units of 2 Sq^2 / um^2. The integrand is smooth and periodic, so equal steps are accurate.
 template <class F>
 double mean_over_directions(const Vec2& lengths_um, double index, double wavelength_nm, const F& f) {
   constexpr int kSteps = 64;
@@ -53,27 +55,28 @@ double mean_over_directions(const Vec2& lengths_um, double index, double wavelen
   return sum / kSteps;
 }
 
-/// Share of the variance of heights in spatial frequencies below n / w.
+/// Returns the fraction of the variance of heights at spatial frequencies below n / w.
 double share_that_scatters(double correlation_um, double index, double wavelength_nm) {
   const double x = length_in_waves(correlation_um, index, wavelength_nm);
   return -std::expm1(-x * x);
 }
 
 double share_that_scatters(const Vec2& lengths_um, double index, double wavelength_nm) {
-  constexpr double kAll = 7.0;  // exp(-7^2) is below rounding
+  constexpr double kAll = 7.0;  // exp(-7^2) is below the rounding error
   const double shortest_um = lengths_um.minCoeff();
   if (lengths_um.x() == lengths_um.y() || length_in_waves(shortest_um, index, wavelength_nm) > kAll)
     return share_that_scatters(shortest_um, index, wavelength_nm);
   return mean_over_directions(lengths_um, index, wavelength_nm, [](double t, double) { return -std::expm1(-t); });
 }
 
-/// Variance along each axis of the shift of direction cosines that one spatial frequency of a Gaussian PSD makes.
+/// Returns the variance, along each axis, of the shift of direction cosines by one spatial frequency of a Gaussian PSD.
 double shift_variance(double correlation_um, double index, double wavelength_nm) {
   const double deviation = wavelength_nm / (std::sqrt(2.0) * pi * index * correlation_um * 1e3);
   return deviation * deviation;
 }
 
-/// Areal, of Gaussian heights with a Gaussian autocorrelation: of their spatial frequencies below n / w.
+/// Returns the areal rms slope of Gaussian heights with a Gaussian autocorrelation. Only spatial frequencies below n /
+/// w are included.
 double roughness_rms_slope(const Roughness& r, double index, double wavelength_nm) {
   const auto band = [](double t) { return -std::expm1(-t) - t * std::exp(-t); };
   if (r.is_isotropic()) {
@@ -89,7 +92,8 @@ double wave_number_per_nm(double wavelength_nm) {
   return 2.0 * pi / wavelength_nm;
 }
 
-/// \param k_out wave vector along the facet, less than `index` \param along that of what came in, a unit vector
+/// \param k_out wave vector of the scattered light along the facet, less than `index`
+/// \param along unit vector of the incident wave vector along the facet
 DiffractedOnce leaving_light(const Vec2& k_out, const Vec2& along, double index, Lobe lobe,
                              const Polarisation2& coherency) {
   const double k = k_out.norm();
@@ -101,7 +105,7 @@ DiffractedOnce leaving_light(const Vec2& k_out, const Vec2& along, double index,
 
 struct HarveyShack::Side {
   DielectricInterface interface;
-  std::array<std::optional<FirstOrderShare>, 2> shares;  ///< of roughness and of waviness
+  std::array<std::optional<FirstOrderShare>, 2> shares;  ///< for roughness and for waviness
 
   Side(const Roughness& r, double from, double to, double wavelength_nm) : interface(from, to) {
     const double wave_number_per_um = 1e3 * wave_number_per_nm(wavelength_nm);
@@ -150,7 +154,8 @@ std::array<double, 2> HarveyShack::first_order_shares(const ScatterEvent& event,
 DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const Facet& facet,
                                                 const materials::FresnelCoefficients& fresnel) const {
   const std::array<double, 2> scattered = first_order_shares(event, facet);
-  // Both specular fields pay in proportion to their power and phase variance, as they do for long heights.
+  // The power is taken from both specular fields in proportion to their power and phase variance, as for long
+  // correlation lengths.
   const double reflected_path = 2.0 * event.index_from * event.cos_in();
   const double transmitted_path = event.index_from * event.cos_in() - event.index_to * fresnel.cos_refracted;
   const double a_r = reflected_path * reflected_path, a_t = transmitted_path * transmitted_path;
@@ -289,8 +294,8 @@ PhaseTexture HarveyShack::phase_texture(const ScatterEvent& event, Lobe lobe) co
   const auto specular = specular_direction(event, Vec3::UnitZ(), lobe);
   if (!specular) return {};
   const Band what = band(event, {}, lobe);
-  // By how much a height on the side that the light goes to lengthens its way; the texture's own side is the
-  // material's.
+  // Change of the optical path per height, where heights are positive towards the side to which the light goes. The
+  // texture defines heights as positive out of the material.
   const double length_per_height = lobe == Lobe::reflection
                                        ? 2.0 * event.index_from * event.cos_in()
                                        : event.index_from * event.cos_in() - event.index_to * -specular->z();
@@ -324,14 +329,14 @@ std::optional<Vec2> HarveyShack::draw_scattered(const ScatterEvent& event, const
       least_orders);
 }
 
-/// Density of the sum of `order` shifts at `shift`.
+/// Returns the density of the sum of `order` shifts at `shift`.
 double HarveyShack::shift_density(const Band& band, int order, const Vec2& shift) {
   const auto gaussian = [&shift](const Vec2& variance) {
     return std::exp(-0.5 * shift.cwiseAbs2().cwiseQuotient(variance).sum()) / (2.0 * pi * std::sqrt(variance.prod()));
   };
   if (band.roughness_share == 1.0) return gaussian(order * band.roughness_variance);
   if (band.roughness_share == 0.0) return gaussian(order * band.waviness_variance);
-  // Each of them is one of the roughness with the probability of its share: binomial.
+  // The number of shifts by roughness has a binomial distribution.
   const double log_rough = std::log(band.roughness_share), log_wavy = std::log1p(-band.roughness_share);
   double sum = 0.0;
   for (int rough = 0; rough <= order; ++rough) {
@@ -372,7 +377,8 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
   const Roughness& r = roughness_;
   const double wave_um = 1e-3 * wavelength_nm / index;
   if (r.sq_nm > 0.0) {
-    // Light that is diffracted once is right for any length, between dielectrics; twice, half the phase variance of it.
+    // Between dielectrics, light that is diffracted one time is accurate for any correlation length. Light that is
+    // diffracted two times is about half the phase variance of it.
     const double phase = reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm);
     const double shortest_um = correlation_lengths_um(r).minCoeff();
     if (!r.is_isotropic() && shortest_um >= wave_um && shortest_um < kLongOfLay)

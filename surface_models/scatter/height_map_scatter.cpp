@@ -19,13 +19,13 @@ using std::numbers::pi;
 constexpr std::size_t kLeastPoints = 8;
 constexpr int kMaxTries = 10000;
 
-/// A cell of the plane of spatial frequencies.
+/// Cell in the plane of spatial frequencies.
 struct Cell {
-  Vec2 frequency_per_um = Vec2::Zero();  ///< its centre
-  double share = 0.0;                    ///< of the variance of heights
+  Vec2 frequency_per_um = Vec2::Zero();  ///< centre of the cell
+  double share = 0.0;                    ///< fraction of the variance of heights
 };
 
-/// The cells around frequency 0 up to and with this one, in the order of their distance from it.
+/// Cumulative values over all cells up to this cell. Cells are sorted by distance from the frequency 0.
 struct Cumulative {
   double share = 0.0;
   Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();  ///< sum of share * f f^T
@@ -36,14 +36,15 @@ double hann(std::size_t k, std::size_t count) {
   return sine * sine;
 }
 
-/// Signed index of a row or column of a discrete spectrum.
+/// Returns the signed index of a row or column of a discrete spectrum.
 std::ptrdiff_t signed_index(std::size_t k, std::size_t count) {
   const auto index = static_cast<std::ptrdiff_t>(k);
   return 2 * k > count ? index - static_cast<std::ptrdiff_t>(count) : index;
 }
 
-/// Shares of the variance over the plane of frequencies, row by row in the order of the discrete transform; 0 at
-/// frequency 0. Hann window, as the ends of a map do not meet.
+/// Returns the fractions of the variance over the plane of frequencies, row by row in the order of the discrete
+/// transform. The value at the frequency 0 is 0. A Hann window is applied, because opposite borders of a map do not
+/// match.
 std::vector<double> variance_shares(const HeightMap& levelled) {
   const std::size_t rows = levelled.rows, columns = levelled.columns;
   RealFft fft(rows, columns);
@@ -56,7 +57,7 @@ std::vector<double> variance_shares(const HeightMap& levelled) {
   double sum = 0.0;
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t c = 0; c < columns; ++c) {
-      // Columns beyond the middle are the conjugates of those at the opposite frequency.
+      // Columns beyond the centre are complex conjugates of those at the opposite frequency.
       const bool held = c < fft.spectrum_columns();
       const std::size_t row = held ? r : (rows - r) % rows;
       const std::size_t column = held ? c : columns - c;
@@ -96,9 +97,9 @@ struct HeightMapScatter::Texture {
   Vec2 pixel_um, frequency_step_per_um;
   double sq_nm = 0.0, kurtosis = 3.0;
   std::vector<double> shares;          ///< variance_shares()
-  std::vector<Cell> cells;             ///< by distance from frequency 0
-  std::vector<Cumulative> cumulative;  ///< over the cells
-  std::vector<Vec2> facet_gradients;   ///< in the map's axes
+  std::vector<Cell> cells;             ///< sorted by distance from frequency 0
+  std::vector<Cumulative> cumulative;  ///< cumulative values of the cells
+  std::vector<Vec2> facet_gradients;   ///< in the axes of the map
   double steepest = 0.0;
   double rms_slope = 0.0;
 
@@ -150,15 +151,15 @@ struct HeightMapScatter::Texture {
   }
 };
 
-/// What scatters in an event: the frequencies below n / w, and how they shift direction cosines.
+/// Spatial frequencies below n / w, which scatter in an event, and their shifts of direction cosines.
 struct HeightMapScatter::Band {
   const Texture& texture;
-  double wave_um;         ///< in the medium that the lobe goes to
-  double y_sign;          ///< of the map's y along the event's
-  std::size_t cells = 0;  ///< that scatter
-  Cumulative sum;         ///< over them
+  double wave_um;         ///< wavelength in the medium to which the lobe goes
+  double y_sign;          ///< sign of the map's y axis along the event's y axis
+  std::size_t cells = 0;  ///< number of cells that scatter
+  Cumulative sum;         ///< cumulative value of these cells
   double sq_nm = 0.0;
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of one shift
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< covariance of one shift
 
   Band(const Texture& from, const ScatterEvent& event, Lobe lobe)
       : texture(from),
@@ -203,7 +204,7 @@ struct HeightMapScatter::Band {
     return texture.share_at(frequency) / (sum.share * step.x() * step.y() * wave_um * wave_um);
   }
 
-  /// A matrix whose product with its transpose is the covariance.
+  /// Returns a matrix whose product with its transpose is the covariance.
   Eigen::Matrix2d root_of_covariance() const {
     const double xx = std::sqrt(covariance(0, 0));
     const double yx = xx > 0.0 ? covariance(1, 0) / xx : 0.0;
@@ -247,7 +248,8 @@ Facet HeightMapScatter::sample_facet(const ScatterEvent& event, RandomStream& ra
   const auto count = static_cast<double>(gradients.size());
   for (int tries = 0; tries < kMaxTries; ++tries) {
     const Vec2& gradient = gradients[static_cast<std::size_t>(random.next() * count)];
-    // Turning the frame about x by half a turn reverses height and y: only the slope along x changes its sign.
+    // From the inside, the frame is rotated by 180 degrees about x, which reverses height and y. Only the slope along x
+    // then changes its sign.
     const Vec3 normal =
         event.inside_material ? Vec3(gradient.x(), -gradient.y(), 1.0) : Vec3(-gradient.x(), -gradient.y(), 1.0);
     if (random.next() * bound < light.dot(normal)) return {normal.normalized(), true};
@@ -291,7 +293,7 @@ double HeightMapScatter::scattered_density(const ScatterEvent& event, const Face
   const Band band(*texture_, event, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, band.sq_nm);
   if (facet.is_tilted || !phase_lobe || band.cells == 0) return 0.0;
-  // Light that is diffracted once, cell by cell; the rest is smooth.
+  // Light that is diffracted one time follows the cells. The density of all other light is smooth.
   const Vec2 specular = phase_lobe->specular_beta();
   double sum = 0.0;
   for (std::size_t k = 0; k < band.cells; ++k) {

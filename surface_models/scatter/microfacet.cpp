@@ -28,7 +28,7 @@ Facet Microfacet::sample_facet(const ScatterEvent& event, RandomStream& random) 
 
 std::optional<Vec3> Microfacet::facet_towards(const ScatterEvent& event, Lobe lobe, const Vec3& direction) const {
   if (!is_on_side(direction, lobe)) return std::nullopt;
-  // Along the interface the optical path does not change: n_to d_out - n_from d_in is along the normal.
+  // The optical path does not change along the interface: n_to d_out - n_from d_in is parallel to the normal.
   Vec3 normal = event.index_of(lobe) * direction - event.index_from * event.direction_in;
   if (normal.squaredNorm() == 0.0) return std::nullopt;
   normal.normalize();
@@ -39,7 +39,7 @@ std::optional<Vec3> Microfacet::facet_towards(const ScatterEvent& event, Lobe lo
   return normal;
 }
 
-/// Walter et al., equations 14 and 17.
+/// Returns the Jacobian of Walter et al., equations 14 and 17.
 double Microfacet::jacobian(const ScatterEvent& event, Lobe lobe, const Vec3& direction, const Vec3& normal) const {
   const double cos_in = -event.direction_in.dot(normal);
   if (lobe == Lobe::reflection) return 1.0 / (4.0 * cos_in);

@@ -10,7 +10,7 @@
 namespace retrace::surface_models {
 
 double log_factorial(int order) {
-  // Boost's lgamma, as std::lgamma writes to a global variable.
+  // Boost's lgamma is used, because std::lgamma writes to a global variable.
   static const std::array<double, 128> table = [] {
     std::array<double, 128> made{};
     for (std::size_t k = 1; k < made.size(); ++k) made[k] = boost::math::lgamma(static_cast<double>(k) + 1.0);
@@ -94,7 +94,7 @@ double integrate_over_disc(const Vec2& centre, double width, const std::function
   const Vec2 axis = offset > 0.0 ? Vec2(centre / offset) : Vec2(Vec2::UnitX());
   const Vec2 across(-axis.y(), axis.x());
   const auto ring = [&](double r) {
-    // Points at angle phi from the outward axis lie inside where cos phi <= limit.
+    // Points at the angle phi from the outward axis are inside if cos phi <= limit.
     const double limit = offset > 0.0 && r > 0.0 ? (1.0 - r * r - offset * offset) / (2.0 * r * offset) : 1.0;
     if (limit <= -1.0) return 0.0;
     const double first = std::acos(std::min(limit, 1.0));
@@ -105,7 +105,7 @@ double integrate_over_disc(const Vec2& centre, double width, const std::function
     };
     return r * gauss_kronrod<double, 15>::integrate(both_sides, first, std::numbers::pi, kDepth, kTolerance);
   };
-  // The edge of the disc makes a kink in the radius; the rest of the borders only help the adaptive rule.
+  // The edge of the disc causes a kink in the radius. The other borders only help the adaptive rule.
   std::array<double, 6> borders = {0.0, 3.0 * width, 10.0 * width, 40.0 * width, 1.0 - offset, 1.0 + offset};
   std::sort(borders.begin(), borders.end());
   double sum = 0.0;
@@ -113,7 +113,7 @@ double integrate_over_disc(const Vec2& centre, double width, const std::function
     const double begin = borders[k - 1], end = std::min(borders[k], 1.0 + offset);
     if (end <= begin) continue;
     const double rough = gauss_kronrod<double, 15>::integrate(ring, begin, end, 0);
-    // Far out there may be next to nothing, which is not worth a relative accuracy of its own.
+    // A very small outer contribution is not integrated adaptively, because its relative accuracy is irrelevant.
     sum += rough < 1e-12 * sum ? rough : gauss_kronrod<double, 15>::integrate(ring, begin, end, kDepth, kTolerance);
   }
   return sum;

@@ -3,7 +3,7 @@
 namespace retrace::surface_models {
 namespace {
 
-/// The frame of a facet: z is its normal, x and y those of the mean surface, turned with it.
+/// Frame of a facet. z is its normal; x and y are those of the mean surface, rotated together with the normal.
 class FacetFrame {
  public:
   explicit FacetFrame(const Facet& facet) : is_tilted_(facet.is_tilted) {
@@ -21,7 +21,7 @@ class FacetFrame {
   Eigen::Quaterniond facet_from_mean_ = Eigen::Quaterniond::Identity();
 };
 
-/// Draws the direction of light that scatters, in the facet's frame; nothing for light that is specular.
+/// Draws the direction of scattered light in the facet's frame. Returns nothing if the light is specular.
 template <class Model>
 std::optional<Vec2> sample_scattered(const Model& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                      RandomStream& random) {
@@ -33,7 +33,7 @@ std::optional<Vec2> sample_scattered(const Model& model, const ScatterEvent& eve
   }
 }
 
-/// Density of scattered directions per unit of the facet's direction cosines squared.
+/// Returns the density of scattered directions over the direction cosines in the facet's frame.
 template <class Model>
 double density(const Model& model, const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& direction) {
   const FacetFrame frame(facet);

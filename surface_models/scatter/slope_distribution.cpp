@@ -15,10 +15,11 @@ double tangent(const Vec3& direction) {
   return direction.head<2>().norm() / std::abs(direction.z());
 }
 
-/// Slope towards the light of a visible facet of Gaussian slopes of standard deviation 1, with density proportional to
-/// N(p) max(0, cos + sin p): drawn from N(p) (cos + sin max(0, p)), which bounds it, and accepted by the ratio.
+/// Draws the slope, towards the light, of a visible facet of a surface with Gaussian slopes of standard deviation 1.
+/// The density is proportional to N(p) max(0, cos + sin p). Proposals are drawn from N(p) (cos + sin max(0, p)), which
+/// is an upper bound, and accepted with the ratio.
 double visible_gaussian_slope(double cos_light, double sin_light, RandomStream& random) {
-  const double rising = sin_light / std::sqrt(2.0 * pi);  // mass of sin p N(p) over p > 0
+  const double rising = sin_light / std::sqrt(2.0 * pi);  // integral of sin p N(p) over p > 0
   for (;;) {
     const bool from_rising = random.next() * (cos_light + rising) >= cos_light;
     if (from_rising) return std::sqrt(-2.0 * std::log1p(-random.next()));
@@ -27,7 +28,8 @@ double visible_gaussian_slope(double cos_light, double sin_light, RandomStream& 
   }
 }
 
-/// Heitz, Sampling the GGX Distribution of Visible Normals, J. Computer Graphics Techniques 7(4), 1 (2018).
+/// Draws a visible normal of the GGX distribution (Heitz, Sampling the GGX Distribution of Visible Normals, J. Computer
+/// Graphics Techniques 7(4), 1 (2018)).
 Vec3 visible_ggx_normal(const Vec3& towards_light, double width, RandomStream& random) {
   const Vec3 stretched = Vec3(width * towards_light.x(), width * towards_light.y(), towards_light.z()).normalized();
   const double across = stretched.head<2>().norm();
