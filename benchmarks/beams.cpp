@@ -1,4 +1,5 @@
-// The exact engine: time a point and a beam, the cost of further decades of cut-off, and growth with the elements.
+// Benchmarks of the exact engine: time per point and per beam, cost of lower cut-offs, and scaling with the number of
+// elements.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -23,7 +24,7 @@ void report(benchmark::State& state, const raytrace::BeamResult& result) {
                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// Args: element kind (order of endless_scenes()), incidence and azimuth in degrees, decades left in `truncated`.
+/// Args: element kind (order of endless_scenes()), incidence and azimuth in degrees, -log10 of the truncated power.
 void beams_of_a_point(benchmark::State& state) {
   static const std::vector<Scene> scenes = endless_scenes();
   const Scene& scene = scenes[static_cast<std::size_t>(state.range(0))];
@@ -40,7 +41,7 @@ void beams_of_a_point(benchmark::State& state) {
   report(state, result);
 }
 
-/// Arg: elements along a side of a finite brick array, normal incidence, 1e-6 left in `truncated`.
+/// Arg: number of elements along a side of a finite brick array. Normal incidence, truncated power 1e-6.
 void beams_of_a_finite_array(benchmark::State& state) {
   const Scene scene = brick_scene(static_cast<int>(state.range(0)));
   const raytrace::BeamTracer tracer(scene.part);

@@ -1,5 +1,5 @@
-// Seconds and memory of camera pictures of 100 cm2 of prisms, some 49,000, by the whole program, to 1 % noise. A
-// process for each, so that memory is its own.
+// Time and memory of the complete program for camera pictures of 100 cm2 of prisms (about 49,000 elements) at 1 %
+// noise. Each picture is computed in a separate process, so that its memory is measured separately.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -15,7 +15,8 @@ double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-/// A picture of so many columns and rows; fewer show as much less of the array, so that pixels are of one size.
+/// Computes a picture with the given number of columns and rows. Smaller pictures show a smaller part of the array, so
+/// that the size of the pixels is constant.
 void camera(benchmark::State& state) {
   const auto side = state.range(0);
   const std::string pixels = std::to_string(side) + "x" + std::to_string(side);

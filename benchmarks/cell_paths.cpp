@@ -1,4 +1,4 @@
-// Whole paths through endless arrays: the cell engine, Embree, and a bare loop that does the least there is to do.
+// Benchmarks of complete paths through infinite arrays: the cell engine, Embree, and a minimal loop as a lower bound.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -43,8 +43,8 @@ struct Bundle {
   std::vector<double> x, weight;
 };
 
-/// One prism, one plane of incidence: in, the facets as long as they are met, out. Nothing but plane hits, tests for
-/// total reflection, Fresnel weights of s and p, and the fold back into the cell.
+/// Traces paths in one plane of incidence through one prism: in, reflections at the facets, out. The loop contains only
+/// intersections with planes, tests for total reflection, Fresnel weights of s and p, and the shift back into the cell.
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void bare_paths(
     double* __restrict x, double* __restrict weight, std::size_t count, double sine, double index, double thickness) {
   const double cosine = std::sqrt(1.0 - sine * sine);
@@ -63,7 +63,7 @@ __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) vo
     px -= half;
     double pz = 0.0;
     for (int bounce = 0; bounce < 2; ++bounce) {
-      // The facets z = -half + |px|: normals (-+c, -c), out of the part.
+      // The facets are z = -half + |px|. Their outward normals are (-+c, -c).
       const double n1 = -c * dx - c * dz;
       const double n2 = c * dx - c * dz;
       const double t1 = n1 > 0.0 ? (c * half + c * px + c * pz) / n1 : 1e30;
@@ -91,7 +91,7 @@ __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) vo
   }
 }
 
-/// Args: incidence in degrees. One thread.
+/// Arg: incidence in degrees. One thread.
 void bare_loop(benchmark::State& state) {
   constexpr std::size_t kRays = 4096;
   Bundle bundle{std::vector<double>(kRays), std::vector<double>(kRays)};

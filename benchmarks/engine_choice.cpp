@@ -1,6 +1,8 @@
-// What `auto` costs beside the engine that was faster: random designs, three directions each, one thread.
+// Measures the additional cost of the engine `auto` relative to the faster engine, for random designs with three
+// directions each, on one thread.
 //   retrace_engine_choice_benchmark [DESIGNS [FIRST_SEED [TARGET_ERROR]]]
-// prints a line a design and, at the end, how `auto` compares with the faster of the exact engine and Monte Carlo.
+// The program prints one line per design. At the end it compares `auto` with the faster of the exact engine and Monte
+// Carlo.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +56,7 @@ std::optional<Comparison> compare(unsigned seed, double target_error) {
                comparison.ratio());
     return comparison;
   } catch (const InputError&) {
-    return std::nullopt;  // sizes that do not go together: the next one
+    return std::nullopt;  // the random sizes are not a valid design; the next design is tried
   }
 }
 

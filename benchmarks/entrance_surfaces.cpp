@@ -1,4 +1,5 @@
-// Whole paths through curved entrance surfaces over a plate with a mirror, beside those through a plane entrance face.
+// Benchmarks of complete paths through curved entrance surfaces over a plate with a mirror, compared with a plane
+// entrance face.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -19,7 +20,7 @@ using geometry::Vec3;
 constexpr double kSize = 2.0;
 constexpr double kThickness = 1.0;
 
-/// Bumps of 0.02 mm, ten along a side.
+/// Returns a surface with bumps of 0.02 mm, ten along a side.
 std::shared_ptr<const geometry::EntranceSurface> bumps_surface() {
   geometry::Sag sag;
   sag.formula = parse_formula("0.02 * cos(15.707963267949 * x) * cos(15.707963267949 * y)", {"x", "y"}, {});
@@ -33,7 +34,7 @@ geometry::Entrance meshed(const geometry::EntranceSurface& surface, std::uint32_
       testing::meshed(surface, kSize, cells), geometry::MeshSide::top, Vec3::Zero(), outline));
 }
 
-/// Args: 0 a plane entrance face, 1 an exact surface, 2 its mesh of 20,000 triangles.
+/// Arg: 0 plane entrance face, 1 exact surface, 2 mesh of this surface with 20,000 triangles.
 void entrance_paths(benchmark::State& state) {
   const geometry::Part plate = geometry::build_plate({kSize, kSize}, kThickness);
   const auto bumps = bumps_surface();

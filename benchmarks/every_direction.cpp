@@ -1,7 +1,7 @@
-// What a direction costs by `auto` on one thread: every design of examples/, five indices behind its facets, sixteen
-// directions, at the target error that none is given for.
+// Measures the time of `auto` per direction on one thread: all designs in examples/ with five indices behind the facets
+// and sixteen directions each, at the default target error.
 //   retrace_every_direction_benchmark [PART_OF_NAME]
-// prints the worst of each example, and every direction above ten seconds.
+// The program prints the slowest direction of each example, and all directions that take more than ten seconds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ constexpr std::array kBackIndices = {1.0, 1.2, 1.333, 1.45, 1.6};
 constexpr std::array kIncidences_deg = {0.0, 1e-3, 5.0, 20.0, 45.0, 70.0};
 constexpr std::array kAzimuths_deg = {0.0, 30.0, 90.0};
 constexpr double kAllowed_s = 10.0;
-constexpr double kPatience_s = 300.0;  // by the clock
+constexpr double kPatience_s = 300.0;  // elapsed time after which a run is cancelled
 
 struct Measured {
   double back_index = 1.0;
@@ -49,7 +49,7 @@ std::vector<fs::path> files(const std::string& part_of_name) {
   return found;
 }
 
-/// None of files that are no designs: jobs, studies, machines.
+/// Returns a design, or nothing if the file is not a design (but a job, study or machine).
 std::optional<studies::Design> design_of(const fs::path& file) {
   try {
     return studies::read_design(file);

@@ -1,4 +1,5 @@
-// The far field: the transform of a polygon, the field of an endless array of cube corners, and what a receiver costs.
+// Benchmarks of the far field: transform of a polygon, field of an infinite array of cube corners, and intensity at a
+// receiver.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -10,7 +11,7 @@
 namespace retrace::benchmarks::far_field_benchmark {
 namespace {
 
-/// Arg: corners.
+/// Arg: number of corners.
 void transform_of_a_polygon(benchmark::State& state) {
   geometry::Polygon polygon;
   for (std::int64_t k = 0; k < state.range(0); ++k) {
@@ -51,7 +52,8 @@ void far_field_of_an_array(benchmark::State& state) {
   state.counters["polygons"] = static_cast<double>(polygons);
 }
 
-/// Args: likewise. What a receiver of 10 minutes of arc sees of a source of 10.
+/// Args: element kind (order of endless_scenes()), incidence in degrees. Source and receiver have a diameter of 10
+/// minutes of arc.
 void intensity_at_a_receiver(benchmark::State& state) {
   static const std::vector<Scene> scenes = endless_scenes();
   const Scene& scene = scenes[static_cast<std::size_t>(state.range(0))];

@@ -1,4 +1,4 @@
-// How long 10^5 elements take from a job to NC text, and the memory it takes at its peak. The target is 10 s and 1 GiB.
+// Time and peak memory of computing the NC text of a job with 10^5 elements. The targets are 10 s and 1 GiB.
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace retrace::fabrication;
 
-/// side x side prisms of 0.2 mm in brick rows, roughed and finished by two cuts on either facet.
+/// Returns a job with side x side prisms of 0.2 mm in brick rows, with a roughing cut and two finishing cuts per facet.
 Job large_job(int side) {
   Job job;
   job.source = "benchmark";

@@ -1,6 +1,6 @@
 #pragma once
 
-// Processor time of one question on one thread, and what stops it when it takes too long.
+// Measures the processor time of a computation on one thread, and cancels it if it takes too long.
 
 #include <atomic>
 #include <chrono>
@@ -14,7 +14,7 @@
 
 namespace retrace::benchmarks {
 
-/// Stops a run after some time by the clock.
+/// Cancels a run after an elapsed time.
 class Deadline {
  public:
   explicit Deadline(double seconds)
@@ -38,12 +38,13 @@ class Deadline {
 };
 
 struct Timed {
-  double s = 0.0;  ///< of the processor: the machine may be busy
+  double s = 0.0;  ///< processor time, which does not depend on other load on the machine
   bool is_complete = false;
   std::string engine;
 };
 
-/// What a request takes on one thread, once it is checked. \param most_s after which it is given up
+/// Measures the time of a request on one thread. The check of the request is not included.
+/// \param most_s time after which the request is cancelled
 inline Timed timed(const studies::Design& design, const studies::RreRequest& request, double most_s) {
   const studies::RreStudy study({design}, request);
   Timed result;

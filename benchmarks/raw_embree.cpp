@@ -14,7 +14,7 @@ struct RawEmbree::Impl {
   RTCScene scene = nullptr;
   std::vector<RTCScene> patches;
 
-  /// One mesh of the pieces that are placed.
+  /// Returns the patches as a single mesh, at their placements.
   RTCScene mesh(const geometry::Part& part, const std::vector<geometry::Placement>& placements,
                 const geometry::Vec2& origin) const {
     RTCScene s = rtcNewScene(device);
@@ -86,7 +86,8 @@ RawEmbree::~RawEmbree() {
 
 namespace {
 
-// A start a little along the ray keeps it off its own facet; the tracer may not do that, the limit may.
+// Distance along the ray at which the search begins, so that a ray does not hit its own facet. The tracer must not use
+// such an offset, but this benchmark is only a lower bound of the time.
 constexpr float kNear = 1e-5F;
 
 RTCIntersectContext context() {
@@ -113,7 +114,7 @@ RTCRayHit query_of(const SurfaceRay& ray) {
   return query;
 }
 
-/// Fills lane k of a packet; P is RTCRayHit8 or RTCRayHit16.
+/// Fills lane k of a packet. P is RTCRayHit8 or RTCRayHit16.
 template <class P>
 void load(P& packet, unsigned k, const SurfaceRay& ray) {
   packet.ray.org_x[k] = static_cast<float>(ray.origin.x());

@@ -7,16 +7,17 @@
 
 namespace retrace::benchmarks {
 
-/// Embree and nothing else on the same surface: no refinement, no exclusion of the source facet. The limit.
+/// Traces rays with Embree only, on the surface of the other benchmarks. There is no refinement and the source facet is
+/// not excluded, so this is a lower bound of the time.
 class RawEmbree {
  public:
-  /// How the elements enter the hierarchy: as instances of the pieces they share, or as triangles of one mesh.
+  /// Structure of the Embree scene: instances of shared patches, or the triangles of a single mesh.
   enum class Build { instanced, flat };
 
   explicit RawEmbree(const Scene& scene, Build build = Build::instanced);
   ~RawEmbree();
 
-  /// Each traces all rays in packets of 1, 8 or 16, or streams of 1024, and returns how many hit.
+  /// Each function traces all rays, in packets of 1, 8 or 16 or in streams of 1024. It returns the number of hits.
   std::size_t trace1(const std::vector<raytrace::SurfaceRay>& rays) const;
   std::size_t trace8(const std::vector<raytrace::SurfaceRay>& rays) const;
   std::size_t trace16(const std::vector<raytrace::SurfaceRay>& rays) const;

@@ -1,4 +1,4 @@
-// Rays per second: Embree alone, the surface search with its exact re-intersection, and whole paths.
+// Benchmarks of rays per second: Embree only, the surface search with exact intersections, and complete paths.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Geometry>
@@ -112,7 +112,7 @@ void report(benchmark::State& state, std::size_t rays_per_iteration) {
                          benchmark::Counter::kIsRate);
 }
 
-// The same static rays for all: Args are elements along a side and whether the rays are coherent.
+// Runs a benchmark with the same static rays. Args: number of elements along a side, and whether the rays are coherent.
 template <class Trace>
 void run_raw(benchmark::State& state, const Trace& trace) {
   static const RawEmbree small(scene_of(20));
@@ -146,7 +146,8 @@ void raw_embree_flat(benchmark::State& state) {
   report(state, rays.size());
 }
 
-/// The tracer's search on the same rays: Embree, the source excluded by name, the plane met again in double precision.
+/// The tracer's search for the same rays: Embree, exclusion of the source facet, and intersection with the plane in
+/// double precision.
 void surface_search(benchmark::State& state) {
   static const BackSurface small(scene_of(20).part, scene_of(20).centre_mm);
   static const BackSurface large(scene_of(222).part, scene_of(222).centre_mm);
@@ -160,7 +161,8 @@ void surface_search(benchmark::State& state) {
   report(state, rays.size());
 }
 
-/// Whole paths with polarisation, splitting and booking. Args: elements along a side, incidence in degrees, threads.
+/// Complete paths with polarisation, splitting and the energy ledger. Args: elements along a side, incidence in
+/// degrees, threads.
 void whole_paths(benchmark::State& state) {
   const raytrace::MonteCarlo tracer(scene_of(state.range(0)).part);
   raytrace::Optics optics;

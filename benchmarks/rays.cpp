@@ -1,4 +1,5 @@
-// Rays of a TM-25 file through a part and out again, on one thread, beside plain Monte Carlo of as many; peak memory.
+// Time and peak memory of tracing rays from a TM-25 file through a part to a file, on one thread. Compared with Monte
+// Carlo of the same number of rays.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -34,7 +35,7 @@ void write_design(const fs::path& file) {
                       << "\n[body]\nthickness_mm = 0.5\nrefractive_index = 1.4917\n";
 }
 
-/// Parallel rays that cover the face at random, from straight above.
+/// Writes parallel rays from vertically above that cover the face at random positions.
 void write_rays(const fs::path& file, std::int64_t count) {
   studies::Tm25Sink sink(file);
   sink.begin({});
@@ -52,7 +53,8 @@ void write_rays(const fs::path& file, std::int64_t count) {
   sink.finish();
 }
 
-/// Processor time and peak memory of the program. \return whether it has done what it was asked
+/// Runs the program and measures its processor time and peak memory.
+/// \return true if the program succeeded
 bool run(std::vector<std::string> arguments, double& seconds, double& peak_mib) {
   arguments.insert(arguments.begin(), RETRACE_PROGRAM);
   for (const char* more : {"--threads=1", "--quiet"}) arguments.emplace_back(more);
@@ -75,7 +77,7 @@ bool run(std::vector<std::string> arguments, double& seconds, double& peak_mib) 
   return true;
 }
 
-/// Arg: rays.
+/// Arg: number of rays.
 void rays_in_and_out(benchmark::State& state) {
   const Folder folder;
   const std::string design = folder.path / "bricks.toml";

@@ -1,4 +1,4 @@
-// Peak memory and time of the program against the number of elements.
+// Peak memory and time of the program as functions of the number of elements.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -12,8 +12,8 @@
 namespace retrace::benchmarks::scale_benchmark {
 namespace {
 
-/// A design file of side x side prisms of 0.451 mm; 222 on a side make a lens of 100 cm^2.
-/// \param base what they stand on, and the plate that covers it; "": the plane
+/// Writes a design file of side x side prisms of 0.451 mm; 222 on a side make a lens of 100 cm^2.
+/// \param substrate tables of the substrate and of the plate that covers it; "": the plane z = 0
 std::filesystem::path write_design(std::int64_t side, const std::string& substrate) {
   const auto path = std::filesystem::temp_directory_path() / ("retrace_scale_" + std::to_string(::getpid()) + ".toml");
   const double length = 0.451 * static_cast<double>(side);
@@ -24,8 +24,8 @@ std::filesystem::path write_design(std::int64_t side, const std::string& substra
   return path;
 }
 
-/// What prisms stand on, by number: a plane that rises by 10 degrees, a cylinder and a sphere that bend alike at every
-/// size of the part.
+/// Returns a substrate by number: a plane inclined by 10 degrees, a cylinder, or a sphere. The radius is proportional
+/// to the size of the part.
 std::string substrate_of(std::int64_t kind, std::int64_t side) {
   const double radius_mm = 0.451 * static_cast<double>(side);
   switch (kind) {
@@ -36,7 +36,7 @@ std::string substrate_of(std::int64_t kind, std::int64_t side) {
   }
 }
 
-/// Args: elements along a side; the base.
+/// Args: elements along a side; number of the substrate.
 void scale(benchmark::State& state) {
   const auto design = write_design(state.range(0), substrate_of(state.range(1), state.range(0)));
   rusage usage{};

@@ -10,23 +10,24 @@
 
 namespace retrace::benchmarks {
 
-/// A part and the point of its plane that rays are relative to.
+/// A part, and the point of its plane to which rays are relative.
 struct Scene {
   std::string name;
   geometry::Part part;
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();
 };
 
-/// A brick array of `n` x `n` prisms of 0.5 mm under a 0.5 mm plate.
+/// Returns a brick array of `n` x `n` prisms of 0.5 mm under a 0.5 mm plate.
 Scene brick_scene(int n);
 
-/// The three element kinds as endless arrays, cubes of edge 1 mm under a 1 mm plate.
+/// Returns infinite arrays of the three element kinds. The cubes have an edge of 1 mm; the plate has a thickness of 1
+/// mm.
 std::vector<Scene> endless_scenes();
 
-/// Rays that fall on the surface side by side, row after row, 10 degrees off the normal.
+/// Returns rays that hit the surface in order, row by row, at 10 degrees from the normal.
 std::vector<raytrace::SurfaceRay> coherent_rays(const Scene& scene, std::size_t count);
 
-/// Rays inside the part from facets all over the surface in random directions.
+/// Returns rays inside the part that begin on facets all over the surface and have random directions.
 std::vector<raytrace::SurfaceRay> incoherent_rays(const Scene& scene, std::size_t count);
 
 }  // namespace retrace::benchmarks

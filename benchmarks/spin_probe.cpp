@@ -1,5 +1,5 @@
-// What more cores give a loop that shares nothing, beside which the speed-up of the engines is to be read: shared and
-// throttled machines give less than their number of cores.
+// Measures the speed-up of a loop without shared data on several cores. The speed-up of the engines must be compared
+// with this value, because shared and throttled machines provide less than their number of cores.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 namespace retrace::benchmarks::spin_probe_benchmark {
 namespace {
 
-/// Fused steps in one dependent chain: neither memory nor vector units decide.
+/// Runs fused multiply-adds in one chain of dependencies. Memory and vector units have no influence.
 double spin(std::uint64_t steps) {
   double x = 0.5;
   for (std::uint64_t i = 0; i < steps; ++i) x = x * 0.999999 + 1e-7;
   return x;
 }
 
-/// Arg: threads.
+/// Arg: number of threads.
 void spin_probe(benchmark::State& state) {
   constexpr std::uint64_t kSteps = 100'000'000;
   const auto count = static_cast<std::size_t>(state.range(0));

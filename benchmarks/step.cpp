@@ -1,5 +1,5 @@
-// Seconds and memory of writing arrays as STEP, STL and OBJ by the whole program. A process for each, so that memory is
-// its own.
+// Time and memory of the complete program for writing arrays as STEP, STL and OBJ. Each file is written in a separate
+// process, so that its memory is measured separately.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A design file of `columns` x `rows` prisms of 0.45 mm in brick rows.
+/// Writes a design file of `columns` x `rows` prisms of 0.45 mm in brick rows.
 fs::path write_design(std::int64_t columns, std::int64_t rows) {
   const fs::path path = fs::temp_directory_path() / ("retrace_step_" + std::to_string(::getpid()) + ".toml");
   std::ofstream(path) << "[element]\nkind = \"rtp\"\nbase_mm = 0.45\nwidth_mm = 0.45\n"

@@ -1,6 +1,6 @@
-// What a study costs beside its points: rates with the exact engine, the store, and MPI.
+// Measures the overhead of a study: rates with the exact engine, the store of results, and MPI.
 //   retrace_benchmarks --benchmark_filter=points|store
-//   mpirun -np 3 retrace_benchmarks     # the share of the ranks' time that dealing takes, at 10 ms a point
+//   mpirun -np 3 retrace_benchmarks     # overhead of distributing points of 10 ms, as a fraction of the ranks' time
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kPoint{10};
 
-/// Takes 10 ms and no processor, so that other work on the machine does not count.
+/// Takes 10 ms without using the processor, so that other load on the machine has no influence.
 class Sleep final : public studies::Quantity {
  public:
   Sleep() : Quantity("sleep") {}
@@ -43,7 +43,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// A study of prisms over incidence, by the exact engine.
+/// Returns a study of prisms over incidence with the exact engine.
 studies::Study study_of(int points) {
   return studies::parse_study("design = \"" RETRACE_SOURCE_DIR
                               "/examples/rtp_single_0p45mm.toml\"\n[[parameter]]\nkey = \"analysis.incidence_deg\"\n"
@@ -59,7 +59,7 @@ studies::Sweep sleeping_sweep(int points) {
   return studies::read_sweep(std::move(study));
 }
 
-/// A store that is removed again.
+/// A store that is deleted at the end.
 class TemporaryStore {
  public:
   explicit TemporaryStore(const studies::Sweep& sweep)
@@ -91,7 +91,7 @@ void exact_points(benchmark::State& state) {
 }
 BENCHMARK(exact_points)->Arg(1)->Arg(0)->ArgName("threads")->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// The time of a sweep of points of 10 ms on one thread against that of its points alone.
+/// Time of a sweep of points of 10 ms on one thread, relative to the time of the points only.
 void store_overhead(benchmark::State& state) {
   constexpr int points = 200;
   const studies::Sweep sweep = sleeping_sweep(points);
@@ -110,7 +110,7 @@ void store_overhead(benchmark::State& state) {
 }
 BENCHMARK(store_overhead)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// The last tenth of 10^5 points against the first.
+/// Time of the last tenth of 10^5 points relative to the first tenth.
 void many_points(benchmark::State& state) {
   constexpr std::uint64_t points = 100'000;
   const studies::Sweep sweep = sleeping_sweep(2);
@@ -132,7 +132,7 @@ void many_points(benchmark::State& state) {
 }
 BENCHMARK(many_points)->Iterations(1)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// As one rank of several: every rank computes one point at a time.
+/// Runs as one of several ranks. Each rank computes one point at a time.
 int run_under_mpi() {
   constexpr int points = 900;
   const studies::Sweep sweep = sleeping_sweep(points);

@@ -1,4 +1,4 @@
-// Time to a standard error of RRE of 0.01 and 0.001 percentage points, for each element kind.
+// Time to reach a standard error of RRE of 0.01 and 0.001 percentage points, for each element kind.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -20,15 +20,14 @@ namespace {
 enum Way : std::int64_t { kStochastic, kCell, kEmbree, kPlain };
 constexpr std::array<const char*, 4> kWays = {"stochastic beams", "cell", "Embree", "Embree, plain"};
 
-/// Sq and correlation length of rough facets, both assumed alike for all kinds: finishing plunges reach Sq of this
-/// order.
+/// Sq and correlation length of rough facets, equal for all kinds. Finishing plunges reach Sq of this magnitude.
 constexpr surface_models::Roughness kRoughFacets{10.0, 5.0, 0.0, 0.0};
 
-/// Plain sampling is stopped at 0.05 points and its time scaled by the square of the errors: its error falls as
-/// 1/sqrt(rays).
+/// Plain sampling is stopped at 0.05 percentage points. Its time is scaled by the squared ratio of the errors, because
+/// its error is proportional to 1/sqrt(rays).
 constexpr double kPlainTargetError = 5e-4;
 
-/// Endless arrays, and full cubes of 2.5 mm on 20 x 20 mm.
+/// Returns infinite arrays, and a finite array of full cubes of 2.5 mm on 20 x 20 mm.
 std::vector<Scene> scenes_of_all_sizes() {
   std::vector<Scene> scenes = endless_scenes();
   geometry::PartSpec spec;
@@ -56,8 +55,8 @@ double stochastic_error(const geometry::Part& part, const raytrace::Optics& opti
   return beams.result().cones.front().std_error;
 }
 
-/// Args: element kind (order of scenes_of_all_sizes()), incidence in degrees, rough facets (0 or 1), way, threads,
-/// decades of the target error.
+/// Args: element kind (order of scenes_of_all_sizes()), incidence in degrees, rough facets (0 or 1), method, threads,
+/// -log10 of the target error.
 void time_to_error(benchmark::State& state) {
   static const std::vector<Scene> scenes = scenes_of_all_sizes();
   const Scene& scene = scenes[static_cast<std::size_t>(state.range(0))];

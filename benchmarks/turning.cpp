@@ -1,4 +1,4 @@
-// Path points a second on one core: a polynomial, and an array of 1,000 tilted lenslets.
+// Path points per second on one core: a polynomial, and an array of 1,000 tilted lenslets.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ void polynomial_path(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(points));
 }
 
-/// 32 x 32 aspheres on a sphere, each tilted to its normal, C2 blends.
+/// Returns 32 x 32 aspheres on a sphere, each tilted to its normal, with C2 blends.
 FreeformSurface lenslet_array() {
   Sag base;
   base.asphere.curvature_per_mm = -0.02;
@@ -64,13 +64,13 @@ void lenslet_path(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(points));
 }
 
-/// What a path pays once: that the nose touches this array in one place at a time.
+/// Time that is spent once per path: the proof that the tool nose touches this array at only one point at a time.
 void lenslet_proof(benchmark::State& state) {
   const FreeformSurface surface = lenslet_array();
   for (auto _ : state) benchmark::DoNotOptimize(TouchMap(surface, tool(), 4.5).touches_once(0.0, 0.0));
 }
 
-/// The same points with the whole arc searched at each.
+/// Computes the same points as the benchmark above, but searches the complete arc of the tool at each point.
 void lenslet_search(benchmark::State& state) {
   const FreeformSurface surface = lenslet_array();
   const NoseCompensation nose(surface, tool());

@@ -1,4 +1,4 @@
-// Verification of NC text: time against the number of elements, for the process of the published samples.
+// Verification of NC text: time as a function of the number of elements, for the process of the published samples.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace fabrication;
 
-/// Rows of 50 prisms of 0.451 mm, roughed by 22 cuts and finished by two cuts a facet.
+/// Returns a job with rows of 50 prisms of 0.451 mm, with 22 roughing cuts and two finishing cuts per facet.
 Job job_of(std::int64_t elements) {
   Job job;
   prism_of(job).base_mm = prism_of(job).width_mm = 0.451;
@@ -28,11 +28,11 @@ Job job_of(std::int64_t elements) {
   return job;
 }
 
-/// Arg: elements.
+/// Arg: number of elements.
 void verify(benchmark::State& state) {
   const Job job = job_of(state.range(0));
   Machine machine = load_machine("paper", {});
-  // Room for arrays of any length.
+  // The axis limits are large enough for arrays of any length.
   machine.x.limits_mm.value = machine.y.limits_mm.value = machine.z.limits_mm.value = {-1e4, 1e4};
   std::vector<std::string> texts;
   for (const Program& program : make_plan(job, machine).programs) texts.push_back(nc_text(program, "rs274ngc"));
