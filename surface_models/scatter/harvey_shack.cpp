@@ -377,8 +377,8 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
   const Roughness& r = roughness_;
   const double wave_um = 1e-3 * wavelength_nm / index;
   if (r.sq_nm > 0.0) {
-    // Between dielectrics, light that is diffracted one time is accurate for any correlation length. Light that is
-    // diffracted two times is about half the phase variance of it.
+    // Between dielectrics, light that is diffracted one time is accurate for any correlation length. The fraction of
+    // the scattered light that is diffracted two times is about half of the phase variance.
     const double phase = reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm);
     const double shortest_um = correlation_lengths_um(r).minCoeff();
     if (!r.is_isotropic() && shortest_um >= wave_um && shortest_um < kLongOfLay)
