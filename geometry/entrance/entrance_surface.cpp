@@ -160,7 +160,9 @@ int cells_to_show(const EntranceSurface& surface, const Polygon& outline) {
   const Rectangle box = bounding_box(outline);
   const double size_mm = box.size().maxCoeff();
   const auto refuse = [] {
-    throw InputError(fmt::format("must be smooth enough for {} places across the part to show it", kMostEntranceCells));
+    throw InputError(fmt::format(
+        "must have features that {} sample points across the part can resolve; make its smallest features larger",
+        kMostEntranceCells));
   };
   const double wanted = std::max(std::ceil(kCellsPerFeature * size_mm / surface.finest_mm()), double{kFewestCells});
   if (wanted > kMostEntranceCells) refuse();

@@ -146,7 +146,7 @@ std::string gltf_text(const BoundaryMesh& mesh, std::string_view title, std::opt
   // Upper bound of the size of the header and the description.
   constexpr std::size_t kHead = 16384;
   if (12 * (mesh.vertices.size() + mesh.triangles.size()) + kHead > kMostGltfBytes)
-    throw InputError("the mesh is too large for glTF, which ends at 4 GiB; OBJ takes it");
+    throw InputError("the mesh is too large for glTF, whose files have at most 4 GiB; write OBJ instead");
   GltfFile file(title, refractive_index, absorption_per_mm);
   file.add_vertices(mesh.vertices);
   for (const auto& [role, name] : kFaceGroups) file.add_faces(mesh, role, name);

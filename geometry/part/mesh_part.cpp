@@ -115,7 +115,8 @@ class PartBuilder {
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
       if (is_entrance(t)) top.push_back(mesh_.triangles[t]);
     if (top.empty())
-      throw InputError("the mesh has no entrance face: its highest points must be one level face, towards +z");
+      throw InputError(
+          "the mesh has no entrance face: its highest points must form one horizontal face that points towards +z");
     auto next = borders(top, "the entrance face of the mesh");
     const Ring ring = take_ring(next);
     if (!next.empty())
@@ -163,9 +164,9 @@ class PartBuilder {
       for (const Side& side : sides_) {
         const double beyond = side.normal.dot(p.head<2>()) - side.offset_mm;
         if (beyond > 2.0 * tolerance_mm_)
-          throw InputError(
-              fmt::format("the mesh must lie below its entrance face, ({}, {}, {}) mm is {:.3g} mm outside", p.x(),
-                          p.y(), p.z(), beyond));
+          throw InputError(fmt::format(
+              "the mesh must be within the outline of its entrance face, but ({}, {}, {}) mm is {:.3g} mm outside",
+              p.x(), p.y(), p.z(), beyond));
       }
       freedom_.push_back(settle(p));
     }

@@ -231,7 +231,8 @@ class Record {
   void add_extinction(const YAML::Node& entry, std::size_t columns, Material& material) {
     AbsorptionData data(file_, "data");
     try {
-      if (std::exchange(has_extinction_, true)) fail(entry["type"], "type", "gives k a second time");
+      if (std::exchange(has_extinction_, true))
+        fail(entry["type"], "type", "must give k only once, got a second table of k");
       for (const Row& row : rows_of(entry, columns)) add_extinction(row, columns, data);
     } catch (const InputError& error) {
       material.warnings.push_back({"absorption_table_ignored",

@@ -178,7 +178,7 @@ TEST(MeshPart, ShapesThatAreNoPartAreRefused) {
   TriangleMesh leaning = good;
   for (Vec3& p : leaning.vertices) p.z() += 0.1 * p.x();
   EXPECT_EQ(complaint([&] { part_of_mesh(leaning); }),
-            "the mesh has no entrance face: its highest points must be one level face, towards +z");
+            "the mesh has no entrance face: its highest points must form one horizontal face that points towards +z");
   TriangleMesh wide = good;
   for (Vec3& p : wide.vertices)
     if (p.z() < 0.5) p.head<2>() *= 1.2;
