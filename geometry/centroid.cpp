@@ -9,9 +9,9 @@ namespace retrace::geometry {
 namespace {
 
 /// Maximum relative area of a polygon that is treated as having no area. The value is above the rounding error of the
-/// relative area. The polygon is divided into a fan of triangles that share its first corner. The relative area is
-/// twice the polygon's area, divided by the sum of |p| |q| over all triangles, where p and q are the two sides at the
-/// shared corner and |.| is the 1-norm.
+/// relative area. To compute it, the polygon is divided into a fan of triangles that share its first corner. The
+/// relative area is twice the polygon's area, divided by the sum of |p| |q| over all triangles. Here p and q are the
+/// two sides of a triangle at the shared corner, and |.| is the 1-norm.
 constexpr double kRelativeAreaRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 Eigen::Matrix<double, 1, 1> twice_area(const Vec2& p, const Vec2& q) {

@@ -185,8 +185,8 @@ EdgeFit fit_edge(const std::vector<double>& heights_nm, double pixel_um) {
     for (double& z : points.z_um) z = -z;
     first = first_facets(points);
   }
-  // Height of the crest at which the facets would meet above the profile, and the radius and flat that cause this
-  // height.
+  // Distance from the profile up to the point at which the facets would meet. The initial radius and flat follow from
+  // this distance.
   const auto nearest = std::min_element(points.x_um.begin(), points.x_um.end(), [&](double a, double b) {
     return std::abs(a - first.x0_um) < std::abs(b - first.x0_um);
   });

@@ -13,8 +13,8 @@ namespace retrace::geometry {
 
 namespace {
 
-// Relative to an element's size. Facets narrower than kSliver result from rounding errors. Edges narrower than
-// kLeastEdge are not built.
+// Minimum width of a facet (kSliver) and of an edge (kLeastEdge), relative to an element's size. Narrower facets result
+// from rounding errors and are omitted. Narrower edges are not built.
 constexpr double kSliver = 1e-9;
 constexpr double kLeastEdge = 1e-7;
 // Number of times that the spherical triangle at a corner is subdivided: 16 faces.

@@ -10,7 +10,7 @@
 namespace retrace::geometry {
 namespace {
 
-// Relative to an element's size. Narrower facets result from rounding errors.
+// Width below which facets result from rounding errors, relative to an element's size.
 constexpr double kSliver = 1e-9;
 
 /// Interval along the roof edge in which the height of the surface above the facet's plane is linear.

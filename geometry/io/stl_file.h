@@ -29,8 +29,8 @@ std::string stl_text(const BoundaryMesh& mesh, std::string_view title);
 ///        triangles or more than kMostStlTriangles. The message quotes the file only if it begins like an STL file.
 TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale = 1.0);
 
-/// Reads an STL file as parse_stl() does. A binary file is refused before its triangles are read if the stored number
-/// of triangles is above kMostStlTriangles or does not match the length of the file.
+/// Reads an STL file as parse_stl() does. A binary file may be refused before its triangles are read. This happens if
+/// the stored number of triangles is above kMostStlTriangles or does not match the length of the file.
 /// \throw InputError as parse_stl(), or if the file cannot be read
 TriangleMesh read_stl(const std::filesystem::path& file, double scale = 1.0);
 

@@ -42,8 +42,8 @@ TriangleMesh turned_over(const TriangleMesh& mesh);
 /// stored as several facets in the same plane. elements_of_regions() determines which facets form an element.
 ///
 /// Meshes are often stored in single precision. A vertex near the plane of the entrance face or of a side is therefore
-/// moved onto that plane, by at most about 1e-6 of the size of the mesh. Vertices of the back are also moved onto the
-/// planes of their facets, typically by less than 5e-7 of the largest coordinate.
+/// moved onto that plane. The maximum distance is about 1e-6 of the size of the mesh. Vertices of the back are also
+/// moved onto the planes of their facets, typically by less than 5e-7 of the largest coordinate.
 /// \pre the mesh is closed, its normals point outward, and it does not intersect itself (check_boundary())
 /// \throw InputError if the mesh does not have the shape described above
 Part part_of_mesh(const TriangleMesh& mesh);

@@ -135,8 +135,8 @@ class PatchBuilder {
     return tile ? height(*tile, vertex) : 0.0;
   }
 
-  /// Adds a vertex at each position where the heights of two neighbouring tiles are equal, because the deeper tile is a
-  /// different one on each side of this position.
+  /// Adds a vertex at each crossing of the heights of two neighbouring tiles. The deeper tile is not the same on both
+  /// sides of a crossing, so a wall ends there.
   bool add_crossings() {
     bool added = false;
     for (const SharedEdge& e : edges_) {

@@ -45,8 +45,8 @@ struct PatchCell {
   std::optional<std::uint32_t> first_of_element = {};
 };
 
-/// Connected patch of the part's back surface, in coordinates of its own. It contains everything below the plate except
-/// the outer walls. Triangles of neighbouring facets share complete edges (no T-junctions).
+/// Connected patch of the part's back surface, in local coordinates. It contains everything below the plate except the
+/// outer walls. Triangles of neighbouring facets share complete edges (no T-junctions).
 struct SurfacePatch {
   std::vector<Vec3> vertices;
   std::vector<PatchFacet> facets;

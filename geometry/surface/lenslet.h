@@ -13,9 +13,9 @@ namespace retrace::geometry {
 /// Maximum order of the derivatives that a blend matches.
 inline constexpr int kMostBlendOrder = 4;
 
-/// Returns the polynomial of degree 2 d + 1 between two radii that has the first d + 1 Taylor coefficients of a given
-/// curve at each end. Hermite's formula is used, so no system of equations is solved (W. Gautschi, Numerical Analysis,
-/// 2nd ed., section 2.2.7, two-point case).
+/// Returns the polynomial of degree 2 d + 1 that interpolates between two radii. At each end it has the first d + 1
+/// Taylor coefficients of a given curve. Hermite's formula is used, so no system of equations is solved (W. Gautschi,
+/// Numerical Analysis, 2nd ed., section 2.2.7, two-point case).
 /// \param share relative position in the interval: 0 at the first end, 1 at the second
 /// \param width width of the interval
 /// \param first, second Taylor coefficients in the radius at the two ends, `order` + 1 each

@@ -19,8 +19,8 @@ namespace retrace::surface_models {
 /// are 1, and energy is conserved exactly. The model is reciprocal in reflection.
 class Abg {
  public:
-  /// \param a > 0, per sr. The total scattered fraction, pi * 2 * integral of r A / (B + r^g) over r = |dbeta| from 0
-  ///     to 2, must be at most 1
+  /// \param a > 0, per sr. The total scattered fraction must be at most 1. It is pi * 2 * integral of r A / (B + r^g)
+  ///     over r = |dbeta| from 0 to 2
   /// \param b > 0
   /// \param g > 0
   /// \throw InputError if a parameter is out of range
