@@ -106,17 +106,19 @@ Fit fit_at(double length_um, const std::vector<Sample>& samples, double cutoff_u
   return fit;
 }
 
-/// Returns a first estimate of the correlation length: the mean of the 1/e lengths of both axes.
+/// Returns a first estimate of the correlation length: the geometric mean of the 1/e lengths along both axes.
 std::optional<double> rough_length_um(const Autocorrelation& r, int dimensions) {
   const std::optional<double> x = correlation_length_um(r, Axis::x);
   if (dimensions == 1) return x;
   const std::optional<double> y = correlation_length_um(r, Axis::y);
-  // Grooves correlate along themselves as far as the map reaches: the short way counts.
+  // Along a lay, heights may be correlated over the whole map, and the length is then undefined. Only the other axis is
+  // used.
   if (!x || !y) return x ? x : y;
   return std::sqrt(*x * *y);
 }
 
-/// \param first an estimate of the correlation length
+/// Fits the roughness model.
+/// \param first_um first estimate of the correlation length
 Fit fit_roughness(const Autocorrelation& roughness, const Autocorrelation& waviness, double first_um, double cutoff_um,
                   int dimensions) {
   const double coarser = dimensions == 1 ? roughness.x_pixel_um : std::max(roughness.x_pixel_um, roughness.y_pixel_um);
@@ -130,23 +132,24 @@ Fit fit_roughness(const Autocorrelation& roughness, const Autocorrelation& wavin
   return fit_at(std::exp(log_length), samples, cutoff_um, dimensions);
 }
 
-/// Mean squares of heights about their mean (nm^2) and of their gradient (nm^2/um^2).
+/// Mean squares of the heights relative to their mean (nm^2) and of their gradients (nm^2/um^2).
 struct MeanSquares {
   double height = 0.0;
   double gradient = 0.0;
 };
 
-/// Under a Hann window along both axes, so that a last wave that is cut by the border counts little.
+/// Returns mean squares with a Hann window along both axes, which reduces the influence of an incomplete wave at the
+/// border.
 MeanSquares windowed_squares(const HeightMap& map) {
   const auto hann = [](std::size_t i, std::size_t points) {
     const double s = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(points));
-    return points > 1 ? s * s * s * s : 1.0;  // of the power, so squared
+    return points > 1 ? s * s * s * s : 1.0;  // the window applies to the power and is therefore squared
   };
   std::vector<double> wx(map.columns);
   std::vector<double> wy(map.rows);
   for (std::size_t i = 0; i < map.columns; ++i) wx[i] = hann(i, map.columns);
   for (std::size_t j = 0; j < map.rows; ++j) wy[j] = hann(j, map.rows);
-  /// The mean of value(column, row) over the grid less `margin` points at its borders along x and y.
+  /// Returns the mean of value(column, row) over the grid without a margin of dx and dy points at its borders.
   const auto mean = [&](std::size_t dx, std::size_t dy, const auto& value) {
     double sum = 0.0;
     double weight = 0.0;

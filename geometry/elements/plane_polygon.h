@@ -1,16 +1,18 @@
 #pragma once
 
-// Where one plane lies above another over a polygon: what decides which facet of a cell is seen.
+// Determines where one plane is above another over a polygon, and hence which facet of a cell forms the surface.
 
 #include "geometry/elements/element_cells.h"
 #include "geometry/polygon.h"
 
 namespace retrace::geometry {
 
-/// The part of a convex polygon where one plane is at least as high as another; empty if it has no area.
+/// Returns the portion of a convex polygon in which one plane is at least as high as another. It is empty if it has no
+/// area.
 Polygon where_higher(const Polygon& polygon, const HeightPlane& plane, const HeightPlane& other);
 
-/// Of several planes over an outline each where it is the highest; those that are nowhere have an empty outline.
+/// Returns the planes over an outline, each with the outline in which it is the highest. If a plane is nowhere the
+/// highest, its outline is empty.
 std::vector<CellFacet> highest_of(const Polygon& outline, std::vector<CellFacet> planes);
 
 }  // namespace retrace::geometry

@@ -1,14 +1,15 @@
 #pragma once
 
-// Cuts V-shaped grooves and ridges, as a chipped tool leaves them, into the facets of prisms.
+// Cuts V-shaped grooves and ridges into the facets of prisms, as a chipped tool leaves them.
 
 #include "geometry/elements/element_cells.h"
 
 namespace retrace::geometry {
 
-/// The prism with its scratches: each facet, and each strip of its edges, is cut into flanks and what is left between
-/// them. Heights change along the roof edge alone, so that a root or rim whose sides differ is closed by walls.
-/// \pre the cell is a prism's, or there are no scratches
+/// Returns the prism with its scratches. Each facet and each strip of its edges is divided into the flanks of scratches
+/// and the areas between them. Heights change only along the roof edge. If the two sides of a root or rim differ in
+/// height, walls close the difference.
+/// \pre the cell is a prism, or there are no scratches
 Cell with_scratches(const Cell& cell, const PartSpec& spec);
 
 }  // namespace retrace::geometry

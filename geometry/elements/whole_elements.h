@@ -1,7 +1,8 @@
 #pragma once
 
 // Counts and places the elements of a finite array, on the plane z = 0 or on a substrate. Drawings, masks, tables of
-// facets and jobs take it; parts have the same cells by the same sheet (array_sheet.h).
+// facets and fabrication jobs use these functions. Parts are built from the same sheet (array_sheet.h), so their cells
+// are equal.
 
 #include <cstdint>
 #include <vector>
@@ -12,71 +13,81 @@
 
 namespace retrace::geometry {
 
-/// Columns and rows of an array's cells.
+/// Numbers of columns and rows of an array's cells.
 struct CellCounts {
   std::int64_t columns = 0;
   std::int64_t rows = 0;
 };
 
-/// How many elements have room on a length: lengths that are whole up to a relative 1e-9 are whole.
-/// \param offset_mm margin at both ends \param pitch_mm from element to element, gap included
+/// Returns the number of elements that fit into a length. Lengths within 1e-9 (relative) of a whole number of elements
+/// count as whole.
+/// \param offset_mm margin at both ends
+/// \param pitch_mm distance between elements, including the gap
 double whole_count(double length_mm, double offset_mm, double gap_mm, double pitch_mm);
 
-/// The block of whole prisms, centred in the extent.
+/// Block of the complete prisms, centred in the extent of the array.
 struct PrismBlock {
   CellCounts counts;
   Vec2 pitch_mm = Vec2::Zero();
-  Rectangle filled;       ///< from the first element to the last, in the part's frame
-  double shift_mm = 0.0;  ///< of alternate rows; 0: none is shifted
+  Rectangle filled;       ///< from the first element to the last, in the part frame
+  double shift_mm = 0.0;  ///< shift of alternate rows; 0: no row is shifted
   RowParity shifted_rows = RowParity::even;
   bool is_checker = false;
 
-  /// \param row from 0 at least y
+  /// Returns true if a row is shifted.
+  /// \param row counted from 0 at the smallest y
   bool is_shifted(std::int64_t row) const;
-  /// How many whole elements a row has.
+  /// Returns the number of complete elements in a row.
   std::int64_t columns_of(std::int64_t row) const { return counts.columns - (is_shifted(row) ? 1 : 0); }
-  /// Lower left corner of an element, in the part's frame.
+  /// Returns the lower left corner of an element, in the part frame.
   Vec2 corner_mm(std::int64_t row, std::int64_t column) const;
-  /// Centre of an element, from the middle of the extent.
+  /// Returns the centre of an element, relative to the centre of the extent.
   Vec2 centre_mm(std::int64_t row, std::int64_t column) const;
   bool is_rotated(std::int64_t row, std::int64_t column) const { return is_checker && (row + column) % 2 == 1; }
 };
+/// Returns the block of prisms of an array.
 /// \pre lengths and sizes > 0, the array is finite
 PrismBlock prism_block(const ArrayLayout& array, const RtpElement& element);
 
-/// An element that lies wholly within the array.
+/// An element that is completely within the array.
 struct WholeElement {
-  Vec2 centre_mm = Vec2::Zero();  ///< of a prism's aperture, of a cube corner's apex; from the middle of the extent
-  std::int32_t row = 0;           ///< from 0, the row of least y
-  std::int32_t column = 0;        ///< from 0, x rising
-  bool is_rotated = false;        ///< a prism by 90 degrees about z, a cube corner by 180
-  bool is_there = true;           ///< the array's pattern says so
+  /// centre of a prism's aperture or apex of a cube corner, relative to the centre of the extent
+  Vec2 centre_mm = Vec2::Zero();
+  std::int32_t row = 0;     ///< counted from 0 at the smallest y
+  std::int32_t column = 0;  ///< counted from 0, x ascending
+  /// true for a prism rotated by 90 degrees about z, or a cube corner rotated by 180 degrees
+  bool is_rotated = false;
+  bool is_there = true;  ///< false if the array's pattern omits the element
 };
 
-/// What the borders leave of a cell.
+/// Position of a cell relative to the border: inside, cut by the border, or outside.
 enum class Standing { whole, cut, beyond };
 
-/// An element where it stands.
+/// Position and orientation of an element in the part.
 struct PlacedElement {
-  WholeElement on_sheet;  ///< on what the array is laid out on: the plane, or the substrate rolled out
+  WholeElement on_sheet;  ///< position on the sheet: the plane, or the substrate unrolled into a plane
   Standing standing = Standing::whole;
-  SubstrateFrame frame;  ///< under its middle or apex, from the part's middle; z = 0 is the substrate's highest place
+  /// frame below its centre or apex, relative to the centre of the part; z = 0 is the highest point of the substrate
+  SubstrateFrame frame;
 };
 
-/// All elements that are not beyond the border, row by row from least y, x rising; a pattern is not asked. Prisms are
-/// numbered by their places on the sheet, the whole ones of cube corners one by one.
-/// \pre a finite array that is not `single` \throw InputError where the array is smaller than one element
+/// Returns all elements that are not outside the border, row by row in order of y, x ascending. The pattern is ignored.
+/// Rows and columns of prisms are their positions on the sheet. For cube corners, only complete elements are counted.
+/// \pre the array is finite and not `single`
+/// \throw InputError if the array is smaller than one element
 std::vector<PlacedElement> place(const PartSpec& spec);
 
-/// The whole ones of a flat array, in the same order. Prisms fill a block that is centred; of cube corners an apex that
-/// is not rotated lies in the middle of the extent, or of `single` in the middle of the aperture's box (CONVENTIONS.md,
-/// section 3). \pre the array is finite, a pattern has its rows and cells
+/// Returns the complete elements of a flat array, in the order of place(). Prisms fill a centred block. For cube
+/// corners, the apex of an element that is not rotated is at the centre of the extent. For `single`, the centre of the
+/// aperture's bounding box is there (CONVENTIONS.md, section 3).
+/// \pre the array is finite; the pattern has the array's numbers of rows and cells
 std::vector<WholeElement> whole_elements(const ArrayLayout& array, const Element& element);
 
-/// How many of them each row has, from that of least y; as the rows of a pattern have places.
+/// Returns the number of complete elements in each row, beginning with the smallest y. These are the lengths of the
+/// rows of a pattern.
 std::vector<std::int64_t> row_lengths(const ArrayLayout& array, const Element& element);
 
-/// About how many cells the array has, without going through them.
+/// Returns the approximate number of cells of the array, without visiting them.
 double element_estimate(const ArrayLayout& array, const Element& element);
 
 }  // namespace retrace::geometry

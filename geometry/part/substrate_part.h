@@ -1,33 +1,38 @@
 #pragma once
 
-// Parts whose elements stand on a substrate: whether it can carry them, and how much wall stands open between
-// neighbours.
+// Parts whose elements are placed on a substrate. Checks that the substrate can carry the elements, and measures the
+// exposed walls between neighbours.
 
 #include "geometry/part/part.h"
 #include "geometry/substrate/substrate_surface.h"
 
 namespace retrace::geometry {
 
-/// The substrate of a design as it lies under its part. \pre spec.substrate
+/// Returns the substrate of a design at its position under the part.
+/// \pre spec.substrate is set
 SubstrateSurface substrate_surface_of(const PartSpec& spec);
 
-/// Measures the substrate and checks that it can carry the elements. \pre spec.substrate, a finite array
-/// \throw InputError, whose text begins with "must" or "is not", where it is not finite, rises by more than 60 degrees,
-/// bends more tightly than an element is wide, makes a facet stand upright, or pulls pins apart
+/// Measures the substrate and checks that it can carry the elements. The substrate must be finite, must rise by at most
+/// 60 degrees, and must not have a radius of curvature below the width of an element. It must not make a facet vertical
+/// or separate pins from each other.
+/// \pre spec.substrate is set; the array is finite
+/// \throw InputError if a check fails; its text begins with "must" or "is not"
 SubstrateMeasures check_substrate(const PartSpec& spec);
 
-/// The diameter of the circle round an element's aperture.
+/// Returns the diameter of the circle around an element's aperture.
 double width_across_mm(const Element& element);
 
-/// What stands open between neighbouring elements of a part.
+/// Exposed walls between neighbouring elements of a part.
 struct InnerWalls {
   double area_mm2 = 0.0;
-  double highest_mm = 0.0;  ///< largest step in height from an element to the next
-  /// Of their area: as seen along the substrate's mean normal, which they hide from light that comes that way.
+  double highest_mm = 0.0;  ///< largest difference in height between neighbouring elements
+  /// Area of the walls projected along the substrate's mean normal. Light from this direction does not reach the area
+  /// that they hide.
   double projected_mm2 = 0.0;
 };
 
-/// Of a finite part. \param towards unit vector along which they are projected
+/// Measures the walls of a finite part.
+/// \param towards unit vector along which the walls are projected
 InnerWalls inner_walls(const Part& part, const Vec3& towards);
 
 }  // namespace retrace::geometry

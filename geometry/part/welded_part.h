@@ -1,14 +1,15 @@
 #pragma once
 
-// Parts whose back surface is one patch, as exports and closed boundaries need it.
+// Builds parts whose back surface is a single patch, for exports and closed boundaries.
 
 #include "geometry/part/part.h"
 
 namespace retrace::geometry {
 
-/// The part with its whole back surface as one patch, however many elements it has, as closed_boundary() takes it.
-/// Memory grows with the number of elements. \pre the part is finite
-/// \throw InputError as build_part() does
+/// Builds a part whose complete back surface is a single patch, for any number of elements, as closed_boundary()
+/// requires. The memory is proportional to the number of elements.
+/// \pre the part is finite
+/// \throw InputError as build_part()
 Part build_welded_part(const PartSpec& spec);
 
 }  // namespace retrace::geometry
