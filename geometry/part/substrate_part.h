@@ -26,8 +26,8 @@ double width_across_mm(const Element& element);
 struct InnerWalls {
   double area_mm2 = 0.0;
   double highest_mm = 0.0;  ///< largest difference in height between neighbouring elements
-  /// Area of the walls projected along the substrate's mean normal. Light from this direction does not reach the area
-  /// that they hide.
+  /// Area of the walls projected along the substrate's mean normal. The walls block this cross section for light from
+  /// that direction.
   double projected_mm2 = 0.0;
 };
 
