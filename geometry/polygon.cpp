@@ -12,7 +12,7 @@ namespace {
 
 /// Clips a polygon at a border line.
 /// \param beyond returns the distance of a point beyond the border, mm
-/// \param settle moves a point that is beside the border because of rounding exactly onto the border
+/// \param settle moves an intersection point exactly onto the border, to remove rounding errors
 template <class Beyond, class Settle>
 Polygon clip_at(const Polygon& polygon, const Beyond& beyond, const Settle& settle, double tolerance_mm) {
   Polygon kept;

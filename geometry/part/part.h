@@ -18,7 +18,7 @@ namespace retrace::geometry {
 struct Placement {
   std::uint32_t patch = 0;
   Vec2 offset_mm = Vec2::Zero();
-  double height_mm = 0.0;  ///< shift along z; not 0 only on a substrate
+  double height_mm = 0.0;  ///< shift along z; 0 unless the part has a substrate
 };
 
 /// Elements of one zone of a part.

@@ -53,7 +53,8 @@ def report(
     is given.
 
     title: title of the page [title of the design]
-    read: files and folders that may be read, such as the mesh of a design; other files are not read"""
+    read: files and folders that may be read, such as the mesh of a design; other files are not
+    read"""
     listed = [results] if isinstance(results, Result) else results
     if not isinstance(listed, (list, tuple)) or not all(isinstance(one, Result) for one in listed):
         raise refuse("results", "a result or a list of results", results)
