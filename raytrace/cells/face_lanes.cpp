@@ -127,7 +127,7 @@ HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& refle
   const V at = hn::MulAdd(number, splat(kGolden), splat(meeting.start));
   const V u = hn::Sub(at, hn::Floor(at));
   const M takes_reflected = hn::Lt(hn::Mul(u, power), r);
-    // In this case, no random choice is needed.
+  // In this case, no random choice is needed.
   if (hn::AllTrue(D(), hn::Or(hn::Or(both, hn::Not(here)), hn::Le(t, hn::Zero(D())))))
     return {here, hn::And(here, both)};
   // The chosen branch receives the power of both.

@@ -89,7 +89,7 @@ struct CellTrail {
   }
 
  private:
-    /// Returns the length as an integer multiple of 1e-9 mm.
+  /// Returns the length as an integer multiple of 1e-9 mm.
   static std::uint64_t bits_of(double length_mm) { return static_cast<std::uint64_t>(std::llround(1e9 * length_mm)); }
 };
 

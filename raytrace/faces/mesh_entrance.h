@@ -16,8 +16,8 @@ class MeshEntrance : public EntranceFace {
   std::optional<EntranceHit> first_hit(const SurfaceRay& ray) const override;
 
  private:
-  /// Returns true if the ray passes through the whole range of heights of the surface, from its side, before `t_max`. It
-  /// then meets the surface, except for gaps between triangles by rounding.
+  /// Returns true if the ray passes through the whole range of heights of the surface, from its side, before `t_max`.
+  /// It then meets the surface, except for gaps between triangles by rounding.
   bool crosses(const SurfaceRay& ray) const;
 
   geometry::Part part_;  ///< heights are relative to the lowest point of the surface

@@ -21,10 +21,10 @@ struct WetBack;
 
 /// Optical properties of the body and the faces of a part, at one wavelength.
 struct Optics {
-  double index = 1.0;              ///< refractive index of the body, relative to the air around it; >= 1
-  double back_index = 1.0;         ///< refractive index of the medium behind the back, relative to the air
-  double absorption_per_mm = 0.0;  ///< Napierian, for power
-  bool mirror_facets = false;      ///< retro facets reflect all light
+  double index = 1.0;                     ///< refractive index of the body, relative to the air around it; >= 1
+  double back_index = 1.0;                ///< refractive index of the medium behind the back, relative to the air
+  double absorption_per_mm = 0.0;         ///< Napierian, for power
+  bool mirror_facets = false;             ///< retro facets reflect all light
   materials::LayerStack facet_layers;     ///< layers on the retro facets; one of them may be opaque
   materials::LayerStack entrance_layers;  ///< layers on the entrance face; all of them transmit light
   EntranceCondition entrance;             ///< further properties of the entrance face

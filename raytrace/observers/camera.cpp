@@ -421,7 +421,7 @@ void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Bl
   for (std::uint32_t k = 0; k < kPointsPerPass; ++k) {
     const std::uint32_t point = pass * kPointsPerPass + k;
     const auto random = philox({seed, kLensStream}, point, pixel);
-      // The points of a pass are distributed over the wavelengths by stratified sampling.
+    // The points of a pass are distributed over the wavelengths by stratified sampling.
     const double chosen = (static_cast<double>(k) + unit_interval(random[0])) / kPointsPerPass;
     const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, chosen * cumulative.back());
     const auto wavelength = static_cast<std::size_t>(found - cumulative.begin());

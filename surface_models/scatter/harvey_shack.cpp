@@ -384,7 +384,7 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
     if (!r.is_isotropic() && shortest_um >= wave_um && shortest_um < kLongOfLay)
       found.push_back({"lay_beyond_model", "correlation length " + shortest(shortest_um) +
                                                " um of roughness with a lay is below " + shortest(kLongOfLay) +
-                                               " um: at total reflection it scatters less than its phase says"});
+                                               " um: at total reflection the phase model overestimates its scatter"});
     if (shortest_um < wave_um && (media_ == nullptr || phase * phase > kMostPhase2OfFirstOrder))
       found.push_back({"correlation_below_wavelength",
                        "correlation length " + shortest(shortest_um) +

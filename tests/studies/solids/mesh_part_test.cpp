@@ -182,7 +182,8 @@ TEST(MeshPart, ShapesThatAreNoPartAreRefused) {
   TriangleMesh wide = good;
   for (Vec3& p : wide.vertices)
     if (p.z() < 0.5) p.head<2>() *= 1.2;
-  EXPECT_TRUE(complaint([&] { part_of_mesh(wide); }).starts_with("the mesh must lie below its entrance face"));
+  EXPECT_TRUE(
+      complaint([&] { part_of_mesh(wide); }).starts_with("the mesh must be within the outline of its entrance face"));
   // This mesh has no plate.
   const TriangleMesh tetrahedron = parse_stl(
       "solid\nfacet normal 0 0 0 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n"
