@@ -17,10 +17,10 @@ constexpr std::uint8_t kZBit = 0b100;
 constexpr std::uint8_t kLinearBits = 0b111;
 /// Allowance for the rounding errors of floating-point sums, in mm or degrees.
 constexpr double kSlack = 1e-9;
-/// Maximum tolerance for the rounding of a number in a program: absolute for positions (mm or degrees) and relative for
-/// feeds. A position in inches or an inverse time is rounded and may exceed a limit by half of its last decimal. A
-/// number with a coarser last decimal is taken as exact. Example: half of 1e-4 inch is 1.3e-3 mm, which is tolerated.
+/// Maximum tolerance, in mm or degrees, for the rounding of a position in a program. A position may exceed a limit by
+/// half of its last decimal, but at most by this value. Example: half of 1e-4 inch is 1.3e-3 mm.
 constexpr double kMaxRounding = 2e-3;
+/// Maximum tolerance, relative to the limit, for the rounding of a feed or an inverse time in a program.
 constexpr double kMaxRelativeRounding = 1e-3;
 
 constexpr NcNeed kRotationNeed = {nc_said::kRotationOff, "G69", "that coordinates are not turned"};
@@ -124,11 +124,12 @@ void ControlCheck::state(const NcSettings& settings, const NcPlace& place, bool 
   refuse_option(settings, place, control_.has_rotation, kRotationNeed);
   refuse_option(settings, place, control_.has_mirror, kMirrorNeed);
   if (is_in_material) return cut(settings, place);
-  // What must stand still while it cuts has no reason to turn before or after.
+  // If the spindle must stand still during cuts, it must not turn between the cuts either.
   if (settings.spindle && rule_.spindle.turns == NcSpindle::stopped) spindle(settings, place);
 }
 
-/// Codes of options that a control lacks are alarms.
+/// Adds a finding if the program uses a code of an option that the control does not have. Such a code stops the control
+/// with an alarm.
 void ControlCheck::refuse_option(const NcSettings& settings, const NcPlace& place, bool is_there,
                                  const NcNeed& option) {
   const bool holds = dialect_ != NcDialect::fanuc || is_there || (settings.said & option.said) == 0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// What every process asks of a program, whatever it cuts: what it must say before it moves, how it must begin, modal
-// settings at every cut, spindle, mist, feeds, and axes within their limits.
+// Checks that apply to the programs of all processes: settings before the first move, the first move itself, modal
+// settings during cuts, spindle, mist, feeds, and limits of the axes.
 
 #include <cstdint>
 #include <limits>
@@ -20,53 +20,58 @@ namespace retrace::fabrication {
 /// rounding of the axis word in the program (docs/theory/verification.md).
 double rounding_slack(const NcMotion& motion, char axis);
 
-/// How the spindle is to turn while the tool cuts.
+/// State of the spindle that is required while the tool cuts.
 struct SpindleRule {
   NcSpindle turns = NcSpindle::stopped;
-  double rpm = 0.0;  ///< of one that a program's words start; a text that starts it says nothing of speed
+  double rpm = 0.0;  ///< required speed; not used if a text of the machine file starts the spindle
 
   bool is_by_text() const { return turns == NcSpindle::started_by_text; }
 };
 
-/// What a process asks of the control.
+/// Requirements of a process on its programs.
 struct ControlRule {
   SpindleRule spindle;
-  bool needs_mist = false;  ///< while it cuts
-  bool may_blend = false;   ///< blocks need no exact stop
-  /// In the material, at one place: dwells add up.
+  bool needs_mist = false;  ///< true: the mist must be on during cuts
+  bool may_blend = false;   ///< true: blocks need no exact stop
+  /// Maximum total time, in s, of consecutive dwells at one position in the material.
   double most_rest_s = std::numeric_limits<double>::infinity();
-  std::uint8_t axes = 0b111;  ///< bit i: axis i of kNcAxisLetters must be known before the tool comes down
-  /// Z, alone, goes there or higher first, and no lower before all those axes are known.
+  std::uint8_t axes = 0b111;  ///< bit i: the position of axis i of kNcAxisLetters must be known before the tool is low
+  /// Minimum Z of the first move, which must move only Z. Z must not be lower until the positions of all `axes` are
+  /// known.
   double safe_z_mm = -std::numeric_limits<double>::infinity();
 };
 
-/// Follows programs and adds what it finds to a list. What is wrong with a modal setting is found once, and again if it
-/// was mended in between.
+/// Checks the moves and settings of programs and adds findings to a list. A wrong modal setting gives one finding. It
+/// gives another finding only if the setting was corrected in between.
 class ControlCheck {
  public:
   ControlCheck(FindingList& findings, const ControlRule& rule, const Control& control = {})
       : findings_(findings), rule_(rule), control_(control) {}
 
-  /// A program begins.
+  /// Starts the checks of a program.
   void begin(const NcProgram& program);
-  /// Of every move: before the first one, what the program must say itself; Z first, and alone.
+  /// Checks a move. Before the first move, the program must contain all required settings, and the first move must move
+  /// only Z.
   void way(const NcSettings& settings, const NcMotion& motion);
-  /// Of every move in the material: exact stops, spindle, mist.
+  /// Checks exact stop, spindle and mist during a move in the material.
   void cut(const NcSettings& settings, const NcPlace& place);
-  /// What a block says where nothing moves. \param is_in_material where the tool stands
+  /// Checks the settings after a block without motion.
+  /// \param is_in_material true if the tool is in the material
   void state(const NcSettings& settings, const NcPlace& place, bool is_in_material);
-  /// The tool rests in the material. \param seconds infinite: until the operator goes on
+  /// Checks a dwell in the material.
+  /// \param seconds duration; infinite if the program waits for the operator
   void rest(double seconds, const NcPlace& place);
-  /// The program waits for the operator: above all, rotary axes at 0, with mist and spindle off. What follows begins
-  /// like a program.
+  /// Checks a stop at which the program waits for the operator. The tool must be at the safe height, the rotary axes
+  /// must be at 0, and mist and spindle must be off. The rest of the program is then checked like a new program.
   void stop(const NcSettings& settings, const AxisPositions& at, const NcPlace& place);
-  /// Axes whose place was said since the program began or stopped.
+  /// Returns the axes whose position the program has given since it began or stopped, as a bit for each axis.
   std::uint8_t known() const { return known_; }
   void spindle_at_end(const NcEnd& end);
-  /// That the machine has the axes that move, that they stay within their limits, have a feed and are not fed faster
-  /// than they go.
+  /// Checks that the machine has the axes that move, and that the axes stay within their limits, have a feed and do not
+  /// exceed their speeds.
   void axes(const Machine& machine, const NcMotion& motion);
-  /// Of a cutting move. \param process_mm_per_min the most that the process allows; far below it the tool rubs
+  /// Checks the feed of a cutting move.
+  /// \param process_mm_per_min maximum feed of the process; the tool rubs at feeds far below this value
   void feed(const NcMotion& motion, double process_mm_per_min);
 
  private:
@@ -78,16 +83,17 @@ class ControlCheck {
   void words_of_axes(const NcMotion& motion);
   void refuse_option(const NcSettings& settings, const NcPlace& place, bool is_there, const NcNeed& option);
   void spindle(const NcSettings& settings, const NcPlace& place);
-  /// A modal setting: a finding where it becomes wrong. \return whether it has just become so
+  /// Updates whether a modal setting is wrong.
+  /// \return true if the setting was right before and is wrong now
   bool turns_wrong(const std::string& kind, bool holds);
 
   FindingList& findings_;
   ControlRule rule_;
   Control control_;
   NcDialect dialect_ = NcDialect::rs274ngc;
-  bool has_moved_ = false;       ///< since the program began or stopped
-  std::uint8_t known_ = 0;       ///< axes whose place was said since then
-  double rested_s_ = 0.0;        ///< in the material, since the last move
+  bool has_moved_ = false;       ///< true if an axis has moved since the program began or stopped
+  std::uint8_t known_ = 0;       ///< axes whose position was given since the program began or stopped, bit by bit
+  double rested_s_ = 0.0;        ///< total dwell time in the material since the last move
   double z_slack_mm_ = 0.0;      ///< tolerance for the rounding of the last Z word
   std::set<std::string> wrong_;  ///< modal settings that are wrong at present
 };

@@ -12,7 +12,7 @@ using geometry::Vec3;
 
 using Points = std::span<const Vec3>;
 
-/// The point of a body that lies furthest along a direction.
+/// Computes the support point of a body: its farthest point in a direction.
 void support(const void* body, const ccd_vec3_t* direction, ccd_vec3_t* result) {
   const Points& points = *static_cast<const Points*>(body);
   const Vec3 along(direction->v[0], direction->v[1], direction->v[2]);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Collisions between tool, holder, table and fixtures as convex bodies along straight moves.
+// Detects collisions of tool and holder with table and fixtures. All bodies are convex, and all moves are straight.
 
 #include <span>
 #include <string>
@@ -12,30 +12,31 @@
 
 namespace retrace::fabrication {
 
-/// Whether the convex hulls of two sets of points have a point in common; hulls that only touch may count either way.
+/// Returns true if the convex hulls of two sets of points intersect. If the hulls only touch, the result may be true or
+/// false.
 /// \pre neither set is empty
 bool hulls_meet(std::span<const geometry::Vec3> a, std::span<const geometry::Vec3> b);
 
-/// A convex body in the frame of the machine: the hull of its points.
+/// Convex body in the machine frame: the convex hull of its points.
 struct PlacedBody {
   std::string name;
   std::vector<geometry::Vec3> points_mm;
 };
 
-/// What the tool consists of, relative to its tip: the diamond up to `diamond_mm` above its edge, and the bodies that
-/// the machine file says move with it.
+/// Returns the bodies that move with the tool, relative to its tip. They are the diamond up to `diamond_mm` above its
+/// edge, and the tool bodies of the machine file.
 std::vector<PlacedBody> tool_bodies(const Machine& machine, const ToolWedge& wedge, double diamond_mm);
 
-/// Table, cradle and fixtures of the machine file where the rotary axes put them.
+/// Returns table, cradle and fixtures of the machine file, as positioned by the rotary axes.
 std::vector<PlacedBody> standing_bodies(const Machine& machine, const RotaryPose& pose);
 
-/// Two bodies that meet.
+/// Names of two bodies that collide.
 struct BodyContact {
   std::string tool;
   std::string other;
 };
-/// What the tool runs into while its tip goes anywhere within the hull of some places, such as the ends of a straight
-/// move: the swept hull of a convex body is exact.
+/// Returns the collisions of the tool while its tip moves inside the convex hull of some points, for example along a
+/// straight move between two end points. The result is exact, because the swept volume of a convex body is convex.
 std::vector<BodyContact> contacts(std::span<const PlacedBody> tool, std::span<const PlacedBody> standing,
                                   std::span<const geometry::Vec3> tips_mm);
 

@@ -15,7 +15,8 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// A section says how thick a chip is if the lines square to the swept plane lie in it, within 30 degrees.
+/// Minimum cosine of the angle between a section and the normal of the swept plane. At larger angles (30 degrees), chip
+/// thicknesses cannot be measured in the section.
 constexpr double kLeastInPlane = 0.87;
 
 double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const Vec2& direction, double to_mm) {
@@ -24,15 +25,16 @@ double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const 
   return sum;
 }
 
-/// Where the tip crosses a section at the end of its move that lies deeper; of a chisel the edge does.
+/// Returns the point of a section that the edge of a chisel, or the tip of a V-shaped tool, reaches at the deeper end
+/// of its move.
 Vec2 deepest_place(const SectionPlane& plane, const Groove& groove, const ToolWedge& wedge, const SweptVolume& sweep,
                    const RigidMotion& back) {
   const Vec3 from = back.point(sweep.from_mm);
   const Vec3 to = back.point(sweep.to_mm);
   const Vec3 tip = groove.over_face_mm(from) < groove.over_face_mm(to) ? from : to;
   if (groove.is_cube()) {
-    // Project lengths along the dihedral edge that crosses the section. With errors of angle, this edge is not normal
-    // to the section.
+    // Move the tip into the section plane, parallel to the dihedral edge that crosses the section. If the element has
+    // angle errors, this edge is not perpendicular to the section.
     const auto across = [&](const Vec3& edge) { return std::abs(plane.normal.dot(edge)); };
     const Vec3& edge = *std::ranges::max_element(groove.edges, {}, across);
     return plane.point(tip - plane.beside_mm(tip) / plane.normal.dot(edge) * edge);
@@ -59,15 +61,15 @@ ChipCheck::ChipCheck(const Workpiece3d& workpiece, std::size_t element, Standing
   if (allowance_mm_ > 0.0) add_lines();
 }
 
-/// Away from the root, where the other facet's cuts take some of this one's layers, and from the rim, where the blank
-/// ends before them.
+/// Adds the measuring lines of the finishing layers. They keep clear of the root, where cuts of the other facet remove
+/// parts of these layers, and of the rim, where the layers extend beyond the blank.
 void ChipCheck::add_lines() {
   constexpr double kClearOfRoot = 6.0;  // allowances
   const double least_mm = kClearOfRoot * (allowance_mm_ + workpiece_.prediction(element_).root_mm);
   const std::vector<StandingSection>& sections = material_.sections();
   for (std::size_t s = 0; s < sections.size(); ++s) {
     const SectionPlane& plane = sections[s].plane;
-    // Of cubes, within the layers of the third facet.
+    // In a cube corner, sections close to the apex are inside the layers of the third facet.
     if (groove_.is_cube() && (plane.origin_mm - groove_.root_mm).norm() < least_mm) continue;
     for (std::size_t f = 0; f < groove_.facets.size(); ++f) {
       const DesignFacet& facet = groove_.facets[f];
@@ -124,8 +126,8 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
     std::vector<double> bends;
     for (const double bend : limit.bends_mm())
       for (const double side : {-1.0, 1.0}) bends.push_back(deepest_mm + side * (bend + 1e-9));
-    // Chip thicknesses are measured along parallel lines in a cross-section of the element. With errors of angle, these
-    // lines are not exactly parallel to the facet's normal, so that measured thicknesses are larger.
+    // Chip thicknesses are measured along parallel lines in a cross-section of the element. If the element has angle
+    // errors, these lines are slightly inclined to the facet's normal. The factor `upright` corrects the lengths.
     const double upright = groove_.is_cube() ? square.norm() : 1.0;
     for (const LineLength& line : line_lengths(removed[s], along, bends)) {
       const double most_mm = limit.at(std::abs(line.at_mm - deepest_mm), beside_mm);
@@ -149,7 +151,7 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
 
 void ChipCheck::check_rubbing(const SweptVolume& sweep, const FacetCut& cut, double thickest_mm) {
   const auto& least_um = workpiece_.job->process.least_chip_um;
-  // On a base first cuts take what they meet.
+  // On a substrate, the first cut of a facet may be arbitrarily thin.
   const bool may_be_thin = workpiece_.job->substrate && !is_begun_[cut.facet];
   is_begun_[cut.facet] = true;
   constexpr double kRoundingUm = 2e-3;
@@ -178,7 +180,8 @@ void ChipCheck::find(const char* kind, const SweptVolume& sweep, std::string mes
 ChipFigures ChipCheck::finish() {
   const Process& process = workpiece_.job->process;
   for (const FacetLine& line : lines_) {
-    // Of a facet that is not finished yet what is left is told.
+    // If material of the finishing layers remains on this line, the facet is not finished yet. The remaining material
+    // is reported by other findings.
     if (line.finishing_cuts == 0 || line.finishing_cuts >= process.finishing_cuts) continue;
     if (standing_mm(material_.sections()[line.section].pieces, line.foot_mm, line.direction, allowance_mm_) >
         workpiece_.tolerance_mm)

@@ -1,6 +1,6 @@
 #pragma once
 
-// What every cut of an element takes of the material that stands there, against what the process allows.
+// Compares the material that each cut of an element removes with the limits of the process.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,41 +16,43 @@
 
 namespace retrace::fabrication {
 
-/// What was found of one element.
+/// Findings and chip thicknesses of one element.
 struct ChipFigures {
-  std::vector<Finding> findings;        ///< `program` is left empty
-  std::vector<std::uint32_t> programs;  ///< of each finding: SweptVolume::program
-  double thickest_mm = 0.0;             ///< chip
-  double thickest_share = 0.0;          ///< of a chip over what is allowed there, at most
+  std::vector<Finding> findings;        ///< findings with an empty `program`
+  std::vector<std::uint32_t> programs;  ///< for each finding: SweptVolume::program of its cut
+  double thickest_mm = 0.0;             ///< maximum chip thickness
+  double thickest_share = 0.0;          ///< maximum of chip thickness divided by its limit
 };
 
-/// Follows the cuts of one element in their order: chips thicker than their limit, and facets whose last layers were
-/// not taken by as many finishing cuts as the process has. Judged is what is removed, not what it is called.
+/// Checks the cuts of one element in their order. Adds a finding for a chip that is thicker than its limit, and for a
+/// facet whose last layers are removed by fewer finishing cuts than the process requires. The checks depend only on the
+/// removed material, not on the names in the program.
 class ChipCheck {
  public:
-  /// \param material what stands before the first cut; it is cut. All arguments must outlive it
+  /// \param material material before the first cut; each cut removes a part of it
+  /// \pre all arguments outlive this object
   ChipCheck(const Workpiece3d& workpiece, std::size_t element, StandingMaterial& material, const ToolWedge& wedge,
             std::span<const RigidMotion> poses);
 
   void cut(const SweptVolume& sweep);
-  /// After the last cut.
+  /// Returns the result. To be called after the last cut.
   ChipFigures finish();
 
  private:
-  /// A line normal to a facet, in a section.
+  /// Measuring line in a section, normal to a facet.
   struct FacetLine {
     std::size_t section = 0;
     std::size_t facet = 0;
     geometry::Vec2 foot_mm = geometry::Vec2::Zero();
     geometry::Vec2 direction = geometry::Vec2::UnitY();
-    int finishing_cuts = 0;  ///< that took some of its last layers
+    int finishing_cuts = 0;  ///< number of cuts that removed material of the finishing layers on this line
     SweptVolume last;
   };
 
   void add_lines();
   void check_chips(const SweptVolume& sweep, const std::optional<FacetCut>& cut, const RigidMotion& back,
                    std::span<const std::vector<ConvexPiece>> removed);
-  /// A plunge of a chisel that takes less than the least chip, wherever it takes most, rubs.
+  /// Adds a finding if the edge rubs: the maximum chip thickness of a plunge is less than the minimum of the process.
   void check_rubbing(const SweptVolume& sweep, const FacetCut& cut, double thickest_mm);
   void count_finishing(const SweptVolume& sweep, const FacetCut& cut,
                        std::span<const std::vector<ConvexPiece>> removed);
@@ -64,7 +66,7 @@ class ChipCheck {
   std::span<const RigidMotion> poses_;
   double allowance_mm_;
   std::vector<FacetLine> lines_;
-  std::vector<bool> is_begun_;  ///< by facet: something was cut along it
+  std::vector<bool> is_begun_;  ///< for each facet: true after the first cut along it
   ChipFigures figures_;
 };
 

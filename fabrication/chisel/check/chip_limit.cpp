@@ -10,11 +10,10 @@ namespace {
 
 using geometry::Vec3;
 
-/// Chip that a V-shaped tool removes at a dihedral edge if the layer is 1 mm thick: its maximum thickness between the
-/// flank and the material on the neighbouring facet, and its maximum distance from the edge.
+/// Dimensions of the chip that a V-shaped tool removes at a dihedral edge, for a layer with a thickness of 1 mm.
 struct BesideEdge {
-  double thickness = 1.0;
-  double reach = 1.0;
+  double thickness = 1.0;  ///< maximum thickness, between the tool's flank and the material on the neighbouring facet
+  double reach = 1.0;      ///< maximum distance from the dihedral edge
 };
 
 BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spine) {
@@ -37,7 +36,7 @@ BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spi
     constexpr double kLeast = 1e-3;
     const double thickness = slope / std::max(kLeast, sine - slope * cosine);
     most.thickness = std::max(most.thickness, thickness);
-    // Distances in sections are measured along the other edge, not normal to the edge.
+    // The division by across.norm() converts a distance normal to `edge` into a distance along the other edge.
     most.reach = std::max(most.reach, (1.0 + thickness * cosine) / (sine * across.norm()));
   }
   return most;
@@ -67,7 +66,7 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
   rake_slope_ = std::tan(rake.rad());
   const double sine = std::sin(apex_.rad());
   const double cosine = std::cos(apex_.rad());
-  // The burr that plunges with tilted edges leave over the strip at the root.
+  // Add the height of the burr that plunges with a tilted edge leave above the strip at the root.
   const double across = rake_slope_ * sine + cosine;
   if (across > 0.0)
     slack_mm_ += workpiece.prediction(element).root_mm *
@@ -78,7 +77,8 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
     share_ = std::max(0.0, std::tan(half - rake.rad())) / std::sin(half);
   } else if (cut->is_by_clearance) {
     kind_ = Kind::plunge;
-    // Where the other facet's last surface crosses the slab that this one takes, and where it leaves the rake face.
+    // The limit has a kink where the last surface of the other facet crosses the layer that this plunge removes, and
+    // another kink where that surface crosses the rake face.
     bends_mm_ = {depth_mm * (1.0 + cosine) / sine, depth_mm / std::max(1e-9, sine - rake_slope_ * cosine)};
   } else {
     kind_ = Kind::plough;
@@ -97,14 +97,16 @@ double ChipLimit::at(double from_tip_mm, double beside_mm) const {
   return 0.0;
 }
 
-/// Of the slab that the facet's last cut left, and of what stands on the other facet, below the rake face.
+/// Returns the maximum chip thickness of a plunge. The chip consists of the layer that the last cut left on this facet
+/// and of the material on the other facet that is below the rake face.
 double ChipLimit::plunge_at(double from_tip_mm) const {
   const double depth_mm = depth_mm_ + slack_mm_;
   const double sine = std::sin(apex_.rad());
   const double cosine = std::cos(apex_.rad());
   const double rake_mm = from_tip_mm * rake_slope_;
   constexpr double kRight = 1e-9;
-  const double over_mm = from_tip_mm * sine - depth_mm;  // over the other facet's last surface, at the plunged one
+  // Height of the line's end on the plunged facet above the last surface of the other facet.
+  const double over_mm = from_tip_mm * sine - depth_mm;
   if (cosine < -kRight) return std::max(depth_mm, std::min(rake_mm, over_mm / cosine));
   if (cosine > kRight) return depth_mm + std::max(0.0, rake_mm - std::max(depth_mm, over_mm / cosine));
   return over_mm <= slack_mm_ ? std::max(depth_mm, rake_mm) : depth_mm;

@@ -1,6 +1,7 @@
 #pragma once
 
-// How thick chips get that a process's depth of cut leaves, line by line (docs/theory/verification.md).
+// Computes the chip thickness that follows from the process's depth of cut, for each measuring line of a section
+// (docs/theory/verification.md).
 
 #include <array>
 #include <limits>
@@ -13,12 +14,16 @@ namespace retrace::fabrication {
 /// Maximum allowed chip thickness of a cut, measured perpendicular to the plane that the cutting edge sweeps.
 class ChipLimit {
  public:
-  /// Of a move in one pose. \param cut the facet along which it cuts \param back from the machine's frame
+  /// Computes the limit for a move in one pose of the rotary axes.
+  /// \param cut facet along which the move cuts; empty: none
+  /// \param back transformation from the machine frame to the workpiece frame
   ChipLimit(const Workpiece3d& workpiece, std::size_t element, const std::optional<FacetCut>& cut,
             const ToolWedge& wedge, const RigidMotion& back);
 
-  /// \param from_tip_mm of the line, along the path from where the tip goes deepest; of a V along the section
-  /// \param beside_mm of that place from the section in which the line lies
+  /// Returns the maximum chip thickness on one measuring line, in mm.
+  /// \param from_tip_mm distance of the line from the deepest position of the tip, along the path. For a V-shaped tool,
+  ///        the distance is measured in the section
+  /// \param beside_mm distance of the deepest position of the tip from the section of the line
   double at(double from_tip_mm, double beside_mm) const;
   /// Distances from the tip, in mm, at which the limit has a kink or a jump.
   const std::array<double, 2>& bends_mm() const { return bends_mm_; }
@@ -30,9 +35,9 @@ class ChipLimit {
   double plunge_at(double from_tip_mm) const;
 
   Kind kind_ = Kind::between;
-  double depth_mm_ = 0.0;    ///< of the process
-  double slack_mm_ = 0.0;    ///< tolerance, and what tilted edges make unavoidable
-  double rake_slope_ = 0.0;  ///< of the rake face against the plunged facet
+  double depth_mm_ = 0.0;    ///< depth of cut of the process
+  double slack_mm_ = 0.0;    ///< tolerance plus the unavoidable residual material due to a tilted edge
+  double rake_slope_ = 0.0;  ///< tangent of the angle between the rake face and the plunged facet
   Angle apex_;
   double share_ = 0.0;     ///< limit divided by depth of cut, for kinds with a constant ratio
   double reach_mm_ = 0.0;  ///< V-shaped tool: distance from the neighbouring dihedral edge up to which `share_` applies

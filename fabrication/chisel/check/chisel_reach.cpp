@@ -29,7 +29,8 @@ double edge_mm_of(const geometry::Element& element) {
   return std::numbers::sqrt3 * geometry::element_depth_mm(element);
 }
 
-/// A machine on which the frame of a facet is the machine's: no axis turns, the pose does.
+/// Returns a machine without rotation of its axes, so that the frame of a facet equals the machine frame. The poses
+/// contain the rotation instead.
 Machine still_machine() {
   Machine machine;
   machine.x.direction.value = Vec3::UnitX();
@@ -38,7 +39,7 @@ Machine still_machine() {
   return machine;
 }
 
-/// Cuts one cavity with the tool's planes.
+/// Simulates the cutting of one cavity with the planes of the tool.
 class Cutter {
  public:
   Cutter(const geometry::Element& element, const Tool& tool)
@@ -49,7 +50,7 @@ class Cutter {
     for (std::size_t k = 0; k < 3; ++k) plunge(k);
   }
 
-  /// Share of a facet above which the material is gone, on a grid.
+  /// Returns the fraction of a facet that is free of material, sampled on a grid.
   double open_share() const {
     constexpr int kGrid = 60;
     constexpr double kOpenMm = 1e-5;
@@ -70,12 +71,13 @@ class Cutter {
   double core_mm() const { return surface_over(cavity_.root_mm, Vec3::UnitZ()); }
 
  private:
-  /// Plunges down the facet, the edge level, each to where an end of the edge meets a dihedral edge.
+  /// Adds plunges down the facet with a horizontal edge. Each plunge ends where an end of the edge meets a dihedral
+  /// edge.
   void plunge(std::size_t k) {
-    constexpr int kPasses = 1201;  // odd: one in the middle
+    constexpr int kPasses = 1201;  // odd, so that one pass is at the center
     const DesignFacet& facet = cavity_.facets[k];
     const Vec3 level = (cavity_.edges[(k + 1) % 3] - cavity_.edges[k]).normalized();
-    // In the frame of the tool the facet is the plane y = 0 with its normal along -y, and its slope goes up along z.
+    // In the frame of the tool, the facet is the plane y = 0. Its normal is -y, and its upward direction is z.
     RigidMotion pose;
     pose.rotation.row(0) = level.transpose();
     pose.rotation.row(1) = -facet.normal.transpose();
@@ -92,7 +94,7 @@ class Cutter {
     }
   }
 
-  /// Whether some plunge takes a point.
+  /// Returns true if a plunge removes a point.
   bool is_open(const Vec3& point) const {
     constexpr double kNear = 1e-9;
     return std::any_of(sweeps_.begin(), sweeps_.end(), [&](const SweptVolume& sweep) {
@@ -134,7 +136,7 @@ ChiselReach chisel_reach(const geometry::Element& element, const Tool& tool) {
     const Vec3 outwards(std::cos(azimuth), std::sin(azimuth), 0.0);
     const Vec3 up = (outwards + std::numbers::sqrt2 * Vec3::UnitZ()) / std::numbers::sqrt3;
     const Vec3 normal = (Vec3::UnitZ() - std::numbers::sqrt2 * outwards) / std::numbers::sqrt3;
-    // Up the rake face, away from the facet; the tool is above it.
+    // The rake face rises away from the facet. The tool is above the rake face.
     reach.caps[k].normal = std::sin(rake) * up - std::cos(rake) * normal;
     reach.caps[k].point_mm = half_mm * up;
   }
@@ -153,7 +155,7 @@ void check_chisel_reach(const geometry::Element& element, const Tool& tool, cons
     throw InputError(wedge, fmt::format("with clearance_deg must be > {}, or fins stay along dihedral edges, got {}",
                                         fixed_apart(least_deg, rake_deg, 3), shortest(rake_deg)));
   const double rake = Angle::from_deg(rake_deg).rad();
-  // Height of the core over the apex for each mm of the edge.
+  // Height of the core above the apex, per mm of edge length.
   const double rise =
       0.5 * std::sin(rake) * std::numbers::sqrt3 / (std::numbers::sqrt2 * std::sin(rake) - std::cos(rake));
   const double most_mm = geometry::element_depth_mm(element) / rise;

@@ -1,7 +1,7 @@
 #pragma once
 
-// How much of a cube corner a chisel with a straight edge can cut: the share it reaches and the core it leaves over the
-// apex.
+// Computes how much of a cube corner a chisel with a straight edge can cut: the fraction of the facets, and the height
+// of the core that remains above the apex.
 
 #include <array>
 
@@ -11,29 +11,30 @@
 
 namespace retrace::fabrication {
 
-/// What a chisel with a straight edge leaves in front of a facet of a cube corner: a plane through the deepest place of
-/// its edge, along its rake face.
+/// Plane that bounds the material that a chisel leaves in front of a facet of a cube corner. It contains the deepest
+/// position of the edge and is parallel to the rake face.
 struct ChiselCap {
-  geometry::Vec3 normal = geometry::Vec3::UnitZ();   ///< out of the material, of length 1
-  geometry::Vec3 point_mm = geometry::Vec3::Zero();  ///< on it, from the apex
+  geometry::Vec3 normal = geometry::Vec3::UnitZ();   ///< unit normal, out of the material
+  geometry::Vec3 point_mm = geometry::Vec3::Zero();  ///< point of the plane, relative to the apex
 };
 
-/// The part of a cube corner that plunges along its facets reach, with the edge level and passes infinitely close
-/// (docs/theory/micro_chiseling.md). Facet k lies between the dihedral edges at 120 k and 120 (k + 1) degrees.
+/// Part of a cube corner that can be cut by plunging along its facets with a horizontal edge and infinitely close
+/// passes (docs/theory/micro_chiseling.md). Facet k is between the dihedral edges at 120 k and 120 (k + 1) degrees.
 struct ChiselReach {
-  double facet_area_mm2 = 0.0;    ///< of one facet
-  double share = 0.0;             ///< of it that is reached: all but a triangle at the apex as high as half the edge
-  double core_mm = 0.0;           ///< height over the apex of what is left there
-  std::array<ChiselCap, 3> caps;  ///< in the part's frame; the material ends below all three
-  /// The same found by cutting with the tool's planes: 1201 plunges on either facet.
-  double cut_share = 0.0;
-  double cut_core_mm = 0.0;
+  double facet_area_mm2 = 0.0;    ///< area of one facet
+  double share = 0.0;             ///< cut fraction of a facet: all except a triangle at the apex, half an edge high
+  double core_mm = 0.0;           ///< height of the remaining core above the apex
+  std::array<ChiselCap, 3> caps;  ///< planes in the part frame; the remaining material is below all three planes
+  double cut_share = 0.0;         ///< same as `share`, computed by simulating 1201 plunges on each facet
+  double cut_core_mm = 0.0;       ///< same as `core_mm`, computed by this simulation
 };
 
-/// \pre the element is a cube corner, the tool a chisel
+/// Computes the part of a cube corner that a chisel can cut.
+/// \pre the element is a cube corner and the tool is a chisel
 ChiselReach chisel_reach(const geometry::Element& element, const Tool& tool);
 
-/// That what the chisel leaves over the apex stays below the blank's face, and nothing along the dihedral edges.
+/// Checks that the remaining core above the apex is below the blank's face, and that no material remains along the
+/// dihedral edges.
 /// \throw InputError at `width` or `wedge`
 void check_chisel_reach(const geometry::Element& element, const Tool& tool, const InputLocation& width,
                         const InputLocation& wedge);

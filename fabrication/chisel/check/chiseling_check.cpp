@@ -19,7 +19,7 @@ ChiselingCheck::ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& we
     : CutCheck(workpiece, wedge, control, findings) {
   for (const Groove& cavity : workpiece.grooves) {
     State state;
-    // Before the first cut, the remaining material is that of a layer whose apex is in the face of the blank.
+    // Before the first cut, all material remains. This is equivalent to a layer with its apex in the face of the blank.
     state.left_mm.fill((cavity.face_mm - cavity.axis.dot(cavity.root_mm)) / cavity.layer_rise);
     states_.push_back(state);
   }
@@ -48,7 +48,7 @@ void ChiselingCheck::open(const CutMove& move) {
   const Vec3 tip = move.back.point(move.sweep.to_mm);
   for (std::size_t f = 0; f < 3; ++f) {
     cut.tip_mm[f] = cavity.facets[f].height_mm(tip);
-    // The clearance face looks at the facet that is cut.
+    // The facet that is cut is the one whose normal is most nearly opposite to the normal of the clearance face.
     const double towards = cavity.facets[f].normal.dot(clearance_face);
     if (towards >= best) continue;
     best = towards;

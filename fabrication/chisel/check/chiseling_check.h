@@ -1,6 +1,6 @@
 #pragma once
 
-// Cube corners, cut by micro chiseling: layers, dwells, and whether chips come free.
+// Checks of the micro chiseling of cube corners: order of the layers, dwells, and separation of the chips.
 
 #include <array>
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace retrace::fabrication {
 
-/// Follows the V-shaped motions of diamond micro chiseling: dwells, and whether chips come free
-/// (docs/theory/micro_chiseling.md).
+/// Checks the V-shaped motions of diamond micro chiseling: the dwell at each apex, and the complete separation of each
+/// chip (docs/theory/micro_chiseling.md).
 class ChiselingCheck : public CutCheck {
  public:
   ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control, FindingList& findings);
@@ -26,21 +26,21 @@ class ChiselingCheck : public CutCheck {
   struct OpenCut {
     std::size_t element = 0;
     std::size_t facet = 0;
-    std::array<double, 3> tip_mm{};  ///< heights of the tip over the facets
+    std::array<double, 3> tip_mm{};  ///< heights of the tip above the three facets
     NcPlace place;
-    double rest_s = 0.0;  ///< at the apex
-    bool went_up = false;
+    double rest_s = 0.0;   ///< dwell time at the apex
+    bool went_up = false;  ///< true after the move up the second edge
   };
-  /// Material that remains on the facets of an element.
+  /// Progress of one element.
   struct State {
-    std::array<double, 3> left_mm{};
-    NcPlace last;
+    std::array<double, 3> left_mm{};  ///< thickness of the material that remains on each facet
+    NcPlace last;                     ///< program position of the last cut
   };
 
   void open(const CutMove& move);
-  /// Returns the tolerance, in mm, for the position of the tip at the apex of a layer: the largest allowed excess of
-  /// its height over the facet `other` above its height over the facet that is cut. It allows for the rounding to the
-  /// increments of the control.
+  /// Returns the tolerance, in mm, for the position of the tip at the apex of a layer. The tip should have equal
+  /// heights above all facets. The tolerance limits the difference between its height above the facet `other` and its
+  /// height above the facet that is cut. It allows for the rounding of positions to the increments of the control.
   double short_limit_mm(const OpenCut& cut, std::size_t other) const;
   /// Returns the tolerance, in mm, for the difference in remaining material between the facets of one element after a
   /// complete layer.

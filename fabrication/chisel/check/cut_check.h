@@ -1,6 +1,6 @@
 #pragma once
 
-// What the checks of single processes have in common: they follow the cuts of a tool within elements.
+// Common base class for the checks of single processes. They check the cuts of a tool in the elements.
 
 #include <fmt/format.h>
 
@@ -18,19 +18,19 @@
 
 namespace retrace::fabrication {
 
-/// A move of the tool within an element, in a pose.
+/// Move of the tool in an element, in one pose of the rotary axes.
 struct CutMove {
   const NcMotion& motion;
   const SweptVolume& sweep;
-  const RigidMotion& there;  ///< from the workpiece to the machine
-  const RigidMotion& back;
+  const RigidMotion& there;  ///< transformation from the workpiece frame to the machine frame
+  const RigidMotion& back;   ///< transformation from the machine frame to the workpiece frame
   std::size_t element = 0;
 };
 
-/// Judges depths, dwells and chips by the rules of one process.
+/// Checks depths of cut, dwells and chips by the rules of one process.
 class CutCheck {
  public:
-  /// All arguments must outlive it.
+  /// \pre all arguments outlive this object
   CutCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control, FindingList& findings)
       : workpiece_(workpiece),
         process_(workpiece.job->process),
@@ -39,23 +39,24 @@ class CutCheck {
         findings_(findings) {}
   virtual ~CutCheck() = default;
 
-  /// A move at a feed within the material of an element.
+  /// Checks a cutting move in the material of an element.
   virtual void move(const CutMove& cut) = 0;
   virtual void dwell(double seconds) = 0;
-  /// The tool has left the material, or turned, or the program ends.
+  /// Ends the present cut. It is called when the tool leaves the material, a rotary axis moves, or the program ends.
   virtual void close() = 0;
-  /// After the last program.
+  /// Ends the checks after the last program.
   virtual void finish() {}
 
  protected:
-  /// Tips of two cuts that are the same.
+  /// Maximum distance, in mm, between the tip positions of two cuts that are considered equal.
   static constexpr double kSameTipMm = 5e-7;
 
   void find(std::string kind, const NcPlace& place, std::size_t element, std::string message, double value = 0.0,
             double limit = 0.0) {
     findings_.add(std::move(kind), place.line, std::move(message), value, limit, static_cast<std::int64_t>(element));
   }
-  /// That a cut runs along a facet, and at no feed above that of its stage, which what it sweeps tells.
+  /// Checks that a cut follows a facet, and that its feed is allowed. The swept plane determines whether the feed for
+  /// roughing or the feed for finishing applies.
   void check_feed(const CutMove& cut) {
     const auto along = facet_cut(workpiece_.grooves[cut.element], wedge_, cut.sweep, cut.back);
     if (!along)
@@ -64,7 +65,7 @@ class CutCheck {
     const bool finishes = along && is_finishing(workpiece_, *along);
     control_.feed(cut.motion, finishes ? process_.finishing_feed_mm_per_min : process_.roughing_feed_mm_per_min);
   }
-  /// Whether a dwell is as long as the process asks for; a billionth is rounding of the text.
+  /// Returns true if a dwell is at least as long as the process requires. The tolerance allows for rounded numbers.
   bool is_long_enough(double seconds) const { return seconds >= process_.dwell_s - 1e-9; }
   void find_clearance_face(const CutMove& cut) {
     find("clearance_face_leads", cut.motion.place, cut.element,
@@ -78,13 +79,13 @@ class CutCheck {
   FindingList& findings_;
 };
 
-/// Of a cut that is too thin for its edge.
+/// Returns the message for a cut that is too thin for the edge.
 inline std::string rubbing_text(double takes_um, double least_um) {
   return fmt::format("the cut takes {} um at most, all along it, and the edge rubs below {} um", fixed(takes_um, 4),
                      shortest(least_um));
 }
 
-/// Share of a cutting move that may lead towards the facet: rounding of its end points.
+/// Maximum component of a cutting direction towards the facet. It allows for rounded end points of the move.
 inline constexpr double kMostSlip = 1e-3;
 
 }  // namespace retrace::fabrication

@@ -11,7 +11,7 @@ namespace {
 
 using geometry::Vec3;
 
-/// Rounding of positions in the text.
+/// Tolerance for rounded positions in the program.
 constexpr double kRoundingMm = 2e-6;
 
 }  // namespace

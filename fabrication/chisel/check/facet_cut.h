@@ -1,6 +1,7 @@
 #pragma once
 
-// Which facet a move of the tool cuts, and whether it finishes it: told from what the edge sweeps, not from names.
+// Determines which facet a move of the tool cuts, and whether the move finishes this facet. The result depends on the
+// plane that the edge sweeps, and not on names in the program.
 
 #include <cstddef>
 #include <optional>
@@ -9,28 +10,31 @@
 
 namespace retrace::fabrication {
 
-/// A move whose edge sweeps a plane along one of an element's facets.
+/// Cut along a facet: the edge sweeps a plane that is nearly parallel to the facet.
 struct FacetCut {
   std::size_t facet = 0;
-  double left_mm = 0.0;          ///< that the swept plane leaves over the facet, where it comes nearest
-  bool is_by_clearance = false;  ///< the clearance face looks at the facet: a chisel plunges along it
+  double left_mm = 0.0;          ///< minimum distance between the swept plane and the facet
+  bool is_by_clearance = false;  ///< true if the clearance face is next to the facet, as in a plunge with a chisel
 };
 
-/// Nothing for a move along none of them, such as a retract between both. \param back from the machine's frame
+/// Returns the cut of a move. Returns nothing for a move along no facet, such as a retract between both facets.
+/// \param back transformation from the machine frame to the workpiece frame
 std::optional<FacetCut> facet_cut(const Groove& groove, const ToolWedge& wedge, const SweptVolume& sweep,
                                   const RigidMotion& back);
 
-/// Normal of the plane that the edge sweeps, in the frame of the machine; zero where it sweeps none.
+/// Returns the normal of the plane that the edge sweeps, in the machine frame. Returns zero if the edge moves along
+/// itself and sweeps no plane.
 geometry::Vec3 swept_normal(const ToolWedge& wedge, const SweptVolume& sweep);
 
-/// What finishing takes off every facet of a job, 0 where its strategy has no finishing cuts.
+/// Returns the thickness that finishing removes from every facet, or 0 if the strategy has no finishing cuts.
 double finishing_allowance_mm(const Workpiece3d& workpiece);
 
-/// Whether the swept plane lies within the finishing allowance of the design: such a cut finishes, however the program
-/// calls it, and is to be made at finishing feed and depth.
+/// Returns true if the swept plane is inside the finishing allowance. Such a cut is a finishing cut, regardless of its
+/// name in the program, and must use the feed and depth of finishing.
 bool is_finishing(const Workpiece3d& workpiece, const FacetCut& cut);
 
-/// The process's depth of cut for that move, of roughing or of finishing. \param cut nothing: along no facet
+/// Returns the depth of cut of the process for a move, for roughing or finishing.
+/// \param cut cut of the move; empty: the move is along no facet
 double depth_of_cut_mm(const Workpiece3d& workpiece, const std::optional<FacetCut>& cut);
 
 }  // namespace retrace::fabrication

@@ -18,7 +18,8 @@ Prediction predict_cube(const Machine& machine, const Groove& cavity, const Tool
   Prediction prediction;
   prediction.step_mm = 1e-6 * static_cast<double>(machine.increments.linear_nm);
   for (const DesignFacet& facet : cavity.facets) {
-    // Nominal pose: C turns what the facet faces to -x, B leans the tool against it.
+    // Nominal pose: C rotates the horizontal direction of the facet's normal to -x, and B inclines the tool to the
+    // facet.
     const double facing = std::atan2(facet.normal.y(), facet.normal.x());
     RotaryPose near;
     near.c_deg = machine.c.sign.value * Angle::from_rad(std::numbers::pi - facing).deg();
@@ -66,7 +67,7 @@ Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge
   const double length_mm = groove.facet_length_mm + groove.stock_mm / groove.axis.dot(groove.facets[0].up_slope);
   for (std::size_t f = 0; f < 2; ++f) {
     const Vec3& normal = groove.facets[f].normal;
-    // Nominal pose: C turns what the facet faces to -y_w, A stands it up.
+    // Nominal pose: C rotates the horizontal direction of the facet's normal to -y_w, and A makes the facet vertical.
     const double facing = std::atan2(normal.y(), normal.x());
     RotaryPose near;
     near.c_deg = machine.c.sign.value * Angle::from_rad(-0.5 * std::numbers::pi - facing).deg();
@@ -77,7 +78,8 @@ Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge
     const RigidMotion motion = machine_from_workpiece(machine, prediction.poses[f].pose);
     prediction.wall_mm =
         std::max(prediction.wall_mm, wall_overcut_mm(groove, wedge, prediction.pass_normal, motion, length_mm));
-    // The edge stays level while it ploughs the other facet, whose normal has a part along it.
+    // The edge remains horizontal while it ploughs the other facet. The normal of that facet has a component along the
+    // edge.
     const std::size_t other = 1 - f;
     const DesignFacet& ploughed = groove.facets[other];
     const Vec3 root = motion.direction(groove.root_direction);

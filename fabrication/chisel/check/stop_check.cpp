@@ -12,7 +12,7 @@ namespace {
 
 using geometry::Vec3;
 
-/// Rounding of positions and of times.
+/// Factor on limits that allows for rounded positions and times.
 constexpr double kSlack = 1.0 + 1e-4;
 
 }  // namespace
@@ -47,7 +47,7 @@ void StopCheck::check_length(const CutMove& cut, const FacetCut& along) {
   const auto& life_mm = workpiece_.job->tool.edge_life_mm;
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   const Groove& groove = workpiece_.grooves[cut.element];
-  // A chisel that goes up the facet that it has plunged leaves it.
+  // A chisel that moves up along the plunged facet does not cut, so this move does not wear the edge.
   if (!life_mm || (!groove.is_cube() && along.is_by_clearance && travel.z() > 0.0)) return;
   const double from_mm = groove.over_face_mm(cut.back.point(cut.sweep.from_mm));
   const double to_mm = groove.over_face_mm(cut.back.point(cut.sweep.to_mm));

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a job asks of its stops: that edges cut no more than their life, that programs run no longer than they may, that
-// elements are inspected between roughing and finishing, and that nothing is cut cold.
+// Checks of the stops in programs: tool life of the edges, maximum run time between stops, inspection between roughing
+// and finishing, and warm-up of the machine before the first cut.
 
 #include <cstdint>
 #include <vector>
@@ -10,17 +10,19 @@
 
 namespace retrace::fabrication {
 
-/// Follows programs from stop to stop. What goes beyond a limit is found once between two stops.
+/// Checks programs from stop to stop. Each kind of finding is added at most one time between two stops.
 class StopCheck {
  public:
-  /// All arguments must outlive it.
+  /// \pre all arguments outlive this object
   StopCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, FindingList& findings);
 
-  /// A program begins. \param now_s that all programs have taken so far
+  /// Starts the checks of a program.
+  /// \param now_s total run time of all programs so far
   void begin(double now_s);
-  /// The program waits for the operator.
+  /// Starts the checks after a stop at which the program waits for the operator.
   void stop(double now_s);
-  /// A move at a feed within the material of an element. \param now_s when it ends
+  /// Checks a cutting move in the material of an element.
+  /// \param now_s total run time at the end of the move
   void cut(const CutMove& cut, double now_s);
 
  private:
@@ -31,13 +33,13 @@ class StopCheck {
   const Workpiece3d& workpiece_;
   const ToolWedge& wedge_;
   FindingList& findings_;
-  double began_s_ = 0.0;  ///< to run, since the last stop
-  double cut_mm_ = 0.0;   ///< by the edge
-  bool has_cut_ = false;  ///< since the last stop
-  bool is_worn_ = false;  ///< was found
-  bool is_late_ = false;
-  std::int64_t stops_ = 0;                   ///< and beginnings
-  std::vector<std::int64_t> roughed_after_;  ///< by element: stops before its last roughing cut
+  double began_s_ = 0.0;                     ///< time of the last stop or program start
+  double cut_mm_ = 0.0;                      ///< length that the present edge has cut
+  bool has_cut_ = false;                     ///< true after the first cut since the last stop
+  bool is_worn_ = false;                     ///< true after a finding about the tool life of the present edge
+  bool is_late_ = false;                     ///< true after a finding about the run time since the last stop
+  std::int64_t stops_ = 0;                   ///< number of stops and program starts so far
+  std::vector<std::int64_t> roughed_after_;  ///< for each element: value of `stops_` at its last roughing cut
 };
 
 }  // namespace retrace::fabrication

@@ -33,7 +33,7 @@ using geometry::Vec3;
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 
 bool has_poses_of(const Workpiece3d& workpiece, const std::vector<RotaryPose>& words) {
-  // Poses are written with seven digits; between the shipped machines they differ by far more.
+  // Programs contain rotary positions with seven decimals. The poses of different shipped machines differ by much more.
   constexpr double same_deg = 1e-5;
   const auto is_solved = [&](const RotaryPose& word) {
     for (const Prediction& prediction : workpiece.predictions)
@@ -47,7 +47,7 @@ bool has_poses_of(const Workpiece3d& workpiece, const std::vector<RotaryPose>& w
   return !words.empty() && std::all_of(words.begin(), words.end(), is_solved);
 }
 
-/// Refuses a program whose poses are those that another measured machine needs.
+/// Refuses a program if its rotary poses match another machine with measured axes.
 void refuse_other_machine(const Job& job, const Machine& machine, const std::vector<Machine>& others,
                           const Workpiece3d& workpiece, const std::vector<RotaryPose>& words, const std::string& file) {
   if (has_poses_of(workpiece, words)) return;
@@ -61,7 +61,8 @@ void refuse_other_machine(const Job& job, const Machine& machine, const std::vec
   }
 }
 
-/// Returns the largest difference between a dihedral angle of the cut cube corner and the design, in arc minutes.
+/// Returns the largest error of the three dihedral angles of a cube corner, relative to the design, in arc minutes. The
+/// result is positive if the angle is too large.
 double dihedral_error_arcmin(const Groove& cavity, const ElementFigures& figures) {
   std::vector<Vec3> normals;
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
@@ -89,7 +90,7 @@ ElementResult result_of(const Groove& groove, const ElementFigures& figures) {
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const FacetFigures& facet = figures.facets[f];
     result.facet_angle_arcmin[f] = std::atan(std::hypot(facet.slope_up, facet.slope_along)) * kArcminPerRad;
-    // A facet that rises above the design up its slope leans into the groove.
+    // A facet with a positive slope is inclined into the groove, which reduces the angle between the facets.
     result.apex_error_arcmin -= std::atan(facet.slope_up) * kArcminPerRad;
   }
   if (groove.is_cube()) result.apex_error_arcmin = dihedral_error_arcmin(groove, figures);
@@ -119,8 +120,8 @@ class Judge {
   }
 
  private:
-  /// What is left at the root of a facet was left by the plunges along the other one; a job that only ploughs it turns
-  /// no edge for it.
+  /// Returns the predicted residual material at the root of a facet. It comes from the plunges along the other facet.
+  /// In a unidirectional job, only one facet is plunged, and the larger of both values is used.
   double root_limit_mm(const Prediction& prediction, std::size_t facet) const {
     if (workpiece_.job->strategy == Strategy::dmc) return prediction.fin_mm;
     return workpiece_.job->strategy == Strategy::unidirectional ? prediction.root_mm : prediction.root_of_mm[1 - facet];
@@ -155,7 +156,8 @@ class Judge {
   Verification& result_;
 };
 
-/// Returns the volume of one element of a zone below the blank's face. Overlaps of hexagonal cavities are not included.
+/// Returns the volume of one element of a zone below the blank's face. For hexagonal elements, it is the volume inside
+/// of the hexagon, without the corners of the triangular cavity outside.
 double design_volume_mm3(const Job& job, std::size_t zone) {
   const geometry::Cell cell = geometry::element_cell(blank_element(job, zone), angle_errors_of(job, zone));
   double volume_mm3 = 0.0;
@@ -164,10 +166,9 @@ double design_volume_mm3(const Job& job, std::size_t zone) {
   return volume_mm3;
 }
 
-/// What triangular cavities take beyond the hexagons of their elements. In units of the cube's edge a the blank's face
-/// passes above N cubes that lie open, of which it leaves a sixth each, and cuts a sixth off each of the M cubes above
-/// them: M corners of hexagons at dihedral edges (docs/theory/micro_chiseling.md).
-/// On a base that is so of the array when it is rolled out.
+/// Returns the volume that triangular cavities remove outside of the hexagons of their elements. It is (M - N) a^3 / 6,
+/// where a is the edge length of the cubes, N the number of cut elements, and M the number of distinct hexagon corners
+/// at their dihedral edges (docs/theory/micro_chiseling.md). On a substrate, the formula applies to the unrolled array.
 double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
   const std::vector<Groove>& cavities = workpiece.grooves;
   std::set<std::pair<std::int64_t, std::int64_t>> corners;
@@ -178,12 +179,12 @@ double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<Elemen
     ++cut;
     edge_mm = 0.5 * cavities[i].facet_length_mm;
     for (int k = 0; k < 3; ++k) {
-      // Edges go out at -90, 30 and 150 degrees; hexagons are not turned.
+      // The dihedral edges have the azimuths -90, 30 and 150 degrees, because hexagonal elements are not rotated.
       const double azimuth = 2.0 * std::numbers::pi / 3.0 * k - 0.5 * std::numbers::pi;
       const geometry::Vec2 outwards(std::cos(azimuth), std::sin(azimuth));
       const geometry::Vec2 from_first =
           workpiece.elements[i].centre_mm - workpiece.elements.front().centre_mm + cavities[i].half_base_mm * outwards;
-      // Corners lie on a grid of half the radius by half the width of the hexagons.
+      // The corners are points of a grid with the steps half width (in x) and half radius (in y) of the hexagons.
       const double half_radius_mm = 0.5 * cavities[i].half_base_mm;
       corners.emplace(std::llround(from_first.x() / (std::numbers::sqrt3 * half_radius_mm)),
                       std::llround(from_first.y() / half_radius_mm));
@@ -213,7 +214,8 @@ bool has_errors(const Job& job) {
   return false;
 }
 
-/// Which elements the runs of a job with a base belong to; none for others.
+/// Finds the element that each run of a subroutine cuts. Returns an empty list for jobs without a substrate, where it
+/// is not needed.
 std::vector<std::optional<std::size_t>> visits_of(const Workpiece3d& workpiece,
                                                   const std::vector<NcProgram>& programs) {
   if (!workpiece.job->substrate) return {};
@@ -226,7 +228,7 @@ std::vector<std::optional<std::size_t>> visits_of(const Workpiece3d& workpiece,
   return finder.elements();
 }
 
-/// What the tool's nose leaves in the dihedral edges of all elements.
+/// Computes the residual material that the rounded nose of the tool leaves along the dihedral edges of all elements.
 void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, const std::vector<RigidMotion>& poses,
                    Verification& result) {
   const Tool& tool = workpiece.job->tool;
@@ -243,7 +245,7 @@ void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, cons
   }
 }
 
-/// What the cuts of an element take, one after the other, of the blank.
+/// Computes the chips of all cuts of an element, in the order of cutting.
 ChipFigures chips_of(const Workpiece3d& workpiece, const BlankFace& face, std::size_t element,
                      std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses, const ToolWedge& wedge) {
   const Job& job = *workpiece.job;
@@ -259,7 +261,7 @@ ChipFigures chips_of(const Workpiece3d& workpiece, const BlankFace& face, std::s
 
 std::string_view Verification::verdict() const {
   if (passes()) return "pass";
-  // Kinds that say what is left, and nothing of how the rest was cut.
+  // Kinds of findings that report remaining material only.
   constexpr std::array<std::string_view, 4> kUnfinished = {"excess", "element_missing", "root_residual",
                                                            "layer_unfinished"};
   const bool is_unfinished = std::all_of(findings.begin(), findings.end(), [&](const Finding& finding) {

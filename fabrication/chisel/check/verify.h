@@ -1,6 +1,7 @@
 #pragma once
 
-// The verdict on NC programs of a chisel job: carries them out, cuts the blank, and compares it with the design.
+// Verification of the NC programs of a chisel job: simulates the cuts and compares the machined surface with the
+// design.
 
 #include <array>
 #include <cstdint>
@@ -19,66 +20,72 @@
 
 namespace retrace::fabrication {
 
-/// Tolerance of facet planes that can be kept: 10 nm, or where it is more, what rounding to the increments of a Fanuc's
-/// words does at most at a root: the cuts of its two facets are off by half the diagonal of a box of them each.
+/// Returns the default tolerance for facet planes, in nm. It is 10 nm, or the maximum effect of rounded positions if
+/// that is larger. Rounding displaces the cuts of two facets by up to half the diagonal of a cube of one increment
+/// each. These displacements add up at the root. Only the increments of Fanuc programs are larger than 1 nm.
 double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs);
 
 struct VerifyOptions {
-  std::optional<double> tolerance_nm;  ///< of facet planes; > 0; without one usual_tolerance_nm()
-  std::size_t standing = 0;  ///< so many of the programs, from the first, are not judged: they made what stands
+  std::optional<double> tolerance_nm;  ///< tolerance for facet planes, > 0; empty: usual_tolerance_nm()
+  std::size_t standing = 0;            ///< number of programs at the beginning that are simulated but not checked
 };
 
-/// One element that a program leaves.
+/// Result for one element.
 struct ElementResult {
   ElementFigures figures;
-  std::vector<double> facet_angle_arcmin;  ///< of each facet's normal to the design's; none if it is not cut
-  double apex_error_arcmin = 0.0;  ///< of the angle between the facets, positive opens it; of a cube corner the largest
+  /// Angle between the normals of each facet as cut and as designed; empty if the element is not cut.
+  std::vector<double> facet_angle_arcmin;
+  /// Error of the angle between the facets, positive if the groove is too wide. Cube corner: the largest of three
+  /// errors.
+  double apex_error_arcmin = 0.0;
 };
 
-/// What programs do to a blank, judged against the design of the job.
+/// Result of the verification of programs.
 struct Verification {
   std::vector<Finding> findings;
   std::vector<ElementResult> elements;
   double tolerance_nm = 0.0;
   double facet_distance_nm_max = 0.0;
   double facet_angle_arcmin_max = 0.0;
-  double facet_angle_arcmin_predicted =
-      0.0;                             ///< tilt along the root that ploughing with a tilted edge makes unavoidable
-  double apex_error_arcmin_max = 0.0;  ///< of the largest size
+  double facet_angle_arcmin_predicted = 0.0;  ///< unavoidable tilt along the root, due to ploughing with a tilted edge
+  double apex_error_arcmin_max = 0.0;         ///< error with the largest absolute value, with its sign
   double root_residual_nm_max = 0.0;
   double root_residual_nm_predicted = 0.0;
   double wall_overcut_nm_max = 0.0;
   double wall_overcut_nm_predicted = 0.0;
-  double chip_um_max = 0.0;      ///< that a cut takes along a line square to the plane that its edge sweeps
-  double chip_share_max = 0.0;   ///< of what is borne there: above 1 it is found
-  double root_radius_um = 0.0;   ///< that the tool's edge leaves at the root
-  double root_chamfer_um = 0.0;  ///< width across the strips that the nose of a V leaves beside dihedral edges
-  double root_ridge_um = 0.0;    ///< height of the ridge that stays between them, over the edge
-  /// Volume that the cavities of hexagonal cube corners, which are triangular, take beyond the elements' apertures:
-  /// what the outermost of them must.
+  double chip_um_max = 0.0;      ///< maximum chip thickness, perpendicular to the plane that the edge sweeps
+  double chip_share_max = 0.0;   ///< maximum chip thickness divided by its limit; values above 1 give a finding
+  double root_radius_um = 0.0;   ///< radius of the root due to the radius of the tool's edge
+  double root_chamfer_um = 0.0;  ///< total width of the strips that the nose of a V-shaped tool leaves at an edge
+  double root_ridge_um = 0.0;    ///< height of the ridge between these strips, above the dihedral edge
+  /// Volume that is unavoidably removed outside of the apertures of hexagonal cube corners. Their cavities are
+  /// triangular, so that the outermost ones extend beyond the array.
   double border_overcut_mm3 = 0.0;
-  /// By which cuts of neighbours go under an element's rims where these stand at different heights, as they must.
+  /// Maximum depth by which cuts of neighbouring elements unavoidably go below the rims of an element. This happens
+  /// where the rims have different heights.
   double rim_overcut_um_max = 0.0;
-  /// Job with zones: maximum depth and area (in plan) of the material that cavities unavoidably remove from elements of
+  /// Job with zones: area (in plan) and maximum depth of the material that cavities unavoidably remove from elements of
   /// other zones, and the number of these elements.
   double zone_overcut_mm2 = 0.0;
   double zone_overcut_um_max = 0.0;
   std::int64_t elements_overcut = 0;
   double removed_volume_mm3 = 0.0;
-  double free_tool_length_mm = 0.0;  ///< that the tool needs to keep its holder clear of the blank
+  /// Minimum distance between edge and holder that keeps the holder clear of the blank.
+  double free_tool_length_mm = 0.0;
   ProgramTime time;
   std::int64_t elements_cut = 0;
-  std::vector<RotaryPose> poses;  ///< of the programs, in the order in which tools came down in them
+  std::vector<RotaryPose> poses;  ///< rotary poses of the cuts, in the order of the programs
 
   bool passes() const { return findings.empty(); }
-  /// "pass"; "incomplete" if nothing is wrong but that material is left which later programs can cut; "fail"
+  /// Returns "pass" if there are no findings. Returns "incomplete" if all findings are about remaining material, which
+  /// later programs can cut. Otherwise returns "fail".
   std::string_view verdict() const;
 };
 
-/// Carries out the programs one after the other, cuts the blank and compares. Nothing of planner or writers is used:
-/// predictions come from job and machine.
-/// \param others machines that a program might have been made for by mistake
-/// \throw InputError for a program that cannot be carried out, or one that was made for another machine
+/// Simulates the programs in their order and compares the machined surface with the design. It shares no code with the
+/// planner and the writers of programs. All predictions are computed from the job and the machine.
+/// \param others machines for which a program may have been made by mistake
+/// \throw InputError for a program that cannot be simulated, or one that was made for another machine
 Verification verify_programs(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                              const VerifyOptions& options, const std::vector<Machine>& others,
                              const Cancellation* cancellation = nullptr);

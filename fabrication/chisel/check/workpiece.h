@@ -1,6 +1,6 @@
 #pragma once
 
-// What must be known to judge programs of a job: its elements as designed, and what the machine makes unavoidable.
+// Data for the verification of a job's programs: the designed elements and the unavoidable errors of the machine.
 
 #include <vector>
 
@@ -12,7 +12,7 @@
 
 namespace retrace::fabrication {
 
-/// What must be known to judge a program.
+/// Job, machine, designed elements and predicted errors, which the checks of programs use.
 struct Workpiece3d {
   const Job* job = nullptr;
   const Machine* machine = nullptr;
@@ -24,11 +24,13 @@ struct Workpiece3d {
   const Prediction& prediction(std::size_t element) const { return predictions[grooves[element].group]; }
 };
 
-/// Job and machine must outlive it. \param tolerance_nm of facet planes; > 0
+/// Builds the data for the verification of a job's programs.
+/// \param tolerance_nm tolerance for facet planes, in nm
+/// \pre job and machine outlive the result; tolerance_nm > 0
 /// \throw InputError if the machine cannot plunge a facet
 Workpiece3d workpiece_of(const Job& job, const Machine& machine, double tolerance_nm = 10.0);
 
-/// The cutting wedge of a job's tool.
+/// Returns the cutting wedge of the job's tool.
 ToolWedge wedge_of(const Job& job, const Machine& machine);
 
 }  // namespace retrace::fabrication

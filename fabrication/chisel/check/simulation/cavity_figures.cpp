@@ -15,15 +15,16 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Nearer to a dihedral edge than this a line runs into what the other facet keeps as soon as that is off: what is left
-/// counts for the edge, and so far from the facet.
+/// Width of the strip along a dihedral edge in which residual material is attributed to the edge and not to a facet. A
+/// measuring line in this strip also meets residual material of the neighbouring facet.
 constexpr double kStripMm = kEdgeStripMm;
-/// Lines stay this share of a facet within its borders.
+/// Minimum distance of measuring lines from the border of a facet, relative to the facet's size.
 constexpr double kWithin = 1e-6;
-/// Directions from the apex on both sides of the tool's leading edge.
+/// Angle between the tool's leading edge and the two measured directions on both sides of it.
 constexpr double kBesideLeadingRad = 1e-5;
 
-/// Places of a facet: along its two dihedral edges, from the apex.
+/// Generates the measured points of a facet. Their coordinates are distances from the apex along the two dihedral edges
+/// of the facet.
 class Places {
  public:
   /// \param edges_mm lengths of the two dihedral edges
@@ -61,7 +62,7 @@ class Places {
   static std::vector<double> shares() {
     return {1e-4, 0.013, 0.11, 0.23, 0.37, 0.49, 0.61, 0.73, 0.87, 0.97, 1.0 - kWithin};
   }
-  /// From the apex to the facet's border.
+  /// Returns the distance from the apex to the border of the facet in a direction.
   double reach(const Vec2& unit) const {
     const Vec2 shares = unit.cwiseQuotient(edges_mm_);
     return is_hexagonal_ ? 0.5 / shares.maxCoeff() : 1.0 / shares.sum();
@@ -88,10 +89,10 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
 }
 
 /// Returns the height above a facet, along its normal, up to which material is attributed to this facet. The height is
-/// limited by the blank's face, and by another facet if that facet overhangs (less than 90 degrees between the facets).
-/// Close to a dihedral edge, the limit is the boundary of the strip along this edge. Close to both other facets, the
-/// normal runs along their common dihedral edge. The limit is then the height of the fin that the rounding of positions
-/// may leave there.
+/// limited by the blank's face, and by another facet if the angle between both facets is less than 90 degrees. Close to
+/// a dihedral edge, it is limited by the strip along this edge. Close to both other facets, the normal is nearly
+/// parallel to their common dihedral edge. A fin may remain at that edge due to rounded positions, and limits the
+/// height.
 double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge, double fin_mm) {
   constexpr double kParallel = 1e-9;
   const Vec3& normal = cavity.facets[facet].normal;
@@ -113,8 +114,9 @@ double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool 
   return std::min(exit, fin_exit);
 }
 
-/// Share of a facet's breadth at its edges, and of its edges' length below the blank's face, from which its plane is
-/// not taken: a facet that stands above its design leaves the blank there.
+/// Width of the margins that are excluded from the fit of a facet's plane, relative to the edge length. There are
+/// margins along the dihedral edges and below the blank's face. A facet above its design position leaves the blank near
+/// the face.
 constexpr double kPlaneMargin = 0.02;
 
 void take(FacetFigures& figures, const Vec2& place, const LineSurface& surface) {

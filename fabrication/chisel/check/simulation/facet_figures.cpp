@@ -10,30 +10,33 @@ namespace {
 
 using geometry::Vec3;
 
-/// Lines stay this far off the corners of the envelope, where they would run within a plane of the tool.
+/// Distance of measuring lines from the corners of the machined surface. A line through a corner would lie in a plane
+/// of the tool.
 constexpr double kOffCornerMm = 2e-7;
-/// Nearer to the root than this a line cannot tell the facets apart.
+/// Minimum distance from the root, in mm, at which a measuring line can distinguish the two facets.
 constexpr double kLeastStripMm = 2e-6;
-/// Where what is left at the root is taken.
+/// Distance from the root, in mm, of the line that measures the residual material at the root.
 constexpr double kAtRootMm = 1.5e-6;
-/// Of a facet's length: up to there a layer over the other facet may count for the root, whatever the tolerance is.
+/// Maximum thickness of the layer over the other facet that is attributed to the root, relative to the facet's length.
+/// The limit applies to large tolerances.
 constexpr double kMostLayerShare = 0.01;
-/// Of half the width: up to there the ends of the edge may be off by the tolerance, however wide that is.
+/// Maximum tolerance for the positions of the ends of the edge, relative to half of the width.
 constexpr double kMostEndShare = 0.01;
-/// Margin on what is predicted of the region at the root: rounding of poses and positions.
+/// Safety factor on the predicted size of the strip at the root. It allows for rounded poses and positions.
 constexpr double kRootMargin = 1.05;
 constexpr int kEvenLines = 12;
-/// Passes of the tool whose middles are this close are one: what ploughing leaves differs by picometres then.
+/// Maximum distance, in mm, between the centers of two passes that count as one pass. Their ploughed surfaces differ by
+/// picometres only.
 constexpr double kSamePassMm = 3e-6;
-/// Inner part of the width from which a facet's plane is taken.
+/// Fraction of the width that is used to fit the plane of a facet. The ends of the facet are excluded.
 constexpr double kPlaneShare = 0.8;
 /// Distance from the root, in lengths of a facet, up to which a sweep beside a station is known to miss its lines.
 constexpr double kReachShare = 4.0;
 
-/// Where sections are taken, along the root, and which passes of the tool cover them.
+/// Positions, along the root, of the measured sections and of the passes of the tool.
 struct Stations {
-  std::vector<double> along_mm;
-  std::vector<double> pass_middles_mm;
+  std::vector<double> along_mm;         ///< positions of the sections
+  std::vector<double> pass_middles_mm;  ///< center of each pass
 };
 
 class Measurer {
@@ -50,14 +53,17 @@ class Measurer {
     find_burr();
   }
 
-  /// The facet that the first cuts stand upright for the tool.
+  /// Returns the facet that the first cut plunges. In the pose of that cut, its normal is the one that is more nearly
+  /// opposite to the normal of the clearance face.
   std::size_t plunged_facet() const {
     const Vec3 n = poses_[sweeps_.front().pose].direction(groove_.facets[0].normal);
     const Vec3 up = wedge_.sides[0].outward;
     return n.dot(up) < poses_[sweeps_.front().pose].direction(groove_.facets[1].normal).dot(up) ? 0 : 1;
   }
 
-  /// \param is_other_ploughed the other facet is, and its floor rises along the edge by what is predicted
+  /// Measures the deviations of a facet from the design.
+  /// \param is_ploughed true if this facet is ploughed
+  /// \param is_other_ploughed true if the other facet is ploughed. Its surface then rises along the edge as predicted
   FacetFigures measure(std::size_t facet, bool is_ploughed, bool is_other_ploughed) {
     FacetFigures figures;
     figures.is_ploughed = is_ploughed;
@@ -96,7 +102,7 @@ class Measurer {
     return slant * sine_between() / (1.0 + groove_.facets[0].up_slope.dot(groove_.facets[1].up_slope));
   }
 
-  /// Part of the width that a station stands for: halfway to its neighbours.
+  /// Returns the width of the facet that a station represents. It extends halfway to the neighbouring stations.
   double width_of_station(std::size_t k) const {
     const std::vector<double>& at = stations_.along_mm;
     const double low = k == 0 ? -groove_.half_width_mm : 0.5 * (at[k - 1] + at[k]);
@@ -104,15 +110,16 @@ class Measurer {
     return high - low;
   }
 
-  /// The plane of a facet is taken where neither root nor rim nor the tool's ends disturb it.
+  /// Returns true if a point is used to fit the plane of a facet. Points near the root, the rim and the ends of the
+  /// tool are excluded.
   bool is_for_plane(double slant, double along) const {
     return std::abs(along) <= plane_end_mm_ && slant >= std::max(burr_end_mm_, 0.02 * groove_.facet_length_mm) &&
            slant <= 0.98 * groove_.facet_length_mm;
   }
 
-  /// Plunges along the two facets whose tips end up to t up the facets leave a burr between their rake faces, free of
-  /// the facets beyond the strip (docs/theory/verification.md). Rake faces that do not cross leave a fin, which no
-  /// prediction excuses.
+  /// Computes the position and height of the burr that plunges along the two facets may leave at the root. It remains
+  /// between the rake faces if the tips end above the root by up to t, measured along the facets
+  /// (docs/theory/verification.md). If the rake faces do not intersect, a fin remains, which is not allowed.
   void find_burr() {
     const double up = wedge_.rake_direction.dot(wedge_.clearance_direction);
     const double slope = std::tan(std::acos(std::clamp(up, -1.0, 1.0)) + std::asin(wedge_.sides[0].outward.z()));
@@ -134,7 +141,8 @@ class Measurer {
     return normal.dot(sweep.to_mm - pose.point(groove_.root_mm)) / normal.dot(pose.direction(groove_.root_direction));
   }
 
-  /// \param end_mm by which a pass may be off along the root
+  /// Finds the passes of the tool and the positions of the measured sections.
+  /// \param end_mm tolerance for the position of a pass along the root
   void find_stations(double end_mm) {
     for (const SweptVolume& sweep : sweeps_) {
       const double middle = middle_of(sweep);
@@ -142,7 +150,8 @@ class Measurer {
       if (std::none_of(stations_.pass_middles_mm.begin(), stations_.pass_middles_mm.end(), is_same))
         stations_.pass_middles_mm.push_back(middle);
     }
-    // The ends of a tilted edge leave slivers at the walls, which the neighbours' cuts take.
+    // The ends of a tilted edge leave thin slivers at the walls. The cuts of the neighbouring elements remove these
+    // slivers, so they are not measured.
     const double margin = prediction_.wall_mm + end_mm + 2.0 * kSamePassMm;
     const double end = groove_.half_width_mm - margin;
     stations_.along_mm = {-end, -kPlaneShare * end, kPlaneShare * end, end};
@@ -150,10 +159,11 @@ class Measurer {
     if (stations_.pass_middles_mm.size() > 1) add_stations_of_passes(margin, end);
   }
 
-  /// Adds stations on both sides of every end of a pass, and in the middle of each gap that no pass covers. A pass is
-  /// therefore measured also where only this pass cuts, which shows a pass that is missing or too high.
+  /// Adds stations on both sides of every end of a pass, and at the center of each gap between passes. Overlapping
+  /// passes hide each other's errors. The added stations also measure a pass where no other pass cuts, and so reveal a
+  /// pass that is missing or too high.
   /// \param margin_mm distance of a station from the end of a pass
-  /// \param end_mm stations lie between -end_mm and end_mm
+  /// \param end_mm stations are between -end_mm and end_mm
   void add_stations_of_passes(double margin_mm, double end_mm) {
     std::vector<double>& middles = stations_.pass_middles_mm;
     std::vector<double>& along = stations_.along_mm;
@@ -173,8 +183,8 @@ class Measurer {
     along.erase(std::unique(along.begin(), along.end(), is_same), along.end());
   }
 
-  /// Distances from the root at which lines are taken: on both sides of every corner that a tip leaves, between them,
-  /// and evenly over the facet.
+  /// Returns the distances from the root at which a facet is measured: on both sides of every corner that the tip of
+  /// the tool leaves, midway between the corners, and at equal steps over the facet.
   std::vector<double> slant_positions(std::size_t facet) const {
     std::vector<double> corners = {strip_mm_, burr_end_mm_, groove_.facet_length_mm};
     for (const SweptVolume& sweep : sweeps_)
@@ -226,7 +236,8 @@ class Measurer {
   LineSurface surface_at(std::size_t facet, double along, double slant, bool is_at_root) {
     const DesignFacet& design = groove_.facets[facet];
     const Vec3 point = groove_.root_mm + along * groove_.root_direction + slant * design.up_slope;
-    // What is left at the root is told along the other facet: how far up that its cuts end.
+    // The residual material at the root is measured along the other facet. The result is the distance from the root at
+    // which the cuts along that facet end.
     const Vec3& direction = is_at_root ? groove_.facets[1 - facet].up_slope : design.normal;
     spans_.clear();
     Vec3 p;
@@ -243,9 +254,9 @@ class Measurer {
     return surface_along(spans_, is_at_root ? groove_.to_face_mm(point, direction) : exit_of(facet, point));
   }
 
-  /// A line close to the root runs along the other facet, and within the layer that the tolerance allows there. What is
-  /// left at the root is then told above that layer, less what the rake face of the last plunge leaves on its way
-  /// there.
+  /// Measures the residual material at the root. The line runs close to the other facet, and therefore inside the layer
+  /// that the tolerance allows on that facet. If this layer disturbs the result, a second line above the layer is used.
+  /// The thickness of the layer is then subtracted, as an allowance for the inclined rake face of the last plunge.
   LineSurface at_root(std::size_t facet, double along, double slant) {
     const LineSurface close = surface_at(facet, along, slant);
     const double above = slant + layer_end_mm_;
@@ -256,27 +267,30 @@ class Measurer {
     return clear;
   }
 
-  /// Height over the other facet for each mm up a facet: the sine of the angle that they include.
+  /// Returns the height above the other facet per mm of distance from the root. It is the sine of the angle between the
+  /// facets.
   double sine_between() const { return groove_.facets[1].normal.dot(groove_.facets[0].up_slope); }
 
-  /// How fast a line normal to a facet comes down on the other one; 0 where they include 90 degrees or more.
+  /// Returns by how much a line normal to a facet approaches the other facet, in mm per mm. Returns 0 if the angle
+  /// between the facets is 90 degrees or more.
   double approach_of_other() const {
     constexpr double kParallel = 1e-9;
     const double towards = -groove_.facets[0].normal.dot(groove_.facets[1].normal);
     return towards > kParallel ? towards : 0.0;
   }
 
-  /// Height over the other facet below which a line would meet what is left on that one.
+  /// Returns the height above the other facet up to which a measuring line may meet residual material of that facet.
   double residue_of_other_mm() const { return strip_mm_ + kLeastStripMm; }
 
-  /// Whether a line at that distance from the root says anything of its own facet: of closed grooves the lowest ones
-  /// run into what the other facet may keep.
+  /// Returns true if a line at a distance from the root measures only its own facet. In grooves with an angle below 90
+  /// degrees, lines near the root meet the residual material of the other facet.
   bool is_clear_of_other(double slant) const {
     if (slant <= strip_mm_ || approach_of_other() <= 0.0) return true;
     return slant * sine_between() > 2.0 * residue_of_other_mm();
   }
 
-  /// Where a line normal to a facet leaves what the design takes away: at the blank's face, or before the other facet.
+  /// Returns the height above a facet at which a normal line leaves the volume that the design removes. It is limited
+  /// by the blank's face and by the residual material on the other facet.
   double exit_of(std::size_t facet, const Vec3& point) const {
     const DesignFacet& design = groove_.facets[facet];
     const double at_face = groove_.to_face_mm(point, design.normal);
@@ -286,9 +300,9 @@ class Measurer {
     return std::min(at_face, free / towards);
   }
 
-  /// Returns the range of heights above the design's facet that a correct ploughing pass leaves at a point. The height
-  /// is 0 at the deeper end of the edge. The ends of a tilted edge move by up to wall_mm along a facet. Within this
-  /// distance of an end, the range therefore includes both a cut and an uncut surface.
+  /// Returns the range of heights above the design facet that correct ploughing passes leave at a point. The height is
+  /// 0 at the deeper end of a tilted edge. The ends of a pass are uncertain by wall_mm along the root. Within this
+  /// distance of an end, the range includes the heights with and without this pass.
   /// \param along position of the point along the root, in mm
   /// \param slant distance of the point from the root along the facet, in mm
   Interval ploughed_height(std::size_t facet, double along, double slant) const {
@@ -306,8 +320,9 @@ class Measurer {
     return height;
   }
 
-  /// \param predicted range of heights above the design's facet in which the surface must be located. Points above the
-  ///        blank's face are excluded: close to the rim, a ploughed facet that rises along the edge leaves the blank
+  /// Updates the largest deviations of a facet with one measured point.
+  /// \param predicted range of heights above the design facet in which the surface must be. Both limits are clamped to
+  ///        the blank's face, because a ploughed facet that rises along the edge can leave the blank near the rim
   void take(FacetFigures& figures, const LineSurface& surface, double slant, const Interval& predicted) const {
     const double lowest_mm = std::min(surface.lowest, surface.top);
     if (slant <= strip_mm_) {
@@ -333,10 +348,10 @@ class Measurer {
   std::vector<const SweptVolume*> near_;     ///< the sweeps of select_sweeps(), ordered by pose
   Stations stations_;
   double strip_mm_ = 0.0;
-  double layer_end_mm_ = 0.0;  ///< from the root, where the tolerance of the other facet no longer reaches
+  double layer_end_mm_ = 0.0;  ///< distance from the root up to which the tolerance of the other facet matters
   double plane_end_mm_ = 0.0;
-  double burr_end_mm_ = 0.0;     ///< distance from the root
-  double burr_height_mm_ = 0.0;  ///< over a facet
+  double burr_end_mm_ = 0.0;     ///< distance of the end of the burr from the root
+  double burr_height_mm_ = 0.0;  ///< height of the burr above a facet
   std::vector<LineSpan> spans_;
 };
 
