@@ -29,7 +29,8 @@ void check_tilt(const Job& job, const Machine& machine) {
           : fmt::format("must be a machine whose table tilts (A) for this strategy, got {}", machine.name));
 }
 
-/// Cuts whose positions are rounded by a good part of their depth take chips of any thickness.
+/// Checks that the depths of cut are large compared to the increments of the control. Otherwise, rounded positions
+/// change the chip thickness too much.
 void check_increments(const Job& job, const Machine& machine) {
   constexpr double kLeastDiagonals = 10.0;
   const double step_um = 1e-3 * static_cast<double>(machine.increments.linear_nm);
@@ -45,7 +46,7 @@ void check_increments(const Job& job, const Machine& machine) {
   if (has_finishing_cuts(job)) check("process.finishing_depth_um", job.process.finishing_depth_um);
 }
 
-/// Returns true if a tool reaches the apexes and facets of all zones at exact positions.
+/// Returns true if a tool can cut the elements of all zones, assuming exact positions.
 bool fits_all_zones(const Job& job, const Tool& tool) {
   bool fits = true;
   const auto refuse = [&](std::string_view, const std::string&) { fits = false; };
@@ -54,9 +55,10 @@ bool fits_all_zones(const Job& job, const Tool& tool) {
   return fits;
 }
 
-/// Returns the smallest wedge angle above that of the job, in steps of 0.1 degrees, with which the tool fits all zones
-/// and fins are as low as allowed; nullopt if there is none.
-/// \param fin_mm returns the height of the fin that a tool may leave
+/// Searches for the smallest sufficient wedge angle in steps of 0.1 degrees, beginning at the wedge angle of the job.
+/// The tool must fit all zones, and its fins must not be higher than `max_mm`.
+/// \param fin_mm function that returns the maximum height of a fin for a tool
+/// \return the wedge angle, or nullopt if no angle is sufficient
 std::optional<double> allowed_wedge_deg(const Job& job, double max_mm,
                                         const std::function<double(const Tool&)>& fin_mm) {
   constexpr double kStepsPerDeg = 10.0;
@@ -93,7 +95,7 @@ void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner
     throw InputError(job.where("tool.nose_angle_deg"),
                      fmt::format("{}with clearance_deg does not fit the element: {}, and {}, got {}", who, fin, none,
                                  shortest(job.tool.nose_angle_deg)));
-  // The height of a fin is proportional to the increment. The message gives the maximum increment rounded down.
+  // The height of a fin is proportional to the increment. Compute the maximum increment that is allowed.
   const double max_step_um = 1e3 * kEdgeStripMm / (fin_mm(job.tool, 1.0) + kEdgeStripMm - max_fin_mm(1.0));
   throw InputError(
       job.where("machine"),

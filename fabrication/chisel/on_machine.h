@@ -1,6 +1,6 @@
 #pragma once
 
-// What a job asks of the machine that cuts it, for those who plan it and those who judge its programs.
+// Checks whether a machine can cut a job. The planner and the verification of programs both use these checks.
 
 #include <array>
 #include <string>
@@ -12,22 +12,25 @@
 
 namespace retrace::fabrication {
 
-/// Minimum cosine of the angle between a facet and the plane that the edge sweeps along it, about cos 10 degrees. A cut
-/// at a larger angle belongs to no facet: axes of machines are off by minutes of arc, and facets are at least 60
-/// degrees apart.
+/// Minimum cosine of the angle between a facet and the plane that the edge sweeps in a cut along this facet. It is
+/// about the cosine of 10 degrees. Errors of machine axes are only arc minutes, and facets are at least 60 degrees
+/// apart.
 inline constexpr double kAlongFacet = 0.985;
 
-/// Whether a job's strategy has finishing cuts.
+/// Returns true if the strategy of the job has finishing cuts.
 bool has_finishing_cuts(const Job& job);
 
-/// \throw InputError naming file, line and key: another axis must tilt, a feed is above those of the machine's axes,
-/// finishing cuts would be deeper than roughing, or a depth of cut is little beside the increments of the control
+/// Checks that a machine can cut a job.
+/// \throw InputError naming file, line and key if the wrong axis tilts, or a feed exceeds the limits of the axes. It is
+///        also thrown if finishing cuts are deeper than roughing cuts, or if a depth of cut is too small compared to
+///        the increments of the control
 void check_on_machine(const Job& job, const Machine& machine);
 
-/// Checks that a V-shaped tool leaves no fin that is higher than the strip that is measured along edges, as the control
-/// rounds positions. \pre the tool fits the cube corner at exact positions
-/// \param root_tilts angles by which each facet is turned about its normal in the tool's view
-/// \param who beginning of the message
+/// Checks the height of the fins that a V-shaped tool leaves along dihedral edges when the control rounds positions.
+/// The maximum is max_fin_mm().
+/// \pre the tool fits the cube corner if positions are exact
+/// \param root_tilts rotation of each facet about its normal, relative to the tool
+/// \param who beginning of the error message
 /// \throw InputError with the key to change: a larger wedge angle, or smaller increments of the control if no wedge
 /// angle is large enough
 void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner,

@@ -16,7 +16,8 @@ namespace {
 
 using geometry::Vec2;
 
-/// Number of divisions of each side of the triangles that are sampled. A triangle is half of a cavity's corner.
+/// Number of divisions of each side of a sampled triangle. The triangle is one half of the corner in which a triangular
+/// cavity extends beyond its hexagon.
 constexpr int kDivisions = 32;
 constexpr double kDeg = std::numbers::pi / 180.0;
 
@@ -50,7 +51,8 @@ class Overcutter {
     return {static_cast<std::int64_t>(std::floor(p.x() / width_mm_)),
             static_cast<std::int64_t>(std::floor(p.y() / width_mm_))};
   }
-  /// Calls `take` for all elements near a point. A cavity extends from its apex by at most the width of an element.
+  /// Calls `take` for all elements whose cavity may contain a point. A cavity extends from its apex by at most the
+  /// width of an element.
   template <class Take>
   void for_each_near(const Vec2& p, const Take& take) const {
     const auto [column, row] = square_of(p);
@@ -63,8 +65,7 @@ class Overcutter {
   /// Returns the depth of a cavity below a point of the blank's face; 0 outside of the cavity.
   double depth_mm(std::size_t i, const Vec2& p) const { return std::max(0.0, -grooves_[i].cavity_height_mm(p)); }
 
-  /// Returns true if a point is inside the hexagon of an element. The hexagon is that of an element without errors of
-  /// angle.
+  /// Returns true if a point is inside the hexagon of an element. Angle errors do not change the hexagon.
   bool is_in_hexagon(std::size_t i, const Vec2& p) const {
     const Vec2 v = elements_[i].turn.topLeftCorner<2, 2>().transpose() * (p - apex_of(i));
     const double inner_mm = 0.5 * std::numbers::sqrt3 * grooves_[i].half_base_mm;
@@ -82,8 +83,9 @@ class Overcutter {
     return is_there;
   }
 
-  /// Adds one half of the cavity's corner at dihedral edge k. It is an equilateral triangle inside the hexagon of one
-  /// neighbour.
+  /// Adds one half of the corner in which cavity i extends beyond its hexagon at dihedral edge k. In plan, the half is
+  /// an equilateral triangle inside the hexagon of one neighbour.
+  /// \param side -1 or 1: which half
   void add_half_corner(std::size_t i, int k, double side) {
     const double radius_mm = grooves_[i].half_base_mm;
     const double edge_deg = 120.0 * k - 90.0;
@@ -100,13 +102,15 @@ class Overcutter {
         take(i, a + (m + 1.0 / 3.0) * u + (n + 1.0 / 3.0) * v, area_mm2);
         if (m + n + 1 < kDivisions) take(i, a + (m + 2.0 / 3.0) * u + (n + 2.0 / 3.0) * v, area_mm2);
       }
-    // The deepest points are on the sides of the triangles, so their corners are evaluated without area.
+    // The maximum depth is on a side of the triangle. The grid points are therefore evaluated as well, with an area of
+    // 0.
     for (int m = 0; m <= kDivisions; ++m)
       for (int n = 0; m + n <= kDivisions; ++n) take(i, a + m * u + n * v, 0.0);
   }
 
-  /// Adds the material that cavity i removes at a point outside of its hexagon. If several cavities remove this point,
-  /// only the deepest one is counted.
+  /// Adds the material that cavity i removes at a point outside of its hexagon. If several cavities contain this point,
+  /// only the deepest cavity is counted.
+  /// \param area_mm2 area that the point represents
   void take(std::size_t i, const Vec2& p, double area_mm2) {
     const double own_mm = depth_mm(i, p);
     if (own_mm <= 0.0) return;
@@ -124,7 +128,8 @@ class Overcutter {
     const double held_mm = holder ? depth_mm(*holder, p) : 0.0;
     if (!is_deepest || held_mm >= own_mm) return;
     result_.volume_mm3 += area_mm2 * (own_mm - held_mm);
-    // On the common border of two elements of one zone, errors of angle cause a small difference in height.
+    // On the common border of two elements of one zone, angle errors cause a small height difference. It is not
+    // counted.
     const bool is_on_border = area_mm2 == 0.0;
     if (!holder || (is_on_border && elements_[*holder].zone == elements_[i].zone)) return;
     result_.area_mm2 += area_mm2;

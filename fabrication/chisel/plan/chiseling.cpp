@@ -28,7 +28,8 @@ Vec3 words_of(const Machine& machine, const Vec3& point_mm, const RotaryPose& po
   return {axes.x_mm, axes.y_mm, axes.z_mm};
 }
 
-/// (X, Y, Z) parts of a plane's normal when positions are words of the axes instead of points, of length 1.
+/// Transforms the unit normal of a plane in the workpiece frame to the coordinates of the linear axes' positions. For a
+/// head that tilts, these positions are not points of the machine frame.
 Vec3 in_words(const Machine& machine, const RotaryPose& pose, const Vec3& normal) {
   const Vec3 zero = words_of(machine, Vec3::Zero(), pose);
   Eigen::Matrix3d words_from_points;
@@ -43,7 +44,7 @@ double chiseling_allowance_mm(const Job& job) {
 }
 
 double chiseling_across_mm(const Job& job, std::size_t zone, double stock_mm) {
-  // The thickness of all layers along the facet normals follows from the depth of the apex.
+  // Total thickness of all layers along the facet normals, computed from the depth of the apex.
   const CubeCorner corner = blank_corner(job, zone);
   const double across_mm = (corner.depth_mm + stock_mm) / corner.layer_rise() - chiseling_allowance_mm(job);
   check_allowance(job, across_mm);
@@ -123,7 +124,8 @@ void check_v_in_poses(const Job& job, const Machine& machine, const std::array<C
   const double error_deg = poses[0].corner.largest_error_deg();
   std::array<Vec3, 3> spines;
   for (std::size_t k = 0; k < 3; ++k) {
-    // The element is turned in the tool's view, so the tool the other way in the element's.
+    // `root_tilt` rotates the element relative to the tool. Relative to the element, the tool is rotated in the
+    // opposite direction.
     const Eigen::AngleAxisd turn(-poses[k].root_tilt.rad(), Vec3::UnitZ());
     const auto azimuth_deg = [](const Vec3& v) { return Angle::from_rad(std::atan2(v.y(), v.x())).deg(); };
     double room_deg = 90.0 - error_deg;
@@ -173,7 +175,7 @@ std::string errors_text(const char* what, const std::array<double, 3>& arcmin) {
   return fmt::format(", {} {} {} {} arcmin", what, shortest(arcmin[0]), shortest(arcmin[1]), shortest(arcmin[2]));
 }
 
-/// Describes the elements of a zone for the header of a program.
+/// Returns a description of the elements of a zone, or of a job without zones, for the header of a program.
 std::string elements_text(const Job& job, std::size_t zone, std::size_t elements) {
   const geometry::Element element = blank_element(job, zone);
   const geometry::AngleErrors errors = angle_errors_of(job, zone);
@@ -222,7 +224,7 @@ Place rounded_words(const Vec3& words_mm, const Vec3& along, Nanometres step_nm)
   for (int k = 0; k < 8; ++k) {
     const Vec3 candidate = low + Vec3((k & 1) != 0, (k & 2) != 0, (k & 4) != 0);
     const Vec3 error = candidate - exact;
-    // Of equals that which is nearer.
+    // Among grid points with equal errors along the direction, prefer the nearest one.
     const double measure = std::abs(along.dot(error)) + 1e-3 * error.norm();
     if (measure >= least) continue;
     least = measure;

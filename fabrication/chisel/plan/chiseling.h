@@ -12,29 +12,35 @@
 
 namespace retrace::fabrication {
 
-/// What layers of roughing leave on all facets for the finishing layers.
+/// Returns the thickness that roughing leaves on all facets for the finishing layers.
 double chiseling_allowance_mm(const Job& job);
 /// Returns the total thickness, in mm, that roughing removes from an element of a zone, measured along the normal of
 /// each facet.
 /// \param stock_mm height of the blank's face above the rims
 /// \throw InputError if finishing would have nothing to remove
 double chiseling_across_mm(const Job& job, std::size_t zone, double stock_mm);
-/// Roughing layers: nested cube corners, each `roughing_depth_um` further along the normals of all three facets.
-/// \param stock_mm by which the blank stands over the rims
+/// Returns the number of roughing layers. The layers are nested cube corners with a distance of `roughing_depth_um`
+/// between their facets.
+/// \param stock_mm height of the blank's face above the rims
 int chiseling_layers(const Job& job, std::size_t zone = 0, double stock_mm = 0.0);
 
-/// The pose, with C as near to `previous_c_deg` as its limits let it. \throw InputError naming axis and limits if the
-/// machine cannot take it
+/// Returns the rotary pose in which a facet is cut. Of all equivalent angles C, it uses the one that is closest to
+/// `previous_c_deg` within the limits of the axis.
+/// \throw InputError naming axis and limits if the machine cannot reach the pose
 CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
                            const Stance& stance = {});
 
-/// That the tool, which B and C lay on the facets but cannot turn in them, keeps clear of the other facets, leaves no
-/// fin between two and comes out of the blank. \param poses of the three facets of elements that stand alike
+/// Checks the tool in the three poses of elements with equal orientation. B and C align the tool with a facet, but
+/// cannot rotate it about the facet's normal. The tool must not touch the other facets and must leave no high fins. Its
+/// cutting edges must extend above the blank's face.
+/// \param poses poses of the three facets
 /// \throw InputError naming element, tilt and limit
 void check_v_in_poses(const Job& job, const Machine& machine, const std::array<CuttingPose, 3>& poses,
                       const Stance& stance);
 
-/// Down one edge and up the other of a cube corner that leaves `left_mm` on all facets.
+/// Returns the subroutine that cuts one facet of one layer. The tool moves down the first dihedral edge of the facet to
+/// the apex of the layer, and up the second one.
+/// \param left_mm thickness of the material that the layer leaves on all facets
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
                           double feed_mm_per_min);
 
@@ -42,8 +48,8 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
 /// \pre the job has zones
 std::string zone_description(const Job& job, std::size_t zone);
 
-/// Words in whole steps: each rounded by itself where `along` is 0, else that of the eight neighbours with the least
-/// error along it.
+/// Rounds axis positions to whole increments. If `along` is 0, each position is rounded to the nearest increment.
+/// Otherwise, the result is the one of the eight neighbouring grid points with the smallest error along this direction.
 Place rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along, Nanometres step_nm);
 
 }  // namespace retrace::fabrication

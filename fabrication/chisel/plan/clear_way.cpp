@@ -11,7 +11,8 @@ namespace {
 
 using geometry::Vec3;
 
-/// Share of the clearance that rapid moves must keep; a verifier asks for a little less.
+/// Fraction of the process's clearance that rapid moves must keep. The verification requires a slightly smaller
+/// fraction.
 constexpr double kShare = 0.95;
 constexpr double kStepShare = 0.25;
 constexpr int kMostSteps = 400;
@@ -41,7 +42,8 @@ double ClearWay::least_height_mm(const Place& at, const CuttingPose& pose) const
   return least;
 }
 
-/// Axes of a rapid move may arrive one after the other, so that anywhere in the box between its ends the tool may pass.
+/// Returns true if the whole box between the two ends of a rapid move is clear. The axes may arrive one after the
+/// other, so that the tool may pass through any point of this box.
 bool ClearWay::is_clear_along(const Place& from, const Place& to, const CuttingPose& pose) const {
   const Vec3 by = millimetres(Place(to - from));
   Eigen::Vector3i steps;
@@ -67,7 +69,7 @@ bool ClearWay::is_clear(const Words& from, const Visit& visit, const CuttingPose
   for (const Move& move : approach(from, visit)) {
     Words to = at;
     go_to(to, move.to);
-    // Before X and Y are known the tool stands at the safe height.
+    // As long as X and Y are not known, the tool is at the safe height and nothing has to be checked.
     if (to[kX] && to[kY] && to[kZ]) {
       const Place last(*to[kX], *to[kY], *to[kZ]);
       const Place first(at[kX].value_or(last.x()), at[kY].value_or(last.y()), at[kZ].value_or(last.z()));

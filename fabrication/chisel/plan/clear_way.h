@@ -9,13 +9,15 @@
 
 namespace retrace::fabrication {
 
-/// Whether rapid moves stay above the blank: the tip, and the ends of a chisel's edge, are tried at the corners of the
-/// box that a move may pass through, over a blank that is not flat all through it at a quarter of an element's size.
+/// Checks that rapid moves keep clear of the blank. The axes of a rapid move may arrive one after the other, so that
+/// the tool may pass through any point of a box. The tip, or both ends of a chisel's edge, are checked at the corners
+/// of this box. Over a blank that is not flat, points inside the box are checked too, in steps of a quarter of an
+/// element.
 class ClearWay {
  public:
   ClearWay(const Job& job, const Machine& machine);
 
-  /// Whether all rapid moves from there to the start of a visit keep the process's clearance.
+  /// Returns true if all rapid moves from `from` to the start of a visit keep the clearance of the process.
   bool is_clear(const Words& from, const Visit& visit, const CuttingPose& pose) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// The cuts of a plan that make facets, as straight moves of the edge in the words of its programs.
+// Lists the cuts of a plan that produce facets. Each cut is a straight move of the edge, given by axis positions.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace retrace::fabrication {
 
-/// A cut along a facet of an element.
+/// Cut along a facet of an element.
 struct FacetEdgeCut {
   std::size_t element = 0;
   std::size_t facet = 0;  ///< from 0
   std::size_t stage = 0;  ///< index in Plan::stages
   bool is_ploughed = false;
-  bool ends_at_root = false;  ///< the tip, at the root or the apex
+  bool ends_at_root = false;  ///< true if the tip is at the root or the apex at the end of the cut
   EdgeCut cut;
 };
 
-/// The last cut along a facet in every visit of an element, in the order in which they are made. A V makes two in a
-/// visit, down one dihedral edge and up the other; a routine that ploughs makes one of either facet.
-/// \param elements those alone, ascending; empty: all
+/// Returns the last cut along a facet in every visit of an element, in the order of cutting. A V-shaped tool makes two
+/// cuts in a visit: down one dihedral edge and up another edge. A routine with ploughing makes one cut of each facet.
+/// \param elements indices of the elements to include, ascending; empty: all elements
 std::vector<FacetEdgeCut> facet_edge_cuts(const Job& job, const Plan& plan,
                                           const std::vector<std::size_t>& elements = {});
 

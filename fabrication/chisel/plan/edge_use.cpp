@@ -21,7 +21,9 @@ bool cuts(const Job& job, Motion motion) {
   return motion == Motion::plunge || motion == Motion::plough || goes_up_edge;
 }
 
-/// Share of a straight way that lies below 0, from the heights of its ends.
+/// Returns the fraction of a straight path that is below height 0.
+/// \param from_mm height of the first end
+/// \param to_mm height of the second end
 double share_below(double from_mm, double to_mm) {
   const double low = std::min(from_mm, to_mm);
   const double high = std::max(from_mm, to_mm);
@@ -33,7 +35,8 @@ double share_below(double from_mm, double to_mm) {
 
 double length_of_cut_mm(const Job& job, const Machine& machine, const CutElement& element, const CuttingPose& pose,
                         const Visit& visit, const Subroutine& routine, double stock_mm) {
-  // Where the edge's tangents in the two facets cross, from the reference point (docs/theory/verification.md).
+  // Distance from the tool reference point down to the intersection of the edge circle's tangents in the two facets
+  // (docs/theory/verification.md).
   const double below_mm =
       job.strategy == Strategy::dmc ? 0.0 : pose.section.edge_mm / std::sin(pose.section.apex.rad());
   const Vec3 tip = edge_frame(machine) * Vec3(0.0, 0.0, -below_mm);
@@ -43,7 +46,7 @@ double length_of_cut_mm(const Job& job, const Machine& machine, const CutElement
     const ToolPose tool = forward(machine, axes);
     return element.turn.col(2).dot(tool.reference_mm + tool.workpiece_from_machine * tip - element.foot_mm) - stock_mm;
   };
-  // In one pose heights are linear in the words.
+  // In one pose of the rotary axes, heights are linear functions of the linear axis positions.
   const Vec3 start = millimetres(visit.start);
   const double start_mm = height_mm(start);
   const Vec3 rise(height_mm(start + Vec3::UnitX()) - start_mm, height_mm(start + Vec3::UnitY()) - start_mm,

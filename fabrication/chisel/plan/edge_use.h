@@ -1,6 +1,6 @@
 #pragma once
 
-// How far edges cut, and when a program must stop.
+// Computes the tool wear of cutting edges and decides where a program must stop.
 
 #include <array>
 #include <cstdint>
@@ -15,23 +15,24 @@
 
 namespace retrace::fabrication {
 
-/// The length of cut of a visit: the way of the tip below the plane where the element's blank begins, along plunges and
-/// ploughs; of a V down and up dihedral edges. \param stock_mm by which the blank stands over the rims
+/// Returns the length of cut of a visit. It is the path length of the tip below the blank's face, along plunges and
+/// ploughs. For a V-shaped tool, it is the path down and up the dihedral edges.
+/// \param stock_mm height of the blank's face above the rims
 double length_of_cut_mm(const Job& job, const Machine& machine, const CutElement& element, const CuttingPose& pose,
                         const Visit& visit, const Subroutine& routine, double stock_mm);
 
-/// Why a program stops.
+/// Reason for a stop of a program: tool life, run time, or inspection before finishing.
 enum class StopReason : std::uint8_t { edge, time, finishing };
-/// Words of documents, in the order of the enumerators.
+/// Names of the reasons in documents, in the order of the enumerators.
 inline constexpr std::string_view kStopReasonWords[] = {"edge", "time", "finishing"};
 
-/// What is run from one stop to the next, or cut by one edge.
+/// Length of cut and run time of an edge, or between two stops.
 struct EdgeUse {
   double cut_mm = 0.0;
   double seconds = 0.0;
 };
 
-/// Adds up what is run, and tells what must come before more is.
+/// Adds up the use of the present edge and decides whether a stop or a new program is required before more cuts.
 class EdgeAccount {
  public:
   explicit EdgeAccount(const Job& job) : job_(job) {}
@@ -42,12 +43,13 @@ class EdgeAccount {
   void cut(double mm) { used_.cut_mm += mm; }
   const EdgeUse& used() const { return used_; }
 
-  /// Why the program must stop before a visit.
+  /// Returns the reason for a stop before a visit, or nothing if no stop is required.
   std::optional<StopReason> stop_before(const EdgeUse& visit) const;
-  /// Whether the visit is for the edge of a new program.
+  /// Returns true if the visit needs a new edge and therefore a new program.
   bool needs_program(const EdgeUse& visit) const;
-  /// That a visit can be made behind a stop. \param fresh_s that has run there
-  /// \throw InputError naming the key for one that cuts or takes more than is allowed
+  /// Checks that a visit can be made directly after a stop.
+  /// \param fresh_s run time since this stop
+  /// \throw InputError naming the key if the visit exceeds the tool life or the maximum run time
   void check(const EdgeUse& visit, double fresh_s, std::int32_t element) const;
 
  private:
@@ -57,7 +59,8 @@ class EdgeAccount {
   EdgeUse used_;
 };
 
-/// For the operator, in one line. \param number of the stop in its program, from 1
+/// Returns the message for the operator at a stop, in one line.
+/// \param number number of the stop in its program, from 1
 std::string stop_text(const Job& job, StopReason reason, int number);
 
 }  // namespace retrace::fabrication

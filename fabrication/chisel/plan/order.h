@@ -1,6 +1,6 @@
 #pragma once
 
-// The order in which a pose visits its elements, so that moves between them stay short.
+// Determines the order in which the elements are cut in one pose, so that the moves between them are short.
 
 #include <cstdint>
 #include <map>
@@ -11,11 +11,12 @@
 
 namespace retrace::fabrication {
 
-/// Elements that the same poses cut: CutElement::turned and CutElement::orientation.
+/// Key of a group of elements that are cut in the same poses: CutElement::rotated and CutElement::orientation.
 using ElementGroup = std::pair<bool, std::int32_t>;
 
-/// The elements of each group in the order in which a pose cuts them: to and fro along lines that lie on machine X
-/// (columns of the array; of rotated elements rows), so that most moves are one pitch long and keep their height.
+/// Returns the elements of each group in the order of cutting. The order runs back and forth along lines that are
+/// parallel to machine X in the pose (columns of the array, or rows for rotated elements). Most moves are then one
+/// pitch long and do not change the height.
 std::map<ElementGroup, std::vector<std::int32_t>> cutting_orders(const std::vector<CutElement>& elements);
 
 }  // namespace retrace::fabrication

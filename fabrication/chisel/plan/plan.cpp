@@ -31,7 +31,7 @@ using geometry::Vec3;
 
 constexpr double kSecondsPerHour = 3600.0;
 
-/// `text` as every dialect takes it within a comment.
+/// Replaces the characters that are not allowed in comments of all dialects by underscores.
 std::string plain(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -41,7 +41,7 @@ std::string plain(std::string_view text) {
   return result;
 }
 
-/// Whether a stage is the one of that name, or of the group of that name.
+/// Returns true if `name` is the name of a stage, or the name of its group ("roughing" or "finishing").
 bool is_named(const Stage& stage, std::string_view name) {
   return stage.name == name || (name == "roughing" && stage.roughs) ||
          (name == "finishing" && stage.name.starts_with(name));
@@ -87,7 +87,7 @@ std::vector<Stage> choose_stages(Plan& plan, const PlanOptions& options) {
   return before;
 }
 
-/// Seconds that a routine takes, by what they are spent on.
+/// Returns the machining time of a subroutine, divided by kind of motion.
 TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
   TimeShares time;
   for (const Step& step : subroutine.steps) {
@@ -104,7 +104,7 @@ TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
   return time;
 }
 
-/// Puts visits into programs, keeps time, and starts a new program where one has grown too long.
+/// Distributes visits to programs and adds up the run time. Starts a new program when the present one is too long.
 class ProgramMaker {
  public:
   ProgramMaker(const Job& job, const Machine& machine, const PlanOptions& options, const ProcessFacts& facts,
@@ -157,7 +157,8 @@ class ProgramMaker {
   }
 
  private:
-  /// Of all programs, without their numbers. A restart has another name than what it goes on with.
+  /// Returns the common name of all programs, without their numbers. A program that restarts at an element has a
+  /// separate name.
   std::string base_name() const {
     std::string name = options_.phase == "all" ? "program" : options_.phase;
     if (name.ends_with('+')) name.replace(name.size() - 1, 1, "_and_after");
@@ -188,7 +189,7 @@ class ProgramMaker {
     begin_to_move();
   }
 
-  /// From a place that is not known, by a machine that has stood.
+  /// Starts to move after a standstill. The axis positions are not known, so Z moves up first.
   void begin_to_move() {
     at_ = {};
     is_cold_ = is_fresh_ = true;
@@ -196,7 +197,7 @@ class ProgramMaker {
     raise_to(first_z_nm_);
   }
 
-  /// Where the operator can work: as high as the machine's first move, rotary axes at 0.
+  /// Adds a stop for the operator. The tool moves up to the height of the first move, and the rotary axes move to 0.
   void stop(StopReason reason, const Stage& stage, std::int32_t element) {
     raise_to(std::max(*at_[kZ], first_z_nm_));
     turn(0, 0);
@@ -229,7 +230,7 @@ class ProgramMaker {
   }
 
   void turn(RotaryUnits a, RotaryUnits c) {
-    // Where the axes stand when a program begins is not known; most likely at 0, as programs leave them.
+    // At the start of a program, the rotary positions are not known. They are assumed to be 0, where programs end.
     const RotaryUnits by_a = rotation(machine_.tilt_letter(), a - at_[kTilt].value_or(0));
     const RotaryUnits by_c = rotation('C', c - at_[kC].value_or(0));
     if (at_[kTilt] == a && at_[kC] == c) return;
@@ -244,7 +245,8 @@ class ProgramMaker {
     go_to(at_, turn.to);
   }
 
-  /// The operator is told where the work stands before a stage starts.
+  /// Starts a stage: warms up the machine if necessary, moves the rotary axes, and adds a comment or message for the
+  /// operator.
   void enter(const Stage& stage) {
     const CuttingPose& pose = plan_.poses[stage.pose];
     if (std::exchange(is_cold_, false)) warm_up();
@@ -258,7 +260,8 @@ class ProgramMaker {
     program_.items.emplace_back(Message{fmt::format("{} {} of {} C-axis at {}", what, stage.cut, stage.cuts, c_deg)});
   }
 
-  /// X and Y to and fro, one at a time, over most of their travel, and to the middle of the array.
+  /// Moves X and Y back and forth in turn over most of their travel until the machine is warm. Then moves to the center
+  /// of the array.
   void warm_up() {
     if (machine_.warm_up_s.value <= 0.0) return;
     constexpr double kOfTravel = 0.9;
@@ -283,10 +286,10 @@ class ProgramMaker {
     go_to(at_, move.to);
   }
 
-  /// Sets the direction of the next pass as if `visits` visits had been made. The direction alternates between visits.
+  /// Skips some visits. The direction of the passes alternates between visits, so an odd number reverses it.
   void skip(std::ptrdiff_t visits) { forth_ = forth_ != (visits % 2 != 0); }
 
-  /// The passes of an element side by side, to and fro.
+  /// Returns the parallel passes of an element. Their order alternates from visit to visit.
   std::vector<Visit> passes_of(const Stage& stage, std::int32_t element) {
     const CuttingPose& pose = plan_.poses[stage.pose];
     const Vec3 root =
@@ -305,7 +308,7 @@ class ProgramMaker {
     return passes;
   }
 
-  /// What a visit cuts, and the longest that it takes: by way of the safe height to each of its passes.
+  /// Returns the length of cut of a visit and its maximum run time, with a move via the safe height to each pass.
   EdgeUse use_of(const Stage& stage, const std::vector<Visit>& passes) const {
     EdgeUse use;
     if (!job_.tool.edge_life_mm && !job_.process.stop_every_min) return use;
@@ -328,7 +331,7 @@ class ProgramMaker {
     return use;
   }
 
-  /// Begins a new program or stops where the visit cannot follow as it is.
+  /// Starts a new program or adds a stop before a visit, if one of them is required.
   void make_way(const Stage& stage, std::int32_t element, const std::vector<Visit>& passes) {
     const EdgeUse use = use_of(stage, passes);
     const std::optional<StopReason> reason = account_.stop_before(use);
@@ -363,7 +366,7 @@ class ProgramMaker {
     if (stage.roughs) tell_progress();
   }
 
-  /// Up to the safe height first where the way there would come too near to the blank.
+  /// Moves to the safe height if the direct path to a visit would come too close to the blank.
   void clear_way(const Visit& visit, const CuttingPose& pose) {
     if (way_.is_clear(at_, visit, pose)) return;
     raise();
@@ -378,7 +381,7 @@ class ProgramMaker {
   void tell_progress() {
     ++roughing_done_;
     for (const int percent : {25, 50, 75, 100}) {
-      // The first visit with which so much of the roughing is done.
+      // The message is added after the first visit that completes this percentage of the roughing.
       const std::int64_t due = (roughing_total_ * percent + 99) / 100;
       if (roughing_done_ == due) program_.items.emplace_back(Message{fmt::format("Roughing {} percent", percent)});
     }
@@ -413,19 +416,19 @@ class ProgramMaker {
   bool is_full(const Stage& stage) const {
     if (has_kinds_ && is_out_of_numbers(stage)) return true;
     if (!options_.split_hours) return false;
-    constexpr double kToLeaveS = 30.0;  // for the way home
+    constexpr double kToLeaveS = 30.0;  // time reserved for the moves at the end of the program
     return program_seconds_ + routine_times_[stage.subroutine].total_s() + kToLeaveS >
            *options_.split_hours * kSecondsPerHour;
   }
 
-  /// Whether a program that calls one subroutine more would need numbers of more than four digits.
+  /// Returns true if one more subroutine in the program would need a number with more than four digits.
   bool is_out_of_numbers(const Stage& stage) const {
     constexpr std::size_t kMostSubroutines = 9000;
     return used_.size() >= kMostSubroutines && !used_.contains(stage.subroutine);
   }
 
-  /// Adds only the subroutines that the program calls. Each zone, and each tilt of elements on a substrate, has its own
-  /// subroutines.
+  /// Adds the subroutines that the program calls, and omits all others. Each zone, and each tilt of elements on a
+  /// substrate, has separate subroutines.
   void add_used_subroutines() {
     std::vector<Subroutine> left;
     std::map<std::uint32_t, std::uint32_t> places;
@@ -513,7 +516,7 @@ class ProgramMaker {
     return lines;
   }
 
-  /// What must stand before a program that makes a part of the job.
+  /// Returns a header line that states which stages must have been cut before this program.
   std::string restart_text() const {
     const Stage& first = plan_.stages.front();
     std::string from = options_.from_element ? fmt::format(" from element {}", *options_.from_element) : "";
@@ -534,14 +537,14 @@ class ProgramMaker {
   double program_seconds_ = 0.0;
   Words at_{};
   Nanometres safe_z_nm_ = 0;
-  Nanometres first_z_nm_ = 0;  ///< of the first move
+  Nanometres first_z_nm_ = 0;  ///< Z position of the first move
   bool just_turned_ = true;
-  bool is_cold_ = true;       ///< the machine has stood
-  bool is_fresh_ = true;      ///< nothing was cut since the program began or stopped
-  bool has_visits_ = false;   ///< of the program
-  bool has_roughed_ = false;  ///< the visit before, since the program began or stopped
-  int stops_ = 0;             ///< of the program
-  bool has_kinds_ = false;    ///< elements on a substrate or in zones: each kind has its own poses and subroutines
+  bool is_cold_ = true;       ///< true if the machine has not moved since the program began or stopped
+  bool is_fresh_ = true;      ///< true if nothing was cut since the program began or stopped
+  bool has_visits_ = false;   ///< true if the present program contains visits
+  bool has_roughed_ = false;  ///< true if the previous visit was roughing, since the program began or stopped
+  int stops_ = 0;             ///< number of stops in the present program
+  bool has_kinds_ = false;    ///< true for elements on a substrate or in zones, which have separate poses
   ClearWay way_;
   EdgeAccount account_;
   std::set<std::uint32_t> used_;  ///< subroutines that the program calls

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a plan must know of the process by which its elements are cut.
+// Describes the cutting process of a job for the planner.
 
 #include <string>
 #include <vector>
@@ -10,20 +10,22 @@
 
 namespace retrace::fabrication {
 
-/// One of the processes that cut elements, for one job.
+/// Properties of the cutting process of one job.
 struct ProcessFacts {
-  int cuts_per_facet = 0;                ///< of roughing
-  std::vector<double> passes_mm;         ///< side by side, as offsets of their middles along the root
-  std::string array_title;               ///< of jobs without a title
-  std::vector<std::string> description;  ///< lines for people: what is cut, how it lies, with which tool
+  int cuts_per_facet = 0;                ///< number of roughing cuts per facet
+  std::vector<double> passes_mm;         ///< offsets of the centers of parallel passes, along the root
+  std::string array_title;               ///< title of the program if the job has none
+  std::vector<std::string> description;  ///< lines of text for the header: elements, their orientation, and the tool
 };
 
-/// A chisel that plunges and ploughs stands upright, and the table tilts. \pre the job cuts prisms
+/// Returns the properties of plunging and ploughing with a chisel. The chisel is upright, and the table tilts.
+/// \pre the job cuts prisms
 ProcessFacts plunging_facts(const Job& job, double stock_mm, std::size_t elements);
-/// The V of micro chiseling is tilted by the head. \pre the job cuts cube corners
+/// Returns the properties of micro chiseling with a V-shaped tool. The head tilts the tool.
+/// \pre the job cuts cube corners
 ProcessFacts chiseling_facts(const Job& job, double stock_mm, std::size_t elements);
 
-/// Where the tool is touched off, for people.
+/// Returns a text for the header that describes where the tool is touched off.
 std::string zero_text(const Job& job);
 
 }  // namespace retrace::fabrication

@@ -13,13 +13,13 @@ namespace {
 
 using geometry::Vec2;
 
-/// A whole number of cuts or passes is not made one more by rounding.
+/// Tolerance for a number of cuts or passes that exceeds a whole number due to rounding errors.
 constexpr double kWholeTolerance = 1e-9;
-// Most cuts of a facet: more come from a depth of cut in a wrong unit.
+/// Maximum number of cuts per facet. A larger number indicates that the depth of cut is given in a wrong unit.
 constexpr int kMostCuts = 100'000;
 constexpr double kFitToleranceMm = 1e-6;
 
-/// Puts points in whole steps in a row, as moves between them.
+/// Builds the moves of a subroutine from points of the section, rounded to whole increments.
 class SectionPath {
  public:
   SectionPath(Routine& routine, const Vec2& start_mm, Nanometres step_nm)
@@ -53,22 +53,22 @@ Vec2 start_of_cut(const Section& section, double y, double clearance_mm) {
   return {y, section.face_z(y, clearance_mm)};
 }
 
-/// The point above the blank's face where a line from `point` leaves the clearance plane.
+/// Returns the intersection of a line from `point` with the clearance plane above the blank's face.
 Vec2 on_clearance_plane(const Section& section, const Vec2& point, const Vec2& direction, double clearance_mm) {
   const double to_go = section.depth_mm + section.start_mm + clearance_mm - section.face_normal.dot(point);
   return point + to_go / section.face_normal.dot(direction) * direction;
 }
 
-/// The thickest that the first slice takes, along the wall's normal, over its width at the floor: what the rake face
-/// reaches of the triangle below the blank's face.
+/// Returns the maximum chip thickness of the first slice, along the wall's normal, divided by its width at the floor.
+/// The chip is the part of the triangle between rake face and blank's face.
 double share_of_first_slice(const Section& section) {
   const double rake_slope = std::tan(section.rake.rad());
   const double face_slope = 1.0 / std::tan(0.5 * section.apex.rad());
   return rake_slope * face_slope / (rake_slope + face_slope) / std::sin(section.apex.rad());
 }
 
-/// How deep the blank's face stands over the last slice of a unidirectional routine, along its floor: over where the
-/// tangents of the edge meet, which takes chips, below the reference point.
+/// Returns the total thickness, along the wall's normal, of all slices of a unidirectional subroutine, up to the
+/// blank's face. Heights are measured from the intersection of the edge's tangents, which is below the reference point.
 double slices_across_mm(const Section& section, double left_mm) {
   const auto over_floor_mm = [&](double y) {
     const double tip_z = section.floor_z(y, left_mm) - section.edge_mm / section.floor_normal.y();
@@ -77,7 +77,8 @@ double slices_across_mm(const Section& section, double left_mm) {
   return over_floor_mm(0.0) / (over_floor_mm(0.0) - over_floor_mm(section.wall_y)) - left_mm;
 }
 
-/// From the root along the floor, in one move or leaving the floor once the chip is free.
+/// Adds a plough from the root along the floor. It is one move, or two moves if the tool lifts off the floor after the
+/// chip has separated.
 Vec2 plough(SectionPath& path, const Job& job, const Section& section, const Vec2& root) {
   const Process& process = job.process;
   const double freed_mm = shortest_plough_mm(job, section);
@@ -115,7 +116,7 @@ double left_of_roughing_mm(const Job& job, double across_mm, int cut, int cuts, 
   const double least_mm = 1e-3 * job.process.least_chip_um.value_or(0.0);
   const double left_mm = depth_mm * (cuts - cut);
   const double taken_mm = across_mm - left_mm;
-  // Cuts above the face take nothing.
+  // A cut above the blank's face removes nothing.
   if (least_mm == 0.0 || taken_mm <= -dip_mm || share * taken_mm - dip_mm >= least_mm) return left_mm;
   const double shared_mm = cut < cuts ? 0.5 * (taken_mm + depth_mm) : taken_mm;
   if (share * shared_mm - dip_mm < least_mm)

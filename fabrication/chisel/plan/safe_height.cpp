@@ -25,7 +25,7 @@ double safe_height_mm(const Job& job, const Machine& machine, const std::vector<
           const RotaryPose pose{std::min(a_low + kStepDeg * i, a_high), c_deg};
           highest_mm = std::max(highest_mm, inverse(machine, geometry::Vec3(x, y, 0.0), pose).z_mm);
         }
-  // Between two samples of a rotary axis, a corner of the blank rises by at most the sagitta of its arc.
+  // Between two sampled angles, a corner of the blank moves on an arc and may be higher by the sagitta of this arc.
   const double sagitta_mm = (1.0 - std::cos(Angle::from_deg(0.5 * kStepDeg).rad())) * 2.0 * highest_mm;
   return highest_mm + sagitta_mm + job.process.rotary_clearance_mm + job.process.clearance_mm;
 }

@@ -23,22 +23,22 @@ double half_apex_rad(const geometry::RtpElement& element) {
   return 0.5 * Angle::from_deg(element.apex_angle_deg).rad();
 }
 
-/// By how much Z about 90 degrees turns the directions of an unturned element into those of a turned one.
+/// Rotates a direction by -90 degrees about Z: from an element that is not rotated to a rotated one.
 Vec3 turned_back(const Vec3& v) {
   return {v.y(), -v.x(), v.z()};
 }
 
-/// (Y, Z) parts of a plane's normal when positions are words of the axes instead of points.
+/// Transforms the normal of a plane to the coordinates of the linear axes, whose directions need not be orthogonal.
 Vec3 in_words(const Machine& machine, const Vec3& normal) {
   return {normal.dot(machine.x.direction.value), normal.dot(machine.y.direction.value),
           normal.dot(machine.z.direction.value)};
 }
 
-/// Returns the maximum width, in mm, of the strip that a tilted edge may leave at the root after a plunge. The plunge
-/// separates its chip only if it passes the surface that the previous cut left on the other facet. The strip must
-/// therefore be narrower than the depth of cut, less the tolerance of verification and the rounding of two positions.
-/// On a substrate it must also be at most as wide as a finishing cut is deep. There is no limit for `unidirectional`
-/// jobs on flat blanks, because a ploughing cut always separates its chip.
+/// Returns the maximum width, in mm, of the strip that a tilted edge may leave at the root after a plunge. A plunge
+/// only separates its chip if it passes the surface that the previous cut left on the other facet. The limit is
+/// therefore the depth of cut, minus the tolerance of the verification and the rounding errors of two positions. On a
+/// substrate, it is also at most the depth of a finishing cut. There is no limit for `unidirectional` jobs on flat
+/// blanks, because a ploughing cut always separates its chip.
 double max_strip_mm(const Job& job, const Machine& machine, bool is_on_substrate) {
   constexpr double kToleranceNm = 10.0;
   const Process& process = job.process;
@@ -52,8 +52,8 @@ double max_strip_mm(const Job& job, const Machine& machine, bool is_on_substrate
   return strip_mm;
 }
 
-/// Refuses a pose with too large an angle between the root and the tool's edge. A and C align the normal of the facet
-/// with the tool. No axis remains that could align the root with the edge.
+/// Refuses a pose in which the angle between the root and the tool's edge is too large. The axes A and C only align the
+/// normal of the facet with the tool. No other axis can align the root with the edge.
 void check_root(const Job& job, const Machine& machine, const CuttingPose& pose, const InputLocation& where,
                 const Stance& stance) {
   const double strip_mm = max_strip_mm(job, machine, stance.element >= 0);
@@ -69,7 +69,7 @@ void check_root(const Job& job, const Machine& machine, const CuttingPose& pose,
                   fixed(strip_mm / tangent, 4)));
 }
 
-/// Refuses a pose in which the plane that a plough sweeps is at too large an angle to the facet that it ploughs.
+/// Refuses a pose in which the angle between the ploughed facet and the plane that the edge sweeps is too large.
 void check_ploughed_facet(const Job& job, const Machine& machine, const CuttingPose& pose, const Vec3& design_floor,
                           const InputLocation& where, const Stance& stance) {
   if (job.strategy == Strategy::bidirectional) return;
@@ -119,7 +119,7 @@ double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg
   for (const int turns : {0, 1, -1, 2, -2}) {
     const double candidate = c_deg + 360.0 * turns;
     if (!limits.contains(candidate)) continue;
-    constexpr double kAsFarDeg = 1.0;  // solved angles differ from round ones by less
+    constexpr double kAsFarDeg = 1.0;  // computed angles differ from nominal angles by less than this
     if (!best || std::abs(candidate - previous_c_deg) < std::abs(*best - previous_c_deg) - kAsFarDeg) best = candidate;
   }
   if (!best)
@@ -163,8 +163,8 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   Section& section = pose.section;
   const Vec3 wall = in_words(machine, motion.direction(normal));
   section.wall_y = 1.0 / wall.y();
-  // Y and Z move the tool parallel to the floor of the design. If the root is tilted relative to the edge, the floor is
-  // rotated as well, and only the deeper end of the edge touches it.
+  // The axes Y and Z move the tool parallel to the designed floor. If the root is tilted relative to the edge, only the
+  // deeper end of the edge touches the floor.
   const FacetChoice other{facet.rotated, 3 - facet.facet};
   const Vec3 design_floor = motion.direction(pose.turn * facet_normal(element, other));
   const Vec3 floor = in_words(machine, design_floor);

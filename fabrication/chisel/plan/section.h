@@ -1,7 +1,6 @@
 #pragma once
 
-// Poses of the rotary axes that bring a facet to the tool, and the section across the element's root that the tool sees
-// in them.
+// Computes the rotary poses in which facets are cut, and the cross-section of the element in each pose.
 
 #include <cstdint>
 #include <string>
@@ -15,88 +14,93 @@
 
 namespace retrace::fabrication {
 
-/// A facet of an element, as a pose can present it to the tool. Facet 1 of a prism faces -Y of the workpiece frame (for
-/// a rotated element -X), facet 2 the other way (docs/theory/cutting.md). Facets 1 to 3 of a cube corner lie between
-/// its dihedral edges k and k + 1 (docs/theory/micro_chiseling.md).
+/// Facet that is cut in a pose. The normal of facet 1 of a prism points towards -Y of the workpiece frame (-X for a
+/// rotated element), that of facet 2 in the opposite direction (docs/theory/cutting.md). Facet k = 1, 2, 3 of a cube
+/// corner is between its dihedral edges k and k + 1 (docs/theory/micro_chiseling.md).
 struct FacetChoice {
   bool rotated = false;
   int facet = 1;
   std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 };
 
-/// What the tool sees of an element in a pose: the section across the root line at its middle, in words of the linear
-/// axes relative to the root. The wall is the facet that is plunged, the floor the other one.
+/// Cross-section of an element in a pose, perpendicular to the root at its center. Coordinates are positions of the Y
+/// and Z axes relative to the root. The wall is the facet that is plunged, and the floor is the other facet.
 struct Section {
-  double wall_y = -1.0;            ///< Y of the wall for each mm that stays on it
-  geometry::Vec2 floor_normal;     ///< (Y, Z) parts; floor_normal . (y, z) = what stays on the floor
-  geometry::Vec2 floor_direction;  ///< along the floor away from the wall, of length 1 mm
-  geometry::Vec2 bisector;         ///< between wall and floor, of length 1 mm
-  geometry::Vec2 face_normal;      ///< face_normal . (y, z) = depth + start + height above the blank's face
-  double depth_mm = 0.0;           ///< of the root below the element's rims
-  double stock_mm = 0.0;           ///< by which the blank's face stands over them
-  double start_mm = 0.0;           ///< likewise, for a start that keeps the clearance from it
-  double lift_mm = 0.0;            ///< by which the tool stays up so that the deeper end of its edge touches the floor
-  double edge_mm = 0.0;            ///< the floor's distance that the edge's radius asks of the reference point
+  double wall_y = -1.0;            ///< change of Y, in mm, per mm of material that is left on the wall
+  geometry::Vec2 floor_normal;     ///< unit normal of the floor; floor_normal . (y, z) is the height above the floor
+  geometry::Vec2 floor_direction;  ///< unit vector along the floor, away from the wall
+  geometry::Vec2 bisector;         ///< direction of the bisector of wall and floor
+  geometry::Vec2 face_normal;      ///< normal of the face; face_normal . (y, z) = depth_mm + height above the rims
+  double depth_mm = 0.0;           ///< depth of the root below the element's rims
+  double stock_mm = 0.0;           ///< height of the blank's face above the rims
+  double start_mm = 0.0;           ///< height above the rims from which the clearance is measured at the start
+  double lift_mm = 0.0;            ///< lift of the tool with which the deeper end of a tilted edge touches the floor
+  double edge_mm = 0.0;            ///< distance of the reference point from the floor due to the edge radius
   Angle apex;
   Angle rake;              ///< angle between the wall and the rake face
-  Nanometres step_nm = 1;  ///< positions are whole multiples of it
+  Nanometres step_nm = 1;  ///< increment of the positions
 
   double floor_z(double y, double left_mm) const {
     return (left_mm + edge_mm - floor_normal.x() * y) / floor_normal.y() + lift_mm;
   }
-  /// Z at a height above the blank's face, measured normal to it.
+  /// Returns the Z position at `height_mm` above the start level (`start_mm` above the rims), measured along the face's
+  /// normal.
   double face_z(double y, double height_mm) const {
     return (depth_mm + start_mm + height_mm - face_normal.x() * y) / face_normal.y();
   }
 };
 
-/// A pose of the rotary axes in which one facet of the elements of one orientation is plunged.
+/// Pose of the rotary axes in which one facet of all elements of one orientation is cut.
 struct CuttingPose {
   FacetChoice facet;
-  std::int32_t orientation = 0;                        ///< of the elements that are cut in it
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< theirs
-  /// Micro chiseling: the cube corner that is cut, as oriented at C = 0.
+  std::int32_t orientation = 0;                        ///< CutElement::orientation of the elements
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< CutElement::turn of the elements
+  /// Cube corner that is cut by micro chiseling, in its orientation at C = 0.
   CubeCorner corner;
-  RotaryUnits a = 0;  ///< as written, after rounding
-  RotaryUnits c = 0;
-  RotaryPose rounded;   ///< the same in degrees: what positions are computed from
-  Angle root_tilt;      ///< of the root line against the tool's edge
-  geometry::Vec3 root;  ///< direction of the root line that lies on machine +X, in the workpiece frame
+  RotaryUnits a = 0;    ///< position of the tilting axis, rounded, as written in programs
+  RotaryUnits c = 0;    ///< position of C, rounded, as written in programs
+  RotaryPose rounded;   ///< rounded pose in degrees, from which all positions are computed
+  Angle root_tilt;      ///< angle between the root line and the tool's edge
+  geometry::Vec3 root;  ///< direction of the root line, in the workpiece frame, that becomes machine +X in this pose
   Section section;
-  /// Normal of the cut facet in words of the linear axes, along which positions are rounded to the least error; 0: each
-  /// word is rounded by itself.
+  /// Direction, in coordinates of the linear axes, along which the rounding error of positions is minimized. It is the
+  /// normal of the cut facet. Zero: each position is rounded to the nearest increment.
   geometry::Vec3 rounded_along = geometry::Vec3::Zero();
 };
 
-/// Outward normals of facets 1 and 2 of an element as it is cut, in the workpiece frame.
+/// Returns the outward normal of facet 1 or 2 of a prism as it is cut, in the workpiece frame.
 geometry::Vec3 facet_normal(const geometry::RtpElement& element, const FacetChoice& facet);
-/// Direction of the root line that lies on machine +X when the facet is plunged.
+/// Returns the direction of the root line that becomes machine +X when the facet is plunged.
 geometry::Vec3 root_direction(const FacetChoice& facet);
-/// Depth of the root below the blank's face.
+/// Returns the depth of the root below the rims.
 double root_depth_mm(const geometry::RtpElement& element);
 
-/// The turn of C by whole revolutions that lies within the limits, nearest to where C was; as it is if others are no
-/// nearer. \throw InputError at `where`
+/// Returns the angle of C, plus or minus full turns, that is within the limits and closest to the previous angle. Full
+/// turns are only added if they bring C closer by more than 1 degree.
+/// \throw InputError at `where` if no angle is within the limits
 double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where,
                      const std::string& who = "");
-/// That the axis that tilts may go there. \throw InputError at `where`, whose text begins with `who`
+/// Checks that an angle of the tilting axis is within its limits.
+/// \param who beginning of the error message
+/// \throw InputError at `where` if it is not
 void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where, const std::string& who = "");
 
-/// Elements that a pose cuts: how they are turned on their base, and how far the blank stands over their rims.
+/// Orientation of the elements that a pose cuts, and height of the blank above their rims.
 struct Stance {
-  std::int32_t orientation = 0;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  std::int32_t orientation = 0;                        ///< CutElement::orientation of the elements
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< CutElement::turn of the elements
   std::size_t zone = 0;
-  double stock_mm = 0.0;
-  double start_mm = 0.0;      ///< the same for a start that keeps the clearance
-  std::int64_t element = -1;  ///< one of them, for messages; -1: they stand on a flat blank
+  double stock_mm = 0.0;      ///< height of the blank's face above the rims
+  double start_mm = 0.0;      ///< height above the rims from which the clearance is measured at the start
+  std::int64_t element = -1;  ///< one of the elements, for error messages; -1 on a flat blank
 
-  /// What a message about the pose begins with; nothing on a flat blank.
+  /// Returns the beginning of an error message about the pose. It is empty on a flat blank.
   std::string who() const;
 };
 
-/// The pose, with C as near to `previous_c_deg` as its limits let it.
-/// \throw InputError naming axis and limits if the machine cannot take it
+/// Returns the rotary pose in which a facet of a prism is plunged. Of all equivalent angles C, it uses the one that is
+/// closest to `previous_c_deg` within the limits of the axis.
+/// \throw InputError naming axis and limits if the machine cannot reach the pose
 CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
                          const Stance& stance = {});
 

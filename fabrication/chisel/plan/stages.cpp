@@ -52,7 +52,7 @@ class StageMaker {
   }
 
  private:
-  /// The elements that stand alike, those that are not turned first.
+  /// Groups the elements by orientation. Elements that are not rotated come first.
   void find_groups() {
     const double start_mm = job_.substrate ? stock_mm(job_, plan_.elements, job_.process.clearance_mm) : 0.0;
     for (std::size_t k = 0; k < plan_.elements.size(); ++k) {
@@ -69,7 +69,8 @@ class StageMaker {
     }
   }
 
-  /// Layer by layer, all elements on one facet, then on the next: chips come off with the third.
+  /// Adds the stages of micro chiseling. In each layer, one facet of all elements is cut, then the next facet. The chip
+  /// of a layer separates with the third facet.
   void chisel() {
     if (!job_.zones.empty())
       add_poses_by_turn();
@@ -80,13 +81,14 @@ class StageMaker {
     add_layers("finishing", process.finishing_cuts, process.finishing_feed_mm_per_min);
   }
 
-  /// What stays over the design on the facets of a layer, or of a finishing cut.
+  /// Returns the thickness of the material that a layer or a finishing cut leaves on the facets.
   double left_mm(std::string_view what, int cut, int cuts, std::size_t zone = 0) const {
     if (what == "finishing") return 1e-3 * job_.process.finishing_depth_um * (cuts - cut);
     const bool is_dmc = job_.strategy == Strategy::dmc;
     const double across_mm =
         is_dmc ? chiseling_across_mm(job_, zone, plan_.stock_mm) : roughing_across_mm(job_, plan_.stock_mm);
-    // The second plunge of the first shell takes least: what the first one's rake face has left of the triangle.
+    // The second plunge of the first layer has the thinnest chip. Its material is the remainder of the triangular
+    // cross- section above the rake face of the first plunge.
     double share = 1.0;
     if (!is_dmc) {
       const double apex_rad = plan_.poses.front().section.apex.rad();
@@ -116,7 +118,8 @@ class StageMaker {
     }
   }
 
-  /// Between elements that lean differently C turns by little, between facets by 120 degrees.
+  /// Adds the poses facet by facet. Between elements with different tilts, C rotates only a little. Between facets, it
+  /// rotates by 120 degrees.
   void add_poses_by_facet() {
     for (int facet = 1; facet <= 3; ++facet)
       for (const auto& [group, stance] : groups_) plan_.poses.push_back(next_pose(group, facet));
@@ -128,9 +131,9 @@ class StageMaker {
     }
   }
 
-  /// Adds the poses in the order of their angle C, beginning after the widest gap between two poses. C then rotates in
-  /// one direction only. The facets of each element are cut in the same cyclic order in every layer; in any other
-  /// order, chips at dihedral edges would be thicker.
+  /// Adds the poses sorted by their angle C, beginning after the widest gap between two angles. C then rotates in one
+  /// direction only. The facets of each element are cut in the same cyclic order in every layer. Any other order would
+  /// give thicker chips at dihedral edges.
   void add_poses_by_turn() {
     std::vector<CuttingPose> poses;
     for (const auto& [group, stance] : groups_)
@@ -151,7 +154,7 @@ class StageMaker {
         first = k;
       }
     std::rotate(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(first), poses.end());
-    // Select the number of full turns with which C remains as close to 0 as its limits allow.
+    // Add full turns to all angles so that C stays within its limits and as close to 0 as possible.
     const double begin_deg = poses.front().rounded.c_deg;
     const double span_deg = -sense * (360.0 - widest_deg);
     double farthest_deg = std::numeric_limits<double>::infinity();
@@ -169,7 +172,8 @@ class StageMaker {
       plan_.poses.push_back(next_pose({pose.facet.rotated, pose.orientation}, pose.facet.facet));
   }
 
-  /// Adds the layers of all poses. A zone that needs fewer layers starts later, so that all zones end together.
+  /// Adds the layers of all poses. A zone that needs fewer layers starts later, so that all zones finish with the same
+  /// layer.
   void add_layers(std::string_view what, int cuts, double feed_mm_per_min) {
     for (int cut = 1; cut <= cuts; ++cut)
       for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {
@@ -192,7 +196,7 @@ class StageMaker {
     add(std::move(stage), pose, std::move(routine));
   }
 
-  /// What tells the elements of a pose apart in the names of its stages.
+  /// Returns the suffix of the stage names of a pose. It identifies the elements by rotation, tilt and zone.
   std::string group_name(std::size_t pose) const {
     std::string name = plan_.poses[pose].facet.rotated ? "-turned" : "";
     if (has_tilts_) name += fmt::format("-tilt-{}", plan_.poses[pose].orientation + 1);
@@ -210,7 +214,8 @@ class StageMaker {
     add(std::move(stage), pose, std::move(routine));
   }
 
-  /// Cut by cut, all poses in turn. \param rough_first roughs in the pose of a facet 1 before its first cut
+  /// Adds plunges: each cut in all poses, then the next cut.
+  /// \param rough_first true: adds the roughing stage before the first cut of facet 1
   void add_plunges(std::string_view what, int cuts, double feed_mm_per_min, bool rough_first) {
     for (int cut = 1; cut <= cuts; ++cut)
       for (std::size_t pose = 0; pose < plan_.poses.size(); ++pose) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The sequence of a plan: which facet is cut in which pose by which routine.
+// Determines the sequence of a plan: which facet is cut in which pose by which subroutine.
 
 #include <vector>
 
@@ -11,15 +11,17 @@
 
 namespace retrace::fabrication {
 
-/// Where a routine starts, relative to the root's middle or the apex, and how far it reaches.
+/// Start point of a subroutine, relative to the center of the root or to the apex, and the extent of its moves.
 struct RoutineStart {
   Place start = Place::Zero();
   Reach reach;
 };
 
-/// Adds poses, routines and stages of a job to a plan that knows its elements and counts of cuts: what is cut in which
-/// order, without positions. Elements that stand differently on a base have poses and stages of their own.
-/// \return of each subroutine \throw InputError naming element, tilt and limit for one that the machine cannot reach
+/// Adds the poses, subroutines and stages of a job to a plan, in the order of cutting. Elements with different
+/// orientations on a substrate have separate poses and stages.
+/// \pre the plan contains the elements and the number of cuts
+/// \return the start of each subroutine
+/// \throw InputError naming element, tilt and limit if the machine cannot reach an element
 std::vector<RoutineStart> add_stages(const Job& job, const Machine& machine, Plan& plan);
 
 }  // namespace retrace::fabrication
