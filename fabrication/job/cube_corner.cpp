@@ -30,7 +30,7 @@ CubeCorner cube_corner(const geometry::Element& element, const geometry::AngleEr
   corner.depth_mm = geometry::element_depth_mm(element, errors);
   const geometry::Cell cell = geometry::element_cell(element, errors);
   for (std::size_t k = 0; k < 3; ++k) {
-    // x of the workpiece is y of the part, and y of the workpiece is -x of the part.
+    // Convert from the part frame to the workpiece frame: x_w = y_part, y_w = -x_part.
     const geometry::Vec2 slope = (rotated ? -1.0 : 1.0) * cell.facets[k].plane.slope;
     corner.normals[k] = Vec3(-slope.y(), slope.x(), 1.0).normalized();
   }

@@ -10,9 +10,9 @@
 
 namespace retrace::fabrication {
 
-/// A cube corner in a flat blank, in the workpiece frame with the origin at its apex. Without errors, edge k has the
-/// azimuth 120 k - 90 degrees, and 120 k + 90 degrees in a rotated element. Facet k is located between edges k and k +
-/// 1.
+/// Cube corner in a flat blank, in the workpiece frame with the origin at its apex. Facet k is between the edges k and
+/// (k + 1) % 3. Without angle errors, edge k has the azimuth 120 k - 90 degrees, or 120 k + 90 degrees in a rotated
+/// element.
 struct CubeCorner {
   double depth_mm = 0.0;  ///< depth of the apex below the blank's face
   /// Unit normals of the facets, pointing out of the material.
@@ -20,13 +20,13 @@ struct CubeCorner {
   /// Unit vectors along the dihedral edges, upwards.
   std::array<geometry::Vec3, 3> edges = {geometry::Vec3::Zero(), geometry::Vec3::Zero(), geometry::Vec3::Zero()};
 
-  /// Returns the intersection of three planes that are parallel to the facets.
+  /// Returns the intersection point of three planes that are parallel to the facets.
   /// \param facets_mm height of each plane above its facet
   geometry::Vec3 apex_over(const geometry::Vec3& facets_mm) const;
-  /// Returns the height of the apex of a layer above the nominal apex, per mm of material that the layer leaves on each
-  /// facet: sqrt(3) without errors of angle.
+  /// Returns the distance, along z, between the apex of a layer and the nominal apex, per mm of material that the layer
+  /// leaves on each facet. It is sqrt(3) without angle errors.
   double layer_rise() const { return apex_over(geometry::Vec3::Ones()).z(); }
-  /// Returns the largest deviation from 90 degrees of the angles between two facets and between two edges.
+  /// Returns the largest deviation from 90 degrees among the angles between facets and the angles between edges.
   double largest_error_deg() const;
 };
 
@@ -35,7 +35,8 @@ struct CubeCorner {
 /// \pre the job cuts cube corners
 CubeCorner blank_corner(const Job& job, std::size_t zone = 0, bool rotated = false);
 
-/// Returns the cube corner of an element. \pre the element is a cube corner without cant
+/// Returns the cube corner of an element.
+/// \pre the element is a cube corner without cant
 CubeCorner cube_corner(const geometry::Element& element, const geometry::AngleErrors& errors = {},
                        bool rotated = false);
 

@@ -18,11 +18,11 @@ using geometry::Vec3;
 
 namespace {
 
-/// Boundary of one cut at a dihedral edge. Let h be the height of a point above the facet of the cut, and g its height
-/// above the other facet. Material with h > `ratio` * g remains.
+/// Boundary plane of one cut at a dihedral edge. A point has the height h above the facet of the cut and the height g
+/// above the other facet. The cut leaves the material with h > `ratio` * g.
 struct CutBoundary {
   double ratio = 0.0;
-  double shift_mm = 0.0;  ///< maximum displacement of the boundary in h, caused by the rounding of positions
+  double shift_mm = 0.0;  ///< maximum displacement of the boundary, measured in h, due to rounded positions
 };
 
 CutBoundary boundary_of(Angle reach, Angle between, double step_mm) {
@@ -35,8 +35,8 @@ CutBoundary boundary_of(Angle reach, Angle between, double step_mm) {
   return boundary;
 }
 
-/// Returns the height of the peak between three boundaries, one for each dihedral edge. Each boundary limits the height
-/// above one facet by the height above the facet of the next boundary.
+/// Returns the maximum height of the peak between three boundaries, one for each dihedral edge. Boundary k relates the
+/// height above facet k to the height above the facet of boundary k + 1. The three relations form a cycle.
 double peak_mm(const std::array<CutBoundary, 3>& boundaries) {
   const double product = boundaries[0].ratio * boundaries[1].ratio * boundaries[2].ratio;
   if (std::isinf(product)) return 0.0;
@@ -54,13 +54,14 @@ double peak_mm(const std::array<CutBoundary, 3>& boundaries) {
 }  // namespace
 
 double rounded_along_mm(double step_mm) {
-  // A position is the sum of a start and a path. The rounding error of each is in a cube with the side of one
-  // increment.
+  // A position is the sum of a start point and a relative move. Each is rounded with an error of at most the space
+  // diagonal of a cube with the side of one increment.
   return 2.0 * std::numbers::sqrt3 * step_mm;
 }
 
 double rounded_across_mm(double step_mm) {
-  // Start and path are each rounded by at most half an increment along the facet's normal.
+  // A position is the sum of a start point and a relative move. Along the facet's normal, each is rounded with an error
+  // of at most half an increment.
   return step_mm;
 }
 
@@ -69,7 +70,7 @@ std::array<EdgeCover, 3> edge_covers(const std::array<Vec3, 3>& normals, const s
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
     const Vec3 edge = normals[k].cross(normals[next]).normalized();
-    // Directions in the facets, perpendicular to the edge and pointing away from it.
+    // Unit vectors in the two facets, perpendicular to the edge and away from it.
     const Vec3 along_first = edge.cross(normals[k]);
     const Vec3 along_second = normals[next].cross(edge);
     const auto reach = [&](std::size_t facet, const Vec3& along) {
@@ -88,8 +89,8 @@ std::array<Vec3, 3> spines_of(const CubeCorner& corner, const Tool& tool, const 
     const Vec3& normal = corner.normals[k];
     const Vec3 up = (Vec3::UnitZ() - normal.z() * normal).normalized();
     const Vec3 level = normal.cross(up);
-    // In the view of the tool, the axes are at 45 degrees to the horizontal line of the facet. The tool rotates in this
-    // view.
+    // v_tool_edges() uses coordinates along the two dihedral edges and the normal of a facet. For a facet with angle
+    // errors, axes at 45 degrees to its upward direction replace the dihedral edges.
     Eigen::Matrix3d view;
     view << (up - level).normalized(), (up + level).normalized(), normal;
     spines[k] = view * (Eigen::AngleAxisd(-root_tilts[k].rad(), Vec3::UnitZ()) * spine);
@@ -116,7 +117,7 @@ double rounded_peak_mm(const std::array<EdgeCover, 3>& covers, double step_mm) {
   std::array<CutBoundary, 3> seconds;
   for (std::size_t k = 0; k < 3; ++k) {
     firsts[k] = boundary_of(covers[k].first, covers[k].between, step_mm);
-    // The second cuts form a cycle in the opposite order: each boundary leads from a facet to the preceding one.
+    // The boundaries of the second cuts form a cycle in the opposite order, from each facet to the preceding facet.
     seconds[2 - k] = boundary_of(covers[k].second, covers[k].between, step_mm);
   }
   return std::max(peak_mm(firsts), peak_mm(seconds));

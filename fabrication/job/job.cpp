@@ -71,7 +71,8 @@ geometry::Vec2 blank_extent_mm(const Job& job) {
 
 namespace {
 
-/// Of prisms cut directly the mirror image: their columns are counted from the other side.
+/// Returns the elements of an array on a flat blank. For a workpiece that is cut directly, the array is mirrored and
+/// the columns are counted from the opposite side.
 std::vector<CutElement> cut_flat(const Job& job) {
   const bool is_mirrored = job.workpiece.kind == WorkpieceKind::direct;
   const double scale = blank_scale(job.workpiece);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Fabrication jobs as data: elements and array, workpiece, chisel or V-shaped tool, strategy and process, and the
-// elements that a job cuts.
+// Data of a fabrication job: elements and array, workpiece, chisel or V-shaped tool, strategy and process. Also
+// computes the list of elements that a job cuts.
 
 #include <array>
 #include <cstddef>
@@ -19,8 +19,8 @@
 
 namespace retrace::fabrication {
 
-/// What is cut. `mould`: the material on the far side of the part's back, in the part's frame. `direct`: the optic
-/// itself, turned by 180 degrees about the part's y axis, so that the array is mirrored in x.
+/// Kind of workpiece. `mould`: the negative shape from which the part is moulded, in the frame of the part. `direct`:
+/// the optical part itself, rotated by 180 degrees about the part's y axis, so that the array is mirrored in x.
 enum class WorkpieceKind { mould, direct };
 
 enum class Strategy {
@@ -30,79 +30,81 @@ enum class Strategy {
   dmc              ///< diamond micro chiseling of cube corners: a V-shaped tool down one dihedral edge, up the other
 };
 
-/// Words of files and commands, in the order of the enumerators.
+/// Names of the enumerators in files and commands, in the order of the enumerators.
 inline constexpr std::string_view kWorkpieceWords[] = {"mould", "direct"};
 inline constexpr std::string_view kStrategyWords[] = {"unidirectional", "bidirectional", "two-step", "dmc"};
 inline constexpr std::string_view kNextEdgeWords[] = {"stop", "program"};
 
 struct Workpiece {
   WorkpieceKind kind = WorkpieceKind::mould;
-  double shrinkage_percent = 0.0;  ///< the mould is larger than the part by this much; 0..10
+  double shrinkage_percent = 0.0;  ///< excess of the mould's size over the size of the part, 0..10
 };
 
-/// A piece that has broken out of the cutting edge: every facet that the edge cuts last keeps a ridge there.
+/// Chip (notch) in the cutting edge. Every facet that the edge cuts last keeps a ridge at this position.
 struct EdgeChip {
-  double position_um = 0.0;  ///< of its middle, from the edge's middle towards +X of the machine
-  double width_um = 0.0;     ///< along the edge; > 0
-  double depth_um = 0.0;     ///< normal to the clearance face; > 0, at most half the width
+  double position_um =
+      0.0;                ///< position of the chip's center along the edge, from the edge's center towards machine +X
+  double width_um = 0.0;  ///< width along the edge; > 0
+  double depth_um = 0.0;  ///< depth normal to the clearance face; > 0, at most half the width
 };
 
-/// What an edge that has cut its life is followed by.
+/// Action when an edge has reached its tool life.
 enum class NextEdge {
-  stop,    ///< the program stops, and with every stop the edge's account begins anew
-  program  ///< a new program begins; stops leave the edge as it is
+  stop,    ///< the program stops, and the edge is replaced at every stop
+  program  ///< a new program begins, and the edge is not replaced at stops
 };
 
-/// A diamond whose clearance face looks at the facet that it cuts; the clearance comes from how the tool is mounted.
-/// For prisms a chisel with a straight edge (single-point inverted cutting, thesis 2.1), for cube corners a V-shaped
-/// tool with two edges that meet in its tip (diamond micro chiseling, thesis 1.4.2).
+/// Diamond tool. For prisms, it is a chisel with a straight edge (single-point inverted cutting, thesis 2.1). For cube
+/// corners, it is a V-shaped tool with two edges that meet in the tip (diamond micro chiseling, thesis 1.4.2). The
+/// clearance face is next to the facet that is cut. The clearance angle is set by the mounting of the tool.
 struct Tool {
-  double width_mm = 0.0;             ///< of a chisel's edge, 0.1..2; across the ends of a V's two edges, 0.01..10
-  double wedge_deg = 50.0;           ///< between clearance and rake face; of a V: behind either edge, 65 by default
-  double clearance_deg = 3.0;        ///< between clearance face and cut facet; 2..15
-  double edge_radius_um = 0.0;       ///< of a chisel's edge, of a V's nose; 0: sharp
-  double side_clearance_deg = 2.0;   ///< by which a chisel's side walls fall back from the edge's ends; > 0
-  double nose_angle_deg = 50.0;      ///< between the two edges of a V
-  std::vector<EdgeChip> edge_chips;  ///< of a chisel; they keep clear of each other
-  /// The way of the tip below the blank's face, in moves that cut, that an edge is good for; nothing: it lasts.
+  double width_mm = 0.0;    ///< chisel: length of the edge, 0.1..2; V: distance between the ends of its edges, 0.01..10
+  double wedge_deg = 50.0;  ///< angle between clearance face and rake face; for a V, 65 by default
+  double clearance_deg = 3.0;        ///< angle between clearance face and cut facet, 2..15
+  double edge_radius_um = 0.0;       ///< radius of a chisel's edge or of a V's nose; 0: sharp
+  double side_clearance_deg = 2.0;   ///< clearance angle of a chisel's side walls behind the ends of the edge; > 0
+  double nose_angle_deg = 50.0;      ///< angle between the two edges of a V
+  std::vector<EdgeChip> edge_chips;  ///< chips in the edge of a chisel; they do not overlap
+  /// Tool life of an edge: path length of the tip below the blank's face in cutting moves. Empty: no limit.
   std::optional<double> edge_life_mm;
-  NextEdge next_edge = NextEdge::stop;  ///< of an edge with a life
+  NextEdge next_edge = NextEdge::stop;  ///< used only if edge_life_mm is given
 };
 
-/// The wedge of a V-shaped tool with rake 22 and clearance 3 (thesis 1.4.2): they add up to 90.
+/// Wedge angle of a V-shaped tool with rake 22 and clearance 3 degrees (thesis 1.4.2). The three angles add up to 90.
 inline constexpr double kDmcWedgeDeg = 65.0;
 
-/// Programs say feeds in thousandths of a mm/min: less than half of one would be F0.000, a move that never ends.
+/// Minimum feed. Programs contain feeds with three decimals, so that a smaller feed would be rounded to F0.000.
 inline constexpr double kLeastFeedMmPerMin = 5e-4;
 
-/// How an element is cut: depths, feeds and the thesis's recommendations, which are off by default.
+/// Cutting process: depths of cut, feeds, and optional recommendations of the thesis, which are off by default.
 struct Process {
   std::string name;
-  std::string source;                      ///< where the values come from
-  double clearance_mm = 0.2;               ///< of the tool above the blank's face, normal to it
-  double roughing_depth_um = 15.0;         ///< depth of cut (DOC) of roughing, and of bidirectional layers
+  std::string source;                      ///< source of the values
+  double clearance_mm = 0.2;               ///< distance of the tool from the blank's face, along the face's normal
+  double roughing_depth_um = 15.0;         ///< depth of cut (DOC) of roughing and of bidirectional layers
   double finishing_depth_um = 5.0;         ///< DOC of finishing cuts
-  int finishing_cuts = 2;                  ///< per facet; two-step only
-  double plough_length_mm = 0.1;           ///< along facet 2, from the root
-  double dwell_s = 0.1;                    ///< at every root
-  double roughing_feed_mm_per_min = 50.0;  ///< plunging and ploughing
+  int finishing_cuts = 2;                  ///< number of finishing cuts per facet; strategies two-step and dmc only
+  double plough_length_mm = 0.1;           ///< length of a plough along facet 2, from the root
+  double dwell_s = 0.1;                    ///< dwell time at every root
+  double roughing_feed_mm_per_min = 50.0;  ///< feed of plunging and ploughing
   double finishing_feed_mm_per_min = 20.0;
-  double retract_feed_mm_per_min = 200.0;  ///< retracting, and moving to the next cut of an element
-  bool shortest_plough = false;  ///< plough only until the chip is free instead of plough_length_mm (thesis 4.4)
-  double plough_lift_um = 0.0;   ///< by which the tool leaves the facet once the chip is free; 0: it does not
-  double slow_retract_um = 0.0;  ///< of bidirectional cuts: this much straight up at cutting feed first (thesis 4.4)
-  bool mist = true;              ///< while the tool cuts, to keep chips off and the edge cool
-  double rotary_clearance_mm = 5.0;      ///< above all that the turning blank can reach, before a rotary move
-  std::optional<double> least_chip_um;   ///< a cut that is thinner all along rubs; nothing: no cut is too thin
-  std::optional<double> stop_every_min;  ///< the longest that a program runs without a stop; nothing: to its end
-  bool stop_before_finishing = false;    ///< every element, between its roughing and its finishing
-  /// Areal roughness Sa that the motions leave on facets. Milliken 2017 and Hamilton et al. 2017, as measured.
+  double retract_feed_mm_per_min = 200.0;  ///< feed of retracts and of moves to the next cut of an element
+  bool shortest_plough = false;  ///< true: a plough ends when the chip is free, not at plough_length_mm (thesis 4.4)
+  double plough_lift_um = 0.0;   ///< lift of the tool off the facet after the chip has separated; 0: no lift
+  double slow_retract_um = 0.0;  ///< bidirectional cuts: first part of the retract, at cutting feed (thesis 4.4)
+  bool mist = true;              ///< true: mist during cuts, which removes chips and cools the edge
+  double rotary_clearance_mm = 5.0;      ///< clearance above the rotating blank during rotary moves
+  std::optional<double> least_chip_um;   ///< minimum chip thickness, below which the edge rubs; empty: no limit
+  std::optional<double> stop_every_min;  ///< maximum run time of a program without a stop; empty: no limit
+  bool stop_before_finishing = false;    ///< true: every element is inspected between roughing and finishing
+  /// Measured areal roughness Sa of facets after each kind of motion. Source: Milliken 2017 and Hamilton et al. 2017.
   double plough_sa_nm = 468.0;
   double roughing_plunge_sa_nm = 115.0;
   double finishing_plunge_sa_nm = 48.9;
 };
 
-/// A group of equal cube corners at given positions. An empty value means that the value of the job's element applies.
+/// Zone of a job: a group of equal cube corners at given positions. If an optional value is empty, the value of the
+/// job's element is used.
 struct CutZone {
   std::optional<double> aperture_mm;
   std::optional<std::array<double, 3>> dihedral_error_arcmin;
@@ -111,50 +113,51 @@ struct CutZone {
   std::vector<geometry::Vec2> apexes_mm;  ///< positions of the apexes in the part frame
 };
 
-/// A fabrication job: all that a planner or a verifier needs to know, and nothing about light.
+/// Fabrication job: all data that the planner and the verification need. It contains no optical data.
 struct Job {
-  std::string source;  ///< the job file as given; empty if it was made
+  std::string source;  ///< path of the job file as given; empty if the job was made by the program
   std::string title;
-  std::string design;  ///< file that the job was made from, for people
+  std::string design;  ///< name of the design file from which the job was made
   Workpiece workpiece;
-  geometry::Element element;           ///< of the part, without cant
-  geometry::AngleErrors angle_errors;  ///< intended errors of angle; cube corners only
-  geometry::ArrayLayout array;         ///< finite; x and y lengths of `single` are those of the element's aperture
-  /// Zones that are cut instead of the array. If there are zones, `array` only defines the extent. Empty: the array is
-  /// cut.
+  geometry::Element element;           ///< element of the part, without cant
+  geometry::AngleErrors angle_errors;  ///< intended angle errors of the elements; cube corners only
+  geometry::ArrayLayout array;         ///< finite array; a `single` element has the lengths of its aperture
+  /// Zones that are cut instead of the array. If there are zones, only the x and y lengths of `array` are used.
   std::vector<CutZone> zones;
-  /// What the elements stand on, of moulds and of arrays without offsets and patterns; its highest place over the part
-  /// is z = 0, and the blank's face has its shape. None: the plane z = 0.
+  /// Curved or inclined surface on which the elements are placed, and shape of the blank's face. Its highest point over
+  /// the part is z = 0. Only for moulds of arrays without offsets and patterns. Empty: the plane z = 0.
   std::optional<geometry::Substrate> substrate;
   Tool tool;
   std::string machine = "ideal";  ///< name of a shipped machine, or a file
   Strategy strategy = Strategy::two_step;
   Process process;
-  std::vector<std::string> notes;  ///< remarks from when the job was made, such as on what it leaves out
-  std::shared_ptr<const schema::Document> document;  ///< what the file says; none of a job that was made
+  std::vector<std::string> notes;  ///< remarks from the making of the job, for example about omitted elements
+  std::shared_ptr<const schema::Document> document;  ///< content of the job file; null if there is no file
 
-  /// Where a key was given, or would be missed.
+  /// Returns the location of a key in the job file, or the location where it is missing.
   InputLocation where(std::string_view key) const;
 };
 
-/// One element that is cut. In the workpiece frame: x_w = y_part, y_w = -x_part, origin at the centre of the extent on
-/// the blank's face.
+/// Element that is cut, in the workpiece frame: x_w = y_part, y_w = -x_part, origin at the center of the array's extent
+/// on the blank's face.
 struct CutElement {
-  /// Of the aperture, in the workpiece frame; of an array on a base with its elements along the normal the place on the
-  /// sheet that the base is when it is rolled out.
+  /// Center of the aperture, in the workpiece frame. For elements along the normal of a substrate: position on the
+  /// unrolled substrate.
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();
-  std::int32_t row = 0;     ///< from 0 at y = 0
-  std::int32_t column = 0;  ///< from 0 at x = 0
-  bool rotated = false;     ///< a prism by 90 degrees about z: its roof edge lies along y_w; a cube corner by 180
-  geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< on the blank: the middle of the aperture, or over the apex
-  /// Turns directions of an element on a flat blank into those of this one: the third column is its axis.
+  std::int32_t row = 0;     ///< row index, from 0 at y = 0
+  std::int32_t column = 0;  ///< column index, from 0 at x = 0
+  bool rotated = false;  ///< true: rotated about z, a prism by 90 degrees (roof edge along y_w), a cube corner by 180
+  geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< point of the blank's face above the root's center or the apex
+  /// Rotation from an element on a flat blank to this element. Its third column is the element's axis.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  /// Equal for elements with the same `turn`; in a job with zones, for the elements of one zone.
+  /// Number of the orientation. Elements with equal `turn` have equal numbers. In a job with zones, all elements of a
+  /// zone have the same number.
   std::int32_t orientation = 0;
   std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 };
 
-/// The prism that a job cuts. \throw InputError if it cuts cube corners
+/// Returns the prism that a job cuts.
+/// \throw InputError if the job cuts cube corners
 const geometry::RtpElement& prism_of(const Job& job);
 geometry::RtpElement& prism_of(Job& job);
 
@@ -163,21 +166,21 @@ geometry::RtpElement& prism_of(Job& job);
 /// include shrinkage. The positions of a direct workpiece are mirrored.
 std::vector<CutElement> cut_elements(const Job& job);
 
-/// By how much the blank is larger than the part: 1 + shrinkage_percent / 100.
+/// Returns the size of the blank divided by the size of the part: 1 + shrinkage_percent / 100.
 double blank_scale(const Workpiece& workpiece);
 
 /// Returns the number of zones of the job, or 1 for a job without zones.
 std::size_t zone_count(const Job& job);
 
-/// Returns the element of the job, or of one of its zones, with the sizes that are cut into the blank. They include
-/// shrinkage.
+/// Returns the element of the job, or of one of its zones, as it is cut into the blank. Its sizes include shrinkage.
 geometry::Element blank_element(const Job& job, std::size_t zone = 0);
-/// Returns the intended errors of angle of the element. They are 0 for prisms.
+/// Returns the intended angle errors of the job's element, or of one of its zones. They are 0 for prisms.
 geometry::AngleErrors angle_errors_of(const Job& job, std::size_t zone = 0);
-/// The same of prisms. \throw InputError if the job cuts cube corners
+/// Returns the prism of the job as it is cut into the blank. Its sizes include shrinkage.
+/// \throw InputError if the job cuts cube corners
 geometry::RtpElement blank_prism(const Job& job);
 
-/// x and y lengths of the array's extent on the blank along x_w and y_w.
+/// Returns the lengths of the array's extent on the blank, along x_w and y_w.
 geometry::Vec2 blank_extent_mm(const Job& job);
 
 }  // namespace retrace::fabrication

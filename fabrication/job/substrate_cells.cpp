@@ -21,15 +21,16 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Directions that differ by less than this are one: far below what rotary words tell apart.
+/// Maximum difference between the components of two directions that are considered equal. It is far below the
+/// resolution of rotary positions in programs.
 constexpr double kSameDirection = 1e-13;
 
-/// From axes of the part to those of the workpiece.
+/// Transforms a vector from the part frame to the workpiece frame.
 Vec3 in_workpiece(const Vec3& v) {
   return {v.y(), -v.x(), v.z()};
 }
 
-/// Numbers the directions of elements, like ones alike.
+/// Assigns numbers to the orientations of elements. Equal orientations have the same number.
 class Orientations {
  public:
   std::int32_t number_of(const Eigen::Matrix3d& turn) {
@@ -43,11 +44,11 @@ class Orientations {
   std::map<std::array<std::int64_t, 9>, std::int32_t> known_;
 };
 
-/// Directions from an element's axis to the outline of what its cut opens at the blank's face, in its own frame, told
-/// for an opening of depth 1 mm over the root or apex. Along the root a prism's opening does not grow.
+/// Outline of the opening of an element's cut in a plane above the root or apex, in the frame of the element. Its
+/// points are height * grows[k] + stays[k]. Along the root, the opening of a prism has a constant length.
 struct Opening {
-  std::vector<Vec2> grows;  ///< per mm over the root
-  std::vector<Vec2> stays;  ///< added to it, in mm
+  std::vector<Vec2> grows;  ///< part of the outline that is proportional to the height, per mm
+  std::vector<Vec2> stays;  ///< constant part of the outline, in mm
   double depth_mm = 0.0;
 };
 
@@ -65,7 +66,7 @@ Opening opening_of(const geometry::Element& element, bool rotated) {
       }
     return opening;
   }
-  // Dihedral edges go out by sqrt(2) for each mm up.
+  // Dihedral edges move outward by sqrt(2) mm per mm of height.
   constexpr double kDeg = std::numbers::pi / 180.0;
   std::array<Vec2, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -104,7 +105,7 @@ std::vector<CutElement> elements_on_substrate(const Job& job) {
     element.column = at.on_sheet.column;
     element.rotated = at.on_sheet.is_rotated;
     element.foot_mm = scale * in_workpiece(at.frame.origin);
-    // Along x of the workpiece a flat array has y of the part, along y it has -x.
+    // x_w is y of the part, and y_w is -x of the part.
     element.turn.col(0) = in_workpiece(at.frame.along_v);
     element.turn.col(1) = -in_workpiece(at.frame.along_u);
     element.turn.col(2) = in_workpiece(at.frame.normal);
@@ -124,13 +125,14 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
   double stock = 0.0;
   for (const CutElement& cut : elements) {
     const Opening& opening = openings[cut.rotated ? 1 : 0];
-    // The higher the face, the wider the cut opens, and the higher the blank may stand over its border.
+    // A higher face gives a wider opening, over whose border the blank may be even higher. Iterate until the height is
+    // constant.
     for (int round = 0; round < kMostRounds; ++round) {
       double highest = stock;
       for (std::size_t k = 0; k < opening.grows.size(); ++k) {
         const Vec2 at = (opening.depth_mm + stock + clearance_mm) * opening.grows[k] + opening.stays[k];
         const Vec3 p = cut.foot_mm + cut.turn * Vec3(at.x(), at.y(), 0.0);
-        // How far up the element's axis the face lies over that place.
+        // Compute the height of the face above this point along the element's axis.
         const BlankFace::Place under = face.under(p);
         const double rise = std::max(under.normal.dot(cut.turn.col(2)), 0.05);
         highest = std::max(highest, (clearance_mm - under.height_mm) / rise - clearance_mm);

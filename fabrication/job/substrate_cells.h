@@ -1,6 +1,6 @@
 #pragma once
 
-// Jobs on a substrate: where their elements stand, and the face of the blank before it is cut.
+// Positions of the elements of a job on a substrate, and the face of the blank before cutting.
 
 #include <optional>
 #include <string>
@@ -12,24 +12,28 @@
 
 namespace retrace::fabrication {
 
-/// What a design would say of the job's part. \pre job.substrate
+/// Returns the specification of the part that a design with the job's elements and substrate would have.
+/// \pre the job has a substrate
 geometry::PartSpec part_on_substrate(const Job& job);
 
-/// The elements of the job where they stand on its substrate, in the frame of the blank: those that lie wholly within
-/// the part in plan, row by row from least y, x rising (docs/theory/cutting.md). \pre job.substrate, a mould, lengths
-/// of the part > 0
+/// Returns the elements of a job on its substrate, in the workpiece frame. Only elements that are completely inside the
+/// part in plan are included. They are sorted by rows with ascending y, and by x in each row (docs/theory/cutting.md).
+/// \pre the job has a substrate, is a mould, and has lengths > 0
 std::vector<CutElement> elements_on_substrate(const Job& job);
 
-/// By how much the blank stands over the plane of an element's rims at most, anywhere over what its cut opens; 0 on a
-/// flat blank, on an inclined one with elements along its normal, and on one that bulges.
-/// \param clearance_mm above 0: how much higher a tool starts that keeps that distance from the blank
-/// \throw InputError, whose text begins with "must", if the substrate rises so steeply that no cut comes out of it
+/// Returns the maximum height, in mm, of the blank's face above the plane of an element's rims, inside the opening of
+/// the element's cut. It is 0 on a flat blank, on an inclined blank with elements along its normal, and on a convex
+/// blank.
+/// \param clearance_mm additional distance from the blank that the tool must keep at the start of a cut. If it is above
+///        0, the result applies to this start
+/// \throw InputError, whose text begins with "must", if the substrate is too steep for the tool to leave the cut
 double stock_mm(const Job& job, const std::vector<CutElement>& elements, double clearance_mm = 0.0);
 
-/// One line for people: what the blank's face is like, and where its zero is. \pre job.substrate
+/// Returns a one-line description of the blank's face and of its zero point.
+/// \pre the job has a substrate
 std::string substrate_description(const Job& job);
 
-/// The face of the blank before anything is cut: its plane, or the job's substrate.
+/// Face of the blank before cutting: a plane, or the substrate of the job.
 class BlankFace {
  public:
   explicit BlankFace(const Job& job);
@@ -38,8 +42,8 @@ class BlankFace {
     double height_mm = 0.0;
     geometry::Vec3 normal = geometry::Vec3::UnitZ();
   };
-  /// The face over or under a point of the workpiece frame: its normal there, and how far the point lies off it along
-  /// that; negative: within the blank. Beyond the part's border the face goes on straight.
+  /// Returns the normal of the face next to a point of the workpiece frame, and the height of the point above the face.
+  /// The height is negative inside the blank. Outside of the part, the face is continued along its tangent.
   Place under(const geometry::Vec3& p) const;
   double height_mm(const geometry::Vec3& p) const { return under(p).height_mm; }
   geometry::Vec3 normal_at(const geometry::Vec3& p) const { return under(p).normal; }

@@ -21,8 +21,8 @@ double rad(double deg) {
   return Angle::from_deg(deg).rad();
 }
 
-/// Between the directions in which two cuts reach from a dihedral edge into the shell, one along either facet: what is
-/// left between them if the sum is less than a right angle is a fin.
+/// Returns the sum of the two angular sectors that the cuts along both facets remove at a dihedral edge. If the sum is
+/// less than 90 degrees, a fin remains between the cuts.
 double covered_deg(const VToolEdges& edges) {
   const Vec3& s = edges.spine;
   return Angle::from_rad(std::atan2(s.z(), s.y()) + std::atan2(s.z(), s.x())).deg();
@@ -32,7 +32,7 @@ double covered_deg(const VToolEdges& edges) {
 
 VToolEdges v_tool_edges(const Tool& tool) {
   const double half = rad(0.5 * tool.nose_angle_deg);
-  const double from_second = rad(45.0) - half;  // the two dihedral edges of a facet include 90 degrees
+  const double from_second = rad(45.0) - half;  // the angle between the two dihedral edges of a facet is 90 degrees
   VToolEdges edges;
   edges.leading = {std::sin(from_second), std::cos(from_second), 0.0};
   const Vec3 behind(std::cos(from_second), -std::sin(from_second), 0.0);
@@ -56,7 +56,7 @@ double nose_strip_mm(const Tool& tool) {
 
 void check_v_tool(const geometry::Element& element, const geometry::AngleErrors& errors, const Tool& tool,
                   const schema::Refuse& refuse) {
-  // Maximum difference between an angle of the element and 90 degrees.
+  // Maximum deviation of the element's angles from 90 degrees.
   double error_deg = 0.0;
   double edge_mm = cavity_edge_mm(element);
   const CubeCorner corner = cube_corner(element, errors);
@@ -91,7 +91,7 @@ void check_v_tool(const geometry::Element& element, const geometry::AngleErrors&
                        "tool's nose, got {}",
                        fixed_apart(1e3 * kMostRadiusShare * aperture_mm, tool.edge_radius_um, 3),
                        shortest(tool.edge_radius_um)));
-  // The ends of the cutting edges must come out of the blank while the tip stands in the apex.
+  // While the tip is in the apex, the ends of the cutting edges must be above the face of the blank.
   const double least_mm = std::numbers::sqrt2 * edge_mm * std::tan(rad(0.5 * tool.nose_angle_deg));
   if (tool.width_mm < least_mm)
     refuse("tool.width_mm", fmt::format("must be >= {} for the cutting edges to reach from the apex to the blank's "

@@ -1,7 +1,7 @@
 #pragma once
 
-// Geometry of V-shaped tools at cube corners: edges of the tool's body, size of the cavity, and whether the tool
-// reaches all of it.
+// Geometry of V-shaped tools in cube corners: edges of the tool, size of the cavity, and the check that the tool can
+// cut the whole cavity.
 
 #include <array>
 
@@ -14,26 +14,28 @@ namespace retrace::fabrication {
 /// Maximum wedge angle of a tool, in degrees.
 inline constexpr double kMaxWedgeDeg = 80.0;
 
-/// The three edges of a V-shaped tool's body, upwards from its tip, of length 1, as components along a facet's first
-/// dihedral edge, its second one and its outward normal. The tool stands as it cuts: its leading edge lies in the facet
-/// and the clearance face turns away from it about that edge (docs/theory/micro_chiseling.md).
+/// Unit vectors along the three edges of a V-shaped tool, upwards from its tip, while it cuts a facet. Their components
+/// are along the facet's first dihedral edge, its second dihedral edge and its outward normal. The leading edge is in
+/// the facet. The clearance face is inclined to the facet about the leading edge (docs/theory/micro_chiseling.md).
 struct VToolEdges {
   geometry::Vec3 leading = geometry::Vec3::UnitY();   ///< cutting edge, on the side of the second dihedral edge
   geometry::Vec3 trailing = geometry::Vec3::UnitX();  ///< the other edge of the clearance face
-  geometry::Vec3 spine = geometry::Vec3::UnitZ();     ///< where the two flanks meet
+  geometry::Vec3 spine = geometry::Vec3::UnitZ();     ///< edge between the two flanks
 };
 VToolEdges v_tool_edges(const Tool& tool);
 
-/// Returns the length of the dihedral edges from the apex to the blank's face, without errors of angle. For hexagonal
-/// cube corners, it is twice the edge of the cube.
+/// Returns the length of the dihedral edges from the apex to the blank's face, without angle errors. For hexagonal cube
+/// corners, it is twice the edge length of the cube.
 /// \pre the element is a cube corner
 double cavity_edge_mm(const geometry::Element& element);
 
-/// Width that a nose of the tool's radius leaves uncut on either facet along a dihedral edge.
+/// Returns the width of the strip along a dihedral edge that the rounded nose of the tool leaves uncut on each facet.
 double nose_strip_mm(const Tool& tool);
 
-/// That the tool reaches the apex of a cube corner, and every place of its facets.
-/// \param element as it is cut into the blank \pre it is a cube corner
+/// Checks that the tool can cut a cube corner up to its apex, and every point of its facets. Calls `refuse` for each
+/// key that does not fit.
+/// \param element element as it is cut into the blank
+/// \pre the element is a cube corner
 void check_v_tool(const geometry::Element& element, const geometry::AngleErrors& errors, const Tool& tool,
                   const schema::Refuse& refuse);
 

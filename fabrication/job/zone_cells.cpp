@@ -22,8 +22,8 @@ using geometry::Polygon;
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Returns the rank of each value, from 0 for the smallest. Neighbouring values that differ by at most `same` share a
-/// rank.
+/// Returns the rank of each value, from 0 for the smallest value. Consecutive values have the same rank if they differ
+/// by at most `same`.
 std::vector<std::int32_t> ranks_of(const std::vector<double>& values, double same) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -53,7 +53,7 @@ std::string place_text(const Vec2& apex) {
   return fmt::format("the element at x = {}, y = {} mm", shortest(apex.x()), shortest(apex.y()));
 }
 
-/// Spatial index of the elements of a zone: apexes by squares that are as wide as an element.
+/// Spatial index of the elements of a zone. The apexes are stored in squares that are as wide as an element.
 class PlacedZone {
  public:
   explicit PlacedZone(Polygon round_apex)
@@ -62,8 +62,9 @@ class PlacedZone {
   double radius_mm() const { return radius_mm_; }
   Polygon outline_at(const Vec2& apex) const { return geometry::moved(round_apex_, apex); }
   void add(const Vec2& apex) { squares_[square_of(apex)].push_back(apex); }
-  /// Returns the apex of the first element that an outline overlaps, or null.
-  /// \param radius_mm radius of the outline round `apex`
+  /// Returns the apex of an element that overlaps an outline, or null.
+  /// \param radius_mm radius of the circle about `apex` that contains the outline
+  /// \param near_mm tolerance for an overlap
   const Vec2* overlapped_by(const Polygon& outline, const Vec2& apex, double radius_mm, double near_mm) const {
     const double reach_mm = radius_mm + radius_mm_;
     const auto [left, low] = square_of(apex - Vec2(reach_mm, reach_mm));
@@ -134,7 +135,7 @@ std::vector<CutElement> elements_of_zones(const Job& job) {
 
 std::optional<ZoneMisfit> misfit_of_zones(const Job& job) {
   const geometry::Rectangle part{Vec2::Zero(), {job.array.x_length_mm, job.array.y_length_mm}};
-  // Relative tolerance for positions that are rounded in files.
+  // Tolerance for rounded positions in files, relative to the radius of an element.
   constexpr double kSameShare = 2e-5;
   std::vector<PlacedZone> placed;
   for (std::size_t z = 0; z < job.zones.size(); ++z) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Elements of the zones of a job, and the check that they do not overlap.
+// Computes the elements of a job with zones, and checks that they do not overlap.
 
 #include <optional>
 #include <string>
@@ -10,16 +10,18 @@
 
 namespace retrace::fabrication {
 
-/// Returns the elements of all zones, in the order of the job. Rows and columns are counted in the frame of each zone.
+/// Returns the elements of all zones, zone by zone. Rows and columns are counted for each zone, along the directions of
+/// its rotated elements.
 /// \pre the job has zones and is a mould
 std::vector<CutElement> elements_of_zones(const Job& job);
 
-/// A misplaced element of a zone.
+/// Error about an element of a zone at a wrong position.
 struct ZoneMisfit {
-  std::size_t zone = 0;
-  std::string text;  ///< error message, which begins with the position of the element
+  std::size_t zone = 0;  ///< index of the zone
+  std::string text;      ///< error message, which begins with the position of the element
 };
-/// Returns the first element that is not inside the extent of the array or overlaps another element.
+/// Returns the first element that is not completely inside the array's extent or overlaps another element. Returns
+/// nothing if all elements are placed correctly.
 std::optional<ZoneMisfit> misfit_of_zones(const Job& job);
 
 }  // namespace retrace::fabrication

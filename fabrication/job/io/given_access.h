@@ -1,12 +1,12 @@
 #pragma once
 
-// Members that a file names only where they mean something.
+// Access to members that a file contains only under certain conditions.
 
 #include "core/schema/access.h"
 
 namespace retrace::fabrication {
 
-/// A member that is an optional number.
+/// Access to an optional number. A file contains it only if it has a value.
 template <auto member>
 inline constexpr schema::Access access_given = {
     [](const void* object) {
@@ -17,7 +17,7 @@ inline constexpr schema::Access access_given = {
       static_cast<typename schema::MemberTypes<decltype(member)>::Object*>(object)->*member = std::get<double>(value);
     }};
 
-/// A member that is written where a function of its object says so.
+/// Access to a member that is written to a file only if `is_written` returns true for its object.
 template <auto member, auto is_written>
 inline constexpr schema::Access access_where = {
     [](const void* object) {

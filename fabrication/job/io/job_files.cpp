@@ -40,22 +40,22 @@ constexpr Words kTriangularArrangements = {"single", "triangular"};
 constexpr Words kRowParities = {"even", "odd"};
 constexpr Words kElements = {"rtp", "hexagonal_icc", "triangular_icc"};
 
-/// From a tenth of a micrometre to ten metres, in which nanometres still are whole numbers of 64 bits.
+/// Range of sizes in mm: 0.1 micrometre to 10 metres. Positions in nanometres then fit into 64-bit integers.
 constexpr Kind kSize = Number{{.low = 1e-4, .high = 1e4}};
 constexpr Kind kGap = Number{{.low = 0.0, .high = 1e4}};
 constexpr Kind kThreeErrors = Numbers{3, {.low = -300.0, .high = 300.0}};
 constexpr Kind kWedge = Number{{.low = 10.0, .high = kMaxWedgeDeg}};
-/// Keeps the memory of a plan within reason: about 1 KiB an element.
+/// Maximum number of elements. It limits the memory of a plan, which needs about 1 KiB per element.
 constexpr double kMostElements = 2e6;
 constexpr std::size_t kMostZoneElements = 2'000'000;
-/// A tool this much wider than the element fits it all the same.
+/// Tolerance, in mm, for a tool that is wider than the element.
 constexpr double kFitToleranceMm = 1e-6;
 constexpr std::size_t kMostChips = 100;
-/// The chip needs this much between the rake face and the other facet (assumed: half of what wedge 50 and clearance 15
-/// leave of a right angle).
+/// Minimum angle, in degrees, between the rake face and the other facet, through which the chip leaves. The value is an
+/// assumption: half of the 25 degrees that remain of a right angle with wedge 50 and clearance 15.
 constexpr double kChipRoomDeg = 12.5;
 
-// Values as files have them.
+// Conversions between members of Job and values in files.
 
 Value get_prism(const Job&) {
   return 0.0;
@@ -90,7 +90,7 @@ void set_tiled(ArrayLayout& array, const Value& value) {
   array.arrangement = std::get<double>(value) == 0.0 ? Arrangement::single : tiled;
 }
 
-// Errors of angle, which files contain only if they are not 0.
+// Conversions of angle errors. Files contain them only if they are not 0.
 
 using Three = std::array<double, 3>;
 
@@ -262,7 +262,7 @@ constexpr Table kToolTables[] = {
      .presence = Presence::list,
      .when = kOfChisels}};
 
-/// Keys of the job itself that stand in a table.
+/// Access for tables whose keys are members of the job itself.
 constexpr Child kItself = {[](const void*) -> std::size_t { return 1; },
                            [](const void* job, std::size_t) { return job; }, [](void* job) { return job; }};
 constexpr Child kBase = {
@@ -296,7 +296,7 @@ const Table kJobTables[] = {
      .presence = Presence::optional},
     {.name = "tool", .meaning = "The diamond.", .rows = kToolRows, .tables = kToolTables, .child = child<&Job::tool>},
     process_table("process", child<&Job::process>)};
-// What values must be together.
+// Checks that involve several keys.
 
 bool is_prism(const Job& job) {
   return std::holds_alternative<RtpElement>(job.element);
@@ -338,14 +338,14 @@ void check_chisel(const Job& job, const Refuse& refuse) {
                                          "and facet, got {}",
                                          fixed_apart(apex_deg - kChipRoomDeg, taken_deg, 3),
                                          fixed_apart(taken_deg, apex_deg - kChipRoomDeg, 3)));
-  // Where both facets are plunged, the rake faces of both cuts must meet above the root.
+  // If both facets are plunged, the rake faces of both cuts must intersect above the root. Otherwise, a fin remains.
   if (job.strategy != Strategy::unidirectional && 2.0 * taken_deg < apex_deg)
     refuse("tool.wedge_deg",
            fmt::format("with clearance_deg must be >= {}, half the apex angle, or a fin of {} degrees "
                        "stays between the plunges of both facets, got {}",
                        shortest(0.5 * apex_deg), fixed_visible(apex_deg - 2.0 * taken_deg, 3),
                        fixed_apart(taken_deg, 0.5 * apex_deg, 3)));
-  // The diamond narrows towards its shank and must still be there where it leaves the element.
+  // The diamond becomes narrower towards its shank. Its width must be positive where it leaves the element.
   const double half_apex_rad = 0.5 * Angle::from_deg(apex_deg).rad();
   const double facet_mm = 0.5 * blank_prism(job).base_mm / std::sin(half_apex_rad);
   const double side_limit_deg = Angle::from_rad(std::atan(0.5 * job.tool.width_mm / facet_mm)).deg();
@@ -421,7 +421,7 @@ void check_square(const Job& job, const Refuse& refuse) {
                                            shortest(prism.base_mm), shortest(prism.width_mm)));
 }
 
-/// Moulds of arrays without margins and patterns can stand on a base.
+/// Checks that a job with a substrate is a mould of an array without margins and patterns.
 void check_array_on_substrate(const Job& job, const Refuse& refuse) {
   if (!job.substrate) return;
   const std::string_view key = geometry::substrate_shape_key(*job.substrate);
@@ -434,7 +434,7 @@ void check_array_on_substrate(const Job& job, const Refuse& refuse) {
   if (!array.pattern.empty()) refuse(key, "not allowed together with array.pattern");
 }
 
-/// That the base carries the elements, and that a tool comes out of their cuts.
+/// Checks that the elements fit on the substrate, and that the tool can leave their cuts.
 void check_substrate(const Job& job, const Refuse& refuse) {
   if (!job.substrate) return;
   try {
@@ -448,7 +448,7 @@ void check_substrate(const Job& job, const Refuse& refuse) {
 }
 
 void check_machine(const Job& job, const Refuse& refuse) {
-  // A byte 0 would end the name for the system alone.
+  // The operating system would truncate the name at a zero byte.
   if (job.machine.empty() || job.machine.find('\0') != std::string::npos)
     refuse("machine", "must name a machine or a file, got " + in_quotes(job.machine));
 }
@@ -536,7 +536,7 @@ Job parse_job(std::string_view text, const std::string& source_name) {
 
 Job read_job(const fs::path& file, const FileTexts& texts) {
   Job job = parse_job(text_of_file(file.string(), texts), file.string());
-  // A name without a folder or an ending is one of the shipped machines.
+  // A name without an extension is the name of a shipped machine. Other relative paths start at the folder of the job.
   const fs::path machine = job.machine;
   if (machine.has_extension() && machine.is_relative()) job.machine = (file.parent_path() / machine).string();
   return job;

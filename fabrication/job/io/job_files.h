@@ -13,24 +13,26 @@
 
 namespace retrace::fabrication {
 
-/// The format of job files (retrace.job/1), whose object is a Job.
+/// Returns the format of job files (retrace.job/1), which describes a Job.
 const schema::Format& job_format();
 
-/// Reads and checks a job file. A machine named by a file is taken from the folder of the job.
-/// \throw InputError naming file, line, key, what was given and what is allowed, on one line
-/// \param texts of files that are given in place of being read
+/// Reads and checks a job file. The path of a machine file is relative to the folder of the job.
+/// \param texts contents of files that are used instead of reading these files
+/// \throw InputError in one line, with file, line, key, allowed values and given value
 Job read_job(const std::filesystem::path& file, const FileTexts& texts = {});
 
-/// The same for the text of a job file; `source_name` stands for the file in messages.
+/// Reads and checks the text of a job file.
+/// \param source_name name of the file in error messages
 Job parse_job(std::string_view text, const std::string& source_name);
 
-/// The job as text that parse_job() reads back to the same job.
+/// Returns the job as text. parse_job() reads this text back to an equal job.
 std::string job_text(const Job& job);
 
-/// What a job must fulfil that only several of its values together can tell: the tool fits the root and the element,
-/// chips can leave, the array holds an element, a pattern has the array's size and cells to cut. parse_job() does this.
-/// \param where the file, for messages
-/// \throw InputError
+/// Checks the conditions of a job that involve several keys. The tool must fit the root and the element, and chips must
+/// be able to leave. The array must contain an element. A pattern must have the size of the array and a cell to cut.
+/// parse_job() calls this function.
+/// \param where file name for error messages
+/// \throw InputError if a condition is not met
 void check_job(const Job& job, const InputLocation& where);
 
 }  // namespace retrace::fabrication

@@ -89,14 +89,15 @@ constexpr schema::Row kRows[] = {
      "Areal roughness Sa that plunging leaves in finishing, likewise measured.",
      access<&Process::finishing_plunge_sa_nm>}};
 
-/// A plough shorter than the chip leaves it hanging.
+/// Returns an error message if a plough is shorter than the chip is thick, because the chip then does not separate.
 std::string hanging_chip(const Process& p) {
   if (p.shortest_plough || p.plough_length_mm >= 1e-3 * p.roughing_depth_um) return {};
   return fmt::format("must be at least roughing_depth_um ({} um) to free the chip, got {}",
                      shortest(p.roughing_depth_um), shortest(p.plough_length_mm));
 }
 
-/// The cut after one that is too thin must not be too thick, so that two share what is left.
+/// Returns an error message if the minimum chip is thicker than half a depth of cut. If the first cut is too thin, the
+/// first two cuts share their thickness equally. Both chips are then thick enough.
 std::string rubbing_depth(const Process& p) {
   const double most_um = 0.5 * std::min(p.roughing_depth_um, p.finishing_depth_um);
   if (!p.least_chip_um || *p.least_chip_um <= most_um) return {};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads cutting processes (retrace.process/1), the shipped ones included: depths, feeds, dwells.
+// Reads cutting processes (retrace.process/1) from files, and lists the processes that are shipped with the program.
 
 #include <string>
 #include <string_view>
@@ -12,19 +12,22 @@
 
 namespace retrace::fabrication {
 
-/// The format of process files (retrace.process/1), whose object is a Process.
+/// Returns the format of process files (retrace.process/1), which describes a Process.
 const schema::Format& process_format();
 
-/// The keys of a process as a table of another file, such as `[process]` of a job.
+/// Returns the keys of a process as a table of another format, such as `[process]` of a job.
 schema::Table process_table(std::string_view name, schema::Child child);
 
-/// A process from the text of its file; `source_name` stands for the file in messages. \throw InputError
+/// Reads a process from the text of its file.
+/// \param source_name name of the file in error messages
+/// \throw InputError for invalid text
 Process parse_process(std::string_view text, const std::string& source_name);
 
-/// The shipped processes (data/processes/*.toml), by name.
+/// Returns the shipped processes (data/processes/*.toml), sorted by name.
 std::vector<Process> shipped_processes();
 
-/// The shipped process of that name, or the process of a file. \throw InputError at `where` if there is neither
+/// Returns the shipped process with a name, or the process in a file.
+/// \throw InputError at `where` if neither exists
 Process load_process(const std::string& name_or_file, const InputLocation& where);
 
 }  // namespace retrace::fabrication
