@@ -17,7 +17,8 @@ using geometry::Vec3;
 
 namespace {
 
-/// From the frame of an element on a flat blank, over its middle, to where it stands.
+/// Moves a groove from its local frame to its position and orientation on the blank. The local frame is that of an
+/// element on a flat blank, with the origin at the center of its aperture.
 void stand(Groove& groove, const CutElement& element, double stock_mm) {
   groove.zone = element.zone;
   groove.axis = element.turn.col(2);
@@ -72,7 +73,8 @@ Groove groove_of(const CutElement& element, const geometry::RtpElement& size, do
   groove.root_direction = element.rotated ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
   groove.facets.resize(2);
   for (std::size_t f = 0; f < 2; ++f) {
-    const double side = f == 0 ? 1.0 : -1.0;  // facet 1 lies on the far side of the root and faces back
+    // The first facet is on the positive side of the root, and its normal points to the negative side.
+    const double side = f == 0 ? 1.0 : -1.0;
     DesignFacet& facet = groove.facets[f];
     facet.normal = -side * std::cos(half_apex) * across + std::sin(half_apex) * Vec3::UnitZ();
     facet.up_slope = side * std::sin(half_apex) * across + std::cos(half_apex) * Vec3::UnitZ();
@@ -117,7 +119,7 @@ std::vector<Groove> designed_grooves(const Job& job) {
 
 GrooveMap::GrooveMap(const std::vector<Groove>& grooves) : grooves_(grooves) {
   for (const Groove& groove : grooves) {
-    // Seen along z the aperture of an element that leans lies beside its root.
+    // In plan, the aperture of an inclined element is displaced from its root. More cells must be searched.
     if (groove.axis != Vec3::UnitZ()) cells_around_ = 3;
     cell_mm_ = std::max({cell_mm_ == 1.0 ? 0.0 : cell_mm_, groove.half_base_mm, groove.half_width_mm});
   }
@@ -127,7 +129,7 @@ GrooveMap::GrooveMap(const std::vector<Groove>& grooves) : grooves_(grooves) {
 }
 
 GrooveMap::Cell GrooveMap::cell_of(double x_mm, double y_mm, int dx, int dy) const {
-  constexpr double furthest = 1e9;  // keeps absurd positions of faulty programs within whole numbers
+  constexpr double furthest = 1e9;  // limit that keeps wrong positions of faulty programs in the range of Cell
   const auto index = [&](double v) {
     return static_cast<Cell>(std::floor(std::clamp(v / cell_mm_, -furthest, furthest)));
   };
@@ -161,7 +163,7 @@ std::optional<std::size_t> GrooveMap::at(const Vec3& p) const {
 
 std::optional<std::size_t> GrooveMap::deepest(double x_mm, double y_mm) const {
   if (grooves_.empty() || !grooves_.front().is_cube()) return at(x_mm, y_mm);
-  // Cavities of hexagonal elements reach twice their radius.
+  // Cavities of hexagonal elements extend up to twice their radius, which is two cells.
   constexpr int kCells = 2;
   std::optional<std::size_t> best;
   double lowest_mm = 0.0;

@@ -12,10 +12,10 @@ namespace {
 
 using geometry::Vec3;
 
-/// Z alone moves a plunge; this much of a move down makes it one.
+/// Minimum downward component of the direction of a plunge.
 constexpr double kMostlyDown = 0.9;
-/// The plunged facet stands upright, and a plough runs along the other one. A retract goes up between both, or higher:
-/// nearer to the upright one than to two thirds of the way to the other.
+/// Returns true if a move is a retract. The plunged facet is vertical, and a plough moves along the other facet. A
+/// retract moves up, at an angle to the vertical of at most two thirds of the apex angle.
 bool retracts(const Groove& groove, const Vec3& travel) {
   const double apex_rad = std::acos(-groove.facets[0].normal.dot(groove.facets[1].normal));
   return travel.z() >= travel.norm() * std::cos(apex_rad * 2.0 / 3.0);
@@ -26,7 +26,7 @@ bool retracts(const Groove& groove, const Vec3& travel) {
 void PlungeCheck::move(const CutMove& cut) {
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   if (retracts(workpiece_.grooves[cut.element], travel)) return close();
-  // Only a retract may move the tool towards the facet that its clearance face looks at.
+  // Only a retract may move the tool towards the facet next to its clearance face.
   if (travel.dot(plunged_normal(*workpiece_.machine)) < -kMostSlip * travel.norm()) find_clearance_face(cut);
   if (travel.z() < -kMostlyDown * travel.norm()) return plunge(cut);
   plough(cut);
@@ -51,7 +51,7 @@ void PlungeCheck::plunge(const CutMove& cut) {
   OpenPlunge plunge;
   plunge.element = element;
   plunge.place = motion.place;
-  // The plunged facet faces away from the clearance face.
+  // The normal of the plunged facet is opposite to the normal of the clearance face, and nearly horizontal.
   plunge.facet = upright.dot(wedge_.sides[0].outward) < 0.0 && std::abs(upright.z()) < 0.5 ? 0 : 1;
   plunge.tip_mm = {1e9, 1e9};
   for (const double side : {-1.0, 1.0}) {
@@ -60,7 +60,7 @@ void PlungeCheck::plunge(const CutMove& cut) {
   }
   State& state = states_[element];
   const Vec3 tip = back.point(sweep.to_mm);
-  // Where nothing was cut before, the blank's face ends the chip.
+  // The chip thickness is limited by the last cut of this facet, or by the blank's face before the first cut.
   plunge.chip_mm = std::min(state.surface_mm[plunge.facet] - plunge.tip_mm[plunge.facet],
                             groove.to_face_mm(tip, groove.facets[plunge.facet].normal));
   for (const auto& known : state.tips)
@@ -97,13 +97,14 @@ void PlungeCheck::close() {
   open_.reset();
 }
 
-/// A chip that no plough frees needs two plunges: the first passes the other facet's surface by its own depth, the
-/// second ends on what the first has left.
+/// Checks that a chip separates without a plough. This requires two plunges. The first plunge passes the surface of the
+/// other facet. The second plunge, along the other facet, ends at the surface of the first one.
 void PlungeCheck::check_chip() {
   const std::size_t f = open_->facet;
   const std::size_t g = 1 - f;
   const State& state = states_[open_->element];
-  // However much may stay on a facet, a chip is passed or not.
+  // A large form tolerance must not hide a chip that does not separate. The tolerance is limited to a tenth of the
+  // depth of cut.
   const double depth_mm = 1e-3 * std::min(process_.roughing_depth_um, process_.finishing_depth_um);
   const double tolerance_mm =
       std::min(workpiece_.tolerance_mm, 0.1 * depth_mm) + workpiece_.prediction(open_->element).root_mm;

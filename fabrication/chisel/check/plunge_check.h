@@ -1,6 +1,6 @@
 #pragma once
 
-// Prisms, cut by plunging and ploughing: dwells, and whether chips come free.
+// Checks of the plunging and ploughing of prisms: dwell times and separation of the chips.
 
 #include <array>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace retrace::fabrication {
 
-/// Follows the plunges and ploughs of a chisel (docs/theory/cutting.md).
+/// Checks the plunges and ploughs of a chisel (docs/theory/cutting.md).
 class PlungeCheck : public CutCheck {
  public:
   PlungeCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control, FindingList& findings)
@@ -21,24 +21,24 @@ class PlungeCheck : public CutCheck {
   void close() override;
 
  private:
-  /// Cuts of one element so far, as heights over its two facets.
+  /// Progress of one element. All heights are measured above its two designed facets.
   struct State {
     struct Plunge {
-      std::array<double, 2> tip_mm{};  ///< heights of the tip over the facets
+      std::array<double, 2> tip_mm{};  ///< heights of the tip above the two facets
       std::int32_t line = 0;
     };
-    std::array<std::optional<Plunge>, 2> last;   ///< on each facet
-    std::array<double, 2> surface_mm{1e9, 1e9};  ///< of each facet above the design
-    std::vector<std::array<double, 4>> tips;     ///< ends of plunges and their facet, to find repeated ones
+    std::array<std::optional<Plunge>, 2> last;   ///< last plunge along each facet
+    std::array<double, 2> surface_mm{1e9, 1e9};  ///< height of the machined surface above each facet
+    std::vector<std::array<double, 4>> tips;     ///< end point and facet of each plunge, to detect repeated plunges
   };
-  /// A plunge whose chip has not been looked after yet.
+  /// Plunge whose chip separation has not been checked yet.
   struct OpenPlunge {
     std::size_t element = 0;
     std::size_t facet = 0;
     std::array<double, 2> tip_mm{};
     double chip_mm = 0.0;
     NcPlace place;
-    double rest_s = 0.0;  ///< since it ended
+    double rest_s = 0.0;  ///< dwell time at the end of the plunge
   };
 
   void plunge(const CutMove& cut);

@@ -28,7 +28,7 @@ Vec3 interpolated(const Vec3& a, const Vec3& b, double a_height, double b_height
 ControlRule control_rule_of(const Job& job, const Machine& machine) {
   ControlRule rule;
   rule.needs_mist = job.process.mist;
-  // A tool that rests in its cut longer than it must marks it, and rubs once the mist has gone.
+  // A tool that dwells too long in the material marks the surface. It also rubs after the mist has dispersed.
   rule.most_rest_s = 2.0 * job.process.dwell_s + 0.1;
   rule.axes = static_cast<std::uint8_t>(kLinearBits | rotary_bits(machine));
   rule.safe_z_mm = machine.first_z_mm();
@@ -70,7 +70,7 @@ std::vector<RigidMotion> ProgramCheck::poses() const {
 }
 
 std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
-  // Whole turns of C, which a modulo axis gathers, are the same pose; rounding of sums is far below a unit.
+  // Poses whose C angles differ by full turns are equal. The unit is much larger than the rounding errors of sums.
   constexpr double kUnitsPerDeg = 1e8;
   constexpr auto kTurn = static_cast<std::int64_t>(360.0 * kUnitsPerDeg);
   const auto units = [](double deg) { return std::llround(deg * kUnitsPerDeg); };
@@ -110,7 +110,7 @@ void ProgramCheck::end(const NcEnd& end) {
 }
 
 void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
-  // Where the operator leaves the axes at a stop is not known, nor how far they go from there.
+  // After a stop, the axis positions are not known because the operator may have moved the axes.
   NcMotion from_known = motion;
   from_known.known = control_.known();
   time_.add(machine_, from_known);
@@ -125,7 +125,7 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
     cuts_->close();
     return way_.turn(motion);
   }
-  // Before all axes are known ControlCheck keeps the tool up.
+  // If a position is not known, ControlCheck ensures that the tool is above the safe height, so no cut is possible.
   const auto all = static_cast<std::uint8_t>(kLinearBits | rotary);
   const auto known_after = static_cast<std::uint8_t>((motion.known | motion.moved) & all);
   if (known_after != all || (motion.known & kLinearBits) != kLinearBits) return;
@@ -159,7 +159,7 @@ void ProgramCheck::find_corners(const SweptVolume& sweep, std::optional<std::siz
   corners_.clear();
   const RigidMotion& back = back_[sweep.pose];
   const BlankFace& face = way_.face();
-  // Beside the elements the blank ends in the plane that touches its face under the tool.
+  // Outside of the elements, the face is approximated by its tangential plane below the tool.
   const Vec3 tip = back.point(sweep.to_mm);
   const Vec3 out = element ? workpiece_.grooves[*element].axis : face.normal_at(tip);
   const double face_mm = element          ? workpiece_.grooves[*element].face_mm
@@ -167,7 +167,7 @@ void ProgramCheck::find_corners(const SweptVolume& sweep, std::optional<std::siz
                                           : out.dot(tip) - face.height_mm(tip);
   const auto height_mm = [&](const Vec3& p) { return out.dot(p) - face_mm; };
   const Vec3 half_edge = wedge_.half_width_mm * wedge_.edge;
-  // The four corners of the parallelogram that the edge sweeps, in order.
+  // Corners of the parallelogram that the edge sweeps, in cyclic order.
   const std::array<Vec3, 4> swept = {back.point(sweep.from_mm - half_edge), back.point(sweep.from_mm + half_edge),
                                      back.point(sweep.to_mm + half_edge), back.point(sweep.to_mm - half_edge)};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -177,7 +177,7 @@ void ProgramCheck::find_corners(const SweptVolume& sweep, std::optional<std::siz
     const double b_mm = height_mm(b);
     if (a_mm < 0.0) {
       corners_.push_back(a);
-      // Up the faces of the wedge to where they leave the blank.
+      // Add the points at which the upward edges of the wedge leave the blank.
       for (const Vec3& ray : wedge_.rays) {
         const Vec3 up = back.direction(ray);
         const double rise = out.dot(up);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Follows the programs of a job: what they do against the rules, by line, and what they sweep of every element.
+// Simulates the programs of a job. Adds findings for their lines, and collects the swept volumes of every element.
 
 #include <cstdint>
 #include <map>
@@ -22,14 +22,14 @@
 
 namespace retrace::fabrication {
 
-/// Follows the moves of programs, one after the other: process findings by line, and the sweeps of every element.
+/// Receives the moves of programs, one after the other. Checks each move and stores the swept volumes of every element.
 class ProgramCheck : public NcSink {
  public:
-  /// \param visits what VisitFinder found in the same programs, of jobs with a base
+  /// \param visits for a job with a substrate: result of VisitFinder for the same programs
   ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
                std::vector<std::optional<std::size_t>> visits = {});
 
-  /// What follows comes from that program.
+  /// Starts a program. All following moves belong to this program.
   void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace& place, const AxisPositions& position) override;
@@ -38,21 +38,23 @@ class ProgramCheck : public NcSink {
   }
   void stop(NcStop kind, const NcSettings& settings, const NcPlace& place) override;
   void end(const NcEnd& end);
-  /// After the last program.
+  /// Ends the checks after the last program.
   void finish();
 
-  const std::vector<std::vector<SweptVolume>>& sweeps() const { return sweeps_; }  ///< by element
+  /// Returns the swept volumes of each element.
+  const std::vector<std::vector<SweptVolume>>& sweeps() const { return sweeps_; }
   const std::vector<RotaryPose>& pose_words() const { return pose_words_; }
   std::vector<RigidMotion> poses() const;
   const ProgramTime& time() const { return time_; }
   double least_free_tool_mm() const { return way_.least_free_tool_mm(); }
-  double deepest_wall_mm() const { return deepest_wall_mm_; }  ///< by which tool ends went into walls at most
+  /// Returns the maximum depth by which the tool cuts into the walls at the ends of the elements.
+  double deepest_wall_mm() const { return deepest_wall_mm_; }
   const ToolWedge& wedge() const { return wedge_; }
 
  private:
   std::size_t pose_index(const RotaryPose& pose);
   void check_cut(const NcMotion& motion, const SweptVolume& sweep, std::size_t element);
-  /// Corners of the tool within the blank during a move, in the workpiece frame.
+  /// Finds the corners of the tool's part that is inside the blank during a move, in the workpiece frame.
   void find_corners(const SweptVolume& sweep, std::optional<std::size_t> element);
   std::optional<std::size_t> element_of(const SweptVolume& sweep) const;
 
@@ -60,7 +62,7 @@ class ProgramCheck : public NcSink {
   const Machine& machine_;
   FindingList& findings_;
   GrooveMap map_;
-  std::vector<std::optional<std::size_t>> visits_;  ///< of jobs with a base
+  std::vector<std::optional<std::size_t>> visits_;  ///< element of each run; only for jobs with a substrate
   CutRuns runs_;
   ToolWedge wedge_;
   ControlCheck control_;
@@ -74,10 +76,10 @@ class ProgramCheck : public NcSink {
   std::vector<std::vector<PlacedBody>> standing_;  ///< table, cradle and fixtures in each pose
   std::vector<std::vector<SweptVolume>> sweeps_;
   std::vector<geometry::Vec3> corners_;
-  AxisPositions at_;  ///< after the last move
+  AxisPositions at_;  ///< axis positions after the last move
   ProgramTime time_;
   double deepest_wall_mm_ = 0.0;
-  bool is_in_blank_ = false;  ///< where the last move ended
+  bool is_in_blank_ = false;  ///< true if the last move ended inside the blank
   std::uint32_t programs_begun_ = 0;
 };
 

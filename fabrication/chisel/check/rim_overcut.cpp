@@ -12,10 +12,10 @@ namespace {
 
 using geometry::Vec3;
 
-/// Rims that meet do so to rounding.
+/// Tolerance, in mm, for rims that meet except for rounding errors.
 constexpr double kMeetMm = 1e-9;
 
-/// Places along the rims of an element.
+/// Returns points along the rims of an element.
 std::vector<Vec3> rim_of(const Groove& groove) {
   std::vector<Vec3> rim;
   if (!groove.is_cube()) {
@@ -25,7 +25,8 @@ std::vector<Vec3> rim_of(const Groove& groove) {
                       (1.0 - 1e-6) * share * groove.half_width_mm * groove.root_direction);
     return rim;
   }
-  // The circle round a full cube's hexagon is sqrt(2/3) of an edge wide, that round a triangle as wide as its cavity.
+  // The radius of the circle about a hexagon is sqrt(2/3) times the edge length of the cube. For a triangular element,
+  // the edge length is limited by the length of the cavity's edges.
   const double edge_mm = std::min(groove.facet_length_mm, groove.half_base_mm * std::sqrt(1.5));
   const bool is_hexagonal = edge_mm < (1.0 - 1e-9) * groove.facet_length_mm;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -38,7 +39,7 @@ std::vector<Vec3> rim_of(const Groove& groove) {
   return rim;
 }
 
-/// How deep a point lies within what an element's cut opens; below 0 outside.
+/// Returns the depth of a point inside the volume that the cut of an element removes. It is negative outside.
 double depth_in(const Groove& groove, const Vec3& p) {
   if (!groove.is_cube() && std::abs(groove.along_mm(p)) > groove.half_width_mm) return -1.0;
   double depth_mm = std::numeric_limits<double>::infinity();

@@ -1,6 +1,7 @@
 #pragma once
 
-// How deep neighbouring cuts go under a rim where elements on a substrate stand at different heights.
+// Computes how deep the cuts of neighbouring elements go below the rims of an element if the rims have different
+// heights.
 
 #include <vector>
 
@@ -8,9 +9,10 @@
 
 namespace retrace::fabrication {
 
-/// How deep cuts of neighbours go under an element's rims at most, where they stand at different heights or lean
-/// towards each other: a facet that is cut up to its own rim is cut on through what stands over it, and the wall of the
-/// design between the two rims cannot be (docs/theory/cutting.md). Of the designs alone; 0 where all rims meet.
+/// Returns the maximum depth by which the cuts of neighbouring elements go below the rims of an element. This happens
+/// between elements at different heights or with different inclinations. The cut of a facet continues beyond its own
+/// rim and removes material of a higher neighbour, so that the designed wall between the rims cannot be made
+/// (docs/theory/cutting.md). The result depends only on the design. It is 0 if all rims meet.
 double rim_overcut_mm(const std::vector<Groove>& grooves);
 
 }  // namespace retrace::fabrication

@@ -13,12 +13,13 @@
 
 namespace retrace::fabrication {
 
-/// Counts the runs of moves at a feed between rapid moves and turns.
+/// Counts runs. A run is a sequence of moves at a feed between rapid moves or rotary moves.
 class CutRuns {
  public:
-  /// The run that a move belongs to, from 0; nothing for rapid moves, turns, and before all positions are known.
+  /// Returns the number of the run that a move belongs to, from 0. Returns nothing for rapid moves, for rotary moves,
+  /// and as long as a position is not known.
   std::optional<std::size_t> of(const NcMotion& motion);
-  /// A program ends.
+  /// Ends the present run at the end of a program.
   void end() { is_open_ = false; }
 
  private:
@@ -26,20 +27,20 @@ class CutRuns {
   bool is_open_ = false;
 };
 
-/// Tells which element each cutting move belongs to where neighbours' cuts run into each other over their rims, as on
-/// curved and inclined blanks: that under whose aperture the tool goes deepest from one rapid move to the next.
-/// Gathered over all programs before anything is judged.
+/// Determines which element each run of cutting moves belongs to. On curved and inclined blanks, the cuts of
+/// neighbouring elements overlap above their rims. A run belongs to the element in which the tool reaches its largest
+/// depth. All programs must be processed before the results are used.
 class VisitFinder : public NcSink {
  public:
-  /// \param tip_mm of the cutting wedge from the tool reference point
+  /// \param tip_mm position of the wedge's tip relative to the tool reference point
   VisitFinder(const Machine& machine, const std::vector<Groove>& grooves, const geometry::Vec3& tip_mm);
 
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double, const NcPlace&, const AxisPositions&) override {}
-  /// After each program.
+  /// Ends a program.
   void end() { runs_.end(); }
 
-  /// Of each run; nothing where the tool stays beside all elements.
+  /// Returns the element of each run, or nothing for a run outside of all elements.
   const std::vector<std::optional<std::size_t>>& elements() const { return elements_; }
 
  private:
@@ -49,7 +50,7 @@ class VisitFinder : public NcSink {
   geometry::Vec3 tip_mm_;
   std::vector<std::optional<std::size_t>> elements_;
   CutRuns runs_;
-  double depth_mm_ = 0.0;  ///< of the deepest place of the run
+  double depth_mm_ = 0.0;  ///< maximum depth of the tip in the present run
 };
 
 }  // namespace retrace::fabrication

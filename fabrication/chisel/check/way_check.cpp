@@ -13,10 +13,11 @@ namespace {
 
 using geometry::Vec3;
 
-/// Share of the process's clearances that rapid moves and turns must keep.
+/// Fraction of the process's clearances that rapid moves and rotary moves must keep.
 constexpr double kClearanceShare = 0.9;
 
-/// How much of the diamond counts as a body: more than the deepest groove; what holds it, the machine file says.
+/// Returns the height of the diamond that is used for collisions. It is more than the depth of the grooves. The machine
+/// file describes the holder above it.
 double diamond_mm(const Workpiece3d& workpiece) {
   constexpr double kDepths = 2.0;
   return workpiece.grooves.empty() ? 1.0 : kDepths * workpiece.grooves.front().depth_mm;
@@ -66,7 +67,7 @@ void WayCheck::turn(const NcMotion& motion) {
                   fmt::format("the turning blank comes up to Z {} mm while the tool stands at Z {} mm, must keep {} mm",
                               fixed(highest_mm, 3), fixed(tip.z(), 3), fixed(clearance_mm, 3)),
                   tip.z(), highest_mm + clearance_mm);
-  // The blank stays level, and a head that turns swings the tool about B: the tip must stay above the blank's face.
+  // The blank remains horizontal. A tilting head rotates the tool about B, so the tip must stay above the blank's face.
   if (machine_.tilt == Tilt::head && lowest_tip_mm < clearance_mm)
     findings_.add("turn_too_low", motion.place.line,
                   fmt::format("the tip comes to {} mm over the blank's face while the axes turn, must keep {} mm",
@@ -74,7 +75,8 @@ void WayCheck::turn(const NcMotion& motion) {
                   lowest_tip_mm, clearance_mm);
 }
 
-/// Where a rotary axis comes from is not known: only the machine's safe Z is clear of all ways.
+/// Checks a rotary move whose start position is not known. Only the safe Z position of the machine is clear of all
+/// possible rotations.
 void WayCheck::turn_from_anywhere(const NcMotion& motion) {
   const double safe_mm = machine_.first_z_mm();
   if (motion.from.z_mm < safe_mm - rounding_slack(motion, 'Z'))
@@ -84,7 +86,8 @@ void WayCheck::turn_from_anywhere(const NcMotion& motion) {
                   motion.from.z_mm, safe_mm);
 }
 
-/// Axes that turn at once each go at their own speed, unless the machine's rapid moves are straight.
+/// Returns sampled positions of a rotary move. If two axes move, each axis may move at its own speed. All combinations
+/// of their angles are then sampled, unless the rapid moves of the machine are straight.
 std::vector<AxisPositions> WayCheck::places_of_turn(const NcMotion& motion) const {
   const AxisPositions& from = motion.from;
   const AxisPositions& to = motion.to;
@@ -119,7 +122,8 @@ bool WayCheck::is_box_move(const NcMotion& motion) const {
   return motion.move == NcMove::rapid && !machine_.control.rapids_are_straight;
 }
 
-/// The edges of all that a move may pass: one from its begin to its end, or one for each axis of a box.
+/// Returns the edge vectors of the region that a move may pass through. It is a line for a straight move, and a box
+/// with one edge per axis otherwise.
 std::vector<Vec3> WayCheck::edges_of_way(const NcMotion& motion) const {
   const Vec3 from = machine_point(machine_, motion.from);
   if (!is_box_move(motion)) return {machine_point(machine_, motion.to) - from};
@@ -141,7 +145,8 @@ std::vector<Vec3> WayCheck::places_of_way(const NcMotion& motion) const {
   return corners;
 }
 
-/// Least height of the tip over the blank on the way; over a flat one at a corner of it.
+/// Returns the minimum height of the tip above the blank during a move. Over a flat blank, it occurs at a corner of the
+/// region that the move may pass through.
 double WayCheck::lowest_over_blank_mm(const NcMotion& motion, const RigidMotion& back) const {
   double lowest_mm = std::numeric_limits<double>::infinity();
   for (const Vec3& corner : places_of_way(motion)) lowest_mm = std::min(lowest_mm, face_.height_mm(back.point(corner)));
@@ -178,7 +183,6 @@ void WayCheck::rapid(const NcMotion& motion, const RigidMotion& back, std::optio
     findings_.add("rapid_descent", motion.place.line, "a rapid move goes down in Z together with another axis");
 }
 
-/// The tool against table, cradle and fixtures, all of them convex.
 void WayCheck::fixtures(const NcMotion& motion, std::span<const PlacedBody> standing) {
   const std::vector<Vec3> places = places_of_way(motion);
   for (const BodyContact& contact : contacts(tool_bodies_, standing, places)) report_contact(contact, motion.place);
@@ -196,7 +200,7 @@ void WayCheck::holder(const SweptVolume& sweep, const RigidMotion& back) {
         const Vec3 at = back.point(tip + corner);
         const double height_mm = face_.height_mm(at);
         const double rise = face_.normal_at(at).dot(back.direction(Vec3::UnitZ()));
-        // How long the tool would have to be for this corner to clear the face.
+        // Compute the tool length at which this corner of the holder would be above the blank's face.
         if (rise > 1e-3) least_free_tool_mm_ = std::max(least_free_tool_mm_, corner.z() - height_mm / rise);
         if (height_mm < 0.0)
           findings_.add("holder_collision", sweep.place.line,

@@ -1,6 +1,6 @@
 #pragma once
 
-// The tool on its way between cuts, and what stands around it: rapid moves, turns of the axes, holder and fixtures.
+// Checks of the moves between cuts and of collisions: rapid moves, rotary moves, holder and fixtures.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,26 +16,28 @@
 
 namespace retrace::fabrication {
 
-/// X, Y and Z in NcMotion::moved and known.
+/// Bits of X, Y and Z in NcMotion::moved and NcMotion::known.
 inline constexpr std::uint8_t kLinearBits = 0b00111;
 
-/// Adds what it finds to a list. Workpiece and wedge must outlive it. `back` leads from the frame of the machine to the
-/// workpiece's.
+/// Checks moves for collisions and adds findings to a list. In all functions, `back` is the transformation from the
+/// machine frame to the workpiece frame.
+/// \pre workpiece and wedge outlive this object
 class WayCheck {
  public:
   WayCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, FindingList& findings);
 
-  /// A move of rotary axes: alone, and with the tool above all that turns.
+  /// Checks a move of rotary axes. No linear axis may move with them, and the tool must be above all rotating parts.
   void turn(const NcMotion& motion);
-  /// A rapid move: above the blank's face by the process's clearance, and down along Z alone.
-  /// All of the box of its axes counts, unless the machine's rapid moves are straight.
-  /// \param element where it goes; nothing: beside all
+  /// Checks a rapid move. It must keep the clearance of the process above the blank's face, and may go down only along
+  /// Z. The whole box between its ends is checked, unless the rapid moves of the machine are straight.
+  /// \param element element at the end of the move; empty: outside of all elements
   void rapid(const NcMotion& motion, const RigidMotion& back, std::optional<std::size_t> element);
-  /// The tool against table, cradle and fixtures, all of them convex.
+  /// Checks the tool for collisions with table, cradle and fixtures. All bodies are convex.
   void fixtures(const NcMotion& motion, std::span<const PlacedBody> standing);
-  /// What holds the tool against the blank.
+  /// Checks the holder of the tool for collisions with the blank.
   void holder(const SweptVolume& sweep, const RigidMotion& back);
-  /// A cut beside all elements. \param corners of the tool within the blank
+  /// Checks a cut outside of all elements.
+  /// \param corners corners of the tool's part inside the blank
   void outside(const SweptVolume& sweep, std::span<const geometry::Vec3> corners);
 
   const BlankFace& face() const { return face_; }
@@ -44,11 +46,11 @@ class WayCheck {
  private:
   void turn_from_anywhere(const NcMotion& motion);
   std::vector<AxisPositions> places_of_turn(const NcMotion& motion) const;
-  /// Of the turned blank.
+  /// Returns the maximum height of the corners of the rotated blank.
   double highest_corner_mm(const RigidMotion& there) const;
   bool is_box_move(const NcMotion& motion) const;
   std::vector<geometry::Vec3> edges_of_way(const NcMotion& motion) const;
-  /// Of the tip: the ends of a straight move, or the corners of a box.
+  /// Returns the extreme positions of the tip: both ends of a straight move, or all corners of a box.
   std::vector<geometry::Vec3> places_of_way(const NcMotion& motion) const;
   double lowest_over_blank_mm(const NcMotion& motion, const RigidMotion& back) const;
   void report_contact(const BodyContact& contact, const NcPlace& place);

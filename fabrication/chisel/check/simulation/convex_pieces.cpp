@@ -9,7 +9,7 @@ namespace {
 
 using geometry::Vec2;
 
-/// What is thinner than this is nothing: a thousandth of a nanometre, far above rounding within an element.
+/// Minimum thickness, in mm, of polygons that are kept. It is far above the rounding errors in an element.
 constexpr double kThinMm = 1e-9;
 
 bool is_outside(const ConvexPiece& piece, const HalfPlane& side) {
@@ -20,7 +20,7 @@ bool is_inside(const ConvexPiece& piece, const HalfPlane& side) {
   return std::all_of(piece.begin(), piece.end(), [&](const Vec2& p) { return side.over_mm(p) < kThinMm; });
 }
 
-/// Thinner than what counts, told by the area for its circumference.
+/// Returns true if a polygon is thinner than kThinMm. The thickness is estimated as area divided by circumference.
 bool is_thin(const ConvexPiece& piece) {
   if (piece.size() < 3) return true;
   double area = 0.0;
@@ -34,7 +34,8 @@ bool is_thin(const ConvexPiece& piece) {
   return std::abs(area) < kThinMm * around;
 }
 
-/// Takes the body from one polygon. \return what was taken, nothing if all of it stays; `left` gets the rest then
+/// Subtracts a body from one polygon and adds the remaining parts to `left`.
+/// \return the subtracted part. If it is empty, nothing was subtracted and `left` is unchanged
 ConvexPiece take_from(const ConvexPiece& piece, std::span<const HalfPlane> body, std::vector<ConvexPiece>& left) {
   if (std::any_of(body.begin(), body.end(), [&](const HalfPlane& side) { return is_outside(piece, side); })) return {};
   const std::size_t before = left.size();
@@ -56,7 +57,7 @@ struct Range {
   double high = -std::numeric_limits<double>::infinity();
 };
 
-/// A polygon's extent along lines, as a function of the place across; polygons by where they begin.
+/// Polygon and its range of positions across the lines.
 struct Chords {
   const ConvexPiece* piece = nullptr;
   Range reach;
@@ -135,7 +136,7 @@ double chord_mm(const ConvexPiece& piece, const Vec2& point, const Vec2& directi
 
 std::vector<LineLength> line_lengths(std::span<const ConvexPiece> pieces, const Vec2& across,
                                      std::span<const double> also) {
-  // On both sides of a corner: where an edge runs along the lines the length jumps.
+  // Evaluate the length on both sides of each corner, because it jumps at an edge that is parallel to the lines.
   constexpr double kBesideMm = kThinMm;
   std::vector<Chords> chords;
   std::vector<double> places(also.begin(), also.end());

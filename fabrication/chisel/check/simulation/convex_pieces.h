@@ -1,6 +1,7 @@
 #pragma once
 
-// Plane regions as sets of convex polygons, from which convex regions are taken away: exact to rounding.
+// Represents plane regions as sets of convex polygons and subtracts convex regions from them. Results are exact except
+// for rounding errors.
 
 #include <span>
 #include <vector>
@@ -9,37 +10,39 @@
 
 namespace retrace::fabrication {
 
-/// outward . p <= bound_mm, in a plane. `outward` has length 1.
+/// Half-plane outward . p <= bound_mm, where `outward` is a unit vector.
 struct HalfPlane {
   geometry::Vec2 outward = geometry::Vec2::UnitX();
   double bound_mm = 0.0;
 
-  /// How far a point lies outside; negative: inside.
+  /// Returns the signed distance of a point from the boundary; negative inside the half-plane.
   double over_mm(const geometry::Vec2& p) const { return outward.dot(p) - bound_mm; }
 };
 
-/// Corners of a convex polygon in order; none: it is empty.
+/// Convex polygon as a list of its corners in order. An empty list is an empty polygon.
 using ConvexPiece = std::vector<geometry::Vec2>;
 
-/// The part of a polygon within a half-plane.
+/// Returns the part of a polygon inside a half-plane.
 ConvexPiece clipped(const ConvexPiece& piece, const HalfPlane& to);
 
-/// Takes the intersection of half-planes away from a set of polygons that do not overlap; what is left stays polygons
-/// that do not overlap. Parts thinner than a thousandth of a nanometre are neither taken nor kept.
-/// \return the parts that were taken
+/// Subtracts the intersection of half-planes from a set of polygons that do not overlap. The remaining polygons do not
+/// overlap either. Parts that are thinner than a thousandth of a nanometre are discarded.
+/// \return the subtracted parts
 std::vector<ConvexPiece> take_away(std::vector<ConvexPiece>& pieces, std::span<const HalfPlane> body);
 
-/// Length of the part of the line point + s direction, low <= s <= high, within a polygon.
+/// Returns the length of the line point + s direction, low <= s <= high, inside a polygon.
 double chord_mm(const ConvexPiece& piece, const geometry::Vec2& point, const geometry::Vec2& direction, double low,
                 double high);
 
-/// Length of lines along a direction within polygons that do not overlap, at every place across the direction where
-/// that length may be greatest: it is linear between the polygons' corners, and jumps there at most.
+/// Length of one line inside a set of polygons.
 struct LineLength {
-  double at_mm = 0.0;  ///< across . p on the line
+  double at_mm = 0.0;  ///< position of the line: across . p for its points p
   double length_mm = 0.0;
 };
-/// \param across of length 1; the lines are at right angles to it \param also more places where lines are wanted
+/// Returns the lengths of parallel lines inside polygons that do not overlap. The lines are at all positions where the
+/// length may have a maximum. These are the corners of the polygons, because the length is linear between corners.
+/// \param across unit vector perpendicular to the lines
+/// \param also additional positions of lines
 std::vector<LineLength> line_lengths(std::span<const ConvexPiece> pieces, const geometry::Vec2& across,
                                      std::span<const double> also);
 

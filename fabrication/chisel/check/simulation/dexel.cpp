@@ -11,14 +11,14 @@ namespace {
 
 using geometry::Vec3;
 
-/// outward . p <= bound, in the workpiece frame.
+/// Half-space outward . p <= bound_mm, in the workpiece frame.
 struct Plane {
   Vec3 outward;
   double bound_mm = 0.0;
 };
 
-/// The planes of the body that a wedge sweeps: its own sides, moved by what the travel adds to their support, and the
-/// planes that hold the travel and one of its edges.
+/// Returns the planes of the body that a wedge sweeps. They are the sides of the wedge, moved outward if the travel
+/// points outward, and the planes that are spanned by the travel and one of the wedge's edges.
 std::vector<Plane> planes_of(const SweptVolume& sweep, const RigidMotion& back, const ToolWedge& wedge) {
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   const std::array<Vec3, 2> tips = {sweep.from_mm - wedge.half_width_mm * wedge.edge,
@@ -27,7 +27,7 @@ std::vector<Plane> planes_of(const SweptVolume& sweep, const RigidMotion& back, 
   std::vector<Plane> planes;
   const auto add = [&](const Vec3& outward) {
     for (const Vec3& ray : rays)
-      if (outward.dot(ray) > 1e-12) return;  // the wedge reaches through it
+      if (outward.dot(ray) > 1e-12) return;  // the wedge extends through this plane, so it is no boundary
     double bound = -1e300;
     for (const Vec3& tip : tips) bound = std::max({bound, outward.dot(tip), outward.dot(tip + travel)});
     const Vec3 turned = back.direction(outward);
@@ -45,7 +45,7 @@ std::vector<Plane> planes_of(const SweptVolume& sweep, const RigidMotion& back, 
   return planes;
 }
 
-/// Union of intervals.
+/// Total length and lowest end of a union of intervals.
 struct Removed {
   double length = 0.0;
   double lowest = 0.0;

@@ -23,10 +23,10 @@ using geometry::Vec3;
 
 constexpr std::size_t kMostLines = 400;
 constexpr std::size_t kLeastLines = 4;
-/// Cavities of hexagonal cube corners reach twice the radius of their apertures.
+/// Extent of a hexagonal cube corner's cavity from its apex, divided by the radius of its aperture.
 constexpr double kCavityReach = 2.0;
 
-/// The dexels of one element, as heights over its facets.
+/// Dexels of one element, converted to heights above its facets.
 struct ElementField {
   DexelBox box;
   std::size_t columns = 0;
@@ -65,10 +65,10 @@ ElementField field_of(const Groove& groove, std::span<const SweptVolume> sweeps,
       const double y =
           field.box.low_mm.y() + (static_cast<double>(row) + 0.5) / static_cast<double>(dexels.rows) * size.y();
       const Vec3 left(x, y, -dexels.removed_mm[row * dexels.columns + column]);
-      // Above the nearer facet: what is left of the other one is its own.
+      // Use the height above the nearest facet. Residual material on another facet belongs to that facet.
       double height_mm = std::numeric_limits<double>::infinity();
       for (const DesignFacet& facet : groove.facets) height_mm = std::min(height_mm, facet.height_mm(left));
-      // Where nothing is removed beyond a cavity's rim the face stays as it should.
+      // Outside of the cavity, the blank's face must remain. It has no error there.
       if (left.z() == 0.0) height_mm = std::max(height_mm, 0.0);
       field.height_nm.push_back(height_mm * kNmPerMm);
     }

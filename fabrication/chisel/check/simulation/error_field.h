@@ -1,6 +1,6 @@
 #pragma once
 
-// The map of height errors that programs leave on a part, seen from above.
+// Computes a map of the height errors of a machined part, in plan.
 
 #include <cstddef>
 #include <vector>
@@ -12,19 +12,21 @@
 
 namespace retrace::fabrication {
 
-/// What programs leave, seen from above, against the design: for pictures. Dexels of every element, cut apart from the
-/// exact figures.
+/// Height errors of the machined surface relative to the design, for pictures. They are computed with dexels,
+/// independent of the exact simulation.
 struct ErrorField {
-  geometry::Vec2 low_mm = geometry::Vec2::Zero();  ///< of the array's extent, in the workpiece frame
+  geometry::Vec2 low_mm = geometry::Vec2::Zero();  ///< low corner of the array's extent, in the workpiece frame
   geometry::Vec2 size_mm = geometry::Vec2::Zero();
-  std::size_t columns = 0;  ///< along x_w
-  std::size_t rows = 0;     ///< the first at the largest y_w
-  /// Height of what is left over the design's facets, along their normals; NaN on flat land. Row by row.
+  std::size_t columns = 0;  ///< number of columns along x_w
+  std::size_t rows = 0;     ///< number of rows; the first row is at the largest y_w
+  /// Height of the machined surface above the nearest designed facet, along its normal, row by row. NaN on flat land.
   std::vector<double> height_nm;
 };
 
-/// \param pixels along the longer side of the array \pre pixels >= 1
-/// \throw InputError for a program that cannot be carried out
+/// Computes the height errors of programs.
+/// \param pixels number of pixels along the longer side of the array
+/// \pre pixels >= 1
+/// \throw InputError for a program that cannot be simulated
 ErrorField error_field(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                        std::size_t pixels);
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Measures every facet that the cuts of an element leave: distance, angle, root residue and volume against the design.
+// Measures the machined facets of an element relative to the design: distance, angle, residual material at the root,
+// and residual volume.
 
 #include <array>
 #include <cstdint>
@@ -13,44 +14,49 @@
 
 namespace retrace::fabrication {
 
-/// A place of a facet where what is left differs most from what should be.
+/// Largest deviation of a machined facet from the predicted surface.
 struct FacetDeviation {
-  double nm = 0.0;        ///< along the design's normal, above what is predicted; negative: too much was removed
-  std::int32_t line = 0;  ///< NC line of the move that made the surface there
+  double nm = 0.0;        ///< deviation along the design normal, above the prediction; negative: too much was removed
+  std::int32_t line = 0;  ///< NC line of the move that produced the surface at this point
 };
 
-/// What the sweeps of one element leave of one of its facets. The surface is the envelope of the tool's planes, taken
-/// along lines normal to the design's facet at the corners of that envelope and between them.
+/// Deviations of one machined facet. The machined surface is the envelope of the tool's planes. It is measured along
+/// lines normal to the designed facet, at the corners of the envelope and between them.
 struct FacetFigures {
   bool is_ploughed = false;
-  double distance_nm = 0.0;    ///< largest deviation from the prediction outside of the strip along the root, unsigned
-  FacetDeviation highest;      ///< outside of the strip
-  FacetDeviation deepest;      ///< likewise
-  FacetDeviation root;         ///< left at the root, up the other facet
-  double mean_nm = 0.0;        ///< of the deviations from the design outside of the strip
-  double mean_up_mm = 0.0;     ///< where that mean lies: from the root
-  double mean_along_mm = 0.0;  ///< and along it
-  double slope_up = 0.0;       ///< of the plane through the surface against the design: up the slope
-  double slope_along = 0.0;    ///< and along the root
-  double residual_mm3 = 0.0;   ///< volume that is left above the design's facet, less what was removed below it
+  double distance_nm = 0.0;    ///< largest absolute deviation from the prediction, outside of the strip at the root
+  FacetDeviation highest;      ///< largest positive deviation outside of the strip
+  FacetDeviation deepest;      ///< largest negative deviation outside of the strip
+  FacetDeviation root;         ///< residual material at the root, measured along the other facet
+  double mean_nm = 0.0;        ///< mean deviation from the design, outside of the strip
+  double mean_up_mm = 0.0;     ///< mean distance of the measured points from the root
+  double mean_along_mm = 0.0;  ///< mean position of the measured points along the root
+  double slope_up = 0.0;       ///< slope of the fitted plane relative to the design, in the direction up the facet
+  double slope_along = 0.0;    ///< slope of the fitted plane relative to the design, along the root
+  double residual_mm3 = 0.0;   ///< residual volume above the designed facet, minus the volume removed below it
 };
 
 struct ElementFigures {
   bool is_cut = false;
-  std::vector<FacetFigures> facets;  ///< none if it is not cut
+  std::vector<FacetFigures> facets;  ///< empty if the element is not cut
 };
 
-/// Of a prism. \param poses machine_from_workpiece for each Sweep::pose
-/// \param is_one_facet_ploughed the strategy ploughs the facet that it does not plunge
-/// \param tolerance_mm of facets: a layer that thin on one of them is not told as what is left at the root
+/// Measures the facets of a prism.
+/// \param poses machine_from_workpiece for each SweptVolume::pose
+/// \param is_one_facet_ploughed true if the strategy ploughs the facet that it does not plunge
+/// \param tolerance_mm tolerance of facets. A layer of this thickness on a facet is not counted as residual material at
+///        the root
 ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume> sweeps,
                                std::span<const RigidMotion> poses, const ToolWedge& wedge, const Prediction& prediction,
                                bool is_one_facet_ploughed, double tolerance_mm);
 
-/// Of a cube corner: the surface along lines normal to each facet over the whole of it, close to the dihedral edges and
-/// on both sides of where the leading edge stands with its tip in the apex.
-/// \param is_hexagonal the facets are squares of half the edges' length, not triangles up to the blank's face
-/// \param nose_angle_deg of the tool \param prediction how the facets stand to it
+/// Measures the facets of a cube corner. The measuring lines are normal to each facet. They cover the whole facet, the
+/// strips along the dihedral edges, and both sides of the leading edge while the tip is in the apex.
+/// \param is_hexagonal true: the facets are squares with half the length of the cavity's edges. False: they are
+///         triangles
+///        up to the blank's face
+/// \param nose_angle_deg nose angle of the tool
+/// \param prediction predicted errors and poses of this element
 ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const SweptVolume> sweeps,
                               std::span<const RigidMotion> poses, const ToolWedge& wedge, double nose_angle_deg,
                               const Prediction& prediction);

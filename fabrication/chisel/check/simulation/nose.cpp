@@ -13,14 +13,14 @@ namespace {
 
 using geometry::Vec3;
 
-/// Planes that touch the arc, its ends not among them: those are the flanks.
+/// Number of planes that are tangent to the arc, without the flanks at its ends.
 constexpr int kTangents = 32;
-/// How far off an edge is searched, and how far along a facet's normal, in radii.
+/// Maximum distance of the search from an edge, in radii of the nose.
 constexpr double kFurthest = 40.0;
-/// Only cuts that end so near to a facet reach its edges, in radii.
+/// Maximum height, in radii, of the end of a cut above the facets. Higher cuts do not reach the dihedral edges.
 constexpr double kNear = 20.0;
 
-/// The part of a vector across a unit vector, of length 1.
+/// Returns the normalized component of a vector that is perpendicular to a unit vector.
 Vec3 across(const Vec3& v, const Vec3& unit) {
   return (v - unit * unit.dot(v)).normalized();
 }
@@ -38,7 +38,7 @@ class Searcher {
     NoseResidue residue;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& edge = cavity_.edges[k];
-      // Half-way to the end of a full cube's edge.
+      // Measure at the center of the edge of a hexagonal element.
       const Vec3 place = cavity_.root_mm + 0.25 * cavity_.facet_length_mm * edge;
       for (const std::size_t facet : {k, (k + 2) % 3}) {
         const Vec3& normal = cavity_.facets[facet].normal;
@@ -67,7 +67,7 @@ class Searcher {
     return least_mm < kNear * radius_mm_;
   }
 
-  /// Where the first cut along a line begins, from its point.
+  /// Returns the distance from `point` to the first cut along a line, or `furthest_mm` if there is none.
   double first_cut_mm(const Vec3& point, const Vec3& direction, double furthest_mm) const {
     double first = furthest_mm;
     for (const SweptVolume& sweep : sweeps_) {
@@ -78,8 +78,8 @@ class Searcher {
     return first;
   }
 
-  /// Bisects for the least distance from the edge, along the facet, over which something is cut within a few radii of
-  /// the facet: the ends of the arc stand as far off it as the clearance makes them.
+  /// Finds, by bisection, the minimum distance from the edge at which a cut exists close to the facet. The ends of the
+  /// arc are slightly above the facet because of the clearance angle.
   double strip_mm(const Vec3& edge_point, const Vec3& along_facet, const Vec3& normal) const {
     const double high_mm = 0.5 * radius_mm_;
     double low = 0.0;
@@ -110,7 +110,7 @@ ToolWedge nosed_wedge(const Tool& tool, const Machine& machine) {
   const double half_nose = Angle::from_deg(0.5 * tool.nose_angle_deg).rad();
   const Vec3 middle = (leading + trailing).normalized();
   const Vec3 centre = radius_mm / std::sin(half_nose) * middle;
-  // Round the arc, from the normal of one edge to that of the other, both out of the V.
+  // Rotate from the outward normal of one edge to the outward normal of the other edge.
   const Vec3 first = -across(trailing, leading);
   const Vec3 last = -across(leading, trailing);
   const double angle = std::acos(std::clamp(first.dot(last), -1.0, 1.0));

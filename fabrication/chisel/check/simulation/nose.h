@@ -1,6 +1,6 @@
 #pragma once
 
-// V-shaped tools with a rounded nose: their body, and the strip and ridge that they leave along dihedral edges.
+// Model of V-shaped tools with a rounded nose, and the strips and ridges that they leave along dihedral edges.
 
 #include <span>
 
@@ -11,21 +11,22 @@
 
 namespace retrace::fabrication {
 
-/// The V-shaped tool with its nose: the sharp wedge of v_tool_wedge() within planes along its spine that touch the arc
-/// between its two edges. They go round the arc, so that the body is larger by 0.06 % of the radius at most.
+/// Returns the V-shaped tool with a rounded nose. The arc between its two edges is approximated by planes that are
+/// tangent to the arc and parallel to the spine. The body is larger than the real nose by at most 0.06 % of the radius.
 /// \pre edge_radius_um > 0
 ToolWedge nosed_wedge(const Tool& tool, const Machine& machine);
 
-/// What a nose leaves along the dihedral edges of a cube corner, at most.
+/// Maximum residual material that a rounded nose leaves along the dihedral edges of a cube corner.
 struct NoseResidue {
-  double strip_mm = 0.0;  ///< width of either facet beside an edge that no cut comes over
-  /// From an edge, along the middle between its two facets, to where the cuts begin: the ridge that stays between the
-  /// flanks of the two cuts.
+  double strip_mm = 0.0;  ///< width of the uncut strip of each facet next to an edge
+  /// Height of the ridge between the flanks of the two cuts, from the edge along the bisector of the two facets.
   double ridge_mm = 0.0;
 };
 
-/// Found along lines, by cutting with the nosed wedge in the moves of the programs. Searched within 40 radii.
-/// \param sweeps of the element \param poses machine_from_workpiece for each Sweep::pose
+/// Measures the residual material along lines, by simulating the programs with the rounded tool. The search is limited
+/// to 40 radii.
+/// \param sweeps swept volumes of the element
+/// \param poses machine_from_workpiece for each SweptVolume::pose
 NoseResidue nose_residue(const Groove& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
                          std::span<const RigidMotion> poses, const ToolWedge& nosed);
 

@@ -8,10 +8,12 @@
 
 namespace retrace::fabrication {
 
-/// The plane through heights over a facet, by least squares: what FacetFigures says of it.
+/// Least-squares fit of a plane to heights above a facet. It computes the mean and the slopes of FacetFigures.
 class PlaneFit {
  public:
-  /// \param up_mm up the slope from the root or the apex \param along_mm along a level line of the facet
+  /// Adds a measured height.
+  /// \param up_mm distance from the root or the apex, up the facet
+  /// \param along_mm position along the root, or across the facet of a cube corner
   void add(double up_mm, double along_mm, double height_mm) { points_.push_back({up_mm, along_mm, height_mm}); }
   void fit(FacetFigures& figures) const;
 

@@ -11,18 +11,18 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Part of the blank that a section holds: across on either side, and below its origin.
+/// Extent of the blank in a section.
 struct Extent {
-  double half_mm = 0.0;
-  double below_mm = 0.0;
+  double half_mm = 0.0;   ///< half of the width
+  double below_mm = 0.0;  ///< depth below the origin of the section
 };
 
-/// The blank goes on beyond the rims by this share of the element, and below its root.
+/// Extent of the blank beyond the rims and below the root, relative to the size of the element.
 constexpr double kBeyond = 0.2;
-/// Pieces into which the blank is divided under a face that is not flat.
+/// Number of polygons that approximate the blank below a face that is not flat.
 constexpr int kStrips = 12;
 
-/// How high the blank's face stands in a section.
+/// Returns the height of the blank's face in a section.
 double face_height_mm(const SectionPlane& plane, const Groove& groove, const BlankFace& face, double across_mm) {
   const Vec3 foot = plane.origin_mm + across_mm * plane.across;
   double up_mm = groove.to_face_mm(foot, plane.up);
@@ -53,7 +53,8 @@ StandingSection section_of(const SectionPlane& plane, const Groove& groove, cons
   return section;
 }
 
-/// Where sections cross a prism, along its root: near either end and so densely that each pass has two.
+/// Returns the positions of the sections along the root of a prism. There are sections near both ends, and at least two
+/// sections in each pass of the tool.
 std::vector<double> stations_mm(const Groove& groove, double wall_mm, double tool_width_mm) {
   const double end_mm = std::max(0.5 * groove.half_width_mm, groove.half_width_mm - wall_mm);
   const int count = 1 + 2 * static_cast<int>(std::ceil(2.0 * groove.half_width_mm / tool_width_mm - 1e-9));
@@ -62,8 +63,9 @@ std::vector<double> stations_mm(const Groove& groove, double wall_mm, double too
   return stations;
 }
 
-/// Where sections cross a dihedral edge, from the apex: the first layer begins at a third of its length, and a section
-/// just beyond is crossed by every layer, those nearer to the apex by the last ones.
+/// Returns the distances of the sections of a dihedral edge from the apex. The first layer begins at a third of the
+/// edge length, so that all layers cross the section slightly above. Only the last layers cross the sections near the
+/// apex.
 std::vector<double> places_mm(double edge_mm, double depth_mm) {
   const double first = std::min(edge_mm / 3.0 + 1.5 * depth_mm, 0.45 * edge_mm);
   return {0.12 * edge_mm, first, 0.6 * edge_mm};
@@ -72,7 +74,7 @@ std::vector<double> places_mm(double edge_mm, double depth_mm) {
 }  // namespace
 
 std::vector<ConvexPiece> StandingSection::cut(std::span<const ToolWedge::Side> sides, const RigidMotion& pose) {
-  constexpr double kAcross = 1e-12;  // a side that the plane does not cross
+  constexpr double kAcross = 1e-12;  // a side whose normal has a smaller component in the plane is parallel to it
   const Vec3 u = pose.direction(plane.across);
   const Vec3 v = pose.direction(plane.up);
   const Vec3 origin = pose.point(plane.origin_mm);

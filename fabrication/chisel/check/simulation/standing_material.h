@@ -1,6 +1,6 @@
 #pragma once
 
-// What stands of the blank at an element while it is cut, in sections across its root or its dihedral edges.
+// Represents the remaining stock of an element during cutting, in cross-sections of its root or of its dihedral edges.
 
 #include <span>
 #include <vector>
@@ -12,8 +12,8 @@
 
 namespace retrace::fabrication {
 
-/// A plane across an element, in the workpiece frame: origin + u across + v up, where v rises out of the blank. The
-/// facets that it crosses meet in its origin.
+/// Cross-section plane of an element, in the workpiece frame. Its points are origin + u * across + v * up, where `up`
+/// points out of the blank. The two intersected facets meet in the origin.
 struct SectionPlane {
   geometry::Vec3 origin_mm = geometry::Vec3::Zero();
   geometry::Vec3 across = geometry::Vec3::UnitX();
@@ -22,27 +22,29 @@ struct SectionPlane {
 
   geometry::Vec2 direction(const geometry::Vec3& d) const { return {across.dot(d), up.dot(d)}; }
   geometry::Vec2 point(const geometry::Vec3& p) const { return direction(p - origin_mm); }
-  /// How far a point lies beside the plane.
+  /// Returns the signed distance of a point from the plane.
   double beside_mm(const geometry::Vec3& p) const { return normal.dot(p - origin_mm); }
 };
 
-/// One section of the blank with what stands in it.
+/// Cross-section of the blank and its remaining stock.
 struct StandingSection {
   SectionPlane plane;
-  std::vector<ConvexPiece> pieces;  ///< that do not overlap
+  std::vector<ConvexPiece> pieces;  ///< remaining stock as polygons that do not overlap
 
-  /// Takes away what a move of the tool sweeps. \param sides of the swept body \param pose machine_from_workpiece
-  /// \return what stood there
+  /// Removes the material that a move of the tool sweeps.
+  /// \param sides sides of the swept body
+  /// \param pose machine_from_workpiece
+  /// \return the removed material
   std::vector<ConvexPiece> cut(std::span<const ToolWedge::Side> sides, const RigidMotion& pose);
 };
 
-/// The state of an element: to begin with the blank below its face, as far as the element's cuts reach. What was cut
-/// before is taken away by cut() of its sections.
+/// Remaining stock of an element in several cross-sections. Initially, it is the whole blank below its face. The
+/// function cut() of each section removes material.
 class StandingMaterial {
  public:
-  /// \param wall_mm by which the tilted ends of the tool's edge may wander: sections keep clear of them
-  /// \param tool_width_mm of a chisel: sections stand so densely that each of its passes is crossed by two
-  /// \param depth_mm of roughing cuts
+  /// \param wall_mm maximum displacement of the ends of a tilted edge; sections keep this distance from the walls
+  /// \param tool_width_mm width of a chisel; each of its passes is crossed by at least two sections
+  /// \param depth_mm depth of cut of roughing
   StandingMaterial(const Groove& groove, const BlankFace& face, double wall_mm, double tool_width_mm, double depth_mm);
 
   std::vector<StandingSection>& sections() { return sections_; }

@@ -13,17 +13,19 @@ namespace {
 
 using geometry::Vec3;
 
-/// Spans this close to each other touch: far below a nanometre, far above rounding at 1 m.
+/// Maximum gap between two removed parts of a line that are considered connected. It is far below 1 nm, and far above
+/// the rounding errors at 1 m.
 constexpr double kTouchMm = 1e-10;
 
-/// One inequality  s a <= c + t b  of the linear programme.
+/// Inequality s * a <= c + t * b for the line parameter s and the travel parameter t.
 struct Inequality {
-  double a;  // without values of their own: most of the room for them is never used
+  double a;  // no default values, because large arrays of this type are mostly unused
   double b;
   double c;
 };
 
-/// Narrows [low, high] by s a <= c. \return whether something is left
+/// Reduces the interval [low, high] of s by the inequality s * a <= c.
+/// \return true if the interval is not empty
 bool narrow(double a, double c, double& low, double& high) {
   if (a > 0.0)
     high = std::min(high, c / a);
@@ -46,8 +48,9 @@ ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex) {
   ToolWedge wedge;
   wedge.edge = x;
   wedge.half_width_mm = 0.5 * tool.width_mm;
-  // The reference point is the crossing of the circle's vertical tangent, the plunged facet, and its horizontal one.
-  // The tangent in the other facet, at the apex angle to the vertical, crosses the vertical one below or above it.
+  // The tool reference point is the intersection of the edge circle's vertical tangent (the plunged facet) and its
+  // horizontal tangent. The tangent in the other facet is inclined to the vertical by the apex angle. It intersects the
+  // vertical tangent below or above the reference point.
   const double radius_mm = 1e-3 * tool.edge_radius_um;
   const double below_mm = radius_mm * (1.0 - std::sin(apex.rad()) + std::cos(apex.rad())) / std::sin(apex.rad());
   wedge.tip_mm = -below_mm * plunged_normal(machine).cross(x);
@@ -62,7 +65,8 @@ ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex) {
 }
 
 ToolWedge v_tool_wedge(const Tool& tool, const Machine& machine) {
-  // The facet in the frame of the tool: its normal, and the dihedral edges at 45 degrees to the tool's axis.
+  // Frame of the facet that is cut: its normal, and its two dihedral edges, which are at 45 degrees to its upward
+  // direction.
   const Vec3 normal = plunged_normal(machine);
   const Vec3 level = (level_direction(machine) - normal * normal.dot(level_direction(machine))).normalized();
   const Vec3 up = level.cross(normal);
@@ -91,7 +95,8 @@ std::optional<LineSpan> swept_span(const ToolWedge& wedge, const SweptVolume& sw
                                    const Vec3& direction) {
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   const Vec3 start = point_mm - sweep.from_mm;
-  // t is bounded from below where b > 0 and from above where b < 0; its own bounds are 0 <= t and t <= 1.
+  // An inequality with b > 0 is a lower bound of t, and one with b < 0 is an upper bound. The first bounds are 0 <= t
+  // and t <= 1.
   std::array<Inequality, ToolWedge::kMostSides + 1> lower;
   std::array<Inequality, ToolWedge::kMostSides + 1> upper;
   lower[0] = {0.0, 1.0, 0.0};
@@ -121,10 +126,10 @@ std::optional<LineSpan> swept_span(const ToolWedge& wedge, const SweptVolume& sw
 }
 
 std::vector<ToolWedge::Side> swept_sides(const ToolWedge& wedge, const SweptVolume& sweep) {
-  constexpr double kLevel = 1e-15;  // what a side gains per mm of travel along it
+  constexpr double kLevel = 1e-15;  // sides with a smaller rate are considered parallel to the travel
   struct Bound {
     ToolWedge::Side side;
-    double rate = 0.0;  ///< by which t moves the side outwards
+    double rate = 0.0;  ///< outward displacement of the side per unit of t
   };
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   std::vector<Bound> lower = {{{Vec3::Zero(), 0.0}, 1.0}};

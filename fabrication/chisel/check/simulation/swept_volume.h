@@ -1,7 +1,7 @@
 #pragma once
 
-// The tool as a convex wedge, and what it removes along a line while it moves straight: the kernel of the exact cutting
-// simulation.
+// Kernel of the exact cutting simulation: models the tool as a convex wedge, and computes the part of a line that a
+// straight move of this wedge removes.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,74 +18,78 @@
 
 namespace retrace::fabrication {
 
-/// The diamond as an endless wedge, in the frame of the machine relative to its tip. Of a chisel: between clearance
-/// face and rake face, and between two planes at the ends of its edge. Of a V: between its clearance face and two
-/// flanks, with the leading edge for its edge, of no width. A chisel's tip is the crossing of those two tangents of the
-/// edge's circle that lie in the facets, so that a rounded edge sweeps the same two planes as the sharp one
-/// (docs/theory/verification.md).
+/// Diamond tool as an infinite convex wedge, in the machine frame relative to its tip. A chisel is bounded by its
+/// clearance face, its rake face and two planes at the ends of its edge. A V-shaped tool is bounded by its clearance
+/// face and two flanks. Its `edge` is the leading edge, and its width is 0. The tip of a chisel with a rounded edge is
+/// the intersection of the edge circle's tangents in the two facets. The rounded edge then sweeps the same two planes
+/// as a sharp edge (docs/theory/verification.md).
 struct ToolWedge {
   static constexpr std::size_t kMostSides = 40;
-  /// inward . p <= bound
+  /// Half-space outward . p <= bound_mm.
   struct Side {
     geometry::Vec3 outward = geometry::Vec3::Zero();
     double bound_mm = 0.0;
   };
-  /// Clearance face, rake face, ends of the edge at +X and -X; of a V clearance face, leading and trailing flank, and
-  /// the trailing one again; of one with a nose the planes that touch it too. At most kMostSides.
+  /// Sides of the wedge, at most kMostSides. Chisel: clearance face, rake face, ends of the edge at +X and -X. V-shaped
+  /// tool: clearance face, leading flank, and the trailing flank twice. A rounded nose adds its tangential planes.
   std::vector<Side> sides;
-  geometry::Vec3 edge = geometry::Vec3::UnitX();
-  geometry::Vec3 clearance_direction = geometry::Vec3::UnitZ();  ///< up the clearance face
-  geometry::Vec3 rake_direction = geometry::Vec3::UnitZ();       ///< up the rake face
-  std::vector<geometry::Vec3> rays;  ///< edges of the wedge that go up from its tip, or from the ends of its edge
+  geometry::Vec3 edge = geometry::Vec3::UnitX();                 ///< direction of the edge
+  geometry::Vec3 clearance_direction = geometry::Vec3::UnitZ();  ///< upward direction in the clearance face
+  geometry::Vec3 rake_direction = geometry::Vec3::UnitZ();       ///< upward direction in the rake face
+  std::vector<geometry::Vec3>
+      rays;  ///< directions of the wedge's edges upward from its tip or from the ends of its edge
   double half_width_mm = 0.0;
-  geometry::Vec3 tip_mm = geometry::Vec3::Zero();  ///< from the tool reference point; 0 at an apex of 90 degrees
+  geometry::Vec3 tip_mm = geometry::Vec3::Zero();  ///< tip relative to the tool reference point; 0 for a 90 degree apex
 };
 
-/// \param apex included angle of the two facets that are cut; the other tangent is the one in the facet that the tool
-/// does not plunge
+/// Returns the wedge of a chisel.
+/// \param apex angle between the two facets that are cut. It determines the edge circle's tangent in the facet that is
+///        not plunged
 ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex);
 
-/// The V-shaped tool of a machine whose head tilts, as it stands to the facet that it cuts.
+/// Returns the wedge of a V-shaped tool on a machine with a tilting head, in its orientation relative to the facet that
+/// is cut.
 ToolWedge v_tool_wedge(const Tool& tool, const Machine& machine);
 
-/// A straight move of the tool's tip in one pose, as points of the machine frame.
+/// Straight move of the tool's tip in one pose. Its end points are given in the machine frame.
 struct SweptVolume {
   std::uint32_t pose = 0;
   NcPlace place;
   bool is_rapid = false;
   geometry::Vec3 from_mm = geometry::Vec3::Zero();
   geometry::Vec3 to_mm = geometry::Vec3::Zero();
-  std::uint32_t program = 0;  ///< which of those that are run, from 0
+  std::uint32_t program = 0;  ///< index of the program, from 0
 };
 
-/// The half-spaces whose intersection is the body that a wedge sweeps, in the frame of the machine: those of the wedge
-/// at t travel, 0 <= t <= 1, of which t is eliminated (Fourier-Motzkin). Some may be redundant; of those that bound it
-/// `outward` has length 1.
+/// Returns the half-spaces whose intersection is the body that a wedge sweeps, in the machine frame. The wedge is
+/// displaced by t * travel with 0 <= t <= 1, and t is eliminated from the inequalities (Fourier-Motzkin elimination).
+/// Some half- spaces may be redundant. The vectors `outward` of the others have length 1.
 std::vector<ToolWedge::Side> swept_sides(const ToolWedge& wedge, const SweptVolume& sweep);
 
-/// Part of a line that a sweep removes.
+/// Part of a line that a sweep removes, as a range of the line parameter.
 struct LineSpan {
   double low = 0.0;
   double high = 0.0;
   std::int32_t line = 0;  ///< NC line of the sweep
 };
 
-/// The part of the line point + s direction (in the frame of the machine) within the convex body that the wedge sweeps.
-/// That body is { q + t (to - from) : q in the wedge at `from`, 0 <= t <= 1 }, so the part is a linear programme in s
-/// and t, of which t is eliminated (Fourier-Motzkin): exact to rounding.
+/// Returns the part of the line point + s * direction (machine frame) inside the convex body that the wedge sweeps. The
+/// body is { q + t (to - from) : q in the wedge at `from`, 0 <= t <= 1 }. Eliminating t from its inequalities (Fourier-
+/// Motzkin elimination) gives the range of s, which is exact except for rounding errors.
 std::optional<LineSpan> swept_span(const ToolWedge& wedge, const SweptVolume& sweep, const geometry::Vec3& point_mm,
                                    const geometry::Vec3& direction);
 
-/// What is left along a line from far inside the material (s = -infinity) to the outside at `exit`.
+/// Machined surface along a line that comes from inside the material (s = -infinity) and leaves the blank at `exit`.
 struct LineSurface {
-  double top = 0.0;           ///< s above which everything is removed
-  std::int32_t top_line = 0;  ///< NC line of the move that made the surface there; 0: the blank's face
-  double lowest = 0.0;        ///< least s that was removed
+  double top = 0.0;           ///< parameter s above which all material is removed
+  std::int32_t top_line = 0;  ///< NC line of the move that produced the surface at `top`; 0: the blank's face
+  double lowest = 0.0;        ///< minimum s at which material is removed
   std::int32_t lowest_line = 0;
-  double exit = 0.0;  ///< where the line leaves the blank
+  double exit = 0.0;  ///< parameter s at which the line leaves the blank
 };
 
-/// The surface along a line that leaves the blank at s = exit. `spans` is used up as working space.
+/// Returns the machined surface along a line that leaves the blank at s = exit.
+/// \param spans removed parts of the line; the function changes their order
 LineSurface surface_along(std::vector<LineSpan>& spans, double exit);
 
 }  // namespace retrace::fabrication
