@@ -22,11 +22,12 @@ struct LineForm {
   std::string_view form;
 };
 
-/// M codes that control the program flow. The builder of the machine defines the other M codes (ISO 6983-1).
+/// M codes that control the program flow, such as stops and calls. All other M codes are defined by the machine builder
+/// (ISO 6983-1).
 constexpr int kFlowCodes[] = {0, 1, 2, 30, 47, 48, 49, 96, 97, 98, 99};
 
 constexpr LineForm kLineForms[] = {
-    // Source: Power PMAC Software Reference, variables and M codes.
+    // Forms of the Power PMAC. Source: Power PMAC Software Reference, variables and M codes.
     {"pmac", LineUse::output, "M#"},
     {"pmac", LineUse::output, "P#=~"},
     {"pmac", LineUse::output, "Q#=~"},
@@ -35,14 +36,14 @@ constexpr LineForm kLineForms[] = {
     {"pmac", LineUse::output, "GateIo[#].DataReg[#].#=#"},
     {"pmac", LineUse::stop, "M0"},
     {"pmac", LineUse::stop, "M1"},
-    // Source: public A3200 programs, outputs and variables.
+    // Forms of the A3200. Source: outputs and variables in public A3200 programs.
     {"a3200", LineUse::output, "M#"},
     {"a3200", LineUse::output, "$DO[#].@=#"},
     {"a3200", LineUse::output, "$AO[#].@=~"},
     {"a3200", LineUse::output, "$global[#]=~"},
     {"a3200", LineUse::stop, "M0"},
     {"a3200", LineUse::stop, "M1"},
-    // Source: help.aerotech.com/automation1, I/O Functions and Variables.
+    // Forms of the Automation1. Source: help.aerotech.com/automation1, I/O Functions and Variables.
     {"automation1", LineUse::output, "M#"},
     {"automation1", LineUse::output, "DigitalOutputSet(@,#,#)"},
     {"automation1", LineUse::output, "AnalogOutputSet(@,#,~)"},
@@ -57,8 +58,9 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Removes from the front of `text` the number or name that a sign (#, ~ or @) stands for. \return false if it is
-/// absent
+/// Removes a number or name from the front of `text`.
+/// \param sign # for a whole number, ~ for a number, @ for the name of an axis
+/// \return false if `text` does not begin with it
 bool take_part(char sign, std::string_view& text) {
   const std::size_t before = text.size();
   if (sign == '@') {

@@ -1,47 +1,49 @@
 #pragma once
 
-// A straight cut of the tool's edge in the words of a program, and the plane that it leaves in the workpiece on a
-// machine: the words may have been made for another one.
+// Computes the plane that a straight cut produces in the workpiece. The axis positions of the cut may have been planned
+// for another machine.
 
 #include "fabrication/machine/machine.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication {
 
-/// A straight move of the edge while the rotary axes stand.
+/// Straight move of the edge while the rotary axes do not move.
 struct EdgeCut {
-  AxisPositions at;                                     ///< where the move ends
-  geometry::Vec3 travel_mm = -geometry::Vec3::UnitZ();  ///< words of X, Y and Z along the move, of any length above 0
-  /// What cuts the plane, from the tool reference point, while the tool stands as it should.
+  AxisPositions at;                                     ///< axis positions at the end of the move
+  geometry::Vec3 travel_mm = -geometry::Vec3::UnitZ();  ///< direction of the move in X, Y and Z; any length > 0
+  /// Point of the edge that produces the plane, relative to the tool reference point, in the axes of edge_frame().
   geometry::Vec3 tip_mm = geometry::Vec3::Zero();
-  Angle edge_rise;  ///< of the cutting edge over the level line of a standing facet, in it: 0 of a chisel
+  Angle edge_rise;  ///< angle between the cutting edge and the horizontal line of the facet; 0 for a chisel
 };
 
-/// A plane in the workpiece frame.
+/// Plane in the workpiece frame.
 struct CutPlane {
-  geometry::Vec3 point_mm = geometry::Vec3::Zero();  ///< on it: where the tip stands
-  geometry::Vec3 normal = geometry::Vec3::UnitZ();   ///< of length 1, on the side of -Y or -X of a standing facet
+  geometry::Vec3 point_mm = geometry::Vec3::Zero();  ///< point of the plane: position of the tip
+  geometry::Vec3 normal = geometry::Vec3::UnitZ();   ///< unit normal
 
-  /// Height of the plane over a point, along a direction that leaves the material.
+  /// Returns the height of the plane above a point, along a direction out of the material.
   double height_mm(const geometry::Vec3& over_mm, const geometry::Vec3& along) const {
     return normal.dot(point_mm - over_mm) / normal.dot(along);
   }
 };
 
-/// Returns the axes of the mounted tool, as columns, in the machine frame. Points of the tool are given in these axes
-/// relative to its reference point. The axes of a chisel are the edge, the direction across the edge, and the upward
-/// direction in the plane of plunging. A rotation of the tool about its edge does not change these axes, because the
-/// tool is touched off after mounting.
+/// Returns the coordinate axes of the mounted tool as columns, in the machine frame. Points of the tool are given in
+/// these coordinates, relative to its reference point. The axes of a chisel are its edge, the direction across the
+/// edge, and the upward direction in the plane of plunging. The tool is touched off after mounting. A rotation of the
+/// tool about its edge therefore does not change these axes.
 Eigen::Matrix3d edge_frame(const Machine& machine);
 
-/// Returns the change of the clearance angle due to the mount: the rotation of a chisel about its edge relative to the
-/// plane of plunging.
+/// Returns the change of the clearance angle due to the mounting of the tool. It is the rotation angle of a chisel
+/// about its edge, relative to the plane of plunging.
 Angle clearance_change(const Machine& machine);
 
-/// Along the edge that cuts, in the machine frame and of length 1.
+/// Returns the unit vector along the cutting edge, in the machine frame.
+/// \param edge_rise angle between the cutting edge and the horizontal line of the facet
 geometry::Vec3 cutting_edge(const Machine& machine, Angle edge_rise);
 
-/// The plane that the edge sweeps. \param outward the normal's side, a direction of the workpiece
+/// Returns the plane that the edge sweeps.
+/// \param outward direction in the workpiece frame that determines the side of the normal
 /// \pre the edge does not move along itself
 CutPlane cut_plane(const Machine& machine, const EdgeCut& cut, const geometry::Vec3& outward);
 

@@ -14,7 +14,7 @@ namespace {
 
 using geometry::Vec3;
 
-/// Columns are the directions of the linear axes.
+/// Returns the matrix whose columns are the directions of the linear axes.
 Eigen::Matrix3d linear_directions(const Machine& machine) {
   Eigen::Matrix3d directions;
   directions << machine.x.direction.value, machine.y.direction.value, machine.z.direction.value;
@@ -25,7 +25,7 @@ Eigen::Matrix3d turn(const RotaryAxis& axis, double word_deg) {
   return rotation_about(axis.direction.value, Angle::from_deg(axis.sign.value * word_deg));
 }
 
-/// Rotation about a line in space.
+/// Returns the rotation of a rotary axis about its line in space.
 RigidMotion turn_about_line(const RotaryAxis& axis, double word_deg) {
   const Eigen::Matrix3d rotation = turn(axis, word_deg);
   return {rotation, axis.point_mm.value - rotation * axis.point_mm.value};
@@ -35,12 +35,12 @@ double wrapped_deg(double deg) {
   return deg - 360.0 * std::round(deg / 360.0);
 }
 
-/// The turn of `value` nearest to `near`.
+/// Adds full turns to an angle so that it is as close as possible to `near_deg`.
 double nearest_turn(double value_deg, double near_deg) {
   return near_deg + wrapped_deg(value_deg - near_deg);
 }
 
-/// Angle about `axis` that turns the part of `from` across the axis onto that of `to`.
+/// Returns the angle between the projections of `from` and `to` onto the plane perpendicular to `axis`.
 double angle_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
   const Vec3 a = from - axis * axis.dot(from);
   const Vec3 b = to - axis * axis.dot(to);
@@ -124,11 +124,11 @@ PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, c
                              const RotaryPose& near) {
   const Vec3 target = plunged_normal(machine);
   const Vec3& a_axis = machine.a.direction.value;
-  // A head that turns by B shows the workpiece to the tool as a table would that turns by -B.
+  // Relative to the tool, a head at angle B is equivalent to a table at angle -B.
   const double a_sign = machine.tilt == Tilt::table ? machine.a.sign.value : -machine.a.sign.value;
   const Vec3& c_axis = machine.c.direction.value;
-  // Turning about A keeps the component along A, so C alone must bring it to the target's: with n split along and
-  // across C that reads  p cos C + q sin C = r.
+  // A rotation about A does not change the component of the normal along A. Therefore C must give this component its
+  // target value. With the normal split along and across C, the condition is p cos C + q sin C = r.
   const double along = c_axis.dot(facet_normal);
   const double p = a_axis.dot(facet_normal - c_axis * along);
   const double q = a_axis.dot(c_axis.cross(facet_normal));

@@ -1,7 +1,7 @@
 #pragma once
 
-// The kinematics of five-axis machines whose table or head tilts: axes with limits and speeds, forward and inverse
-// transformation, and poses that bring a facet to the tool.
+// Kinematics of five-axis machines with a tilting table or a tilting head: axes with limits and speeds, forward and
+// inverse transformation, and the poses in which a facet is cut.
 
 #include <algorithm>
 #include <array>
@@ -17,13 +17,13 @@
 
 namespace retrace::fabrication {
 
-/// Where a value of a machine comes from.
+/// Origin of a value of a machine.
 enum class Basis {
-  measured,  ///< `source` names the publication or measurement
-  assumed    ///< `source` says why
+  measured,  ///< measured; `source` names the publication or measurement
+  assumed    ///< assumed; `source` gives the reason
 };
 
-/// A value with where it comes from.
+/// Value and its origin.
 template <class Value>
 struct Sourced {
   Value value{};
@@ -38,13 +38,13 @@ struct Interval {
   bool contains(double value) const { return value >= low && value <= high; }
 };
 
-/// Of axes that have their whole acceleration at once.
+/// Default jerk limit of an axis: none, so that the acceleration changes instantaneously.
 inline const Sourced<double> kNoJerkLimit = {std::numeric_limits<double>::infinity(), Basis::assumed,
                                              "acceleration begins at once, as for every axis that names no jerk"};
 
-/// A linear axis. Positive words move the tool along `direction`, as seen from the workpiece.
+/// Linear axis. Positive positions move the tool along `direction` relative to the workpiece.
 struct LinearAxis {
-  Sourced<geometry::Vec3> direction;  ///< of length 1, in the frame of the workpiece at A = C = 0
+  Sourced<geometry::Vec3> direction;  ///< unit vector, in the workpiece frame at A = C = 0
   Sourced<Interval> limits_mm;
   Sourced<double> max_feed_mm_per_min;
   Sourced<double> rapid_mm_per_min;
@@ -52,13 +52,13 @@ struct LinearAxis {
   Sourced<double> jerk_mm_per_s3 = kNoJerkLimit;
 };
 
-/// A rotary axis: a line in space at A = C = 0.
+/// Rotary axis, given as a line in space at A = C = 0.
 struct RotaryAxis {
-  /// On the axis, in the frame of the workpiece.
+  /// Point on the axis, in the workpiece frame.
   Sourced<geometry::Vec3> point_mm = {geometry::Vec3::Zero(), Basis::assumed,
                                       "the origin of the workpiece, as for every machine that names none"};
-  Sourced<geometry::Vec3> direction;  ///< of length 1
-  /// 1: positive words turn the workpiece by the right hand about `direction`; or -1.
+  Sourced<geometry::Vec3> direction;  ///< unit vector along the axis
+  /// 1 if positive angles rotate the workpiece about `direction` by the right-hand rule; -1 for the opposite sense.
   Sourced<double> sign = {1.0, Basis::assumed, "positive words turn the workpiece by the right hand"};
   Sourced<Interval> limits_deg;
   Sourced<double> speed_deg_per_s;
@@ -66,23 +66,24 @@ struct RotaryAxis {
   Sourced<double> jerk_deg_per_s3 = kNoJerkLimit;
 };
 
-/// What a body of a machine moves with.
+/// Part of the machine with which a body moves.
 enum class Carrier {
-  workpiece,  ///< the table that A and C turn, in the frame of the workpiece
-  cradle,     ///< what C does not turn, in the same frame at A = 0; where the head tilts: what stands still
-  tool        ///< spindle and holder, relative to the tool reference point
+  workpiece,  ///< moves with the table (A and C); points are in the workpiece frame
+  cradle,     ///< moves with A but not with C; points are in the workpiece frame at A = 0. Tilting head: does not move
+  tool        ///< moves with the spindle; points are relative to the tool reference point
 };
 
-/// A convex body of a machine, for collisions: the hull of its points.
+/// Convex body of a machine, for collision checks. It is the convex hull of its points.
 struct MachineBody {
   std::string name;
   Carrier carrier = Carrier::workpiece;
   Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least 4, not in one plane
 };
 
-/// How the tool stands in the machine, against how it should: where a set-up left it, or a calibration found it.
+/// Deviation of the mounted tool from its nominal position and orientation, from a set-up or a calibration.
 struct ToolMount {
-  /// Of the tool reference point, from where programs take it, along the axes of the machine. Of a head: at B = 0.
+  /// Displacement of the tool reference point from its assumed position, along the axes of the machine. For a tilting
+  /// head, it applies at B = 0.
   Sourced<geometry::Vec3> offset_mm = {geometry::Vec3::Zero(), Basis::assumed, "the tool is touched off"};
   /// Rotation vector of the mounted tool about its reference point. The tool is touched off after mounting. A rotation
   /// about X changes the clearance angle, one about Y tilts the edge from the horizontal, and one about Z rotates the
@@ -90,25 +91,26 @@ struct ToolMount {
   Sourced<geometry::Vec3> turn_deg = {geometry::Vec3::Zero(), Basis::assumed, "the tool is aligned"};
 };
 
-/// What the axis that tilts turns.
+/// Part of the machine that the tilting axis rotates.
 enum class Tilt {
-  table,  ///< A: the table, and C with it
-  head    ///< B: the tool; C alone turns the workpiece
+  table,  ///< axis A tilts the table, including C
+  head    ///< axis B tilts the tool; only C rotates the workpiece
 };
 
-/// A machine with three linear axes, an axis that tilts, and a table that turns about C.
+/// Machine with three linear axes, a tilting axis, and a table that rotates about C.
 ///
-/// Where the table tilts, its kinematic chain from the workpiece W to the linear axes M is
+/// For a tilting table, the kinematic chain from the workpiece W to the linear axes M is
 ///
 ///   P_M = b3 b2 R_A b1 R_C b0 P_W
 ///
 /// (Hamilton et al., Right triangular prism retroreflectors, eq. 6; docs/theory/kinematics.md), with every axis
-/// given by a point and a direction. At A = C = 0 P_M = P_W, so the words of a program are the position of the tool
-/// reference point in the workpiece frame when nothing is turned.
+/// given by a point and a direction. At A = C = 0, P_M = P_W. The axis positions X, Y, Z are then the position of the
+/// tool reference point in the workpiece frame.
 ///
-/// Where the head tilts, points are told in the frame of the tool, which B turns against the linear axes, so that the
-/// tool stands in it as it does where the table tilts: P_T = p + R_B^T (R_C P_W - p), p a point on B from the tool
-/// reference point at B = 0. "The frame of the machine" means the tool's for such machines.
+/// For a tilting head, points are given in the frame of the tool, which B rotates relative to the linear axes:
+/// P_T = p + R_B^T (R_C P_W - p), where p is a point of axis B relative to the tool reference point at B = 0. In this
+/// frame, the tool has a constant orientation, as on a machine with a tilting table. "Machine frame" means this frame
+/// for machines with a tilting head.
 struct Machine {
   std::string name;
   std::string title;
@@ -116,29 +118,29 @@ struct Machine {
   LinearAxis y;
   LinearAxis z;
   Tilt tilt = Tilt::table;
-  RotaryAxis a;  ///< the axis that tilts: A, or B of a head, whose point is told from the tool reference point at B = 0
+  RotaryAxis a;  ///< tilting axis: A, or B with its point relative to the tool reference point at B = 0
   RotaryAxis c;
   ToolMount mount;
   std::vector<MachineBody> bodies;
-  /// Least Z to which the first move of a program goes, away from the part wherever the other axes stand; above the
-  /// limit of Z: that limit.
+  /// Minimum Z position of the first move of a program. At this position, the tool is clear of the part for all
+  /// positions of the other axes. If the value is above the upper limit of Z, the limit is used.
   Sourced<double> safe_z_mm = {1e9, Basis::assumed, "the upper limit of Z, as for every machine that names none"};
-  /// That a control waits at every exact stop until the axes stand still.
+  /// Time that the control waits at every exact stop until the axes have settled.
   Sourced<double> settling_s = {0.0, Basis::assumed, "axes arrive at once, as for every machine that names none"};
-  /// For how long axes must move before a first cut, of a program or behind a stop.
+  /// Time that the axes must move before the first cut of a program or after a stop.
   Sourced<double> warm_up_s = {0.0, Basis::assumed, "cuts may begin cold, as for every machine that names none"};
   Control control;
-  Increments increments;  ///< to which positions are rounded when programs are planned
-  /// Letters of the rotary axes that take the shortest path to a programmed angle, in the chosen dialect.
+  Increments increments;  ///< increments to which planned positions are rounded
+  /// Letters of the rotary axes that take the shortest path to a programmed angle in the dialect of the programs.
   std::string shortest_axes;
 
   double first_z_mm() const { return std::min(safe_z_mm.value, z.limits_mm.value.high); }
 
-  /// Letter of the axis that tilts.
+  /// Returns the letter of the tilting axis.
   char tilt_letter() const { return tilt == Tilt::table ? 'A' : 'B'; }
 };
 
-/// Words of a program: positions of the axes. A machine has A or B.
+/// Positions of all axes. A machine has either A or B.
 struct AxisPositions {
   double x_mm = 0.0;
   double y_mm = 0.0;
@@ -150,14 +152,14 @@ struct AxisPositions {
 
 /// Positions of the two rotary axes.
 struct RotaryPose {
-  double a_deg = 0.0;  ///< of the axis that tilts, A or B
+  double a_deg = 0.0;  ///< position of the tilting axis, A or B
   double c_deg = 0.0;
 };
 
-/// Those of the two that the machine has.
+/// Returns the positions of the rotary axes that the machine has.
 RotaryPose rotary_pose(const Machine& machine, const AxisPositions& axes);
 
-/// A rigid motion: p -> rotation p + translation.
+/// Rigid motion p -> rotation * p + translation.
 struct RigidMotion {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   geometry::Vec3 translation_mm = geometry::Vec3::Zero();
@@ -167,35 +169,37 @@ struct RigidMotion {
   RigidMotion inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation_mm)}; }
 };
 
-/// Where a machine puts the tool: as a frame in the workpiece.
+/// Position and orientation of the tool in the workpiece frame.
 struct ToolPose {
   geometry::Vec3 reference_mm = geometry::Vec3::Zero();  ///< tool reference point, in the workpiece frame
-  /// Turns directions of the machine into those of the workpiece: a chisel's edge lies along edge_direction().
+  /// Rotation of directions from the machine frame to the workpiece frame.
   Eigen::Matrix3d workpiece_from_machine = Eigen::Matrix3d::Identity();
 };
 
-/// Right-handed rotation about a unit vector (Rodrigues). \pre axis has length 1
+/// Returns the right-handed rotation about a unit vector (Rodrigues' formula).
+/// \pre axis has length 1
 Eigen::Matrix3d rotation_about(const geometry::Vec3& axis, Angle angle);
 
-/// How a pose moves points of the workpiece: frame of the workpiece -> frame of the machine.
+/// Returns the transformation from the workpiece frame to the machine frame in a pose.
 RigidMotion machine_from_workpiece(const Machine& machine, const RotaryPose& pose);
 
-/// Where the tool is when the axes are there.
+/// Computes the pose of the tool from axis positions.
 ToolPose forward(const Machine& machine, const AxisPositions& axes);
 
-/// Axis positions that put the tool reference point on a point of the workpiece. Forward and back agree to 1e-12 mm
-/// within 200 mm of the origin. Limits are not looked at.
+/// Computes the axis positions that move the tool reference point to a point of the workpiece. forward() returns this
+/// point with an error of at most 1e-12 mm within 200 mm of the origin. Limits of the axes are not checked.
 AxisPositions inverse(const Machine& machine, const geometry::Vec3& reference_mm, const RotaryPose& pose);
 
-/// Where the tool reference point is in the machine frame, and back; the same numbers as the words if the linear axes
-/// are square, the tool stands where it should and the head, if it is what tilts, at B = 0.
+/// Returns the position of the tool reference point in the machine frame. It equals the positions of X, Y and Z if the
+/// linear axes are orthogonal, the tool has no offset, and a tilting head is at B = 0.
 geometry::Vec3 machine_point(const Machine& machine, const AxisPositions& axes);
+/// Returns the positions of X, Y and Z for a point of the machine frame. It is the inverse of machine_point().
 std::array<double, 3> linear_words(const Machine& machine, const geometry::Vec3& machine_point_mm,
                                    const RotaryPose& pose = {});
-/// By how much words change along a direction of the machine frame.
+/// Returns the change of the positions of X, Y and Z for a displacement in the machine frame.
 std::array<double, 3> words_along(const Machine& machine, const geometry::Vec3& direction, const RotaryPose& pose = {});
 
-/// Turns directions of a tool that stands as it should into those of the tool as it is mounted.
+/// Returns the rotation from the nominal orientation of the tool to its orientation as mounted.
 Eigen::Matrix3d tool_turn(const Machine& machine);
 /// Along a chisel's edge, in the machine frame: X, but for how the tool is mounted.
 geometry::Vec3 edge_direction(const Machine& machine);
@@ -204,34 +208,35 @@ geometry::Vec3 edge_direction(const Machine& machine);
 /// that the tool's edge sweeps when Z moves, on the side of -Y. Where the head tilts: of the plane of Y and Z of the
 /// tool, on the side of -X.
 geometry::Vec3 plunged_normal(const Machine& machine);
-/// The direction of the machine that a facet's level line then has: the edge's, or Y of the tool where the head tilts.
+/// Returns the direction, in the machine frame, that the horizontal line of a facet should have during a plunge. It is
+/// the direction of the edge, or Y of the tool on a machine with a tilting head.
 geometry::Vec3 level_direction(const Machine& machine);
 
-/// A pose that lets the tool plunge a facet.
+/// Rotary pose in which the tool plunges a facet.
 struct PlungePose {
   RotaryPose pose;
-  /// Rotation that is left about the facet's normal (right-handed about the outward normal), from level_direction() to
-  /// the root line: two directions are matched, and the third angle of a rotation is what the two axes give.
+  /// Remaining rotation about the facet's outward normal (right-handed), from level_direction() to the root line. Two
+  /// rotary axes can align the normal, but not the root line as well.
   Angle root_tilt;
 };
 
-/// The pose nearest to `near` in which a facet of the workpiece stands as the tool plunges it (closed form in
-/// docs/theory/kinematics.md). A facet's normal fixes two of the three angles of the workpiece; what is left is
-/// `root_tilt`. Limits are not looked at.
-/// \param facet_normal outward from the material, of length 1, in the workpiece frame
-/// \param root along the facet's root, or another level line of it, to the side that lies on level_direction() when the
-/// facet is plunged
-/// \throw InputError if no pose of this machine does that
+/// Computes the pose closest to `near` in which a facet can be plunged (closed form in docs/theory/kinematics.md). The
+/// direction of the facet's normal determines both rotary axes. The remaining rotation about the normal is `root_tilt`.
+/// Limits of the axes are not checked.
+/// \param facet_normal unit normal outward from the material, in the workpiece frame
+/// \param root direction of the facet's root, or of another horizontal line of the facet, which should become
+///        level_direction()
+/// \throw InputError if the machine has no such pose
 PlungePose solve_plunge_pose(const Machine& machine, const geometry::Vec3& facet_normal, const geometry::Vec3& root,
                              const RotaryPose& near);
 
-/// An axis that a position leaves the limits of.
+/// Axis whose position is outside of its limits.
 struct LimitExcess {
   char axis = 'X';
   double position = 0.0;  ///< mm or degrees
   Interval limits;
 };
-/// All of them, in the order X, Y, Z, A or B, C.
+/// Returns all axes whose position is outside of the limits, in the order X, Y, Z, A or B, C.
 std::vector<LimitExcess> limit_excesses(const Machine& machine, const AxisPositions& axes);
 
 }  // namespace retrace::fabrication

@@ -7,14 +7,15 @@
 namespace retrace::fabrication {
 namespace {
 
-/// From rest to a speed. While acceleration grows and falls without reaching its limit, half of the speed is gained in
-/// each half of the time; above that both take acceleration / jerk.
+/// Returns the time from rest to a speed. At low speeds, the acceleration rises and falls without reaching its limit.
+/// Otherwise, rise and fall of the acceleration take acceleration / jerk each.
 double speeding_up_s(double speed, const MotionLimits& limits) {
   if (speed * limits.jerk < limits.acceleration * limits.acceleration) return 2.0 * std::sqrt(speed / limits.jerk);
   return speed / limits.acceleration + limits.acceleration / limits.jerk;
 }
 
-/// The speed that a motion of that distance has in its middle if it is sped up for half of it and then slowed down.
+/// Returns the maximum speed of a motion that accelerates over the first half of a distance and decelerates over the
+/// second half.
 double middle_speed(double distance, const MotionLimits& limits) {
   const double ramp_s = limits.acceleration / limits.jerk;
   const double from_ramps = std::cbrt(distance * distance * limits.jerk / 4.0);
@@ -22,13 +23,13 @@ double middle_speed(double distance, const MotionLimits& limits) {
   return 0.5 * limits.acceleration * (std::sqrt(ramp_s * ramp_s + 4.0 * distance / limits.acceleration) - ramp_s);
 }
 
-/// Part of one axis in a move.
+/// Travel and limits of one axis in a move.
 struct AxisMotion {
-  double travel = 0.0;  ///< in mm or degrees
+  double travel = 0.0;  ///< absolute travel, in mm or degrees
   MotionLimits limits;
 };
 
-/// Returns the parts of X, Y, Z, the tilting axis and C in a move.
+/// Returns travel and limits of X, Y, Z, the tilting axis and C in a move.
 /// \param rate maximum speed of the linear axes, in mm/min
 std::array<AxisMotion, 5> axis_motions(const Machine& machine, const AxisTravel& by,
                                        Sourced<double> LinearAxis::*rate) {
@@ -50,7 +51,7 @@ std::array<AxisMotion, 5> axis_motions(const Machine& machine, const AxisTravel&
   return motions;
 }
 
-/// Returns the limits of a motion in which all axes start and end together.
+/// Returns the limits along the path of a move in which all axes start and end together.
 MotionLimits limits_along(const std::array<AxisMotion, 5>& motions, double length) {
   MotionLimits along;
   for (const auto& [travel, limits] : motions) {
@@ -73,7 +74,7 @@ double AxisTravel::length() const {
 double rest_to_rest_s(double distance, const MotionLimits& limits) {
   if (distance <= 0.0) return 0.0;
   const double up_s = speeding_up_s(limits.speed, limits);
-  // The mean speed while speeding up and slowing down is half of the greatest.
+  // During acceleration and deceleration, the mean speed is half of the maximum speed.
   if (limits.speed * up_s <= distance) return distance / limits.speed + up_s;
   return 2.0 * distance / middle_speed(distance, limits);
 }

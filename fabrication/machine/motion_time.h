@@ -8,7 +8,7 @@
 
 namespace retrace::fabrication {
 
-/// Limits of a motion along a path, or of one axis, in mm or degrees and seconds.
+/// Maximum speed, acceleration and jerk along a path or of one axis. Units are mm or degrees, and seconds.
 struct MotionLimits {
   double speed = std::numeric_limits<double>::infinity();
   double acceleration = std::numeric_limits<double>::infinity();
@@ -21,21 +21,22 @@ struct AxisTravel {
   double tilt_deg = 0.0;                              ///< rotation of the tilting axis (A or B)
   double c_deg = 0.0;                                 ///< rotation of C
 
-  /// Returns the length of the path along which the feed counts: in mm, or in degrees if only rotary axes move.
+  /// Returns the path length to which a feed refers: in mm, or in degrees if only rotary axes move.
   double length() const;
 };
 
-/// The shortest time from rest to rest over a distance: jerk that is constant piece by piece, or constant acceleration
-/// where jerk has no limit (docs/theory/cutting.md). \pre distance >= 0, limits > 0
+/// Returns the minimum time, in s, of a motion over a distance that starts and ends at rest. The jerk is piecewise
+/// constant, or the acceleration is constant if there is no jerk limit (docs/theory/cutting.md).
+/// \pre distance >= 0, limits > 0
 double rest_to_rest_s(double distance, const MotionLimits& limits);
 
 /// Returns the time, in s, of a rapid move, without settling. If Control::rapids_are_straight is false, each axis moves
-/// at its own speed and the slowest axis counts. Otherwise all axes start and end together on a straight line, so that
-/// speed, acceleration and jerk along the line are each limited by the axis that limits them most.
+/// at its own speed, and the result is the time of the slowest axis. Otherwise, all axes start and end together on a
+/// straight line. The most limiting axis then determines the speed along the line, and likewise acceleration and jerk.
 double rapid_motion_s(const Machine& machine, const AxisTravel& by);
 
-/// Returns the time, in s, of a move at a feed, without settling. All axes start and end together on a straight line,
-/// within the maximum feeds of the linear axes and the speeds of the rotary axes.
+/// Returns the time, in s, of a move at a feed, without settling. All axes start and end together on a straight line.
+/// No axis exceeds its maximum feed (linear axes) or speed (rotary axes).
 /// \param feed_per_min feed along AxisTravel::length(), in mm/min or degrees/min
 double fed_motion_s(const Machine& machine, const AxisTravel& by, double feed_per_min);
 

@@ -51,7 +51,7 @@ constexpr std::array<SetupQuantity, kQuantities> all_with(std::span<const SetupQ
 constexpr auto kOfTables = all_with(kOfA);
 constexpr auto kOfHeads = all_with(kOfB);
 
-/// The direction, or the place, of a machine that a quantity changes.
+/// Returns the direction or point of the machine that a quantity changes.
 Vec3& value_of(Machine& machine, SetupPart part) {
   switch (part) {
     case SetupPart::c_point: return machine.c.point_mm.value;
@@ -71,7 +71,8 @@ bool is_direction(SetupPart part) {
          part == SetupPart::z_direction;
 }
 
-/// What a direction of length 1 gains for each unit of what is added along `axis` before it is scaled to length 1.
+/// Returns the derivative of a unit direction with respect to its component `axis`, if the direction is normalized
+/// again.
 Vec3 gain(const Vec3& direction, int axis) {
   return Vec3::Unit(axis) - direction * direction[axis];
 }
@@ -82,18 +83,18 @@ Matrix3d cross_matrix(const Vec3& v) {
   return m;
 }
 
-/// The small turn that a rotation gains, in the frame that it turns into, for each unit by which its vector does: the
-/// left Jacobian of SO(3) (J. Solà et al., A micro Lie theory, arXiv:1812.01537, eq. 145).
+/// Returns the derivative of a rotation with respect to its rotation vector, as small rotations in the rotated frame.
+/// It is the left Jacobian of SO(3) (J. Solà et al., A micro Lie theory, arXiv:1812.01537, eq. 145).
 Matrix3d turn_gain(const Vec3& rotation_vector) {
   const double angle = rotation_vector.norm();
   const Matrix3d cross = cross_matrix(rotation_vector);
-  constexpr double kSmall = 1e-4;  // series to 1e-16 below
+  constexpr double kSmall = 1e-4;  // below this angle, the leading terms of the series are used
   const double a = angle < kSmall ? 0.5 : (1.0 - std::cos(angle)) / (angle * angle);
   const double b = angle < kSmall ? 1.0 / 6.0 : (angle - std::sin(angle)) / (angle * angle * angle);
   return Matrix3d::Identity() + a * cross + b * cross * cross;
 }
 
-/// How a cut stands, and what changes of it for a unit (mm or rad) of a quantity.
+/// Geometry of a cut, and its derivatives with respect to a quantity of the set-up, per mm or rad.
 class CutMotion {
  public:
   CutMotion(const Machine& machine, const EdgeCut& cut)
@@ -126,7 +127,7 @@ class CutMotion {
     }
   }
 
-  /// Of the plane's point and of its normal, of length 1 on the side of `outward`.
+  /// Returns the derivatives of the plane's point and of its unit normal, which is on the side of `outward`.
   PlaneChange of_plane(const Vec3& outward) const {
     const Matrix3d back = both_.rotation.transpose();
     const Vec3 edge = back * edge_;
@@ -141,7 +142,8 @@ class CutMotion {
   }
 
  private:
-  /// The turn about itself of what a leaning axis carries leaves the point on the axis where it is.
+  /// Applies a small rotation about a point of an inclined axis.
+  /// \param from_axis vector from this point to the tip
   void turn_about(const Vec3& turn, const Vec3& from_axis) {
     turn_ = turn;
     shift_ = turn.cross(from_axis);
@@ -156,11 +158,11 @@ class CutMotion {
   void lean_tilt(int axis) {
     const Vec3& direction = machine_.a.direction.value;
     const Vec3 lean = direction.cross(gain(direction, axis));
-    // From the axis to the tip once the tilt is undone.
+    // Vector from the axis to the tip, before the rotation of the tilting axis.
     const Vec3 from_axis = tilt_.transpose() * (tip_ - machine_.a.point_mm.value);
     turn_about(c_.transpose() * (lean - tilt_.transpose() * lean), c_.transpose() * from_axis);
     if (machine_.tilt == Tilt::table) return;
-    // A head carries the tool against the slides: their ways turn in the frame of the tool.
+    // In the frame of a tilting head, the directions of the linear axes rotate.
     const Vec3 of_slides = lean - tilt_ * lean;
     travel_change_ = of_slides.cross(travel_);
     shift_ += both_.rotation.transpose() * of_slides.cross(slides_ * directions_ * at_words_);
@@ -170,7 +172,7 @@ class CutMotion {
     const Vec3 lean = gain(directions_.col(slide), axis);
     travel_change_ = slides_ * lean * cut_.travel_mm[slide];
     shift_ = both_.rotation.transpose() * slides_ * lean * at_words_[slide];
-    // A tool of a tilting head is aligned to Y and Z.
+    // A tool on a tilting head is aligned with Y and Z.
     if (machine_.tilt == Tilt::head)
       edge_change_ = v_edge_change(slide, lean);
     else if (slide == 2)
@@ -216,14 +218,15 @@ class CutMotion {
   const Machine& machine_;
   const EdgeCut& cut_;
   RotaryPose pose_;
-  Matrix3d c_;        ///< turn of C
-  RigidMotion both_;  ///< workpiece to machine
-  Matrix3d tilt_;     ///< what the axis that tilts turns directions by, towards the machine
-  Matrix3d slides_;   ///< from the directions of the slides into the frame of the machine
+  Matrix3d c_;        ///< rotation of C
+  RigidMotion both_;  ///< transformation from the workpiece frame to the machine frame
+  Matrix3d tilt_;     ///< rotation of the tilting axis, towards the machine frame
+  Matrix3d slides_;   ///< rotation from the directions of the linear axes to the machine frame
   Matrix3d directions_;
   Vec3 at_words_, edge_, travel_, tip_, point_;
 
-  // Changes: turn of the whole tool and shift of its tip in the workpiece frame, the others in that of the machine.
+  // Derivatives. Rotation of the whole tool and displacement of its tip are in the workpiece frame, the others in the
+  // machine frame.
   Vec3 turn_ = Vec3::Zero();
   Vec3 shift_ = Vec3::Zero();
   Vec3 edge_change_ = Vec3::Zero();

@@ -16,7 +16,7 @@ constexpr DialectWords kRs274ngc = {
         "Needs: G54 without rotation (R of G10 L2), axes without kinematics of the control,\n"
         "X as a radius (G8), axes A to C in degrees without wrapping",
     .prepare = "G17 G21 G40 G49 G80 G90 G94\nG54 G61.1 G92.1\nM5\n",
-    .spindle_start = "G97 S{0} {1}\n",  // S is no cutting speed
+    .spindle_start = "G97 S{0} {1}\n",  // G97: S is a rotational speed, not a cutting speed
     .spindle_stop = "M5\n",
     .comment = "({})\n",
     .message = "(MSG, {})\n",
@@ -26,14 +26,15 @@ constexpr DialectWords kRs274ngc = {
     .rapid = "G0",
     .linear = "G1",
     .dwell = "G4 P{0:.3f}\n",
-    // Without Q blocks are merged as far as P allows.
+    // Without Q, the control would merge blocks within the tolerance P.
     .path_begin = "G64 P{0:.6f} Q0.000000\nG93\n",
     .path_time = " F{0:.6f}",
     .path_end = "G94\nG61.1\n"};
 
-/// Siemens Sinumerik 840D (programming manuals Fundamentals and Job Planning). Routines are sections of the main
-/// program behind its end, carried out by REPEAT, so that one file runs alone. On modulo axes absolute words go the way
-/// that their sign says unless DC tells to go the shortest (MD30455), and negative ones are alarm 16830.
+/// Siemens Sinumerik 840D (programming manuals Fundamentals and Job Planning). Subroutines are sections after the end
+/// of the main program and are executed by REPEAT, so that the file is self-contained. The sign of an absolute position
+/// of a modulo axis determines the direction of rotation, unless DC requests the shortest path (MD30455). Negative
+/// positions cause alarm 16830.
 constexpr DialectWords kSinumerik = {.dialect = {"sinumerik", ".mpf", "Siemens Sinumerik 840D"},
                                      .subroutines_first = false,
                                      .file_ends = "",
@@ -59,9 +60,9 @@ constexpr DialectWords kSinumerik = {.dialect = {"sinumerik", ".mpf", "Siemens S
                                      .shortest = " {0}=DC({1})",
                                      .increment = " {0}=IC({1})"};
 
-/// Fanuc 30i (operator's manual B-63944). The machine's file says how many decimals words have. Messages are comments:
-/// #3006 would stop the machine. Program numbers have four digits. C of a path may turn further than words reach, so
-/// that paths are incremental: differences of rounded positions, which do not drift.
+/// Fanuc 30i (operator's manual B-63944). The machine file determines the number of decimals. Messages are written as
+/// comments, because #3006 would stop the machine. Program numbers have four digits. In a path, C may exceed the range
+/// of positions, so that paths are incremental. The increments are differences of rounded positions and do not drift.
 constexpr DialectWords kFanuc = {.dialect = {"fanuc", ".nc", "Fanuc, 30i series"},
                                  .subroutines_first = false,
                                  .file_ends = "%\n",
@@ -88,9 +89,9 @@ constexpr DialectWords kFanuc = {.dialect = {"fanuc", ".nc", "Fanuc, 30i series"
                                  .has_increment_systems = true,
                                  .has_incremental_paths = true};
 
-/// Power PMAC script (Power PMAC user's and software reference manuals): no G codes, an explicit prelude, dwells in ms.
-/// M codes are subprograms of the integrator's, and one that is missing is skipped without a word: what starts a
-/// spindle or mist is told from outside.
+/// Power PMAC script (Power PMAC user's and software reference manuals): no G codes, explicit settings at the
+/// beginning, dwells in ms. M codes are subprograms of the machine builder, and the control ignores missing ones
+/// silently. The machine file must therefore define the lines for spindle and mist.
 constexpr DialectWords kPmac = {
     .dialect = {"pmac", ".pmc", "Omron (Delta Tau) Power PMAC"},
     .subroutines_first = true,
@@ -123,9 +124,9 @@ constexpr DialectWords kPmac = {
     .stop = "{0}\n",
     .has_own_texts = true};
 
-/// Aerotech A3200 with its CNC option: G codes and AeroBasic. What they rest on stands in docs/nc_dialects.md. Blending
-/// keeps the speed from line to line and leaves no path; the speed is that of all axes together, so that it says how
-/// long a line takes. Codes for coolant and the spindle are those of the machine's builder.
+/// Aerotech A3200 with its CNC option: G codes and AeroBasic (sources in docs/nc_dialects.md). Blending keeps the speed
+/// between lines without leaving the path. A feed is the speed of all axes together, and so determines the duration of
+/// a line. The machine builder defines the codes for coolant and spindle.
 constexpr DialectWords kA3200 = {
     .dialect = {"a3200", ".pgm", "Aerotech A3200"},
     .subroutines_first = false,
@@ -150,7 +151,7 @@ constexpr DialectWords kA3200 = {
     .path_begin = "G108\n",
     .path_time = " F{2:.6f}",
     .path_end = "G109\n",
-    // In seconds, so that neither times nor velocities depend on what the control takes their unit from.
+    // G76 sets the time unit to seconds, so that times and velocities do not depend on other settings of the control.
     .cubic_begin = "G108\nG76\nPVT INIT TIME ABS\n",
     .cubic_end = "G75\nG109\n",
     .cubic_word = " {} {},{}",
@@ -162,8 +163,8 @@ constexpr DialectWords kA3200 = {
     .has_own_texts = true,
     .has_paths_by_speed = true};
 
-/// Aerotech Automation1: AeroScript, its G codes where they are published (help.aerotech.com/automation1) and its
-/// functions where those are not. Feeds as of the A3200.
+/// Aerotech Automation1: AeroScript with published G codes (help.aerotech.com/automation1), and with functions where no
+/// G code is published. Feeds have the same meaning as on the A3200.
 constexpr DialectWords kAutomation1 = {
     .dialect = {"automation1", ".ascript", "Aerotech Automation1"},
     .subroutines_first = false,

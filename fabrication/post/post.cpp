@@ -23,7 +23,7 @@ std::string for_control(std::string_view format, const Control& control) {
                      kIncrementSystemWords[static_cast<std::size_t>(control.increment_system)], codes);
 }
 
-/// A program line that the machine file or the part file gives, and the key of this line.
+/// Program line that the machine file or the part file defines, and the key of this line.
 struct OwnLine {
   std::string_view key;
   std::string text;
@@ -49,8 +49,10 @@ std::string unchecked_text(const OwnLine& line) {
   return fmt::format("Not checked: the line of {}, which may move axes or wait", line.key);
 }
 
-/// Checks that a line is harmless or that the file permits any line.
-/// \throw InputError if neither is true
+/// Checks that a line neither moves axes nor waits, unless the file permits any line.
+/// \param table table of the file with the key `has_unchecked_lines`
+/// \param may_be_any value of this key
+/// \throw InputError if the line is not allowed
 void check_line(const OwnLine& line, std::string_view dialect, std::string_view table, bool may_be_any) {
   if (may_be_any || !is_unchecked(line, dialect)) return;
   throw InputError({"", 0, "--dialect"},
@@ -58,7 +60,7 @@ void check_line(const OwnLine& line, std::string_view dialect, std::string_view 
                                unknown_line(line.text, line.use, dialect), dialect, table, in_quotes(line.text)));
 }
 
-/// Writes one file. Numbers of positions are written from integers, digit by digit.
+/// Writes one file. Positions are converted from integers to text without rounding.
 class FileWriter {
  public:
   FileWriter(const DialectWords& dialect, const Program& program) : dialect_(dialect), program_(program) {
@@ -88,7 +90,7 @@ class FileWriter {
   void operator()(const Comment& comment) { add(dialect_.comment, comment.text); }
   void operator()(const Message& message) { add(dialect_.message, message.text); }
   void operator()(const OptionalStop&) {
-    // Mist off during an optional stop: chips stay where they fell, for inspection.
+    // The mist is off during an optional stop, so that chips remain in place for inspection.
     const bool had_mist = mist_on_;
     mist(false);
     add(dialect_.optional_stop, program_.control.optional_stop);
@@ -154,7 +156,7 @@ class FileWriter {
       if (!move.to[axis]) continue;
       axes.emplace_back(1, letters[axis]);
       places.push_back(number(*move.to[axis], axis >= kTilt ? 7 : 6));
-      // Half of the last decimal over a second, which no move takes, is far below a nanometre at the tool.
+      // With seven decimals, the rounding error is far below 1 nm at the tool, because all moves are shorter than 1 s.
       speeds.push_back(fixed(velocities[axis] * dialect_.cubic_time_s, 7));
       words += fmt::format(fmt::runtime(dialect_.cubic_word), axes.back(), places.back(), speeds.back());
     }
@@ -164,7 +166,7 @@ class FileWriter {
 
   std::string axis_letters() const { return {'X', 'Y', 'Z', program_.tilt_letter, 'C'}; }
 
-  /// A format of the dialect, filled in.
+  /// Adds a format of the dialect with its arguments to the text.
   template <class... Values>
   void add(std::string_view format, const Values&... values) {
     fmt::format_to(std::back_inserter(text_), fmt::runtime(format), values...);
@@ -172,14 +174,14 @@ class FileWriter {
 
   void add_for_control(std::string_view format) { text_ += for_control(format, program_.control); }
 
-  /// All that must hold before the first move, of the program or behind a stop.
+  /// Adds the settings that are required before the first move of the program or after a stop.
   void prepare() {
     add_for_control(dialect_.prepare);
     if (const auto& spindle = program_.spindle)
       add(dialect_.spindle_start, spindle->rpm, spindle->is_clockwise ? "M3" : "M4", spindle->start_text);
   }
 
-  /// Mist and spindle off.
+  /// Switches mist and spindle off.
   void still() {
     mist(false);
     if (program_.spindle) add(dialect_.spindle_stop, program_.spindle->stop_text);
@@ -215,7 +217,7 @@ class FileWriter {
     is_in_subroutine_ = false;
   }
 
-  /// Comments of RS274/NGC and Fanuc end at their first bracket.
+  /// Replaces parentheses by square brackets, because comments of RS274/NGC and Fanuc end at the first parenthesis.
   static std::string in_comment(std::string text) {
     std::replace(text.begin(), text.end(), '(', '[');
     std::replace(text.begin(), text.end(), ')', ']');
@@ -244,7 +246,7 @@ class FileWriter {
     add(dialect_.path_time, 60.0 / move.seconds, 1e3 * move.seconds, 60.0 * way / move.seconds);
   }
 
-  /// How far all axes go together, in mm and degrees alike.
+  /// Returns the path length of a move over all axes, in which 1 mm counts as 1 degree.
   double way_of(const Move& move) const {
     double way = 0.0;
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
@@ -254,7 +256,7 @@ class FileWriter {
     return way;
   }
 
-  /// A word of an axis, in one of the ways that the dialect has.
+  /// Adds the word of an axis, as a position or an increment, in the form that the dialect requires.
   void word(std::size_t axis, char letter, std::int64_t value) {
     const bool is_rotary = axis >= kTilt;
     const std::int64_t step = is_rotary ? increments_.rotary_units : increments_.linear_nm;
@@ -279,7 +281,7 @@ class FileWriter {
     fmt::format_to(std::back_inserter(text_), " {}{}", letter, number(steps, decimals));
   }
 
-  /// "-1.000000"
+  /// Returns a number of steps as decimal text, such as "-1.000000".
   static std::string number(std::int64_t steps, int decimals) {
     const std::uint64_t unit = power_of_ten(decimals);
     const auto bits = static_cast<std::uint64_t>(steps);
@@ -318,7 +320,7 @@ class FileWriter {
       refuse(fmt::format("F{}.{:03}", thousandths / 1000, thousandths % 1000));
     fmt::format_to(std::back_inserter(text_), " F{}.{:03}", thousandths / 1000, thousandths % 1000);
   }
-  /// Greatest feeds of IS-B to IS-E (parameter 1422).
+  /// Returns the maximum feed of the increment system, IS-B to IS-E (parameter 1422), in thousandths.
   long long most_feed_thousandths() const {
     constexpr std::array kMost = {999'000'000, 99'999'900, 9'999'990, 999'999};
     return kMost[static_cast<std::size_t>(program_.control.increment_system)];
@@ -326,7 +328,7 @@ class FileWriter {
 
   const DialectWords& dialect_;
   const Program& program_;
-  std::vector<Place> reach_;  ///< end of each subroutine from its start
+  std::vector<Place> reach_;  ///< end of each subroutine, relative to its start
   std::string text_;
   Words at_{};
   bool mist_on_ = false;

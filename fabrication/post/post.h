@@ -1,6 +1,6 @@
 #pragma once
 
-// Writers of NC text: a program as one complete file of a dialect.
+// Writes programs as NC text. Each program becomes one complete file in a dialect.
 
 #include <span>
 #include <string>
@@ -12,40 +12,44 @@
 
 namespace retrace::fabrication {
 
-/// A dialect of NC text.
+/// Dialect of NC text.
 struct Dialect {
-  std::string_view name;     ///< as commands call it
-  std::string_view ending;   ///< of its files, with the dot
-  std::string_view comment;  ///< what is said of it in lists
+  std::string_view name;     ///< name in commands
+  std::string_view ending;   ///< file extension, with the dot
+  std::string_view comment;  ///< description in lists
 };
 
-/// All dialects, the reference first.
+/// Returns all dialects. The first one is the reference dialect.
 std::span<const Dialect> dialects();
 
-/// The program as one complete file of that dialect: header, preparation, subroutines, moves, end.
-/// \pre a spindle has its texts where the dialect has no words for it
-/// \throw InputError for a dialect that is not known
+/// Returns the program as one complete file of a dialect: header, preparation, subroutines, moves, end.
+/// \pre a spindle has start and stop texts if the dialect has no spindle words
+/// \throw InputError for an unknown dialect
 std::string nc_text(const Program& program, std::string_view dialect);
 
-/// What must hold on the control that no program can say, as lines for people that begin with "Needs: ".
-/// \throw InputError likewise
+/// Returns the requirements on the control that programs cannot set, as lines of text that begin with "Needs: ".
+/// \throw InputError for an unknown dialect
 std::vector<std::string> control_needs(std::string_view dialect, const Control& control);
 
-/// That the control has words for all that the program says. \throw InputError naming the key of the machine file
+/// Checks that the control supports all items of a program.
+/// \throw InputError naming the key of the machine file if it does not
 void check_words(const Program& program, std::string_view dialect);
 
-/// To what a control takes words in that dialect: positions are best rounded to it before others are solved.
-/// \throw InputError likewise
+/// Returns the increments to which a control rounds positions in a dialect. The planner should round positions to these
+/// increments.
+/// \throw InputError for an unknown dialect
 Increments word_increments(std::string_view dialect, const Control& control);
 
 /// Returns the letters of the rotary axes that take the shortest path to a programmed angle in a dialect.
 /// \throw InputError for an unknown dialect
 std::string shortest_axes(std::string_view dialect, const Control& control);
 
-/// Whether paths may have velocities at the ends of their moves in that dialect. \throw InputError likewise
+/// Returns true if a dialect supports paths with velocities at the ends of their moves.
+/// \throw InputError for an unknown dialect
 bool takes_cubics(std::string_view dialect);
 
-/// The ending of a dialect's files. \throw InputError likewise
+/// Returns the file extension of a dialect.
+/// \throw InputError for an unknown dialect
 std::string_view ending_of(std::string_view dialect);
 
 }  // namespace retrace::fabrication

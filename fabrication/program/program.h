@@ -1,6 +1,6 @@
 #pragma once
 
-// A program between planner and writers, free of any dialect: what is done in which order, in whole units.
+// Programs in a neutral form between planner and writers, independent of dialects. All positions are integers.
 
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace retrace::fabrication {
 
-/// Positions of linear axes in whole nanometres: sums of them do not drift.
+/// Positions of linear axes in whole nanometres, so that sums have no rounding errors.
 using Nanometres = std::int64_t;
 /// Positions of rotary axes in units of 1e-7 degrees.
 using RotaryUnits = std::int64_t;
@@ -32,7 +32,7 @@ inline double degrees(RotaryUnits units) {
   return static_cast<double>(units) / kRotaryUnitsPerDeg;
 }
 RotaryUnits rotary_units(double deg);
-/// The nearest whole multiple of a step.
+/// Rounds a value to the nearest whole multiple of a step.
 inline std::int64_t to_step(double units, std::int64_t step) {
   return std::llround(units / static_cast<double>(step)) * step;
 }
@@ -43,27 +43,28 @@ inline geometry::Vec3 millimetres(const Place& place) {
   return {millimetres(place.x()), millimetres(place.y()), millimetres(place.z())};
 }
 
-/// Axes of a program. The one that tilts is A or B, as the machine has it.
+/// Axes of a program. The tilting axis kTilt is A or B, depending on the machine.
 enum Axis : std::size_t { kX, kY, kZ, kTilt, kC };
 inline constexpr std::size_t kAxes = 5;
 
-/// Words of a move by axis: nanometres of X, Y and Z, rotary units of the others. Nothing: the axis stays.
+/// Positions of a move for each axis: nanometres for X, Y and Z, and rotary units for the others. Empty: the axis does
+/// not move.
 using Words = std::array<std::optional<std::int64_t>, kAxes>;
 
-/// A word for each of X, Y and Z.
+/// Returns positions for X, Y and Z only.
 Words linear_words(const Place& place);
-/// Axes with a word go there, the others stay.
+/// Updates the axis positions `at` by a move. Axes without a position in `to` do not change.
 void go_to(Words& at, const Words& to);
 
-/// What a move is for. A rapid one is as fast as the axes go.
+/// Purpose of a move. In a rapid move, the axes move as fast as possible.
 enum class Motion : std::uint8_t { plunge, plough, retract, translate, rapid };
 
-/// One straight move: to positions, in subroutines by increments.
+/// Straight move. Its values are positions in the main program and increments in subroutines.
 struct Move {
   Motion motion = Motion::rapid;
   Words to{};
-  double feed_mm_per_min = 0.0;  ///< of a move that is neither rapid nor timed
-  double seconds = 0.0;          ///< > 0: the move takes that time
+  double feed_mm_per_min = 0.0;  ///< feed of a move that is neither rapid nor timed
+  double seconds = 0.0;          ///< duration of a timed move; 0: not timed
 };
 
 struct Dwell {
@@ -72,17 +73,17 @@ struct Dwell {
 
 using Step = std::variant<Move, Dwell>;
 
-/// A move of a subroutine: words for the axes that it moves.
+/// Returns a move of a subroutine, with words only for the axes that move.
 Move increment(Motion motion, const Place& by, double feed_mm_per_min);
 
-/// A routine of cutting moves by increments of X, Y and Z, called where it starts.
+/// Subroutine of cutting moves by increments of X, Y and Z. It is called with the tool at its start point.
 struct Subroutine {
-  int number = 0;     ///< 101 and up
-  std::string title;  ///< one line for people
+  int number = 0;     ///< number in the program, from 101
+  std::string title;  ///< description in one line
   std::vector<Step> steps;
 };
 
-/// Where a subroutine ends and how far it reaches, relative to its start.
+/// End point and bounding box of a subroutine's moves, relative to its start.
 struct Reach {
   Place end = Place::Zero();
   Place low = Place::Zero();
@@ -90,15 +91,15 @@ struct Reach {
 };
 Reach reach_of(const Subroutine& subroutine);
 
-/// A line for people in the text.
+/// Comment in the program text.
 struct Comment {
   std::string text;
 };
-/// A line for people on the controller's screen.
+/// Message on the screen of the control.
 struct Message {
   std::string text;
 };
-/// One element is visited: rapid moves to the start of a subroutine, and the call.
+/// Visit of one element: rapid moves to the start of a subroutine, and its call.
 struct Visit {
   std::int32_t element = 0;
   std::uint32_t subroutine = 0;  ///< index in Program::subroutines
@@ -109,27 +110,27 @@ struct Visit {
 /// Velocities of axes, in mm/s and degrees/s.
 using Velocities = std::array<double, kAxes>;
 
-/// Timed moves that follow each other without stopping. They begin where the axes are.
+/// Path of timed moves without stops between them. It begins at the present axis positions.
 struct Path {
   std::vector<Move> moves;
-  /// Of each move, at its end: each axis then goes by the cubic over time that has its places and velocities at both
-  /// ends, from a standstill at first to one at last, and all moves have words for the same axes. Empty: straight
-  /// moves.
+  /// Velocities of all axes at the end of each move. Each axis then follows a cubic polynomial of time, with the
+  /// positions and velocities at both ends of a move. The path starts and ends at rest, and all moves have the same
+  /// axes. Empty: straight moves.
   std::vector<Velocities> end_velocities = {};
-  double blend_mm = 1e-6;  ///< by which a control may leave the path where moves meet, if it can be told
+  double blend_mm = 1e-6;  ///< maximum deviation from the path between moves, for controls that support a tolerance
 };
-/// The operator may stop here.
+/// Optional stop, at which the operator may stop the program.
 struct OptionalStop {};
 
-/// The program waits until the operator lets it go on, mist and spindle off. Behind it nothing holds of what stood
-/// before: it is prepared anew, and no axis is taken to be anywhere.
+/// Stop, at which the program waits for the operator with mist and spindle off. After a stop, the program repeats all
+/// settings and makes no assumption about axis positions.
 struct Stop {
-  std::string text;  ///< for the operator
+  std::string text;  ///< message for the operator
 };
 
 using Item = std::variant<Comment, Message, OptionalStop, Stop, Move, Visit, Path>;
 
-/// How the spindle turns while a program cuts.
+/// Rotation of the spindle while a program cuts.
 struct Spindle {
   std::int32_t rpm = 0;
   bool is_clockwise = true;  ///< M3 of ISO 6983-1, otherwise M4
@@ -138,36 +139,36 @@ struct Spindle {
   bool has_unchecked_lines = false;  ///< true: start_text and stop_text are not checked
 };
 
-/// A program that runs alone: preparation, `items` in their order, end. Texts are one line of ASCII without brackets,
+/// Self-contained program: preparation, `items` in their order, end. Texts are single lines of ASCII without brackets,
 /// quotes, semicolons and percent signs.
 struct Program {
-  std::string name;  ///< of the file, without its ending
+  std::string name;  ///< file name without extension
   std::vector<std::string> header;
-  std::optional<Spindle> spindle;  ///< turns from before the first item to behind the last; nothing: stands still
-  bool has_mist = true;            ///< from the first cut to the next rapid move of Z alone, if the control has words
-  bool needs_mist = false;         ///< it must have them
+  std::optional<Spindle> spindle;  ///< rotates during all items; empty: the spindle does not rotate
+  bool has_mist = true;     ///< true: mist from the first cut to the next rapid move of Z only, if the control has mist
+  bool needs_mist = false;  ///< true: the control must have mist
   std::vector<Subroutine> subroutines;
   std::vector<Item> items;
-  char tilt_letter = 'A';  ///< of the axis that tilts
+  char tilt_letter = 'A';  ///< letter of the tilting axis
   Control control;
 };
 
-/// The rapid moves that bring the tool to the start of a visit: Z alone first where it rises, last where it falls.
-/// At most two, so that the path stays above a blank that rises towards +Y or falls. Only words that change.
+/// Returns the rapid moves to the start of a visit, with only the positions that change. If Z rises, it moves first. If
+/// it falls, it moves last. There are at most two moves, so that the path stays above an inclined blank.
 std::vector<Move> approach(const Words& from, const Visit& visit);
 
-/// One straight move as the program asks for it, its words absolute.
+/// Straight move of a program with absolute positions.
 struct PlannedMove {
   Move move;
-  Words at{};                 ///< of all axes afterwards; nothing: not known yet
-  double dwell_s = 0.0;       ///< after the move
-  std::int32_t element = -1;  ///< that is visited; -1: none
+  Words at{};                 ///< positions of all axes after the move; empty: not known yet
+  double dwell_s = 0.0;       ///< dwell time after the move
+  std::int32_t element = -1;  ///< element that is visited; -1: none
 
   bool is_rapid() const { return move.motion == Motion::rapid; }
   bool is_rotary() const { return is_rapid() && (move.to[kTilt] || move.to[kC]); }
 };
 
-/// Calls `sink` for every move of the program, in order. Dwells belong to the move before them. Rotary axes begin at 0.
+/// Calls `sink` for every move of the program, in order. A dwell belongs to the preceding move. Rotary axes start at 0.
 void for_each_move(const Program& program, const std::function<void(const PlannedMove&)>& sink);
 
 }  // namespace retrace::fabrication

@@ -30,16 +30,18 @@ constexpr NumberRange kPositive{.low = 0.0, .low_included = false, .high = 1e6};
 constexpr NumberRange kLength{.low = -1e4, .high = 1e4};
 constexpr NumberRange kComponent{.low = -1e6, .high = 1e6};
 constexpr NumberRange kDegrees{.low = -3600.0, .high = 3600.0};
-/// Directions that are nearer to each other than this do not span what the axes must span (about 30 degrees).
+/// Minimum determinant of the directions of the axes. Smaller values mean that directions are too close to each other
+/// (about 30 degrees).
 constexpr double kLeastDeterminant = 0.5;
 
-/// Directions shorter than this are none.
+/// Minimum length of a vector that is accepted as a direction.
 constexpr double kLeastLength = 1e-6;
-/// Lengths that differ less from 1 are 1: a direction that was scaled is read back as it is.
+/// Maximum deviation of a direction's length from 1 without normalization. A direction that was normalized before is
+/// then read back unchanged.
 constexpr double kUnitTolerance = 1e-15;
 constexpr double kLeastVolumeMm3 = 1e-6;
 
-// Values as files have them.
+// Conversions between members of Machine and values in files.
 
 Vec3 vector_of(const std::vector<double>& values) {
   return {values[0], values[1], values[2]};
@@ -79,14 +81,14 @@ void set_points(Sourced<Points>& item, const Value& value) {
   item.value.clear();
   for (const auto& row : std::get<std::vector<std::vector<double>>>(value)) item.value.push_back(vector_of(row));
 }
-/// The corners of a box from [x_min, y_min, z_min, x_max, y_max, z_max].
+/// Sets the points of a body to the corners of the box [x_min, y_min, z_min, x_max, y_max, z_max].
 void set_box(Sourced<Points>& item, const Value& value) {
   const auto& ends = std::get<std::vector<double>>(value);
   item.value.clear();
   for (std::size_t i = 0; i < 8; ++i)
     item.value.emplace_back(ends[(i & 1U) != 0 ? 3 : 0], ends[(i & 2U) != 0 ? 4 : 1], ends[(i & 4U) != 0 ? 5 : 2]);
 }
-/// Bodies are written as their points.
+/// Returns no value, because bodies are written as points and not as boxes.
 Value get_no_box(const Sourced<Points>&) {
   return {};
 }
@@ -101,7 +103,7 @@ void set_source(Sourced<Type>& item, const Value& value) {
   item.source = std::get<std::string>(value);
 }
 
-// What values must be; empty texts if they are.
+// Checks of single values. They return an error message, or an empty text if the value is valid.
 
 template <class Type>
 std::string nameless_source(const Sourced<Type>& item) {
@@ -164,7 +166,7 @@ constexpr Check value_check(std::string_view meaning) {
   return {kValueKeys, meaning, check_by<complaint>};
 }
 
-/// Rows and rules of the tables of one type of value.
+/// Rows and rules of the tables for one type of value.
 struct ValueTable {
   std::span<const Row> rows;
   std::span<const Rule> rules;
@@ -229,7 +231,7 @@ constexpr Table value(std::string_view name, const ValueTable& type, Child child
           .otherwise = otherwise};
 }
 
-/// A member that is written only where it says more than its default.
+/// Access to a member that is written to a file only if it differs from its default.
 template <auto member, auto is_written>
 constexpr Child child_if = {
     [](const void* parent) -> std::size_t {
@@ -275,7 +277,7 @@ constexpr Table kBodyTables[] = {value("box_mm", kBox, child_only_read<&MachineB
 constexpr std::string_view kBodyShapes[] = {"box_mm", "points_mm"};
 constexpr Rule kBodyRules[] = {OneOf{kBodyShapes, "must have either box_mm or points_mm"}};
 
-/// The axis that tilts is [a] of a table, [b] of a head.
+/// Access to the tilting axis, which is [a] for a tilting table and [b] for a tilting head.
 template <Tilt tilt>
 constexpr Child kTilting = {
     [](const void* machine) -> std::size_t { return static_cast<const Machine*>(machine)->tilt == tilt ? 1 : 0; },
@@ -292,7 +294,7 @@ constexpr Table rotary(std::string_view name, std::string_view meaning, Child ch
   return {.name = name, .meaning = meaning, .tables = kRotaryTables, .child = child, .presence = presence};
 }
 
-/// Directions that a tool may be off by and still be the same tool.
+/// Range of the rotation of a mounted tool.
 constexpr NumberRange kMountDegrees{.low = -5.0, .high = 5.0};
 constexpr NumberRange kMountLength{.low = -10.0, .high = 10.0};
 constexpr auto kMountOffsetRows = sourced<Vec3>(Numbers{3, kMountLength}, access_by<get_point, set_point>);

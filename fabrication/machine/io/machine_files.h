@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads machine files (retrace.machine/1), the shipped ones included.
+// Reads and writes machine files (retrace.machine/1), and lists the machines that are shipped with the program.
 
 #include <string>
 #include <string_view>
@@ -12,21 +12,22 @@
 
 namespace retrace::fabrication {
 
-/// The format of machine files (retrace.machine/1), whose object is a Machine.
+/// Returns the format of machine files (retrace.machine/1), which describes a Machine.
 const schema::Format& machine_format();
 
-/// The machine of a text (schema retrace.machine/1). Directions are normalised. `source_name` stands for the file.
-/// \throw InputError naming file, line, key, what was given and what is allowed, on one line
+/// Reads a machine from the text of its file (retrace.machine/1). Directions are normalised.
+/// \param source_name name of the file in error messages
+/// \throw InputError in one line, with file, line, key, allowed values and given value
 Machine parse_machine(std::string_view text, const std::string& source_name);
 
-/// A machine as the text of a file; values as they were given or found, each with its source.
+/// Returns a machine as the text of a file. Each value is written with its source.
 std::string machine_text(const Machine& machine);
 
-/// The shipped machines (data/machines/*.toml), by name.
+/// Returns the shipped machines (data/machines/*.toml).
 std::vector<Machine> shipped_machines();
 
-/// The shipped machine of that name, or the machine of a file (a name with an ending).
-/// \throw InputError at `where` if there is neither, or for a file that cannot be read or understood
+/// Returns the shipped machine with a name, or the machine in a file. A name with an extension is a file.
+/// \throw InputError at `where` if the machine does not exist, or if the file is invalid
 Machine load_machine(const std::string& name_or_file, const InputLocation& where);
 
 }  // namespace retrace::fabrication
