@@ -201,7 +201,8 @@ std::array<double, 3> words_along(const Machine& machine, const geometry::Vec3& 
 
 /// Returns the rotation from the nominal orientation of the tool to its orientation as mounted.
 Eigen::Matrix3d tool_turn(const Machine& machine);
-/// Along a chisel's edge, in the machine frame: X, but for how the tool is mounted.
+/// Returns the unit vector along a chisel's edge, in the machine frame. It is X, apart from the rotation of the mounted
+/// tool.
 geometry::Vec3 edge_direction(const Machine& machine);
 
 /// The normal, in the machine frame, that a facet has when the tool can cut it. Where the table tilts: of the plane

@@ -8,7 +8,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Statements of AeroBasic that stand alone and say what a G code says.
+/// Statement of AeroBasic that is alone in its line and has the effect of a G code.
 struct A3200Statement {
   std::string_view words;
   void (*effect)(NcBlock&) = nullptr;
@@ -25,12 +25,12 @@ constexpr A3200Statement kA3200Statements[] = {
     {"WAIT MODE INPOS", nc_effects::kSays<nc_said::kFineStop>},
 };
 
-/// The line without its comment, which stands behind //, ' or ;.
+/// Returns the line without its comment, which begins with //, ' or ;.
 std::string_view without_a3200_comment(std::string_view line) {
   return line.substr(0, std::min({line.find("//"), line.find('\''), line.find(';')}));
 }
 
-/// In capitals, with one blank for each gap.
+/// Returns `text` in capitals, with a single blank instead of each sequence of blanks and tabs.
 std::string with_single_blanks(std::string_view text) {
   std::string result = in_capitals(trimmed(text));
   std::replace(result.begin(), result.end(), '\t', ' ');
@@ -107,7 +107,8 @@ class A3200Reader {
     iso.finish();
   }
 
-  /// PVT X 1,0.5 C 2,3 TIME 4: places, velocities and the time since PVT INIT TIME ABS.
+  /// Reads a line such as PVT X 1,0.5 C 2,3 TIME 4: position and velocity of each axis, and the time since PVT INIT
+  /// TIME ABS.
   void read_cubic(std::string_view text, IsoBlock& iso, NcBlock& block) {
     if (text == "PVT INIT TIME ABS") {
       block.begins_cubics = true;
@@ -171,7 +172,7 @@ class A3200Reader {
   const NcTexts& texts_;
   NcProgram program_;
   SubroutineTable table_;
-  bool is_over_ = false;  ///< the main program is
+  bool is_over_ = false;  ///< true after the end of the main program
   bool has_end_program_ = false;
 };
 

@@ -1,17 +1,17 @@
 #pragma once
 
-// What the G codes of Aerotech's controls share.
+// G codes that the Aerotech controls A3200 and Automation1 have in common.
 
 #include "fabrication/read/nc_text.h"
 
 namespace retrace::fabrication {
 
-/// Time that feeds are per.
+/// Sets the time unit of feeds to a number of seconds.
 template <int seconds>
 inline constexpr auto kAerotechFeedTime = [](NcBlock& b) { b.feed_time_s = seconds; };
 
-/// Groups by meaning: Aerotech publishes no table of modal groups. Feeds that are times (G93) or per turn (G95), arcs,
-/// compensations and offsets are not understood.
+/// Supported G codes. Aerotech publishes no table of modal groups, so the groups follow from the meaning of the codes.
+/// Not supported are inverse time (G93), feed per revolution (G95), arcs, compensations and offsets.
 inline constexpr NcCode kAerotechCodes[] = {
     {0, 1, nc_effects::kRapid},
     {1, 1, nc_effects::kLinear},
@@ -28,12 +28,13 @@ inline constexpr NcCode kAerotechCodes[] = {
     {108, 8, nc_effects::kBlending},
     {109, 8, nc_effects::kExactStop},
     {149, 9, nc_effects::kSays<nc_said::kLengthOff>},
-    // METRIC and ENGLISH of the A3200; what they are of Automation1 is not published.
+    // METRIC and ENGLISH of the A3200. For the Automation1, these codes are not documented.
     {70, 10, nc_effects::kInch},
     {71, 10, nc_effects::kMillimetre},
 };
 
-/// P is the time of a dwell in seconds. M codes for coolant are those of the machine's builder.
+/// Reads a word. P is the time of a dwell in seconds. M codes for coolant are refused, because the machine builder
+/// defines them.
 inline void take_aerotech_word(const NcWord& word, IsoBlock& iso, const NcLines& lines) {
   if (word.letter == 'P') return iso.set_dwell(word.number.value);
   const double code = word.number.value;
@@ -42,7 +43,7 @@ inline void take_aerotech_word(const NcWord& word, IsoBlock& iso, const NcLines&
   if (!iso.set(word, kAerotechCodes)) lines.fail_word(word.rest);
 }
 
-/// A name of a subroutine: letters, digits and underscores, no digit first.
+/// Returns true if `text` is a valid name of a subroutine: letters, digits and underscores, not beginning with a digit.
 inline bool is_aerotech_name(std::string_view text) {
   constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
   if (text.empty() || letters.find(text.front()) == std::string_view::npos) return false;

@@ -10,7 +10,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Calls of AeroScript's functions for settings, which it tells capitals apart in.
+/// Call of an AeroScript function that makes a setting. Capital and small letters are different.
 struct AeroScriptSetting {
   std::string_view call;
   void (*effect)(NcBlock&) = nullptr;
@@ -115,7 +115,7 @@ class Automation1Reader {
     if (!text.empty()) lines_.fail(in_quotes(whole) + " is not understood");
   }
 
-  /// X,1.5 or [X,Y],[1.5,2]: axes and their places. Speeds of a move of its own are not understood.
+  /// Reads axes and their positions: X,1.5 or [X,Y],[1.5,2]. Speeds of single moves are not supported.
   void read_axes(std::string_view& text, IsoBlock& iso) {
     const bool is_list = text.starts_with('[');
     const std::size_t end = is_list ? text.find("],[") : text.find(',');
@@ -135,7 +135,7 @@ class Automation1Reader {
     if (is_list) text.remove_prefix(1);
   }
 
-  /// [X,C],[1,2],[3,4],0.5: axes, places, velocities, and the time of the move.
+  /// Reads a cubic move such as [X,C],[1,2],[3,4],0.5: axes, positions, velocities, and the time of the move.
   void read_cubic(std::string_view& text, IsoBlock& iso, NcBlock& block) {
     constexpr std::string_view needs = "MovePvt needs [axes], [places], [velocities], time";
     const auto numbers = [&] {
@@ -171,7 +171,7 @@ class Automation1Reader {
     program_.set_cubic(block, cubic);
   }
 
-  /// G codes may be small letters; names of axes may not, for it tells capitals apart in them.
+  /// Reads a line of words. G codes may be written in small letters. Names of axes must be capitals.
   void read_words(std::string_view text, NcBlock& block) {
     IsoBlock iso(lines_, block);
     const std::string packed = without_gaps(text);

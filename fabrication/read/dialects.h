@@ -1,7 +1,7 @@
 #pragma once
 
-// The readers of NC text by dialect (RS274NGC, Sinumerik, Fanuc, Power PMAC, Aerotech), each written from its published
-// rules and apart from the writers in post/.
+// Readers of NC text for each dialect (RS274NGC, Sinumerik, Fanuc, Power PMAC, Aerotech). They are based on published
+// rules and share no code with the writers in post/.
 
 #include <string>
 #include <string_view>
@@ -11,31 +11,32 @@
 
 namespace retrace::fabrication {
 
-/// NIST RS274NGC as LinuxCNC has it: `o101 sub` ... `o101 endsub`, `o101 call`.
+/// Reads NIST RS274NGC with the extensions of LinuxCNC: `o101 sub` ... `o101 endsub`, `o101 call`.
 /// (Kramer, Proctor, Messina: The NIST RS274NGC Interpreter, NISTIR 6556, 2000; LinuxCNC G-code reference)
 NcProgram parse_rs274ngc(NcLines lines, const NcTexts&);
 
-/// Siemens Sinumerik 840D: labels with CALL BLOCK ... TO ..., MSG, TRAFOOF. (Programming Manual Fundamentals)
+/// Reads Siemens Sinumerik 840D: labels with REPEAT or CALL BLOCK ... TO ..., MSG, TRAFOOF. (Programming Manual
+/// Fundamentals)
 NcProgram parse_sinumerik(NcLines lines, const NcTexts&);
 
-/// Fanuc series 30i: O numbers, M98 P, M99. Axis words need a decimal point: without one they are least increments,
-/// whose size the text does not tell. (Operator's Manual B-63944)
+/// Reads Fanuc series 30i: O numbers, M98 P, M99. Axis words need a decimal point. Without it, their unit would be the
+/// least increment, which is not known from the program. (Operator's Manual B-63944)
 NcProgram parse_fanuc(NcLines lines, const NcTexts&);
 
-/// Omron/Delta Tau Power PMAC: open prog ... close, rapid, linear, abs, inc, dwell in ms, call.
+/// Reads Omron/Delta Tau Power PMAC: open prog ... close, rapid, linear, abs, inc, dwell in ms, call.
 /// (Power PMAC User's Manual; Software Reference)
 NcProgram parse_pmac(NcLines lines, const NcTexts& texts);
 
-/// Aerotech A3200: AeroBasic statements and the G codes of its CNC option; END PROGRAM, DFS ... ENDDFS, CALL. (A3200.h
-/// of the C library; what public programs for it say)
+/// Reads Aerotech A3200: AeroBasic statements and the G codes of its CNC option, END PROGRAM, DFS ... ENDDFS, CALL.
+/// (A3200.h of the C library; public A3200 programs)
 NcProgram parse_a3200(NcLines lines, const NcTexts& texts);
 
-/// Aerotech Automation1: AeroScript's program ... end, function ... end, its functions for settings and moves, and its
-/// G codes. (help.aerotech.com/automation1)
+/// Reads Aerotech Automation1: program ... end, function ... end, AeroScript functions for settings and moves, and G
+/// codes. (help.aerotech.com/automation1)
 NcProgram parse_automation1(NcLines lines, const NcTexts& texts);
 
-/// What a text that stopped in the middle of its last line leaves: the error that this gave, as a remark.
-/// Runs `read`, and turns an InputError in an open last line into NcProgram::truncated.
+/// Calls `read` for a line. If the line is the last one and has no line end, an InputError is stored in
+/// NcProgram::truncated instead of being thrown, because the file may be truncated in this line.
 template <class Read>
 void read_line_that_may_be_cut(const NcLines& lines, NcProgram& program, Read read) {
   if (!lines.is_open_end()) {

@@ -10,7 +10,7 @@ namespace {
 
 using namespace nc_effects;
 
-/// Groups of the operator's manual, G code system B of lathes and that of machining centres.
+/// G codes and their groups in the operator's manual: G code system B of lathes, and the G codes of machining centers.
 constexpr NcCode kFanucCodes[] = {
     {0, 1, kRapid},
     {1, 1, kLinear},
@@ -32,10 +32,10 @@ constexpr NcCode kFanucCodes[] = {
     {91, 3, kIncremental},
     {93, 5, kInverseTime},
     {94, 5, kFeedPerMinute},
-    {97, 17, kNone},  // S counts turns per minute
+    {97, 17, kNone},  // S is in rpm
 };
 
-/// The line with a mark for each of its comments ( ... ).
+/// Returns the line with a mark instead of each comment ( ... ).
 std::string with_marked_comments(std::string_view line, const NcLines& lines) {
   std::string result;
   while (!line.empty()) {
@@ -50,7 +50,7 @@ std::string with_marked_comments(std::string_view line, const NcLines& lines) {
   return without_blanks(result);
 }
 
-/// One line of words: a block, and how it leads to another program.
+/// Line of words: a block, and its call or return.
 struct Line {
   NcBlock block;
   bool has_call = false;
@@ -106,7 +106,7 @@ class FanucReader {
     has_main_ = true;
   }
 
-  /// Ends the main program where the first subprogram begins.
+  /// Ends the main program at the beginning of the first subprogram.
   void close_part() {
     if (!main_is_closed_) program_.main_last = program_.blocks.size();
     main_is_closed_ = main_is_closed_ || has_main_;
@@ -135,7 +135,7 @@ class FanucReader {
       if (line.p_has_point) lines_.fail("P of a dwell counts milliseconds and takes no decimal point");
       iso.set_dwell(*line.p / 1000.0);
     }
-    // The words of G50.1 name axes and move none.
+    // The axis words of G50.1 select axes, but do not move them.
     if ((line.block.says & nc_said::kMirrorOff) != 0) line.block.axes = 0;
     iso.finish();
     if ((line.has_call || line.has_return) && line.block.axes != 0) lines_.fail("a call or return must not move axes");

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kTurnDeg = 360.0;
 
-/// Returns the maximum number of nested calls. LinuxCNC 2.9 refuses the tenth call (tested with rs274) and a Fanuc 30i
-/// the eleventh (operator's manual B-63944). The other controls allow fewer than 16.
+/// Returns the maximum number of nested calls. LinuxCNC 2.9 refuses the tenth call (tested with rs274), and a Fanuc 30i
+/// refuses the eleventh (operator's manual B-63944). The value for the other controls is an upper bound.
 std::size_t max_nested_calls(NcDialect dialect) {
   if (dialect == NcDialect::rs274ngc) return 9;
   return dialect == NcDialect::fanuc ? 10 : 16;
@@ -61,7 +61,7 @@ class Runner {
     return {false, program_.lines, program_.truncated.value_or("the program does not end"), {}};
   }
 
-  /// Whether a line belongs to the main program: lines of subroutines may stand within it.
+  /// Returns true if a line belongs to the main program. Lines of subroutines between its lines do not belong to it.
   static bool is_in_main(const NcProgram& program, std::int32_t line) {
     const auto holds = [&](std::size_t first, std::size_t last) {
       return first < last && line >= program.blocks[first].line && line <= program.blocks[last - 1].line;
@@ -70,7 +70,8 @@ class Runner {
            std::none_of(program.subroutines.begin(), program.subroutines.end(),
                         [&](const NcSubroutine& s) { return holds(s.first, s.last); });
   }
-  /// Behind the line that was asked for, in the main program. \throw InputError if nothing was done until then
+  /// Ends the execution after the requested line of the main program.
+  /// \throw InputError if there was no motion up to this line
   NcEnd stopped() const {
     if (motions_ == 0 || !stops_in_main_) fail_to_stop();
     return {};
@@ -80,7 +81,7 @@ class Runner {
         {program_.file, program_.stop_line, ""},
         "the program cannot be stopped there: nothing is carried out in that line, or nothing moved before");
   }
-  /// Main programs run from line to line, and what a stopped line calls still runs.
+  /// Returns true if the execution must stop before a block. The subroutine that the last line calls is still executed.
   bool stops_before(const NcBlock& block) const {
     return program_.stop_line > 0 && calls_.empty() && stops_in_main_ && block.line > program_.stop_line;
   }
@@ -95,8 +96,8 @@ class Runner {
   }
 
   struct Call {
-    std::size_t back = 0;  ///< block to go on with
-    std::size_t end = 0;   ///< block behind the subroutine's last
+    std::size_t back = 0;  ///< index of the block after the call
+    std::size_t end = 0;   ///< index after the last block of the subroutine
     std::int32_t line = 0;
   };
 
@@ -104,7 +105,8 @@ class Runner {
     throw InputError({program_.file, block.line, ""}, text);
   }
 
-  /// \throw InputError if the program was to be stopped in a line that it never comes to
+  /// Ends the execution at the end of the program.
+  /// \throw InputError if the program never reaches the line at which it was stopped
   NcEnd end_at(const NcBlock& block) const {
     if (program_.stop_line > 0 && (!stops_in_main_ || block.line < program_.stop_line)) fail_to_stop();
     return end();
@@ -144,7 +146,7 @@ class Runner {
     take_over(settings_.unit_mm, block.unit_mm);
     take_over(settings_.feed_time_s, block.feed_time_s);
     take_over(settings_.exact_stop, block.exact_stop);
-    // What is said of blending holds until blending is asked for again.
+    // Each block that sets blending or exact stop resets the path tolerance.
     if (block.exact_stop) settings_.blend_mm.reset();
     if (block.blend_mm) settings_.blend_mm = *block.blend_mm * settings_.unit_mm.value_or(1.0);
     settings_.said = static_cast<std::uint16_t>(settings_.said | said_by(block));
@@ -165,11 +167,11 @@ class Runner {
   }
 
   void set_rate(const NcBlock& block) {
-    // Controls clear the feed when the mode changes between feed per minute and inverse time.
+    // Controls discard the feed when the mode changes between feed per minute and inverse time.
     const bool changes_mode = block.inverse_time && inverse_time_ && block.inverse_time != inverse_time_;
     if (block.clears_feed || changes_mode) feed_ = 0.0;
     take_over(inverse_time_, block.inverse_time);
-    // In inverse time mode an F word is valid only in its own block.
+    // In inverse time mode, an F word applies only to its own block.
     const bool is_feed = block.feed && !inverse_time_.value_or(false);
     if (is_feed) feed_ = *block.feed;
     if (is_feed) move_time_s_ = 0.0;
@@ -183,13 +185,13 @@ class Runner {
   void stop(const NcBlock& block) {
     sink_.stop(block.stop, settings_, place_of(block));
     if (block.stop != NcStop::always) return;
-    // The operator may type lines and jog.
+    // During a stop, the operator may change settings and move axes, so the settings are not known afterwards.
     settings_.said = 0;
     settings_.spindle.reset();
     settings_.mist_on.reset();
   }
 
-  /// A motion to where a block's words are, which is where the axes are then.
+  /// Returns the motion to the positions of a block, and updates the present positions.
   NcMotion motion_of(const NcBlock& block, NcMove move) {
     NcMotion motion;
     motion.move = move;
@@ -216,14 +218,14 @@ class Runner {
     sink_.motion(motion, settings_);
   }
 
-  /// Axes that move on at the end of a block need another that says how.
+  /// Checks that all axes are at rest after a sequence of cubic moves.
   void expect_standstill(const NcBlock& block) const {
     for (std::size_t axis = 0; axis < kNcAxes; ++axis)
       if (velocities_[axis] != 0.0)
         fail(block, fmt::format("{} still moves at the end of the move by velocities before", kNcAxisLetters[axis]));
   }
 
-  /// Of velocities as written, in mm/s and degrees/s.
+  /// Converts velocities from the units of the program to mm/s and degrees/s.
   std::array<double, kNcAxes> velocities_of(const NcBlock& block, const NcCubic& cubic) const {
     const double per_s = 1.0 / settings_.feed_time_s.value_or(default_feed_time_s());
     std::array<double, kNcAxes> velocities{};
@@ -248,7 +250,7 @@ class Runner {
 
   void cubic(const NcBlock& block) {
     const NcCubic& cubic = program_.cubics[static_cast<std::size_t>(block.cubic)];
-    // Documents do not agree on what times and velocities are in otherwise.
+    // For other time units, the documents of the control contradict each other about the units of times and velocities.
     if (has_feeds_of_all_axes(program_.dialect) && settings_.feed_time_s != 1.0)
       fail(block, "moves by velocities must be in seconds");
     if ((block.axes & ~known_) != 0) fail(block, "a move by velocities begins at a place that is not known");
@@ -269,7 +271,8 @@ class Runner {
     }
   }
 
-  /// Hermite's cubic from a place and velocity to those now, at a share of its time.
+  /// Evaluates the Hermite cubic from the start position and velocity to the present ones.
+  /// \param t fraction of the duration, 0 to 1
   std::array<double, kNcAxes> place_along(const std::array<double, kNcAxes>& from,
                                           const std::array<double, kNcAxes>& begin, double time_s, double t) const {
     std::array<double, kNcAxes> at{};
@@ -279,7 +282,8 @@ class Runner {
     return at;
   }
 
-  /// So many that their chords, which are beside a curve by an eighth of its bend times their time squared, stay near.
+  /// Returns the number of straight segments for a cubic move. The deviation of a segment from the curve is at most 1/8
+  /// of the second derivative times the squared duration of the segment.
   int pieces_of(const std::array<double, kNcAxes>& from, const std::array<double, kNcAxes>& begin,
                 double time_s) const {
     double most = 1.0;
@@ -296,12 +300,12 @@ class Runner {
 
   double default_feed_time_s() const { return program_.dialect == NcDialect::pmac ? 1.0 : 60.0; }
 
-  /// Without a setting a feed counts mm/min, but for PMAC, which starts with mm/s.
+  /// Returns the feed in mm/min. Without a setting, feeds are in mm/min, except for the PMAC, which starts with mm/s.
   double feed_mm_per_min() const {
     return feed_ * settings_.unit_mm.value_or(1.0) * 60.0 / settings_.feed_time_s.value_or(default_feed_time_s());
   }
 
-  /// Of a linear move; 0 where a feed says how fast it is.
+  /// Returns the duration of a linear move, or 0 if the move has a feed.
   double duration_of(const NcBlock& block, const NcMotion& motion) const {
     if (has_feeds_of_all_axes(program_.dialect)) return duration_by_way(block, motion);
     if (!inverse_time_.value_or(false)) return move_time_s_;
@@ -309,8 +313,9 @@ class Runner {
     return 60.0 / *block.feed;
   }
 
-  /// Where a feed is the speed of all axes together it is none of the linear ones alone if others move too. Moves that
-  /// are blended follow each other at that speed, so that it says when each of them ends.
+  /// Returns the duration of a linear move whose feed is the speed of all axes together. It is needed if rotary axes
+  /// move, because the feed is then not the speed of the linear axes. It is also needed for blended moves, which follow
+  /// each other at this speed. Returns 0 for all other moves.
   double duration_by_way(const NcBlock& block, const NcMotion& motion) const {
     const bool is_known = (block.axes & ~motion.known) == 0;
     const bool turns = block.axes >> kFirstRotaryAxis != 0;
@@ -323,8 +328,8 @@ class Runner {
     return feed > 0.0 ? 60.0 * way / feed : 0.0;
   }
 
-  /// Returns the maximum relative error of the length of a move whose time is given. Both end positions of each axis
-  /// are rounded. The result is 0 for a move with a feed, because the feed does not depend on the length.
+  /// Returns the maximum relative error of the length of a move with a given time, due to the rounded end positions of
+  /// each axis. Returns 0 for a move with a feed, because the feed does not depend on the length.
   static double length_rounding(const NcMotion& motion) {
     const double length = motion.path_length();
     if (motion.duration_s == 0.0 || length == 0.0) return 0.0;
@@ -364,11 +369,11 @@ class Runner {
   double feed_ = 0.0;
   std::optional<bool> inverse_time_;
   double move_time_s_ = 0.0;
-  double rate_rounding_ = 0.0;  ///< relative rounding of the last F word or time word
+  double rate_rounding_ = 0.0;  ///< maximum relative rounding error of the last F word or time word
   std::array<double, kNcAxes> position_{};
   std::array<double, kNcAxes> rounding_{};
-  std::array<double, kNcAxes> velocities_{};  ///< at the end of a move by them, per second
-  std::optional<double> cubics_s_;            ///< since moves by velocities began
+  std::array<double, kNcAxes> velocities_{};  ///< velocities at the end of the last cubic move, per second
+  std::optional<double> cubics_s_;            ///< time since the start of the cubic moves
   std::uint8_t known_ = 0;
 };
 

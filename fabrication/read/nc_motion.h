@@ -1,6 +1,6 @@
 #pragma once
 
-// Carries out an NC program that was read: calls, modal settings and axis words become straight moves and dwells.
+// Executes an NC program: converts calls, modal settings and axis words to straight moves and dwells.
 
 #include <array>
 #include <cstdint>
@@ -12,86 +12,88 @@
 
 namespace retrace::fabrication {
 
-/// Where in a program something happens.
+/// Position in a program.
 struct NcPlace {
-  std::int32_t line = 0;       ///< of the word that does it
-  std::int32_t call_line = 0;  ///< of the call in the main program that led there; 0 in the main program itself
+  std::int32_t line = 0;       ///< line number
+  std::int32_t call_line = 0;  ///< in a subroutine: line of the call in the main program; 0 in the main program
 };
 
-/// One straight move of the axes, or a straight piece of one by a cubic.
+/// Straight move of the axes, or one straight segment of a cubic move.
 struct NcMotion {
   NcMove move = NcMove::rapid;
   NcPlace place;
-  std::uint8_t moved = 0;  ///< bit i: axis i has another position afterwards
-  std::uint8_t known = 0;  ///< bit i: the position of axis i before the move is known; 0 is assumed where it is not
+  std::uint8_t moved = 0;  ///< bit i: the position of axis i changes
+  std::uint8_t known = 0;  ///< bit i: the position of axis i before the move is known; otherwise `from` contains 0
   AxisPositions from;
   AxisPositions to;
   /// Feed of a linear move; 0 if the program gives no feed or gives the time of the move.
   double feed_mm_per_min = 0.0;
-  double duration_s = 0.0;    ///< time of a linear move if the program gives it instead of a feed; otherwise 0
-  bool is_exact_stop = true;  ///< the move ends in its end point
-  bool goes_on = false;       ///< a piece of a move by a cubic, and not its last
-  std::uint8_t shortest = 0;  ///< bit i: axis i goes the shortest way to a place within a turn
-  std::uint8_t absolute = 0;  ///< bit i: axis i goes to the place that its word counts
+  /// Time of a linear move if the program gives the time, or a feed of all axes together (Aerotech). Otherwise 0.
+  double duration_s = 0.0;
+  bool is_exact_stop = true;  ///< true: the axes stop at the end point
+  bool goes_on = false;       ///< true: segment of a cubic move that is not its last segment
+  std::uint8_t shortest = 0;  ///< bit i: axis i takes the shortest path to an angle of 0 to 360 degrees
+  std::uint8_t absolute = 0;  ///< bit i: axis i has an absolute position in the program
   std::uint8_t decimals = 0;  ///< NcBlock::decimals
   /// Maximum rounding error of each axis of `to`, in mm or degrees: half of the last decimal of its word.
   std::array<double, kNcAxes> rounding{};
-  double rate_rounding = 0.0;  ///< maximum relative error of path_speed_per_min() due to rounded numbers in the program
+  double rate_rounding = 0.0;  ///< maximum relative error of path_speed_per_min() due to rounded numbers
 
-  /// Returns the path length of X, Y and Z in mm, or that of the rotary axes in degrees if only these move.
+  /// Returns the path length of X, Y and Z in mm. If only rotary axes move, returns their path length in degrees.
   double path_length() const;
-  /// Returns the speed along the path in mm or degrees per minute: the given feed, or path_length() divided by the
-  /// given time.
+  /// Returns the speed along the path in mm or degrees per minute. It is the feed, or path_length() divided by the
+  /// duration.
   double path_speed_per_min() const { return duration_s > 0.0 ? 60.0 * path_length() / duration_s : feed_mm_per_min; }
 };
 
-/// Modal settings that a program has made so far. Nothing: it has not, and relies on what the controller starts with.
+/// Modal settings that a program has made so far. An empty value means that the program has not made the setting and
+/// uses the initial state of the control.
 struct NcSettings {
   std::optional<bool> absolute;
   std::optional<double> unit_mm;
   std::optional<double> feed_time_s;
   std::optional<bool> exact_stop;
-  std::optional<double> blend_mm;  ///< of blending: by which the path may be left; nothing: the program does not say
+  std::optional<double> blend_mm;  ///< path tolerance of blending; empty: not given in the program
   std::uint16_t said = 0;          ///< bits of nc_said
   std::optional<NcSpindle> spindle;
   std::optional<double> spindle_rpm;
   std::optional<bool> mist_on;
 };
 
-/// What becomes of a program, in its order.
+/// Receiver of the events of an executed program, in their order.
 class NcSink {
  public:
   virtual ~NcSink() = default;
   virtual void motion(const NcMotion& motion, const NcSettings& settings) = 0;
   virtual void dwell(double seconds, const NcPlace& place, const AxisPositions& position) = 0;
-  /// A block says something of spindle, mist, exact stops or by bits of nc_said, before it moves.
+  /// Called if a block sets spindle, mist, exact stop or bits of nc_said, before the move of this block.
   virtual void state(const NcSettings&, const NcPlace&) {}
-  /// The program stops for the operator, behind what its block moves. \param settings that it stops with: where it
-  /// always does, nothing is known behind it of spindle and mist, and what was said must be said again
+  /// Called if the program stops for the operator, after the move of this block. The settings are those before the
+  /// stop. After an unconditional stop, spindle and mist are unknown, and all settings must be repeated.
   virtual void stop(NcStop, const NcSettings&, const NcPlace&) {}
 };
 
-/// How a program ended.
+/// End of a program.
 struct NcEnd {
-  bool is_complete = true;  ///< it reached its end, and nothing was missing
-  std::int32_t line = 0;    ///< where it stopped if not
+  bool is_complete = true;  ///< true: the program reached its end, and nothing is missing
+  std::int32_t line = 0;    ///< line at which an incomplete program stops
   std::string reason;
-  NcSettings settings;  ///< that the program leaves behind
+  NcSettings settings;  ///< settings at the end
 };
 
-/// By which straight pieces are beside the cubic that they stand for, at most.
+/// Maximum distance between a cubic move and the straight segments that approximate it, for linear and rotary axes.
 inline constexpr double kCubicPieceMm = 2e-7;
 inline constexpr double kCubicPieceDeg = 2e-7;
 
 /// Maximum number of blocks that are executed, including repeated calls of subroutines.
 inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
 
-/// Carries out a program: calls, modal settings, absolute and incremental words. A move by places, velocities and time
-/// goes along the cubic of each axis that has them at both ends; the sink gets it in straight pieces.
-/// \throw InputError naming file and line: a linear move under inverse time without F > 0, axes that move before G0 or
-/// G1, an incremental word for an axis whose position is not yet known, subroutines that call each other without end;
-/// a move by velocities that takes no time, that leaves out an axis which still moves, or that nothing brings to a
-/// standstill
+/// Executes a program: calls, modal settings, absolute and incremental positions. A cubic move has positions,
+/// velocities and a time. Each of its axes follows a cubic polynomial, which the sink receives as straight segments.
+/// \throw InputError naming file and line for a linear move in inverse time mode without F > 0, for axes that move
+///         before
+///        G0 or G1, for an incremental word of an axis with unknown position, or for subroutines with endless calls. It
+///        is also thrown for a cubic move that takes no time, omits a moving axis, or does not end at rest
 NcEnd run_nc(const NcProgram& program, NcSink& sink);
 
 }  // namespace retrace::fabrication

@@ -14,7 +14,8 @@ constexpr NcNeed kLengthNeed = {nc_said::kLengthOff, "G49", "that no length of t
 constexpr std::string_view kStopText = "that moves stop exactly: corners would be rounded";
 constexpr std::string_view kFineStopText = "that stops wait for the axes' exact positions";
 
-/// G92 shifts stay in the file of parameters when the control is switched off (LinuxCNC, G-code reference, G92).
+/// Required settings of RS274/NGC. G92 offsets remain active after the control is switched off (LinuxCNC, G-code
+/// reference, G92).
 constexpr std::array kRs274ngc = {kInchNeed,
                                   kDistanceNeed,
                                   kFeedNeed,
@@ -24,8 +25,8 @@ constexpr std::array kRs274ngc = {kInchNeed,
                                   kLengthNeed,
                                   NcNeed{nc_said::kExactStop, "G61.1 or G61", kStopText}};
 
-/// Frames and transformations hold until they are cancelled or the control is reset (Programming Manual Job Planning);
-/// G603 would let the next block begin while the axes are still on their way.
+/// Required settings of a Sinumerik. Frames and transformations remain active until they are cancelled or the control
+/// is reset (Programming Manual Job Planning). With G603, the next block would begin while the axes are still moving.
 constexpr std::array kSinumerik = {
     NcNeed{nc_said::kUnit, "G710", "the unit of lengths and feeds"},
     kDistanceNeed,
@@ -46,7 +47,8 @@ constexpr std::array kFanuc = {kInchNeed,
                                kLengthNeed,
                                NcNeed{nc_said::kExactStop, "G61", kStopText}};
 
-/// Settings of a coordinate system stay as the last program left them (Power PMAC User's Manual).
+/// Required settings of a Power PMAC. A coordinate system keeps the settings of the last program (Power PMAC User's
+/// Manual).
 constexpr std::array kPmac = {
     NcNeed{nc_said::kDistance, "abs or inc", "whether positions are absolute or incremental"},
     NcNeed{nc_said::kFeedTime, "Coord[1].FeedTime", "what time feeds are per"},
@@ -55,7 +57,8 @@ constexpr std::array kPmac = {
     NcNeed{nc_said::kTransformationOff, "Coord[1].SegMoveTime=0", "that the control transforms no axes"},
     NcNeed{nc_said::kExactStop, "Coord[1].NoBlend=1", kStopText}};
 
-/// Modes of a task persist between programs (Aerotech's knowledge base, Introduction to Tasks).
+/// Required settings of the Aerotech controls. A task keeps its modes between programs (Aerotech's knowledge base,
+/// Introduction to Tasks).
 constexpr NcNeed kFeedModeNeed = {nc_said::kFeedMode, "G94", "that feeds are speeds: not G93, not G95"};
 constexpr NcNeed kToolOffsetNeed = {nc_said::kLengthOff, "G149", "that no offset of the tool holds"};
 constexpr std::array kA3200 = {NcNeed{nc_said::kUnit, "G71 or METRIC", "the unit of lengths"},

@@ -1,6 +1,7 @@
 #pragma once
 
-// What programs must say before anything moves, whatever an earlier program, a line typed in or a reset has left.
+// Settings that a program must make before its first move, because an earlier program, a manual command or a reset may
+// have left another state.
 
 #include <cstdint>
 #include <span>
@@ -10,14 +11,14 @@
 
 namespace retrace::fabrication {
 
-/// A setting of the control that a dialect has words for.
+/// Required setting of the control.
 struct NcNeed {
-  std::uint16_t said = 0;    ///< a bit of nc_said
-  std::string_view words;    ///< that say it
-  std::string_view meaning;  ///< for people
+  std::uint16_t said = 0;    ///< bit of nc_said
+  std::string_view words;    ///< words that make the setting
+  std::string_view meaning;  ///< description for messages
 };
 
-/// What every control of a dialect may have been left with.
+/// Returns the settings that programs of a dialect must make.
 std::span<const NcNeed> needs_of(NcDialect dialect);
 
 }  // namespace retrace::fabrication

@@ -23,8 +23,7 @@ bool is_control(char c) {
   return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f;
 }
 
-/// Groups of M codes count on where those of G codes end. M8 is flood of other machines, and nothing of this one's
-/// mist.
+/// M codes. Their group numbers follow those of the G codes. M8 (flood coolant) has no effect on the mist.
 constexpr NcCode kMCodes[] = {{0, 28, [](NcBlock& b) { b.stop = NcStop::always; }},
                               {1, 28, [](NcBlock& b) { b.stop = NcStop::optional; }},
                               {2, 28, [](NcBlock& b) { b.ends = true; }},
@@ -36,8 +35,8 @@ constexpr NcCode kMCodes[] = {{0, 28, [](NcBlock& b) { b.stop = NcStop::always; 
                               {9, 30, [](NcBlock& b) { b.mist_on = false; }},
                               {30, 28, [](NcBlock& b) { b.ends = true; }}};
 
-/// Returns true if `line` begins with the text of `rest` up to the next comment. `rest` has been changed to capitals,
-/// has no blanks, and has marks in place of comments.
+/// Returns true if `line` begins with the text of `rest`, up to the next comment mark in `rest`. Blanks, and
+/// differences between capital and small letters, are ignored.
 bool is_same_text(std::string_view line, std::string_view rest) {
   if (line.empty() || line.front() == ' ' || line.front() == '\t') return false;
   for (;; line.remove_prefix(1), rest.remove_prefix(1)) {
@@ -48,8 +47,8 @@ bool is_same_text(std::string_view line, std::string_view rest) {
   }
 }
 
-/// Returns the first word of `text`: letters and the number, value or bracketed list that follows them. If `text` does
-/// not begin with a letter, returns the text up to the next blank.
+/// Returns the first word of `text`. It consists of letters and the number, value or bracketed list that follows. If
+/// `text` does not begin with a letter, returns the text up to the next blank.
 std::string_view whole_word(std::string_view text) {
   constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
   const std::size_t blank = std::min(text.find_first_of(" \t"), text.size());

@@ -1,6 +1,6 @@
 #pragma once
 
-// Tools of the NC readers: lines, numbers, words, and the G and M codes that dialects of ISO 6983 share.
+// Common functions of the NC readers: lines, numbers, words, and the G and M codes of ISO 6983.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,90 +14,96 @@
 
 namespace retrace::fabrication {
 
-/// Hands out the lines of a program, without their ends. \throw InputError for a line that is too long or binary
+/// Iterates over the lines of a program, without their line ends.
 class NcLines {
  public:
   /// \throw InputError for an empty or too long text
   NcLines(std::string_view text, const std::string& file);
 
+  /// Gets the next line. Returns false at the end of the text.
+  /// \throw InputError for a line that is too long or binary
   bool next(std::string_view& line);
   std::int32_t number() const { return number_; }
-  /// The line just handed out is the last one, and nothing ends it: the text may have been cut in it.
+  /// Returns true if the current line is the last one and has no line end. The file may then be truncated in this line.
   bool is_open_end() const { return rest_.empty() && !ended_by_newline_; }
   const std::string& file() const { return file_; }
-  /// Reports an error in the current line.
+  /// Throws an error about the current line.
   /// \throw InputError with the file, the line number, `text` and the complete line
   [[noreturn]] void fail(std::string_view text) const;
-  /// Reports that the first word of `rest` is not understood.
-  /// \param rest remainder of the current line; it may be in capitals, has no blanks, and has marks in place of
-  ///        comments
-  /// \throw InputError as fail()
+  /// Throws an error which states that the first word of `rest` is not understood.
+  /// \param rest remainder of the current line without blanks, with marks instead of comments, and perhaps in capitals
+  /// \throw InputError as in fail()
   [[noreturn]] void fail_word(std::string_view rest) const;
 
  private:
   std::string file_;
-  std::string_view line_;  ///< line that next() has returned last
+  std::string_view line_;  ///< current line
   std::string_view rest_;
   std::int32_t number_ = 0;
   bool ended_by_newline_ = true;
 };
 
-/// A number as NC text has it: sign, digits, point, digits; no exponent.
+/// Number in NC text: sign, digits, decimal point, digits. Exponents are not allowed.
 struct NcNumber {
   double value = 0.0;
   bool has_point = false;
   std::uint8_t decimals = 0;
   bool is_whole() const;
-  /// Returns the maximum relative rounding error of the number: half of its last decimal, divided by the number.
-  /// Returns 0 for 0.
+  /// Returns the maximum relative rounding error of the number. It is half of its last decimal divided by the number,
+  /// or 0 for the number 0.
   double relative_rounding() const;
 };
 
 /// Returns true if `text` begins with a number: an optional sign, an optional decimal point, then digits.
 bool begins_with_number(std::string_view text);
 
-/// Takes a number off the front of `text`. \throw InputError if there is none
+/// Removes a number from the front of `text` and returns it.
+/// \throw InputError if `text` does not begin with a number
 NcNumber take_number(std::string_view& text, const NcLines& lines);
 
-/// One letter and its number.
+/// Word of an NC line: a letter and its number.
 struct NcWord {
   char letter = ' ';
   NcNumber number;
   std::string_view rest = {};  ///< remainder of the line, beginning with `letter`
 };
 
-/// Checks a line number (word N). \throw InputError if it is negative or not a whole number
+/// Checks a line number (word N).
+/// \throw InputError if it is negative or not a whole number
 void check_line_number(const NcNumber& number, const NcLines& lines);
 
-/// Takes a word such as off the front, its letter as a capital. \throw InputError if there is none
+/// Removes a word such as from the front of `text` and returns it. Its letter is returned as a capital.
+/// \throw InputError if `text` does not begin with a word
 NcWord take_word(std::string_view& text, const NcLines& lines);
 
 std::string in_capitals(std::string_view text);
-/// `text` without blanks and tabs.
+/// Returns `text` without blanks and tabs.
 std::string without_gaps(std::string_view text);
-/// The same in capitals.
+/// Returns `text` in capitals without blanks and tabs.
 std::string without_blanks(std::string_view text);
 
-/// Stands for a comment within a line, so that it ends a word.
+/// Mark that replaces a comment in a line. It ends the preceding word.
 inline constexpr char kNcCommentMark = '(';
-/// Words may have comments between them, and at both ends of the line.
+/// Removes comment marks from the front of `text`.
 void skip_comment_marks(std::string_view& text);
 
-/// Takes a line that the integrator has given a meaning as a block. False for any other. \param misplaced why no such
-/// line may stand here; empty: it may \throw InputError for one that may not
+/// Reads a line whose meaning the machine file or the part file defines, and adds it to the program as a block.
+/// \param misplaced error message if such a line is not allowed at this position; empty if it is allowed
+/// \return false for any other line
+/// \throw InputError for a line that is not allowed at this position
 bool take_text(std::string_view line, const NcTexts& texts, std::string_view misplaced, const NcLines& lines,
                NcProgram& program);
 
 bool starts_with_word(std::string_view text, std::string_view word);
 
-/// A code of a dialect.
+/// G or M code of a dialect.
 struct NcCode {
   double number = 0.0;
-  int group = 0;                       ///< modal group, of which a line may have one code; 0: of none
-  void (*effect)(NcBlock&) = nullptr;  ///< on its block; null: the line has the time of a dwell
+  int group = 0;                       ///< modal group; a line may have one code of each group. 0: no group
+  void (*effect)(NcBlock&) = nullptr;  ///< effect on the block; null: a dwell, whose time is another word of the line
 };
 
-/// What codes do, for the tables of dialects.
+/// Effects of codes, for the tables of the dialects.
 namespace nc_effects {
 inline constexpr auto kRapid = [](NcBlock& b) { b.move = NcMove::rapid; };
 inline constexpr auto kLinear = [](NcBlock& b) { b.move = NcMove::linear; };
@@ -113,30 +119,32 @@ inline constexpr auto kFeedPerMinute = [](NcBlock& b) {
   b.feed_time_s = 60.0;
   b.inverse_time = false;
 };
-/// F is one over the time of the move, per minute.
+/// Inverse time mode: F is the inverse of the move's duration, in 1/min.
 inline constexpr auto kInverseTime = [](NcBlock& b) { b.inverse_time = true; };
-/// A plane, a cycle that is cancelled, S in turns per minute: nothing that a straight move depends on.
+/// No effect on straight moves, for example selection of a plane, cancellation of a cycle, or S in rpm.
 inline constexpr auto kNone = [](NcBlock&) {};
 }  // namespace nc_effects
 
-/// Turns the words of one ISO 6983 line into a block: what the dialects share. A dialect says which G codes it has.
+/// Converts the words of one ISO 6983 line to a block. The G codes are given by a table of the dialect.
 class IsoBlock {
  public:
   IsoBlock(const NcLines& lines, NcBlock& block) : lines_(lines), block_(block) {}
 
-  /// Takes a word that all dialects have: of an axis, G, M, F or S. False for any other.
+  /// Reads a word that is common to all dialects: an axis, G, M, F or S. Returns false for any other word.
   bool set(const NcWord& word, std::span<const NcCode> g_codes);
   void set_g(const NcWord& word, std::span<const NcCode> codes);
-  /// M codes that all dialects share: 0, 1, 3, 4, 5, 7, 8, 9 and, as ends of the program, 2 and 30.
+  /// Reads an M code that is common to all dialects: 0, 1, 3, 4, 5, 7, 8, 9, and the program ends 2 and 30.
   void set_m(const NcWord& word);
   void set_feed(const NcWord& word);
   void set_spindle_speed(const NcWord& word);
   void set_axis(std::size_t axis, const NcNumber& place);
   void set_dwell(double seconds);
-  /// A place and a velocity of an axis. \param cubic of the block
+  /// Sets the position and the velocity of an axis in a cubic move.
+  /// \param cubic cubic move of the block
   void set_cubic(std::size_t axis, const NcNumber& place, double velocity, NcCubic& cubic);
   bool wants_dwell() const { return wants_dwell_; }
-  /// \throw InputError for words that make no sense together
+  /// Ends the block and checks its words.
+  /// \throw InputError for words that are not allowed together
   void finish();
 
  private:
@@ -148,7 +156,7 @@ class IsoBlock {
   bool wants_dwell_ = false;
 };
 
-/// The index of an axis letter, or kNcAxes.
+/// Returns the index of an axis letter, or kNcAxes if it is not the letter of an axis.
 std::size_t axis_index(char letter);
 
 }  // namespace retrace::fabrication

@@ -9,7 +9,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Takes the word (letters, digits, brackets and points of a name) off the front.
+/// Removes a name, which consists of capital letters and underscores, from the front of `text` and returns it.
 std::string_view take_name(std::string_view& text) {
   std::size_t end = 0;
   while (end < text.size() && ((text[end] >= 'A' && text[end] <= 'Z') || text[end] == '_')) ++end;
@@ -129,8 +129,8 @@ class PmacReader {
       lines_.fail_word(whole);
   }
 
-  /// PVT with its time in ms, then places and velocities. PMAC keeps the mode and takes velocities that are left out
-  /// for 0; here each line says all.
+  /// Reads a line PVT: its time in ms, then positions and velocities. The control would also accept lines without PVT
+  /// or without velocities, but this reader requires complete lines.
   void read_cubic(std::string_view text, IsoBlock& iso, NcBlock& block) {
     NcCubic cubic;
     cubic.time_s = number_behind(text) / 1000.0;
@@ -150,7 +150,7 @@ class PmacReader {
     block.absolute = absolute;
   }
 
-  /// Time of a move in ms.
+  /// Reads TM, the time of a move in ms.
   void read_move_time(std::string_view& text, NcBlock& block) {
     if (block.move_time_s) lines_.fail("has two times of the move");
     text = trimmed(text);
@@ -160,7 +160,7 @@ class PmacReader {
     block.rate_rounding = ms.relative_rounding();
   }
 
-  /// Times of acceleration, which round the path unless they are 0.
+  /// Reads TA or TS, the acceleration times. They must be 0, because other values would round the path.
   void read_ramp(std::string_view& text) {
     if (number_behind(text) != 0.0) lines_.fail("TA and TS must be 0: ramps between moves are not understood");
   }
@@ -176,7 +176,7 @@ class PmacReader {
     block.call = table_.index_of(whole_number(text));
   }
 
-  /// Feeds are those of the three linear axes together.
+  /// Reads frax, the axes to which feeds apply. They must be the three linear axes.
   void read_feed_axes(std::string_view& text, NcBlock& block) {
     constexpr std::string_view all = "(X,Y,Z)";
     if (!text.starts_with(all)) lines_.fail("frax must name X, Y and Z");
@@ -199,9 +199,9 @@ class PmacReader {
     if (name == "NOBLEND" && (value == 0 || value == 1))
       block.exact_stop = value == 1;
     else if (name == "FEEDTIME" && value > 0)
-      block.feed_time_s = value / 1000.0;  // in ms
+      block.feed_time_s = value / 1000.0;  // the value is in ms
     else if (name == "SEGMOVETIME" && value == 0)
-      block.say(nc_said::kTransformationOff);  // no kinematics of the controller's own between the ends of a move
+      block.say(nc_said::kTransformationOff);  // without segmentation, the control applies no kinematic transformation
     else
       lines_.fail("Coord[" + number + "]." + printable(name) + " with that value is not understood");
   }
@@ -214,7 +214,7 @@ class PmacReader {
   const NcTexts& texts_;
   NcProgram program_;
   SubroutineTable table_;
-  std::string coordinate_system_;  ///< that the program sets
+  std::string coordinate_system_;  ///< number of the coordinate system that the program sets
   bool is_in_main_ = false;
   bool has_main_ = false;
 };

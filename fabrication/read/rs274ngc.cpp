@@ -8,13 +8,13 @@ namespace {
 
 using namespace nc_effects;
 
-/// G94 on LinuxCNC. Unlike on other controls, each G94 sets the feed to 0, even if G94 is already active
-/// (interp_convert.cc, convert_feed_mode).
+/// Effect of G94 on LinuxCNC. Each G94 sets the feed to 0, even if G94 is already active (interp_convert.cc,
+/// convert_feed_mode). Other controls keep the feed.
 constexpr auto kFeedPerMinuteFromZero = [](NcBlock& b) {
   kFeedPerMinute(b);
   b.clears_feed = true;
 };
-/// G80 on LinuxCNC: no motion mode is active afterwards (interp_convert.cc, convert_motion).
+/// Effect of G80 on LinuxCNC: no motion mode is active afterwards (interp_convert.cc, convert_motion).
 constexpr auto kNoMotion = [](NcBlock& b) { b.cancels_move = true; };
 
 /// Modal groups of NISTIR 6556, table 4.
@@ -39,10 +39,10 @@ constexpr NcCode kRs274ngcCodes[] = {
     {92.1, 0, kSays<nc_said::kShiftOff>},
     {93, 5, kInverseTime},
     {94, 5, kFeedPerMinuteFromZero},
-    {97, 14, kNone},  // S counts turns per minute
+    {97, 14, kNone},  // S is in rpm
 };
 
-/// The line without what follows a semicolon, and with a mark for each comment ( ... ); they do not nest.
+/// Returns the line up to the first semicolon, with a mark instead of each comment ( ... ). Comments cannot be nested.
 std::string with_marked_rs274ngc_comments(std::string_view line, const NcLines& lines) {
   std::string result;
   while (!line.empty() && line.front() != ';') {
@@ -61,7 +61,7 @@ std::string with_marked_rs274ngc_comments(std::string_view line, const NcLines& 
   return without_blanks(result);
 }
 
-/// Of a line without its end: what the interpreter of LinuxCNC 2.9 reads, tried with its rs274.
+/// Maximum length of a line without its line end, for the interpreter of LinuxCNC 2.9 (tested with rs274).
 constexpr std::size_t kLongestLine = 252;
 
 class Rs274Reader {
@@ -83,7 +83,7 @@ class Rs274Reader {
     }
     program_.lines = lines_.number();
     program_.main_last = program_.blocks.size();
-    // Of a file that stops within a subroutine there is no main program to carry out.
+    // A file that ends in a subroutine has no main program.
     if (table_.is_open()) program_.main_first = program_.main_last;
     if (table_.is_open() && !program_.truncated) program_.truncated = "a subroutine has no endsub";
     if (percent_signs_ == 1 && !program_.truncated) program_.truncated = "the % at the end is missing";
@@ -106,7 +106,7 @@ class Rs274Reader {
       read_words(text);
   }
 
-  /// Reads a line %. A program has none, or begins and ends with one.
+  /// Reads a line that contains only %. A program either has no such line, or begins and ends with one.
   void read_percent() {
     if (percent_signs_ == 0 && has_text_)
       lines_.fail("% must be the first line with text, or be left out; there is text above it");
@@ -176,8 +176,8 @@ class Rs274Reader {
     }
   }
 
-  /// P is the time of a dwell in seconds, or how far blending may leave the path; Q of blending, how far blocks that
-  /// are merged into one may.
+  /// Ends a line. P is the time of a dwell in seconds, or the path tolerance of blending. Q is the tolerance for
+  /// merging blocks in blending.
   void finish(IsoBlock& iso, NcBlock& block) {
     const bool blends = block.exact_stop == false;
     if (words_.p && !blends) iso.set_dwell(*words_.p);
@@ -185,7 +185,8 @@ class Rs274Reader {
     if (block.axes != 0 && (block.says & nc_said::kShiftOff) != 0) lines_.fail("G92.1 takes no axis words");
     const bool is_negative = words_.p.value_or(0.0) < 0.0 || words_.q.value_or(0.0) < 0.0;
     if (blends && is_negative) lines_.fail("P and Q of G64 must be >= 0");
-    // P limits the rounding of corners, and Q the merging of blocks; both deviations may add up. Q defaults to P.
+    // P limits the deviation due to rounded corners, and Q the deviation due to merged blocks. Both may add up. Q
+    // defaults to P.
     if (words_.p && blends) block.blend_mm = *words_.p + words_.q.value_or(*words_.p);
     iso.finish();
   }
@@ -201,7 +202,7 @@ class Rs274Reader {
   int percent_signs_ = 0;
   bool has_text_ = false;  ///< true if a line before the current one has text
   bool is_over_ = false;
-  Words words_;  ///< of the line
+  Words words_;  ///< P and Q words of the current line
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 using namespace nc_effects;
 
-/// G groups of the Programming Manual Fundamentals, section Tables.
+/// G codes and their groups in the Programming Manual Fundamentals, section Tables.
 constexpr NcCode kSinumerikCodes[] = {
     {0, 1, kRapid},
     {1, 1, kLinear},
@@ -33,7 +33,7 @@ constexpr NcCode kSinumerikCodes[] = {
     {94, 15, kFeedPerMinute},
 };
 
-/// The line without its comment, in capitals but for what stands between quotes.
+/// Returns the line without its comment, which begins at the first semicolon outside of quotes.
 std::string_view without_comment(std::string_view line) {
   bool in_text = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -62,13 +62,13 @@ class SinumerikReader {
     program_.lines = lines_.number();
     program_.main_last = program_.blocks.size();
     resolve_sections();
-    // Nothing marks the end of the text, so its last line has to.
+    // The dialect has no mark for the end of a file. A last line without line end therefore indicates a truncated file.
     if (lines_.is_open_end() && !program_.truncated) program_.truncated = "the last line does not end";
     return std::move(program_);
   }
 
  private:
-  /// A part of the program between two labels, both included.
+  /// Section of the program between two labels, including the blocks of both labels.
   struct Section {
     std::string first_label;
     std::string last_label;
@@ -103,7 +103,8 @@ class SinumerikReader {
     if (!labels_.emplace(label, program_.blocks.size()).second)
       lines_.fail("there is a label of that name already: " + label);
     text = trimmed(text.substr(colon + 1));
-    // What follows a label belongs to its block; a label alone is an empty one, so that a section can end with it.
+    // The words after a label belong to its block. A label without words gets an empty block, so that a section can end
+    // there.
     if (text.empty() || text.starts_with("MSG(")) program_.blocks.emplace_back().line = lines_.number();
   }
 
@@ -130,7 +131,7 @@ class SinumerikReader {
     const std::size_t gap = text.find(' ');
     const std::string first(text.substr(0, gap));
     const std::string last(gap == std::string_view::npos ? text : trimmed(text.substr(gap)));
-    // With one label alone the section ends where the program calls it, which would be without end.
+    // REPEAT with one label would repeat the program up to this call, without end.
     if (gap == std::string_view::npos || !is_name(first) || !is_name(last)) lines_.fail("must be REPEAT label label");
     call(first, last);
   }
@@ -153,7 +154,7 @@ class SinumerikReader {
         text = trimmed(text.substr(7));
         continue;
       }
-      // Alone it cancels what frames a program before left; with words it would shift the zero.
+      // TRANS without words cancels programmed frames. TRANS with words, which would shift the zero, is not supported.
       if (text == "TRANS") {
         block.say(nc_said::kShiftOff);
         text = {};
@@ -167,7 +168,7 @@ class SinumerikReader {
         read_word(word, iso, block);
       }
     }
-    // F of a line with G4 is a time in seconds and leaves the feed as it is.
+    // In a line with G4, F is the dwell time in seconds and does not change the feed.
     if (feed && iso.wants_dwell())
       iso.set_dwell(feed->number.value);
     else if (feed)
@@ -176,7 +177,8 @@ class SinumerikReader {
     program_.blocks.push_back(block);
   }
 
-  /// X1.5 or X=1.5; of rotary axes C=DC(1.5), the shortest way; of all X=IC(1.5), by so much.
+  /// Reads an axis word: X1.5 or X=1.5. C=DC(1.5) moves a rotary axis along the shortest path. X=IC(1.5) is an
+  /// increment.
   NcWord take_assignment(std::string_view& text, NcBlock& block) {
     if (text.size() > 5 && text[1] == '=' && (text.substr(2, 3) == "DC(" || text.substr(2, 3) == "IC(")) {
       const std::size_t axis = axis_index(text[0]);
@@ -222,7 +224,7 @@ class SinumerikReader {
       const auto first = labels_.find(sections_[i].first_label);
       const auto last = labels_.find(sections_[i].last_label);
       if (first == labels_.end() || last == labels_.end() || last->second < first->second) continue;
-      // A file that stops within the line of a label has the label and not its block.
+      // If a file ends in the line of a label, the label exists but its block does not.
       if (last->second >= program_.blocks.size()) continue;
       program_.subroutines[i].first = first->second;
       program_.subroutines[i].last = last->second + 1;
@@ -234,7 +236,7 @@ class SinumerikReader {
   NcProgram program_;
   SubroutineTable table_;
   std::map<std::string, std::size_t, std::less<>> labels_;
-  std::vector<Section> sections_;  ///< one a subroutine, in the same order
+  std::vector<Section> sections_;  ///< section of each subroutine, in the order of the subroutines
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers the subroutines of an NC program while it is read, called or defined first.
+// Assigns indices to the subroutines of an NC program while it is read.
 
 #include <cstdint>
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace retrace::fabrication {
 
-/// Subroutines by name, whether they are called or defined first, and the one that is being read.
+/// Table of subroutines by name, and the subroutine that is being read. A call may precede the definition.
 class SubroutineTable {
  public:
   explicit SubroutineTable(NcProgram& program) : program_(program) {}
@@ -21,14 +21,14 @@ class SubroutineTable {
     return entry->second;
   }
 
-  /// The next block is the first of a subroutine. False if there is one of that name already.
+  /// Begins a subroutine at the next block. Returns false if a subroutine with this name exists already.
   bool begin(const std::string& name) {
     open_ = index_of(name);
     if (open().is_whole) return false;
     open().first = program_.blocks.size();
     return true;
   }
-  /// The last block was the last of the subroutine that was begun.
+  /// Ends the present subroutine after the last block.
   void end() {
     open().last = program_.blocks.size();
     open().is_whole = true;
