@@ -201,8 +201,8 @@ void ControlCheck::axes(const Machine& machine, const NcMotion& motion) {
   axis_speeds(machine, motion);
 }
 
-/// Words that the control refuses: more decimals than a Fanuc's increment system has, places on a modulo axis of a
-/// Sinumerik beyond its turn, and the shortest way on an axis that has none.
+/// Adds findings for axis words that the control refuses: more decimals than the increment system of a Fanuc allows,
+/// positions of a Sinumerik's modulo axis outside of 0 to 360 degrees, and DC() for an axis that is not a modulo axis.
 void ControlCheck::words_of_axes(const NcMotion& motion) {
   constexpr double turn_deg = 360.0;
   const int decimals = 3 + static_cast<int>(control_.increment_system);
@@ -228,7 +228,7 @@ void ControlCheck::words_of_axes(const NcMotion& motion) {
   }
 }
 
-/// An axis that is counted within a turn goes on without end: one of its words for the place must be within the limits.
+/// Returns true if the position of a modulo axis, plus a number of full turns, is within the limits of the axis.
 bool ControlCheck::is_within_turn(const LimitExcess& excess) const {
   constexpr double turn_deg = 360.0;
   if (dialect_ != NcDialect::sinumerik || control_.modulo_axes.find(excess.axis) == std::string::npos) return false;
@@ -236,8 +236,9 @@ bool ControlCheck::is_within_turn(const LimitExcess& excess) const {
   return excess.position + turns * turn_deg <= excess.limits.high;
 }
 
-/// Linear axes take their shares of the feed, which is theirs together; rotary ones do where they move alone. Of an
-/// axis that comes from where it happens to be nothing is known but that it may take the whole.
+/// Checks the speed of each axis in a move at a feed. The feed is the speed along the path of the linear axes, or of
+/// the rotary axes if only these move. Each axis gets a part of the feed. An axis with unknown start position may move
+/// at the full feed.
 void ControlCheck::axis_speeds(const Machine& machine, const NcMotion& motion) {
   const AxisPositions& from = motion.from;
   const AxisPositions& to = motion.to;

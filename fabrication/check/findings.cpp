@@ -11,7 +11,7 @@ std::string text_of(const Finding& finding) {
 }
 
 void FindingList::add(Finding finding) {
-  // Findings without a line are told apart by their element, or by what they say.
+  // Findings without a line are merged only if they have the same element or the same message.
   std::string where = finding.kind;
   if (finding.line == 0) where += " " + (finding.element < 0 ? finding.message : std::to_string(finding.element));
   const auto [entry, is_new] = findings_.try_emplace({finding.program, finding.line, where}, finding);

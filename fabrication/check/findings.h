@@ -1,6 +1,6 @@
 #pragma once
 
-// What is found wrong with programs, of whatever process.
+// Findings: errors in programs, for all processes.
 
 #include <cstdint>
 #include <map>
@@ -10,25 +10,26 @@
 
 namespace retrace::fabrication {
 
-/// Something that a program does and should not, or does not and should.
+/// Error in a program.
 struct Finding {
-  std::string kind;           ///< such as "gouge"; docs/commands.md lists them
-  std::string program;        ///< file; empty: of none, or of all together
-  std::int32_t line = 0;      ///< of the NC text; 0: of no line
-  std::int64_t element = -1;  ///< -1: of none
+  std::string kind;           ///< kind, such as "gouge"; docs/commands.md lists all kinds
+  std::string program;        ///< file name; empty if the finding belongs to no single program
+  std::int32_t line = 0;      ///< line of the program; 0: no line
+  std::int64_t element = -1;  ///< number of the element; -1: no element
   std::string message;
-  double value = 0.0;  ///< in the unit that the message names
+  double value = 0.0;  ///< value in the unit of the message
   double limit = 0.0;
-  std::int64_t count = 1;  ///< how often this line does it
+  std::int64_t count = 1;  ///< number of occurrences in this line
 };
 
-/// "program: line 7: message", without what is not known.
+/// Returns a finding as "program: line 7: message". Unknown parts are omitted.
 std::string text_of(const Finding& finding);
 
-/// Collects findings: one for each kind and line, with the worst value and how often it came up.
+/// Collects findings. Findings of the same kind and line are merged to one finding with the worst value and the number
+/// of occurrences.
 class FindingList {
  public:
-  /// What is added without a program comes from that one.
+  /// Sets the program to which the following findings belong.
   void begin(std::string program) { program_ = std::move(program); }
   void add(std::string kind, std::int32_t line, std::string message, double value = 0.0, double limit = 0.0,
            std::int64_t element = -1) {
@@ -36,7 +37,7 @@ class FindingList {
   }
   void add(Finding finding);
   bool empty() const { return findings_.empty(); }
-  /// In the order of programs and lines.
+  /// Returns the findings, sorted by program and line.
   std::vector<Finding> take();
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 
-// Which axes a mill or lathe with few of them has, and that none moves before a word has said where the others are.
+// Checks the axes of programs for machines with less than five axes: no unknown axes, and no moves while the position
+// of an axis is unknown.
 
 #include <cstdint>
 
@@ -9,11 +10,11 @@
 
 namespace retrace::fabrication {
 
-/// Follows the moves of programs: words of axes that the machine has, and no move before all of these are known. A
-/// rapid word may say where an axis is.
+/// Checks that programs only move axes that the machine has, and only after the positions of all axes are known. A
+/// rapid move may set the position of an axis.
 class KnownAxes {
  public:
-  /// \param axes that the machine has, bit i: axis i of kNcAxisLetters
+  /// \param axes axes of the machine; bit i: axis i of kNcAxisLetters
   KnownAxes(FindingList& findings, std::uint8_t axes) : findings_(findings), axes_(axes) {}
 
   void motion(const NcMotion& motion);

@@ -11,7 +11,7 @@
 namespace retrace::fabrication {
 namespace {
 
-constexpr double kContactS = 1.0;  ///< of the records
+constexpr double kContactS = 1.0;  ///< time of the first contact in the records
 constexpr double kMeasuredFeedMmPerS = 10.0 / 60.0;
 
 using Row = const MeasuredForce&;
@@ -36,7 +36,7 @@ LinearInDepth through(double d1, double f1, double d2, double f2) {
   return {f1 - slope * d1, slope};
 }
 
-/// Experiment 1 at one depth of cut.
+/// Measurements of experiment 1 at one depth of cut.
 struct Record {
   Row chip_z, chip_y, before, root, plough;
 
@@ -101,7 +101,7 @@ ForceEvents force_events(const ForceModel& model, const CutConditions& cut) {
   ForceEvents events;
   events.full_chip_fz_n = -model.chip_fz_n_per_mm.at(d) * cut.width_mm;
   events.full_chip_fy_n = -model.chip_fy_n_per_mm.at(d) * cut.width_mm;
-  // The friction that is measured starts where the chip is full.
+  // The measured friction begins at full chip load.
   const double rising_mm = std::max(0.0, cut.plunge_mm - mm(model.root_travel_um.at(d)) - chip_mm);
   events.before_root_fz_n = events.full_chip_fz_n - friction * rising_mm;
   events.root_fx_n = is_isolated(cut) ? -model.side_fx_n_per_mm.at(d) * cut.plunge_mm : 0.0;
@@ -110,7 +110,8 @@ ForceEvents force_events(const ForceModel& model, const CutConditions& cut) {
     events.peak_fy_n = -model.plough_fy_n_per_mm.at(d) * cut.width_mm;
     return events;
   }
-  // Measured at one depth of cut with another tool: taken in proportion to the chip's section.
+  // These forces were measured at one depth of cut with another tool. They are scaled with the cross-section of the
+  // chip.
   const auto f = static_cast<std::size_t>(cut.facet - 1);
   const double share = d / model.bidirectional_um * cut.width_mm;
   events.root_fz_n = std::min(events.before_root_fz_n, -model.bidirectional_root_n_per_mm[f] * share);
@@ -150,7 +151,7 @@ std::vector<ForceSample> force_profile(const ForceModel& model, const CutConditi
   end.time_s = now_s;
   samples.push_back(end);
   if (cut.strategy != Strategy::bidirectional) {
-    // The chip is off after its own thickness; then the edge drags along the floor.
+    // The chip separates after a distance equal to its thickness. The edge then rubs along the floor.
     const double shear_s = std::min(mm(d), cut.plough_mm) / feed;
     samples.push_back(
         {now_s + shear_s, ForcePhase::plough, cut.plunge_mm, 0.0, events.peak_fy_n, events.full_chip_fz_n});
@@ -158,7 +159,7 @@ std::vector<ForceSample> force_profile(const ForceModel& model, const CutConditi
     samples.push_back({now_s, ForcePhase::plough, cut.plunge_mm, 0.0, events.full_chip_fy_n, events.full_chip_fz_n});
     samples.push_back({now_s, ForcePhase::retract, cut.plunge_mm, 0.0, 0.0, 0.0});
   } else {
-    constexpr double spike_s = 0.03;  // measured from the start of the retract to nothing (thesis, 4.3.4)
+    constexpr double spike_s = 0.03;  // measured duration of the peak at the start of the retract (thesis, 4.3.4)
     samples.push_back({now_s + 0.5 * spike_s, ForcePhase::retract, cut.plunge_mm, 0.0, events.peak_fy_n, 0.0});
     samples.push_back({now_s + spike_s, ForcePhase::retract, cut.plunge_mm, 0.0, 0.0, 0.0});
   }

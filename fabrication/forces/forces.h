@@ -1,6 +1,6 @@
 #pragma once
 
-// A mechanistic model of cutting forces in plunging and ploughing, calibrated on published measurements.
+// Mechanistic model of the cutting forces in plunging and ploughing, calibrated with published measurements.
 
 #include <array>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace retrace::fabrication {
 
-/// One measured force. Forces act on the tool, in machine axes.
+/// Measured force on the tool, in machine axes.
 struct MeasuredForce {
   int experiment = 0;
   std::string strategy;
@@ -21,58 +21,59 @@ struct MeasuredForce {
   double depth_of_cut_um = 0.0;
   double width_mm = 0.0;
   std::string event;
-  std::optional<double> time_s;  ///< after the start of the record, in which the tool meets the face at 1 s
+  std::optional<double> time_s;  ///< time since the start of the record; the tool touches the face at 1 s
   std::optional<double> fx_n;
   std::optional<double> fy_n;
   std::optional<double> fz_n;
 };
 
-/// Whether the tool cuts with its edge alone, or between walls that its sides rub on.
+/// Configuration of a cut. Isolated: only the edge touches the material. Orthogonal: the sides of the tool also rub on
+/// walls.
 enum class Configuration { isolated, orthogonal };
 inline constexpr std::string_view kConfigurationWords[] = {"isolated", "orthogonal"};
 
-/// A straight line in the depth of cut: edge + shear depth.
+/// Linear function of the depth of cut: a constant (edge force) plus a part proportional to the depth (shear force).
 struct LinearInDepth {
   double at_zero = 0.0;
   double per_um = 0.0;
   double at(double depth_um) const { return at_zero + per_um * depth_um; }
 };
 
-/// A mechanistic model of one plunge (docs/theory/forces.md). Amounts are positive; the tool is pushed towards -X, -Y
-/// and -Z while it plunges and ploughs, as measured.
+/// Mechanistic model of one plunge (docs/theory/forces.md). All values are positive. The measured forces push the tool
+/// towards -X, -Y and -Z during plunging and ploughing.
 struct ForceModel {
-  LinearInDepth chip_fz_n_per_mm;    ///< at full chip load, for each mm of edge
-  LinearInDepth chip_fy_n_per_mm;    ///< likewise
-  LinearInDepth friction_n_per_mm;   ///< of both side walls, for each mm that the tool is engaged
-  LinearInDepth side_fx_n_per_mm;    ///< sideways, from a tool that is not aligned, for each mm engaged
-  LinearInDepth root_fz_n_per_mm;    ///< that the chip adds as it is pressed against the other facet, per mm of edge
-  LinearInDepth plough_fy_n_per_mm;  ///< peak as the plough shears the chip off, per mm of edge
-  LinearInDepth chip_travel_um;      ///< from first contact to full chip load along Z
-  LinearInDepth chip_travel_fy_um;   ///< the same along Y, where the chip must form first
-  LinearInDepth root_travel_um;      ///< before the root over which the root's force rises
-  /// Of bidirectional plunges along facets 1 and 2, at one depth of cut only: what stands in for root and plough.
-  std::array<double, 2> bidirectional_root_n_per_mm{};     ///< whole F_z at the root, per mm of edge
-  std::array<double, 2> bidirectional_retract_n_per_mm{};  ///< peak of F_y at the start of the retract, likewise
-  double calibrated_from_um = 0.0;                         ///< depths of cut that the lines go through
-  double calibrated_to_um = 0.0;
-  double bidirectional_um = 0.0;
+  LinearInDepth chip_fz_n_per_mm;    ///< F_z at full chip load, per mm of edge
+  LinearInDepth chip_fy_n_per_mm;    ///< F_y at full chip load, per mm of edge
+  LinearInDepth friction_n_per_mm;   ///< friction on both side walls, per mm of engagement
+  LinearInDepth side_fx_n_per_mm;    ///< lateral force due to misalignment of the tool, per mm of engagement
+  LinearInDepth root_fz_n_per_mm;    ///< additional F_z of the chip that touches the other facet, per mm of edge
+  LinearInDepth plough_fy_n_per_mm;  ///< peak of F_y when the plough shears the chip off, per mm of edge
+  LinearInDepth chip_travel_um;      ///< travel from first contact to full chip load in F_z
+  LinearInDepth chip_travel_fy_um;   ///< travel from first contact to full chip load in F_y
+  LinearInDepth root_travel_um;      ///< travel before the root over which the additional force rises
+  // Bidirectional plunges along facets 1 and 2 were measured at one depth of cut only.
+  std::array<double, 2> bidirectional_root_n_per_mm{};     ///< total F_z at the root, per mm of edge
+  std::array<double, 2> bidirectional_retract_n_per_mm{};  ///< peak of F_y at the start of the retract, per mm of edge
+  double calibrated_from_um = 0.0;                         ///< smaller depth of cut of the calibration
+  double calibrated_to_um = 0.0;                           ///< larger depth of cut of the calibration
+  double bidirectional_um = 0.0;                           ///< depth of cut of the bidirectional measurements
 };
 
-/// Lines through experiment 1's two depths of cut; experiment 3 gives the bidirectional figures.
-/// \throw InputError if the table lacks a row that is needed
+/// Calibrates the model with the two depths of cut of experiment 1, and with the bidirectional values of experiment 3.
+/// \throw InputError if a required row is missing in the table
 ForceModel calibrate(const std::vector<MeasuredForce>& table);
 
-/// One cut, to tell its forces.
+/// Conditions of one cut.
 struct CutConditions {
-  Strategy strategy = Strategy::unidirectional;  ///< two_step: not allowed, ask for either of its parts
+  Strategy strategy = Strategy::unidirectional;  ///< two_step is not allowed; use one of its two parts
   int facet = 1;                                 ///< bidirectional: 1 or 2
   Configuration configuration = Configuration::isolated;
   double depth_of_cut_um = 5.0;
   double width_mm = 1.0;
-  double plunge_mm = 0.7;  ///< from the face to the root
+  double plunge_mm = 0.7;  ///< distance from the face to the root
   double plough_mm = 0.1;
   double dwell_s = 0.1;
-  double clearance_mm = 0.0;  ///< travelled along Z before first contact
+  double clearance_mm = 0.0;  ///< travel along Z before the first contact
   double feed_mm_per_min = 10.0;
   double retract_feed_mm_per_min = 200.0;
 };
@@ -84,30 +85,31 @@ struct ForceEvents {
   double before_root_fz_n = 0.0;
   double root_fz_n = 0.0;
   double root_fx_n = 0.0;
-  double peak_fy_n = 0.0;  ///< of the plough, or of the retract of a bidirectional cut
+  double peak_fy_n = 0.0;  ///< peak during the plough, or during the retract of a bidirectional cut
 };
 ForceEvents force_events(const ForceModel& model, const CutConditions& cut);
 
-/// What the tool does at a time of a profile.
+/// Phase of a cutting cycle.
 enum class ForcePhase { approach, plunge, dwell, plough, retract };
 inline constexpr std::string_view kForcePhaseWords[] = {"approach", "plunge", "dwell", "plough", "retract"};
 
 struct ForceSample {
   double time_s = 0.0;
   ForcePhase phase = ForcePhase::approach;
-  double engaged_mm = 0.0;  ///< depth of the edge below the face along the facet
+  double engaged_mm = 0.0;  ///< depth of the edge below the face, along the facet
   double fx_n = 0.0;
   double fy_n = 0.0;
   double fz_n = 0.0;
 };
 
-/// Forces over one cycle, at the corners of the piecewise linear model; time counts from the start of the approach.
+/// Returns the forces over one cycle, at the corners of the piecewise linear model. Time counts from the start of the
+/// approach.
 std::vector<ForceSample> force_profile(const ForceModel& model, const CutConditions& cut);
 
 /// Remarks on conditions that the measurements do not cover, such as depths of cut below 5 um.
 Warnings force_warnings(const ForceModel& model, const CutConditions& cut);
 
-/// Depth below which the linear law is not shown to hold.
+/// Minimum depth of cut, in um, for which measurements confirm the linear model.
 inline constexpr double kLeastLinearDepthUm = 5.0;
 
 }  // namespace retrace::fabrication

@@ -1,6 +1,6 @@
 #pragma once
 
-// Findings in documents and tables, the same for every process.
+// Writes findings to JSON documents and tables, for all processes.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -11,13 +11,14 @@
 
 namespace retrace::fabrication {
 
-/// `kind`, `program`, `line` and `element` where there are such, `message`, `value`, `limit` and `count` of each.
+/// Returns the findings as JSON with `kind`, `program`, `message`, `value`, `limit` and `count`. The keys `line` and
+/// `element` are present only if a finding has them.
 nlohmann::ordered_json findings_json(const std::vector<Finding>& findings);
 
-/// A line for each of the first twenty, and how many more there are.
+/// Returns the first twenty findings, one in each line, and the number of further findings.
 std::string findings_table(const std::vector<Finding>& findings);
 
-/// `file` and `dialect` of a program as it was read.
+/// Returns `file` and `dialect` of a program as JSON.
 nlohmann::ordered_json program_json(const NcProgram& program);
 
 }  // namespace retrace::fabrication

@@ -1,6 +1,6 @@
 #pragma once
 
-// NC programs from files, in the dialect that is named or that their text shows.
+// Reads NC programs from files, in a given dialect or in the dialect that is recognised from the text.
 
 #include <cstdint>
 #include <string>
@@ -13,24 +13,26 @@
 
 namespace retrace::fabrication {
 
-/// The dialect of that word, or of "auto" the one that the text shows.
-/// \throw InputError for a word that is none, and for text that shows none
+/// Returns the dialect with a name. If the name is "auto", the dialect is recognised from the text.
+/// \throw InputError for an unknown name, or if the dialect cannot be recognised
 NcDialect dialect_of(const std::string& word, std::string_view text, const std::string& file);
 
-/// Lines that a machine's file gives for dialects that have no words of their own.
+/// Returns the program lines that a machine file defines for dialects without own words for mist and stops.
 NcTexts texts_of(const Control& control);
 
-/// A program as it is named: "part.ngc", or "part.ngc@120", which was stopped behind line 120.
+/// Name of a program: "part.ngc", or "part.ngc@120" for a program that was stopped after line 120.
 struct ProgramName {
   std::string file;
-  std::int32_t stop_line = 0;  ///< 0: it runs to its end
+  std::int32_t stop_line = 0;  ///< line after which the program was stopped; 0: it ran to its end
 };
-/// A file that has an @ and a number in its name is that file, if it is there.
+/// Splits the name of a program. If a file with the complete name exists, "@" and the number belong to its name.
 ProgramName program_name(const std::string& given);
 
-/// Reads programs, in their order. \param names as program_name() takes them \param texts lines that a control is to
-/// take as they are \param given programs in place of files that would be read \throw InputError for a file that cannot
-/// be read or understood, with its line, and for a line that it does not have
+/// Reads programs in the given order.
+/// \param names names as for program_name()
+/// \param texts program lines that the machine file defines
+/// \param given contents of files that are used instead of reading these files
+/// \throw InputError for a file that cannot be read or understood, or if the stop line does not exist
 std::vector<NcProgram> read_programs(const std::vector<std::string>& names, const std::string& dialect,
                                      const NcTexts& texts = {}, const FileTexts& given = {});
 

@@ -14,9 +14,9 @@
 namespace retrace::fabrication::turning {
 namespace {
 
-/// Of distances between positions whose words are whole nanometres.
+/// Tolerance, in mm, for distances between positions that are rounded to whole nanometres.
 constexpr double kPlacesMm = 3e-6;
-/// By which the tool may stand off the line of its skew.
+/// Maximum distance, in mm, of the tool from the line that its skew determines.
 constexpr double kOffSkewMm = 1e-4;
 constexpr double kSameDeg = 2e-6;
 
@@ -51,7 +51,7 @@ class CoverageCheck {
                    limit, 1});
   }
 
-  /// The first block of a pass that does not go on stands for those that follow.
+  /// Checks that all blocks of a pass move forward. Only the first wrong block of a pass is reported.
   void check_direction(const CutPass& pass) {
     for (std::size_t i = 1; i < pass.size(); ++i) {
       const bool rises = pass.c_rad[i - 1] < pass.c_rad[i];
@@ -68,7 +68,7 @@ class CoverageCheck {
 
   static double radius(const CutPass& pass, std::size_t i) { return std::hypot(pass.x_mm[i], pass.y_mm[i]); }
 
-  /// At an angle of C within a pass.
+  /// Returns the radius at an angle of C, interpolated in a pass.
   static double radius_at(const CutPass& pass, double c_rad) {
     const auto next = std::upper_bound(pass.c_rad.begin(), pass.c_rad.end(), c_rad);
     const auto k = static_cast<std::size_t>(
@@ -77,7 +77,7 @@ class CoverageCheck {
     return radius(pass, k - 1) + share * (radius(pass, k) - radius(pass, k - 1));
   }
 
-  /// Where the turn before a pass left off at that angle: of the passes before it, or the rim.
+  /// Returns the radius of the previous turn at an angle of C. It is in an earlier pass, or at the rim of the part.
   double radius_before(std::size_t pass, double c_rad) const {
     for (std::size_t j = pass; j-- > 0;) {
       const CutPass& before = cuts_.passes[j];
@@ -110,14 +110,15 @@ class CoverageCheck {
 
   // Lines of a raster.
 
-  /// A place of a line in the frame of the part: across the lines, and along them.
+  /// Returns a point of a line in the part frame: coordinates across and along the lines.
   geometry::Vec2 place(const CutPass& pass, std::size_t i) const {
     const double cosine = std::cos(pass.c_rad[i]);
     const double sine = std::sin(pass.c_rad[i]);
     return {pass.x_mm[i] * cosine + pass.y_mm[i] * sine, pass.y_mm[i] * cosine - pass.x_mm[i] * sine};
   }
 
-  /// Across, where a line passes that place along it; nothing where it does not reach it.
+  /// Returns the coordinate of a line across the lines, at a coordinate along them. Returns nothing beyond the ends of
+  /// the line.
   static std::optional<double> across_at(const std::vector<geometry::Vec2>& line, double along) {
     if (line.empty() || along > line.front().y() + kPlacesMm || along < line.back().y() - kPlacesMm)
       return std::nullopt;
@@ -159,8 +160,8 @@ class CoverageCheck {
     return std::min_element(line.begin(), line.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); })->x();
   }
 
-  /// Checks that the outermost line is at most half a feed inside the border of the part. The cusps between lines are
-  /// highest at half a feed from a line, so a wider strip at the border would be higher than the cusps.
+  /// Checks that the outermost line is at most half a feed inside the border of the part. The cusps between two lines
+  /// are highest at half a feed from each line. A wider strip at the border would therefore be higher than the cusps.
   void check_edge(const CutPass& pass, std::int32_t line, double inside_mm, const char* what) {
     const double limit_mm = 0.5 * path_.feed_mm;
     if (inside_mm <= limit_mm + kPlacesMm) return;
@@ -170,7 +171,7 @@ class CoverageCheck {
               inside_mm, limit_mm);
   }
 
-  /// Blocks of a row that are too far off are told by the first; those of farther rows by themselves.
+  /// Checks the distance to the previous cut. Consecutive blocks with too large a distance give one finding.
   void check_step(const CutPass& pass, std::size_t i, double step_mm) {
     figures_.step_mm_max = std::max(figures_.step_mm_max, step_mm);
     const bool is_wide = step_mm > path_.feed_mm + kPlacesMm;
@@ -180,7 +181,7 @@ class CoverageCheck {
                       fixed_apart(1e3 * step_mm, 1e3 * path_.feed_mm, 3), fixed(1e3 * path_.feed_mm, 3)),
           step_mm, path_.feed_mm);
     was_wide_ = is_wide;
-    // A gap of which nothing is known is one that leaves a place uncut.
+    // In a gap wider than the nose, a part of the surface is not cut at all.
     if (step_mm > path_.feed_mm + 2.0 * part_.tool.nose_radius_mm) figures_.is_whole = false;
   }
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint8_t kAxesXyzc = 0b10111;
 constexpr std::uint8_t kXyc = 0b10011;
-/// Last decimal of the words of X, Y and Z, in mm.
+/// Value of the last decimal of X, Y and Z positions, in mm.
 constexpr double kWordMm = 1e-6;
 
 ControlRule rule_of_c_axis() {
@@ -28,7 +28,7 @@ ControlRule rule_of_c_axis() {
   return rule;
 }
 
-/// Follows one program after another.
+/// Reads the cuts of programs, one after the other.
 class CutReader : public NcSink {
  public:
   CutReader(const TurnedPart& part, FindingList& findings)
@@ -78,7 +78,7 @@ class CutReader : public NcSink {
   }
 
   void state(const NcSettings& settings, const NcPlace& place) override {
-    // Paths run on without stopping, which is asked of their moves.
+    // Cuts are paths without stops. The check of exact stops is done for their moves, so it is disabled here.
     NcSettings asked = settings;
     asked.exact_stop = true;
     control_.state(asked, place, is_down_);
@@ -93,7 +93,7 @@ class CutReader : public NcSink {
  private:
   void check_state(const NcMotion& motion, const NcSettings& settings) {
     control_.way(settings, motion);
-    // Paths run on without stopping, which is asked of them elsewhere; nothing is turned by the spindle at any time.
+    // Cuts are paths without stops. The check of exact stops is disabled for timed moves and rapid moves.
     NcSettings asked = settings;
     if (motion.duration_s > 0.0 || motion.move == NcMove::rapid) asked.exact_stop = true;
     control_.cut(asked, motion.place);
@@ -167,7 +167,7 @@ class CutReader : public NcSink {
   bool is_placed_[3] = {false, false, false};
   Excess excess_[3];
   bool is_cutting_ = false;
-  bool is_down_ = false;  ///< since the last rapid move the tool has been fed
+  bool is_down_ = false;  ///< true if there was a move at a feed since the last rapid move
   bool has_soft_start_ = false;
   bool has_free_path_ = false;
 };
@@ -187,7 +187,7 @@ TurningCuts read_cuts(const TurnedPart& part, const std::vector<NcProgram>& prog
 }
 
 void add_strokes(TurningCuts& cuts, const std::string& table, const std::string& file, FindingList& findings) {
-  constexpr double kSameDeg = 2e-6;  // words have six decimals or more
+  constexpr double kSameDeg = 2e-6;  // tolerance for angles that are rounded to six or more decimals
   struct Stroke {
     double c_deg;
     double stroke_mm;

@@ -24,14 +24,15 @@ using jets::Series;
 
 using geometry::Vec2;
 constexpr int kGoldenSteps = 40;
-/// Nearer to the centre the cut turns so much from one end of a cusp to the other that closed forms do not hold.
+/// Minimum distance from the center, in feeds, at which the closed forms for cusps are valid. Closer to the center, the
+/// direction of the cut changes too much along a cusp.
 constexpr double kCentreFeeds = 20.0;
 
-/// Height of cusps square to the surface: in the plane across the cuts they are those of circle against circle, seen
-/// along the slope and then along z.
+/// Returns the predicted height of cusps along the surface normal. In the plane across the cuts, both the nose and the
+/// surface are approximated by circles.
 double predicted_nm(const FreeformSurface& design, TurningTool tool, const Vec2& at, const Vec2& outward,
                     double feed_mm, bool is_spiral) {
-  // A spiral leads inwards, which adds to the skew.
+  // The inward motion of a spiral has the effect of an additional skew.
   if (is_spiral) tool.skew_deg += std::atan(feed_mm / (2.0 * std::numbers::pi * at.norm())) * 180.0 / std::numbers::pi;
   const Series<double> z = design.evaluate(line_series(at.x(), outward.x(), 2), line_series(at.y(), outward.y(), 2));
   const Gradient g = design.gradient(at.x(), at.y());
@@ -94,7 +95,7 @@ std::optional<CuspSample> cusps_at(const Envelope& envelope, const FreeformSurfa
       const double before = predicted(extremes[i - 1].at);
       const double after = predicted(extremes[i + 1].at);
       sample.predicted_nm += predicted(extremes[i].at);
-      // The closed form is that of a curvature that stays the same from one cut to the next.
+      // The closed form requires a curvature that is nearly constant between neighbouring cuts.
       is_even = is_even && std::abs(after - before) < 0.02 * before;
       ++cusps;
     }
@@ -107,7 +108,8 @@ std::optional<CuspSample> cusps_at(const Envelope& envelope, const FreeformSurfa
 
 namespace {
 
-/// Places of short profiles and their direction across the cuts, spread evenly but not in step with the feed.
+/// Returns the positions of the short profiles and their directions across the cuts. The positions are evenly
+/// distributed, but not at multiples of the feed.
 std::vector<std::pair<Vec2, Vec2>> profile_places(const InspectedRegion& region) {
   std::vector<std::pair<Vec2, Vec2>> places;
   constexpr int kAround = 24;
@@ -121,7 +123,7 @@ std::vector<std::pair<Vec2, Vec2>> profile_places(const InspectedRegion& region)
         const double r = centre + share * (region.radius_mm - centre - 2.0 * rim);
         const double angle = 2.0 * std::numbers::pi * (k + 0.31 * i) / kAround;
         const Vec2 outward(std::cos(angle), std::sin(angle));
-        // No profiles are taken within one feed of the axis, where the part rotates under a nearly fixed edge.
+        // Omit profiles within one feed of the spindle's axis, because the edge hardly moves over the part there.
         if (r > region.feed_mm) places.emplace_back(r * outward, outward);
       } else {
         const double x = (2.0 * share - 1.0) * (region.half_height_mm - 2.0 * rim);

@@ -14,8 +14,8 @@
 namespace retrace::fabrication::turning {
 namespace {
 
-/// How far words may be from what was meant: half of their last decimal, of a length and of an angle; of times, in the
-/// coarsest dialect, half a nanosecond.
+/// Maximum rounding errors of lengths and times in programs: half of the last decimal. For times, the value of the
+/// coarsest dialect is used.
 constexpr double kHalfWordMm = 0.5e-6;
 constexpr double kHalfWordS = 0.5e-9;
 constexpr double kDegreesPerTurn = 360.0;
@@ -24,16 +24,16 @@ double half_word_deg(NcDialect dialect) {
   return dialect == NcDialect::fanuc ? 0.5e-6 : 0.5e-7;
 }
 
-/// A figure that was measured, and how much of it rounding may have made.
+/// Measured value and the maximum error due to rounding.
 struct Figure {
   double value = 0.0;
   double doubt = 0.0;
 
-  /// At least so much is no rounding.
+  /// Returns the minimum absolute value that rounding cannot explain.
   double sure() const { return std::max(0.0, std::abs(value) - doubt); }
 };
 
-/// The worst excess of a limit along the cuts of a program.
+/// Tracks the largest excess above a limit along the cuts of a program.
 class Worst {
  public:
   explicit Worst(const std::optional<double>& limit) : limit_(limit) {}
@@ -65,7 +65,7 @@ class Worst {
   std::int64_t count_ = 0;
 };
 
-/// Time of the block that each point of a pass is in or ends.
+/// Returns, for each point of a pass, the duration of the block that contains the point or ends there.
 std::vector<double> whole_blocks_s(const CutPass& pass) {
   std::vector<double> seconds = pass.block_s;
   for (std::size_t i = seconds.size(); i-- > 1;)
@@ -73,12 +73,13 @@ std::vector<double> whole_blocks_s(const CutPass& pass) {
   return seconds;
 }
 
-/// Whether points of it lie within blocks. The first, before all blocks, has no time of one either.
+/// Returns true if a pass has points inside of blocks, which are cubic moves. The first point, before all blocks, also
+/// has the duration 0.
 bool has_cubics(const CutPass& pass) {
   return std::count(pass.block_s.begin(), pass.block_s.end(), 0.0) > 1;
 }
 
-/// The ends of blocks alone, for what has steps between moves by cubics: their acceleration.
+/// Returns only the ends of blocks. The acceleration of cubic moves has steps there.
 CutPass block_ends(const CutPass& pass) {
   CutPass ends;
   ends.program = pass.program;
@@ -96,7 +97,8 @@ CutPass block_ends(const CutPass& pass) {
   return ends;
 }
 
-/// Difference quotients of a position over the blocks of a pass, by the index of the block's end or of the node.
+/// Computes difference quotients of a position over the blocks of a pass. The index is that of a block's end, or that
+/// of a node between two blocks.
 class Quotients {
  public:
   Quotients(const CutPass& pass, const std::function<double(std::size_t)>& position, double half_word)
@@ -105,8 +107,9 @@ class Quotients {
       const double dt = pass.duration_s[i];
       if (!(dt > 0.0)) continue;
       const double v = (position(i) - position(i - 1)) / dt;
-      // Rounded ends change the velocity of a straight move by their difference over its time, that of a cubic by half
-      // as much again in its middle and its acceleration by six times it over the time squared.
+      // Rounded end points change the velocity of a straight move by their difference divided by its duration. In the
+      // middle of a cubic move, the change is 1.5 times as large. Its acceleration changes by 6 times the difference
+      // divided by the squared duration.
       const double most = dt < block_s_[i] ? 3.0 : 1.0;
       velocity_[i] = {v, (most * 2.0 * half_word + std::abs(v) * kHalfWordS) / block_s_[i]};
       noise_[i] = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(position(i)) / dt;
@@ -115,7 +118,8 @@ class Quotients {
 
   Figure velocity(std::size_t block) const { return {velocity_[block].value, velocity_[block].doubt + noise_[block]}; }
 
-  /// From the block before node i to the one behind it; at the ends of a pass from and to a standstill.
+  /// Returns the acceleration at node i, from the velocities of the blocks before and after it. A pass starts and ends
+  /// at rest.
   Figure acceleration(std::size_t i) const {
     const Figure before = i > 0 ? velocity_[i] : Figure{};
     const Figure after = i + 1 < pass_.size() ? velocity_[i + 1] : Figure{};
@@ -138,11 +142,11 @@ class Quotients {
  private:
   const CutPass& pass_;
   std::vector<double> block_s_;
-  std::vector<Figure> velocity_;  ///< its doubt is that of words alone
-  std::vector<double> noise_;     ///< of numbers of 53 bits, in a velocity
+  std::vector<Figure> velocity_;  ///< velocities with their error due to rounded numbers in the program
+  std::vector<double> noise_;     ///< errors of the velocities due to double precision
 };
 
-/// The passes of one program.
+/// Calls `use` for each pass of one program.
 template <class Use>
 void for_passes(const TurningCuts& cuts, std::size_t program, const Use& use) {
   for (const CutPass& pass : cuts.passes)
@@ -189,7 +193,7 @@ void check_axis(const AxisLimits& limits, std::size_t axis, const TurningCuts& c
   jerk.report(findings, "axis_jerk", file, name + ": jerk", "mm/s^3", "machine's");
 }
 
-/// The stroke of a fast tool servo.
+/// Checks the stroke of a fast tool servo.
 void check_stroke(const AxisLimits& limits, const TurningCuts& cuts, AxisMotion& motion, FindingList& findings) {
   bool is_first = true;
   for (const CutPass& pass : cuts.passes)

@@ -19,9 +19,9 @@ using geometry::FreeformSurface;
 using geometry::Vec2;
 
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
-/// Maximum number of findings of one kind that are listed separately. Further ones are counted with the last one.
+/// Maximum number of separate findings of one kind. Further findings are merged with the last one.
 constexpr std::size_t kMostStretches = 200;
-/// Distance beyond the border that still counts as inside the region, because words are rounded to whole nanometres.
+/// Tolerance, in mm, for points at the border of the region. Positions in programs are rounded to whole nanometres.
 constexpr double kBorderMm = 1e-6;
 
 struct Pose {
@@ -31,15 +31,17 @@ struct Pose {
   double c_rad = 0.0;
 };
 
-/// How a pose of the tool stands to the surface. Heights are those of its Z at which it would touch.
+/// Contact of the tool's edge with the surface at one pose. Heights are Z positions of the tool at which it would touch
+/// the surface.
 struct Stand {
-  double touches_mm = kNowhere;         ///< whatever place of the arc does
-  double touches_within_mm = kNowhere;  ///< where the place lies in the region
-  double angle_rad = 0.0;               ///< on the arc, of the first
-  double angle_within_rad = 0.0;
+  double touches_mm = kNowhere;         ///< Z at which any point of the arc touches the surface
+  double touches_within_mm = kNowhere;  ///< Z at which a point of the arc inside the region touches the surface
+  double angle_rad = 0.0;               ///< angle, on the arc, of the point for `touches_mm`
+  double angle_within_rad = 0.0;        ///< angle, on the arc, of the point for `touches_within_mm`
 };
 
-/// The edge over the surface: finds the highest of surface less edge along the arc, without derivatives.
+/// Finds the point of contact between edge and surface. It maximizes the height of the surface above the edge along the
+/// arc, without derivatives.
 class EdgeProbe {
  public:
   explicit EdgeProbe(const TurnedPart& part)
@@ -50,7 +52,7 @@ class EdgeProbe {
         cos_rake_(std::cos(part.tool.rake_deg * kDegree)),
         end_rad_(0.5 * part.tool.window_deg * kDegree) {}
 
-  /// The place of the part under a place of the arc.
+  /// Returns the point of the part below a point of the arc.
   Vec2 place(const Pose& at, double angle) const {
     const double x = at.x_mm + radius_mm_ * std::sin(angle);
     const double y = at.y_mm + lift_mm(angle) * sin_rake_;
@@ -59,7 +61,8 @@ class EdgeProbe {
     return {x * cosine + y * sine, y * cosine - x * sine};
   }
 
-  /// Z at which the tool touches there. A surface that has no height holds nothing up.
+  /// Returns the Z position at which a point of the arc touches the surface. If the surface is not defined there, there
+  /// is no contact.
   double touches_mm(const Pose& at, double angle) const {
     const Vec2 p = place(at, angle);
     const double z = surface_.height_mm(p.x(), p.y()) - lift_mm(angle) * cos_rake_;
@@ -73,7 +76,9 @@ class EdgeProbe {
            std::abs(p.y()) <= region_.half_width_mm + kBorderMm;
   }
 
-  /// \param start_rad angle near which it touched last
+  /// Computes the contact at a pose.
+  /// \param start_rad angle of the previous point of contact, where the search begins
+  /// \param looks_all_over true: the whole arc is searched
   Stand stand(const Pose& at, double start_rad, bool looks_all_over) const {
     Stand stand;
     stand.angle_rad = start_rad;
@@ -84,7 +89,7 @@ class EdgeProbe {
     return stand;
   }
 
-  /// Square to the surface where the arc touches it.
+  /// Converts a distance along Z to a distance along the surface normal at a point of the arc.
   double square(const Pose& at, double angle, double along_z) const {
     const Vec2 p = place(at, angle);
     const auto g = surface_.gradient(p.x(), p.y());
@@ -100,8 +105,8 @@ class EdgeProbe {
     stand.angle_within_rad = angle;
   }
 
-  /// Returns the angle of the center of the part of the nose's arc that is inside the region. In plan, the arc is
-  /// approximated by a straight line, which is exact for tools without rake.
+  /// Returns the angle at the center of that part of the arc which is inside the region. In plan, the arc is
+  /// approximated by a straight line. This is exact for tools without rake.
   double inner_angle(const Pose& at) const {
     const Vec2 tip = place(at, 0.0);
     const Vec2 across(std::cos(at.c_rad), -std::sin(at.c_rad));
@@ -124,8 +129,8 @@ class EdgeProbe {
     return std::asin(std::clamp(0.5 * (low + high), -reach, reach) / radius_mm_);
   }
 
-  /// Updates the closest point with the two points at which the arc crosses the border of the region. If the closest
-  /// point of the arc is outside of the region, the closest point inside the region is one of these two.
+  /// Evaluates the two points at which the arc crosses the border of the region. If the point of contact is outside of
+  /// the region, the closest point inside the region can be one of these two.
   void look_at_border(const Pose& at, Stand& stand) const {
     const double inner = inner_angle(at);
     if (!is_within(at, inner)) return;
@@ -141,7 +146,7 @@ class EdgeProbe {
     }
   }
 
-  /// A steep place farther along the arc may touch first, and beyond the region's rim there may be a higher one.
+  /// Searches the whole arc, because a steep part of the surface may touch a distant point of the arc first.
   void look_all_over(const Pose& at, Stand& stand) const {
     constexpr int kPlaces = 10;
     std::array<double, kPlaces + 1> z{};
@@ -154,7 +159,8 @@ class EdgeProbe {
     }
     for (std::size_t k = 0; k < z.size(); ++k) {
       const bool is_top = (k == 0 || z[k] >= z[k - 1]) && (k + 1 == z.size() || z[k] >= z[k + 1]);
-      // Between its neighbours a top is not higher than this by more than it is above them, but for narrow features.
+      // The maximum between the neighbouring samples is estimated as at most z[k] plus the difference to the
+      // neighbours. Narrow features of the surface may exceed this estimate.
       if (!is_top) continue;
       const double below = std::max(k > 0 ? z[k] - z[k - 1] : 0.0, k + 1 < z.size() ? z[k] - z[k + 1] : 0.0);
       if (z[k] + below < stand.touches_mm) continue;
@@ -167,7 +173,7 @@ class EdgeProbe {
     }
   }
 
-  /// Goes up from an angle to the top beside it: ever longer steps, then parabolas through three places.
+  /// Finds the local maximum next to an angle, with increasing steps and then with parabolas through three points.
   double climb(const Pose& at, double& angle) const {
     constexpr double kLeastStep = 0.01;
     constexpr double kMostStep = 0.16;
@@ -198,7 +204,8 @@ class EdgeProbe {
     return best;
   }
 
-  /// Where the parabola through three places is highest, the middle one above both others.
+  /// Returns the position of the maximum of the parabola through three points.
+  /// \pre the point in the middle is higher than the two others
   static double vertex(double a, double b, double c, double za, double zb, double zc) {
     const double left = (b - a) * (zb - zc);
     const double right = (b - c) * (zb - za);
@@ -215,10 +222,10 @@ class EdgeProbe {
   double end_rad_;
 };
 
-/// What a block, or one place of the tool, was found to do.
+/// Result for one block, or for one pose of the tool.
 struct Standing {
-  double low_nm = 0.0;
-  double high_nm = 0.0;
+  double low_nm = 0.0;   ///< lowest height of the edge relative to the surface, inside the region; <= 0
+  double high_nm = 0.0;  ///< largest distance of the edge above the surface, inside the region
   /// Distance between edge and surface at the point of contact, if this point is outside of the region.
   double beyond_nm = 0.0;
   double touches_mm = kNowhere;
@@ -234,7 +241,8 @@ class Stretch {
     now_.count = 0;
   }
 
-  /// Adds the finding of one block. \param message function that returns the text of the finding
+  /// Adds the finding of one block.
+  /// \param message function that returns the text of the finding
   template <typename Message>
   void add(std::size_t program, std::int32_t line, double nm, double limit_nm, const Message& message) {
     if (now_.count == 0 || nm > now_.value)
@@ -242,7 +250,7 @@ class Stretch {
     ++now_.count;
   }
 
-  /// Ends the current finding. From the last allowed finding on, all further blocks are counted with it.
+  /// Ends the current finding, unless kMostStretches is reached. In this case, it also includes all further blocks.
   void end() {
     if (told_ < kMostStretches) close();
   }
@@ -292,7 +300,7 @@ class TouchCheck {
     end_stretches();
   }
 
-  /// Where the tool comes down it may stand off.
+  /// Checks the end of a downward move for gouges. The tool may be above the surface there.
   void follow(const DownMove& move) {
     Standing standing;
     double angle = 0.0;

@@ -13,7 +13,8 @@
 namespace retrace::fabrication::turning {
 namespace {
 
-/// Moves without cutting stay above the highest place of the part by what its file asks for, so do ends.
+/// Checks that moves without cutting, and the ends of programs, keep the required clearance above the highest point of
+/// the part.
 void check_free_moves(const TurnedPart& part, const TurningCuts& cuts, const TouchFigures& touch,
                       FindingList& findings) {
   constexpr double kHeightsMm = 5e-6;
@@ -31,9 +32,10 @@ void check_free_moves(const TurnedPart& part, const TurningCuts& cuts, const Tou
                     "the program ends with the tool nearer to the part than clear_mm", cuts.end_mm[k], limit, 1});
 }
 
-/// How far a parabola that begins and ends in the middles of two moves stays away from the corner between them, at
-/// most: a quarter of the corner's height over the chord between its neighbours. A move that slows down while the next
-/// one speeds up evenly makes a parabola, and does so over half of its way at most. C counts by the way at the tool.
+/// Returns the maximum deviation of a blended path from the corners between moves. If one move decelerates while the
+/// next one accelerates uniformly, the blend is a parabola, at most from the center of one move to the center of the
+/// next. Its distance from the corner is then a quarter of the corner's height above the chord between its neighbours.
+/// C is converted to the path length at the tool.
 double widest_blend_mm(const std::vector<CutPass>& passes) {
   using Place = Eigen::Vector4d;
   double highest = 0.0;

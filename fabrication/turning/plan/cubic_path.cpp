@@ -16,17 +16,17 @@ namespace {
 
 constexpr double kNmPerMm = 1e6;
 
-/// A spiral by its time.
+/// Spiral as a function of time.
 class TimedSpiral {
  public:
-  /// \param unit_s of which the times of ramps and of what is between are multiples
+  /// \param unit_s time unit; the durations of the ramps and of the motion between them are multiples of it
   TimedSpiral(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, double unit_s)
       : options_(o),
         places_(surface, tool, o),
         spin_(
             SpinTimes(360.0 * places_.whole_turns(), 6.0 * o.spindle_rpm, *o.spin_deg_per_s2).in_whole_steps(unit_s)) {}
 
-  /// Times at which C's acceleration changes: where cubics must meet.
+  /// Returns the times at which the acceleration of C changes. Cubic moves must end at these times.
   std::array<double, 3> corners_s() const {
     return {spin_.ramp_s(), spin_.whole_s() - spin_.ramp_s(), spin_.whole_s()};
   }
@@ -38,7 +38,7 @@ class TimedSpiral {
     CubicPoint point;
     point.place = place_at(time_s);
     const double turns_per_s = spin_.speed_deg_per_s(time_s) / 360.0;
-    // X and Y go evenly with the spindle.
+    // X and Y change linearly with the angle of the spindle.
     const double turns = turns_at(time_s);
     const double left = places_.whole_turns() - turns;
     const double share = left > 0.0 ? turns_per_s / left : 0.0;
@@ -49,8 +49,8 @@ class TimedSpiral {
     return point;
   }
 
-  /// The distance at the tool, at most, between the cubics of a move and the spiral.
-  /// Finds the highest place of the move as well.
+  /// Returns the maximum distance, at the tool, between a cubic move and the spiral. Also determines the highest Z of
+  /// the move.
   double error_mm(const CubicPoint& from, CubicPoint& to, double from_s, double to_s) {
     const double turns = turns_at(to_s) - turns_at(from_s);
     const double radius_mm = std::max(places_.radius_mm(turns_at(to_s)), 0.5 * options_.feed_mm);
@@ -72,7 +72,7 @@ class TimedSpiral {
   }
 
  private:
-  /// Of Z, in mm a turn: a difference quotient of the fourth order.
+  /// Returns the derivative of Z, in mm per turn, by a difference quotient of fourth order.
   double rise_at(double turns) {
     constexpr double h = 2e-4;
     const auto z = [&](double at) { return places_.at(at, touch_rad_).z_mm; };
@@ -98,7 +98,8 @@ class TimedSpiral {
   double touch_rad_ = 0.0;
 };
 
-/// How much longer a move may be than one of that error: errors of such cubics are of the fourth order in time.
+/// Returns the factor by which the duration of a move can be increased to reach the maximum error. The error of a cubic
+/// move is of fourth order in its duration.
 double growth(double most_mm, double error_mm) {
   constexpr double kCare = 0.9;
   constexpr double kMost = 2.0;
@@ -109,12 +110,12 @@ double growth(double most_mm, double error_mm) {
 
 CubicPath cubic_path(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& options,
                      double least_block_s, const InputLocation& where) {
-  // Times are multiples of the shortest move's.
+  // All durations are multiples of the shortest duration.
   const double unit_s = kCubicStepS * std::max(1.0, std::ceil(least_block_s / kCubicStepS - 1e-9));
   TimedSpiral spiral(surface, tool, options, unit_s);
   const double most_mm = *options.cubic_error_nm / kNmPerMm;
   const auto units_in = [&](double seconds) { return static_cast<std::int64_t>(std::llround(seconds / unit_s)); };
-  // Two moves a turn at least: C is told apart from its turns before and behind.
+  // At least two moves per turn are used, so that the angle of C is unique.
   const std::int64_t longest = std::max<std::int64_t>(1, units_in(30.0 / options.spindle_rpm));
   CubicPath path;
   path.points.push_back(spiral.point_at(0.0));

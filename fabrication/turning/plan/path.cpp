@@ -21,7 +21,7 @@ using jets::Jet2;
 
 using geometry::Vec2;
 
-/// Angles of the spindle at the points of a spiral, in turns.
+/// Returns the angles of the spindle at the points of a spiral, in turns.
 std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& where) {
   const double start = o.radius_mm + o.overrun_mm;
   const double turns = start / o.feed_mm;
@@ -44,7 +44,7 @@ std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& wher
   return result;
 }
 
-/// Where on the nose the next point touches, if the last three went on as a parabola.
+/// Predicts the angle of the next point of contact on the nose, by quadratic extrapolation of the last three angles.
 class TouchForecast {
  public:
   explicit TouchForecast(double end_rad) : end_rad_(end_rad) {}
@@ -53,7 +53,7 @@ class TouchForecast {
 
  private:
   double end_rad_;
-  std::array<double, 3> angles_{};  // the last first
+  std::array<double, 3> angles_{};  // the most recent angle is the first element
 };
 
 Pass spiral(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, const InputLocation& where) {
@@ -77,14 +77,16 @@ Pass spiral(const FreeformSurface& surface, const TurningTool& tool, const PathO
 
 std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o,
                          const InputLocation& where) {
-  // The last line is at most half a feed inside the border, so that the remaining strip is not higher than the cusps.
+  // Number of lines. The last line is at most half a feed inside the border, so that the strip at the border is not
+  // higher than the cusps.
   const double lines = std::ceil(o.height_mm / o.feed_mm - 0.5 - 1e-9) + 1.0;
   const double points = std::max(1.0, std::ceil(o.width_mm / o.arc_mm - 1e-9));
   if (!(lines * points < static_cast<double>(kMostPathPoints)))
     throw InputError(
         where, fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPathPoints, lines * points));
   const NoseCompensation nose(surface, tool, TouchMap(surface, tool, 0.5 * std::hypot(o.width_mm, o.height_mm)));
-  // The rake face is square to the machine's Y: a skew turns the part against it, the lines with the part.
+  // The rake face is perpendicular to machine Y. A skew rotates the part, and with it the lines, relative to the rake
+  // face.
   const double cosine = std::cos(tool.skew_deg * kDegree);
   const double sine = std::sin(tool.skew_deg * kDegree);
   const Vec2 across(cosine, sine);
@@ -117,8 +119,8 @@ void spin_up_and_down(Pass& pass, double spindle_rpm, double acceleration_deg_pe
     pass[i].seconds = times.time_s(pass[i].c_deg) - times.time_s(pass[i - 1].c_deg);
 }
 
-/// Splits Z of a spiral by angles: the slide follows the mean over the turn round each point, the servo the rest. In
-/// the first and last half turn the slide goes on evenly.
+/// Divides Z of a spiral between slide and servo. The slide follows the mean over one turn centered at each point, and
+/// the servo adds the difference. In the first and the last half turn, the slide moves linearly.
 void share_with_servo(Pass& pass, int points_per_turn) {
   const std::size_t count = pass.size();
   const auto turn = static_cast<std::size_t>(points_per_turn);
@@ -129,7 +131,7 @@ void share_with_servo(Pass& pass, int points_per_turn) {
   const auto mean_from = [&](std::size_t first) {
     return (sums[first + turn] - sums[first]) / static_cast<double>(turn);
   };
-  const std::size_t last = count - turn;  // the last window's first point
+  const std::size_t last = count - turn;  // first point of the last window
   for (std::size_t i = 0; i < count; ++i) {
     const double window = static_cast<double>(i) - static_cast<double>(half);
     double mean = 0.0;
@@ -164,7 +166,7 @@ double NoseCompensation::sampled(double x_mm, double y_mm, const Vec2& across, c
 NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, const Vec2& across, const Vec2& cut,
                                                    double& angle) const {
   constexpr int kMostSteps = 12;
-  // What a step leaves is of the third order in it: below 1e-14 mm.
+  // The error after a step is of third order in the step: below 1e-14 mm.
   constexpr double kSmallStep = 2e-5;
   Touch touch;
   for (int step = 0; step < kMostSteps; ++step) {
@@ -177,7 +179,7 @@ NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, con
         surface_.evaluate(aside * across.x() - back * cut.x() + x_mm, aside * across.y() - back * cut.y() + y_mm) -
         lift * cos_rake_;
     touch.height_mm = f[0];
-    // Where the surface is hollower than the nose there is no maximum here: another start finds it.
+    // If the surface is more concave than the nose, there is no maximum here. Another start value is needed.
     if (!(f[2] < 0.0)) return touch;
     const double change = std::clamp(-0.5 * f[1] / f[2], -0.5, 0.5);
     const double next = std::clamp(angle + change, -end_rad_, end_rad_);
@@ -195,7 +197,7 @@ double NoseCompensation::height_mm(double x_mm, double y_mm, const Vec2& across,
   const Touch touch = searched(x_mm, y_mm, across, cut, start_rad);
   if (touch.is_found && map_.touches_once(x_mm, y_mm)) return touch.height_mm;
   double height = touch.height_mm;
-  // A steep place farther along the edge may touch first, as the far side of a lenslet does.
+  // Search the whole edge, because a distant point may touch a steep part of the surface first, for example a lenslet.
   constexpr int kPlaces = 8;
   double best = start_rad;
   double highest = height;

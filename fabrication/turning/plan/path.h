@@ -13,51 +13,54 @@
 
 namespace retrace::fabrication::turning {
 
-/// Words of the machine at a point of the path: position of the tool's lowest edge point, and the spindle.
+/// Axis positions at a point of the path. X, Y and Z are the position of the lowest point of the tool's edge.
 struct PathPoint {
   double x_mm = 0.0;
   double y_mm = 0.0;
   double z_mm = 0.0;
   double c_deg = 0.0;
-  double seconds = 0.0;   ///< since the point before it; 0 for the first
-  double servo_mm = 0.0;  ///< of z, what a fast tool servo adds to the slide
+  double seconds = 0.0;   ///< time since the previous point; 0 for the first point
+  double servo_mm = 0.0;  ///< part of z that a fast tool servo adds to the slide
 };
 
-/// Of a path, at most.
+/// Maximum number of points of a path.
 inline constexpr std::size_t kMostPathPoints = std::size_t{1} << 26;
 
-/// Points that are cut without lifting the tool.
+/// Sequence of points that are cut without lifting the tool.
 using Pass = std::vector<PathPoint>;
 
-/// Frame of the machine: X to the side on which the tool stands, Z along the spindle, out of the part. C rises and
-/// turns the part by the right hand about Z, so that the tool cuts towards -Y and, in the part, against the sense of
-/// angles. A skew of a spiral puts the tool to X = r cos(skew), Y = -r sin(skew), that of a raster turns the part to
-/// C = -skew: the rake face stays square to Y. Nose radius
-/// compensation is along Z alone: the tool is raised by what it would otherwise cut too much, so that X, Y and C stay
-/// smooth. \throw InputError at `where` for a path of more than 2^26 points
+/// Computes the path of the tool. Machine frame: X towards the side of the tool, Z along the spindle and out of the
+/// part. C increases and rotates the part about Z by the right-hand rule. The tool therefore cuts towards -Y, and the
+/// angles of its positions in the part decrease. With a skew, the tool of a spiral is at X = r cos(skew), Y = -r
+/// sin(skew), and a raster is cut at C = -skew. The rake face remains perpendicular to Y. The nose radius is
+/// compensated only along Z, by raising the tool, so that X, Y and C are smooth.
+/// \throw InputError at `where` for a path of more than 2^26 points
 std::vector<Pass> make_path(const geometry::FreeformSurface& surface, const TurningTool& tool,
                             const PathOptions& options, const InputLocation& where);
 
-/// Height of the tool's lowest edge point over (x, y) of the part at which its edge touches the surface: the maximum
-/// over the sharp arc of z at an edge point less the point's own height. The edge lies along `across` and leans against
-/// the cut's direction by the rake.
+/// Computes the height of the tool's lowest edge point at which its edge touches the surface. It is the maximum, over
+/// the sharp arc, of the surface height at an edge point minus the height of this point above the lowest point. The
+/// edge is along `across` and is inclined by the rake against the direction of the cut.
 class NoseCompensation {
  public:
-  /// \param map where one touching place is known to be the only one; elsewhere the whole arc is searched for others
+  /// \param map positions at which there is only one point of contact. At other positions, the whole arc is searched
   NoseCompensation(const geometry::FreeformSurface& surface, const TurningTool& tool, TouchMap map = {});
 
-  /// \param across, cut unit vectors in the part \param start angle on the nose where the search starts; where it ends
+  /// Returns the height at a position of the part.
+  /// \param across unit vector along the edge, in the part
+  /// \param cut unit vector along the cut, in the part
+  /// \param start_rad angle on the nose at which the search starts; receives the angle of the point of contact
   double height_mm(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut,
                    double& start_rad) const;
 
-  /// End of the sharp arc, to both sides.
+  /// Returns the angle of the ends of the sharp arc, on both sides.
   double end_rad() const { return end_rad_; }
 
  private:
-  /// What Newton's rule finds from an angle.
+  /// Result of a search by Newton's method.
   struct Touch {
     double height_mm = 0.0;
-    bool is_found = false;  ///< a maximum, or the arc's end; not just the last step
+    bool is_found = false;  ///< true if the search ended at a maximum or at an end of the arc
   };
   Touch searched(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut,
                  double& angle) const;
@@ -68,10 +71,10 @@ class NoseCompensation {
   double radius_mm_;
   double sin_rake_;
   double cos_rake_;
-  double end_rad_;  ///< of the sharp arc, to both sides
+  double end_rad_;  ///< angle of the ends of the sharp arc, on both sides
 };
 
-/// What an axis does over a path, by difference quotients of its positions.
+/// Motion of an axis over a path, computed by difference quotients of its positions.
 struct AxisFigures {
   double low_mm = 0.0;
   double high_mm = 0.0;
@@ -81,7 +84,7 @@ struct AxisFigures {
   double acceleration_jump_mm_per_s2 = 0.0;  ///< largest change of acceleration from one point to the next
 };
 
-/// One axis at one point, for tables and plots.
+/// Motion of one axis at one point, for tables and plots.
 struct AxisState {
   double time_s = 0.0;
   double position_mm = 0.0;
@@ -90,7 +93,8 @@ struct AxisState {
   double jerk_mm_per_s3 = 0.0;
 };
 
-/// 0, 1, 2: X, Y, Z as programmed; 3: the servo's share.
+/// Computes the motion of an axis over a pass.
+/// \param axis 0, 1, 2: X, Y, Z as programmed; 3: the part of the servo
 std::vector<AxisState> axis_states(const Pass& pass, int axis);
 AxisFigures axis_figures(const std::vector<Pass>& passes, int axis);
 
