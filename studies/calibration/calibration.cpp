@@ -21,17 +21,18 @@ namespace {
 using namespace fabrication;
 using Eigen::Index, Eigen::VectorXd;
 
-/// The last step of Gauss and Newton is shorter than this, in the standard uncertainties of what is told.
+/// Maximum length of the last Gauss-Newton step, in standard uncertainties of the observable combinations.
 constexpr double kLastStep = 1e-3;
 constexpr int kMostSteps = 20;
-/// By chance one measurement of right ones is taken for an outlier in so many calibrations.
+/// Probability that a calibration with correct measurements rejects one of them as an outlier.
 constexpr double kFalseAlarm = 0.01;
-/// Of measurements, that may be outliers.
+/// Maximum fraction of the measurements that may be outliers.
 constexpr double kMostOutliers = 0.1;
-/// Standard deviations of set-ups, for what of them is not told: axes are set by dial gauges, tools under a microscope.
+/// Assumed standard deviations of unobservable combinations. Axes are set with dial gauges, and tools under a
+/// microscope.
 constexpr double kUntoldArcsec = 50.0;
 constexpr double kUntoldUm = 2.0;
-/// Leverage from which on nothing checks a measurement.
+/// Leverage above which no other measurement checks a measurement.
 constexpr double kUnchecked = 1.0 - 1e-9;
 
 void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
@@ -77,7 +78,7 @@ Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
   const Machine& nominal = measured.plans.front().machine;
   std::vector<PartPose> poses(parts.size());
   LinearModel model = linear_model(parts, measured.measurements, nominal, measured.map_faces, poses);
-  // What is told is told by measurements alone.
+  // Observability is determined from the measurements only, before priors are added.
   Estimate result = estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
   model = with_poses_by_eye(std::move(model), poses);
   const Estimate first = result;
@@ -105,7 +106,8 @@ Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
                    "no machine near that of the jobs leaves what was measured: are units and facets right?");
 }
 
-/// The one of so many measurements that the others contradict most, with by how much.
+/// Returns the index of the measurement with the largest deviation from the fit, and this deviation in its standard
+/// deviations.
 std::pair<std::size_t, double> worst(const Estimate& estimate, std::size_t measurements) {
   std::pair<std::size_t, double> found{0, 0.0};
   for (Index k = 0; k < static_cast<Index>(measurements); ++k) {
@@ -135,8 +137,8 @@ double most_by_chance(std::size_t measurements) {
                   line > 0 ? "those of lines " : "", places));
 }
 
-/// Returns true if both measurements are of the same quantity of similar facets. Their signs follow the same
-/// convention.
+/// Returns true if two measurements have the same quantity and are of similar facets, so that they have the same sign
+/// convention. Facets are similar if they have the same number in elements of the same orientation.
 bool is_alike(const MeasuredParts& measured, const Measurement& a, const Measurement& b) {
   const auto is_rotated = [&](const Measurement& m) {
     return measured.plan_of(m.part).plan.elements[m.at.element].rotated;
@@ -144,14 +146,14 @@ bool is_alike(const MeasuredParts& measured, const Measurement& a, const Measure
   return a.what == b.what && a.at.facet == b.at.facet && is_rotated(a) == is_rotated(b);
 }
 
-/// Refuses a table if all measurements of one quantity of similar facets are outliers, because their sign is then
-/// likely to be wrong. This applies to several rows of one part, or to all rows of all parts.
+/// Refuses a table if all measurements of one quantity of similar facets of a part are outliers, because their sign is
+/// then probably wrong. A single outlier is accepted if other parts have such measurements that are no outliers.
 /// \param measured measurements without the outliers
 void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& parts,
                  const std::vector<Outlier>& outliers) {
   for (const Outlier& outlier : outliers) {
     const Measurement& worst = outlier.measurement;
-    if (worst.line == 0) continue;  // the signs of values from maps are not entered by a user
+    if (worst.line == 0) continue;  // values from height maps have no line, and their signs cannot be entered wrongly
     bool is_in_part = false;
     bool is_in_others = false;
     for (const Measurement& m : measured.measurements)
@@ -174,7 +176,7 @@ void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& part
   }
 }
 
-/// One combination: "2 c_x_um + 1 tool_x_um".
+/// Returns a combination of quantities as text, such as "2 c_x_um + 1 tool_x_um".
 std::string words_of(const VectorXd& combination, std::span<const SetupQuantity> quantities) {
   std::string words;
   for (Index k = 0; k < combination.size(); ++k) {
@@ -187,7 +189,7 @@ std::string words_of(const VectorXd& combination, std::span<const SetupQuantity>
   return words;
 }
 
-/// Marks what a calibration found, with how sure it is.
+/// Writes the calibrated value of a quantity and its uncertainty to the source of the machine's value.
 void tell_source(Machine& machine, const CalibratedQuantity& found, const std::string& file) {
   const std::string source = fmt::format("retrace calibrate {}", file);
   const auto mark = [&](auto& sourced) {
@@ -228,7 +230,7 @@ void tell(Calibration& result, const Estimate& fitted) {
   const auto measurements = static_cast<std::ptrdiff_t>(result.parts.measurements.size());
   result.residuals.assign(fitted.residual.begin(), fitted.residual.begin() + measurements);
   result.chi_square = fitted.residual.squaredNorm();
-  // The sum of leverages is the number of unknowns that are told, poses included.
+  // The sum of the leverages is the number of observable unknowns, including the poses of the parts.
   const double freedom = static_cast<double>(fitted.residual.size()) - fitted.leverage.sum();
   result.freedom = static_cast<std::size_t>(std::max(0L, std::lround(freedom)));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// From what was measured of parts that a machine cut to what the machine is like. The study behind `retrace calibrate`.
+// Study of the command `retrace calibrate`: estimates the errors of a machine from measurements of parts that it cut.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -17,60 +17,60 @@
 
 namespace retrace::studies {
 
-/// A measurement that the others contradict.
+/// Measurement that contradicts the other measurements.
 struct Outlier {
   Measurement measurement;
-  double deviations = 0.0;  ///< by which it misses what the others say, in the standard deviations of that
+  double deviations = 0.0;  ///< deviation from the fit, in standard deviations
 };
 
-/// Parts that a machine cut, and what was measured of them.
+/// Parts that a machine cut, and their measurements.
 struct MeasuredParts {
-  std::string file;               ///< of the measurements, for messages
-  std::vector<std::string> jobs;  ///< as the file has them
+  std::string file;               ///< name of the measurement file, for messages
+  std::vector<std::string> jobs;  ///< names of the jobs, as given in the file
   std::vector<FabricationResult> plans;
-  /// Of parts that are maps of one part, all of the first plan: what each shows of the blank's face. Empty: parts are
-  /// measured against that face.
+  /// If the parts are height maps of one part (the first plan): the blank's face in each map. Empty: the parts are
+  /// measured relative to the face.
   std::vector<std::optional<FaceFigures>> map_faces;
   std::vector<Measurement> measurements;
-  std::size_t empty_rows = 0;  ///< that have no value yet
+  std::size_t empty_rows = 0;  ///< number of rows without a value
 
   std::size_t parts() const { return map_faces.empty() ? plans.size() : map_faces.size(); }
   const FabricationResult& plan_of(std::size_t part) const { return map_faces.empty() ? plans[part] : plans.front(); }
 };
 
-/// What a quantity of the set-up is.
+/// Estimate of a quantity of the set-up.
 struct CalibratedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
-  bool is_told = false;
-  double value = 0.0;        ///< um or arcsec, from what the job's machine has; of one that is not told: one of many
-  double uncertainty = 0.0;  ///< standard; of one that is not told: of what is told of it
+  bool is_told = false;      ///< true if the measurements determine the quantity
+  double value = 0.0;        ///< deviation from the job's machine, um or arcsec; not unique if is_told is false
+  double uncertainty = 0.0;  ///< standard uncertainty; if is_told is false, only of its observable part
 };
 
 struct Calibration {
-  MeasuredParts parts;           ///< without outliers
-  fabrication::Machine machine;  ///< the calibrated one
+  MeasuredParts parts;           ///< measurements without outliers
+  fabrication::Machine machine;  ///< calibrated machine
   std::vector<CalibratedQuantity> quantities;
-  Eigen::MatrixXd covariance;       ///< in their order
-  std::vector<std::string> untold;  ///< combinations that the measurements do not tell apart, in words
-  std::vector<double> residuals;    ///< in standard uncertainties
-  std::vector<Outlier> outliers;    ///< left out, the worst first
+  Eigen::MatrixXd covariance;       ///< covariance matrix, in the order of the quantities
+  std::vector<std::string> untold;  ///< unobservable combinations, as text
+  std::vector<double> residuals;    ///< residuals in standard uncertainties
+  std::vector<Outlier> outliers;    ///< removed measurements, the worst first
   double chi_square = 0.0;
   std::size_t freedom = 0;  ///< measurements less what is estimated
   Warnings warnings;
 };
 
-/// A combination of the set-up that is less certain than this, in um or arcsec, counts as untold: one sees as much with
-/// a dial gauge.
+/// Maximum uncertainty, in um or arcsec, of a combination that counts as observable. A set-up with a dial gauge is more
+/// accurate than this.
 inline constexpr double kSetUpByEye = 100.0;
 
-/// The combinations of the set-up that an estimate leaves untold, in words: "-0.707 c_lean_x_arcsec + a_lean_y_arcsec".
+/// Returns the unobservable combinations of an estimate as text, such as "-0.707 c_lean_x_arcsec + a_lean_y_arcsec".
 std::vector<std::string> untold_words(const Estimate& estimate, fabrication::Tilt tilt);
 
-/// The parts of measurements, as Measurement::part counts them, each with the elements that are measured.
+/// Returns the measured parts, in the order of Measurement::part, with their measured elements.
 std::vector<CutPart> cut_parts(const MeasuredParts& measured);
 
-/// Estimates the set-up by Gauss-Newton steps. Outliers are removed one by one: measurements that deviate from the fit
-/// by more than chance explains (data snooping: W. Baarda, A testing procedure for use in geodetic networks, 1968).
+/// Estimates the set-up by Gauss-Newton steps. Measurements that deviate significantly from the fit are removed one by
+/// one as outliers (data snooping: W. Baarda, A testing procedure for use in geodetic networks, 1968).
 /// \throw InputError, which names the lines, if too many measurements contradict each other. It is also thrown if all
 ///        measurements of one quantity of a facet are outliers, because their sign is then probably wrong
 Calibration calibrate(MeasuredParts parts);

@@ -18,15 +18,15 @@ using namespace fabrication;
 using geometry::Vec3;
 
 constexpr double kMmPerUm = 1e-3;
-/// Sines of angles between facets below this: the angle does not change with either of them.
+/// Minimum sine of the angle between two facets. Below it, a small tilt of a facet does not change the angle.
 constexpr double kParallel = 1e-6;
 
-/// The angle of the groove that two planes bound, seen from outside of the material.
+/// Returns the angle of the groove between two planes, measured outside of the material.
 double included_rad(const Vec3& a, const Vec3& b) {
   return std::numbers::pi - std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Returns "+X", "-Y" or the like for a direction along an axis, and the components of any other direction.
+/// Returns a direction as text: "+X", "-Y" etc. for a direction along an axis, otherwise its components.
 std::string direction_text(const Vec3& direction) {
   constexpr double kAlongAxis = 0.99;
   for (Eigen::Index axis = 0; axis < 3; ++axis)

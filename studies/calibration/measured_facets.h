@@ -1,6 +1,6 @@
 #pragma once
 
-// What is measured of facets that a job's programs cut, and what a machine would leave there.
+// Measurements of facets that the programs of a job cut, and the values that a machine would produce.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -21,15 +21,15 @@ namespace retrace::studies {
 
 inline constexpr double kArcsecPerRad = 180.0 * 3600.0 / std::numbers::pi;
 
-/// A quantity of a facet, as the difference from what the design has. Heights and distances are positive where material
-/// is left; a facet of a cube corner has its level line in place of a root.
+/// Measured quantity of a facet, as the deviation from the design. Distances are positive if material is left. For a
+/// cube corner, the horizontal line of a facet replaces the root.
 enum class FacetQuantity {
-  distance,  ///< of the facet's middle along its outward normal, nm
-  up,        ///< its tilt, positive where it rises away from the root, arcsec
-  along,     ///< its tilt, positive where it rises along the root, arcsec
-  angle,     ///< that it includes with another facet through the groove, arcsec
-  depth,     ///< of the line or point in which the element's facets meet, nm; more is deeper
-  end        ///< how far its last cut ends over the other facet at a place along the edge, nm; negative: cut into it
+  distance,  ///< distance of the facet's center along its outward normal, nm
+  up,        ///< tilt, positive if the facet rises away from the root, arcsec
+  along,     ///< tilt, positive if the facet rises along the root, arcsec
+  angle,     ///< angle to another facet, measured through the groove, arcsec
+  depth,     ///< depth of the root or apex, nm; positive: deeper
+  end        ///< height of the end of the last cut above the other facet, at a position along the edge, nm
 };
 inline constexpr std::string_view kFacetQuantityWords[] = {"distance_nm",  "up_arcsec", "along_arcsec",
                                                            "angle_arcsec", "depth_nm",  "end_nm"};
@@ -84,8 +84,8 @@ class CutPart {
 
   /// What is wrong with a measurement of this part; empty: nothing.
   std::string fault_of(const Measurement& measurement) const;
-  /// Returns what a positive value of the measurement means, in the machine axes at A0 (or B0) and C0, such as "rises
-  /// towards +Y".
+  /// Returns the meaning of a positive value of a measurement, such as "rises towards +Y". Directions are machine axes
+  /// at A = C = 0 (or B = C = 0).
   /// \pre fault_of() is empty
   std::string positive_sense(const Measurement& measurement) const;
   /// What would be measured. \pre fault_of() is empty

@@ -33,11 +33,11 @@ constexpr double kWavinessShare = 29.9 / 48.9;
 // Oscillation across the feed: 42.4 per mm at 10 mm/min (Milliken, 3.3.5), so 7.07 Hz.
 constexpr double kFeedMarksHz = 7.07;
 constexpr double kCorrelationLengthUm = 5.0;  // assumed: the profilometer resolved no less
-/// Less than this of angle is not told.
+/// Minimum angle, in arcmin, that is reported.
 constexpr double kShownArcmin = 0.05;
 const double kSqPerSa = std::sqrt(0.5 * std::numbers::pi);  // of Gaussian heights
 
-/// Sa of the facets that the last cuts leave. Where one of the two is ploughed, that of both together.
+/// Returns Sa of the facets after the last cuts. If one of two facets is ploughed, returns the quadratic mean of both.
 double sa_of(const Job& job) {
   const Process& p = job.process;
   switch (job.strategy) {
@@ -266,7 +266,7 @@ AsMachined as_machined(const VerificationRun& run) {
 
 namespace {
 
-/// Returns the sum of the intended errors of angle and the facet tilts that the programs cause.
+/// Returns the intended angle errors plus the facet tilts that the programs cause.
 geometry::AngleErrors machined_errors(geometry::AngleErrors errors, const std::vector<double>& tilt_arcmin) {
   for (std::size_t f = 0; f < tilt_arcmin.size(); ++f)
     if (std::abs(tilt_arcmin[f]) >= 1e-6) errors.facet_tilt_arcmin[f] += tilt_arcmin[f];

@@ -1,7 +1,7 @@
 #pragma once
 
-// From verified NC programs back to optics: the part that they leave, with its facet tilts, edges and texture, as a
-// design that can be traced.
+// Converts the result of verified NC programs to a design that can be traced: the machined part with its facet tilts,
+// edges and texture.
 
 #include <array>
 #include <optional>
@@ -16,34 +16,38 @@
 
 namespace retrace::studies {
 
-/// Texture that a strategy leaves, in the terms of a design's [surface]: published Sa of facets by motion, shared
+/// Surface texture of facets, as keys of a design's [surface]. The published Sa for each kind of motion is divided
 /// between roughness and feed marks (docs/theory/verification.md).
 struct PredictedTexture {
   double sa_nm = 0.0;
   double roughness_sq_nm = 0.0, correlation_length_um = 0.0;
-  double waviness_sq_nm = 0.0, waviness_length_um = 0.0;  ///< of the feed marks
+  double waviness_sq_nm = 0.0, waviness_length_um = 0.0;  ///< waviness due to feed marks
 };
 PredictedTexture predicted_texture(const fabrication::Job& job);
 
-/// The part that programs leave, moulded in it or cut directly. Where its elements are alike, a design file says it
-/// with the mean tilts of their facets; else every facet of a moulded part has a plane of its own.
+/// Part as machined, which is moulded in the workpiece or is the workpiece itself. If its elements are nearly equal,
+/// the part is described by the mean tilts of their facets. Otherwise, every facet of a moulded part has an individual
+/// plane.
 struct AsMachined {
-  /// Opening is positive; of a prism towards -x and +x of the part, of a cube corner in the order of its facets.
+  /// Mean tilts of the facets, positive if they open the element. Prism: facets towards -x and +x of the part. Cube
+  /// corner: in the order of its facets.
   std::vector<double> facet_tilt_arcmin;
-  std::optional<geometry::FacetPlanes> planes;
-  std::optional<ZonedPart> zones;  ///< only for a job with zones; then used instead of the two members above
+  std::optional<geometry::FacetPlanes> planes;  ///< individual planes of all facets; empty: mean tilts are used
+  /// Zones as machined, for a job with zones. They replace the two members above. Empty: a job without zones.
+  std::optional<ZonedPart> zones;
   double root_radius_um = 0.0, root_chamfer_um = 0.0;
   PredictedTexture texture;
-  std::vector<geometry::Scratch> scratches;  ///< that the chips of the tool's edge leave
+  std::vector<geometry::Scratch> scratches;  ///< scratches caused by chips in the tool's edge
   MachinedBody body;
   Warnings warnings;
 };
 
-/// \throw InputError if no element was cut whose facets could be measured
+/// Computes the part as machined.
+/// \throw InputError if the facets of no element could be measured
 AsMachined as_machined(const VerificationRun& run);
 
-/// The design file of it (retrace.design/1), for `retrace rre`. \param facets_file name of the table of its planes, if
-/// it has some
+/// Returns the part as the text of a design file (retrace.design/1), for `retrace rre`.
+/// \param facets_file name of the file with the facet planes, if there are any
 std::string as_machined_toml(const VerificationRun& run, const AsMachined& part, const std::string& facets_file);
 
 }  // namespace retrace::studies

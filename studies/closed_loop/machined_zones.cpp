@@ -74,7 +74,8 @@ std::string change_of(const char* key, const std::array<double, 3>& arcmin) {
   return fmt::format("surface.{}=[{}, {}, {}]", key, shortest(arcmin[0]), shortest(arcmin[1]), shortest(arcmin[2]));
 }
 
-/// Returns the cube corner that a zone of the job makes in the part, without the allowance for shrinkage.
+/// Returns the cube corner of a zone with its size in the part. The cube corner in the mould is larger, because of
+/// shrinkage.
 geometry::Element part_element(const fabrication::Job& job, std::size_t zone) {
   fabrication::Job part = job;
   part.workpiece.shrinkage_percent = 0.0;
@@ -102,14 +103,14 @@ void check_zone(const fabrication::Job& job, std::size_t zone, const DesignEleme
   }
 }
 
-/// Angles with which a zone of the design is cut, and deviations of its elements from these angles.
+/// Facet angles of a zone of the design.
 struct CutAngles {
-  std::optional<geometry::AngleErrors> asked;
-  ZoneTilts missed;
+  std::optional<geometry::AngleErrors> asked;  ///< angle errors that the job specifies
+  ZoneTilts missed;                            ///< deviations of the machined elements from these angles
 };
 
-/// Returns the angles for each zone of the design.
-/// \throw InputError at the zone of the job that does not agree with the design
+/// Collects the facet angles for each zone of the design.
+/// \throw InputError at a zone of the job that does not agree with the design
 std::vector<CutAngles> cut_angles(const fabrication::Job& job, const std::vector<ElementTilts>& elements,
                                   const DesignElements& designed, const geometry::ZonedSpec& spec) {
   std::vector<CutAngles> angles(spec.zones.size());
@@ -152,7 +153,7 @@ ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::pat
   std::size_t cut = 0;
   double spread_arcmin = 0.0;
   for (std::size_t z = 0; z < angles.size(); ++z) {
-    // Edges and random errors are not cut.
+    // Remove changes of [surface] from the zone, because programs do not cut edge radii and random errors.
     std::erase_if(part.changes[z], [](const std::string& change) {
       return change.find("surface.") != std::string::npos || change.find("partial_elements") != std::string::npos;
     });

@@ -14,17 +14,16 @@
 
 namespace retrace::studies {
 
-/// Tilts of the three facets of an element relative to the job, in arcmin. A positive tilt opens the facet. Empty if
-/// the element is not cut.
+/// Deviations of the three facets of an element from the tilts in the job, in arcmin. A positive value opens the facet.
+/// Empty if the element is not cut.
 using ElementTilts = std::optional<std::array<double, 3>>;
 
-/// Returns the zones of the design as machined, without partial elements. The facet angles of a zone are those of the
-/// job plus the mean tilts of its elements.
-/// \param elements tilts of each element, in the order of cut_elements()
+/// Returns the zones of the design as machined, without partial elements. The facet angles of a zone are the angles in
+/// the job plus the mean deviation of its elements.
+/// \param elements deviations of each element, in the order of cut_elements()
 /// \param warnings receives a warning about each deviation that the result does not represent
 /// \throw InputError if the job's design does not exist or has no zones, or if the job cuts an element that the design
 ///        does not have
-/// the design does not have
 ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
                          const std::vector<ElementTilts>& elements, Warnings& warnings);
 

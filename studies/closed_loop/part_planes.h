@@ -1,6 +1,6 @@
 #pragma once
 
-// The part that is moulded in a blank whose facets lie in planes of their own, wherever these planes come from.
+// Computes the part that is moulded in a blank, if each facet of the blank has an individual plane.
 
 #include <filesystem>
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace retrace::studies {
 
-/// What the part is made of: that of the job's design, or what is taken without one.
+/// Thickness and material of the part: from the design of the job, or default values without a design.
 struct MachinedBody {
   double thickness_mm = 2.0;
   std::string material = "PMMA";
@@ -27,21 +27,23 @@ struct MachinedBody {
   Substance substance() const;
 };
 
-/// The design that a job was made from, if it lies beside the job's file.
+/// Returns the design from which a job was made, or nothing if the file does not exist in the folder of the job.
 std::optional<Design> design_beside(const fabrication::Job& job, const std::filesystem::path& job_file);
 
 /// As that design says. \param warnings is told where it is missed
 MachinedBody machined_body(const fabrication::Job& job, const std::filesystem::path& job_file, Warnings& warnings);
 
-/// The elements of the job, all alike, or with a table of planes.
+/// Returns the specification of the job's elements.
+/// \param has_planes true: each facet has an individual plane; false: all elements are equal
 geometry::PartSpec machined_elements(const fabrication::Job& job, bool has_planes);
 
-/// The planes of the facets of an element as it was cut, in the workpiece frame, in the order of its groove; none: it
-/// is not cut.
+/// Planes of the facets of an element as cut, in the workpiece frame, in the order of the facets of its groove. Empty
+/// if the element is not cut.
 using ElementCutPlanes = std::vector<fabrication::CutPlane>;
 
-/// What they are in the part that is moulded in the blank. \param elements as cut_elements() has them
-/// \pre a mould; an element is cut
+/// Transforms the planes of cut facets to planes of the moulded part.
+/// \param elements planes of each element, in the order of cut_elements()
+/// \pre the job is a mould, and at least one element is cut
 geometry::FacetPlanes part_planes(const fabrication::Job& job, const std::vector<ElementCutPlanes>& elements);
 
 }  // namespace retrace::studies

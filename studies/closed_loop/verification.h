@@ -1,6 +1,6 @@
 #pragma once
 
-// The study behind `retrace verify`: reads a job with its NC programs and carries them out against the design.
+// Study of the command `retrace verify`: reads a job and its NC programs, simulates them and compares with the design.
 
 #include <optional>
 #include <string>
@@ -17,34 +17,36 @@
 
 namespace retrace::studies {
 
-/// What to verify.
+/// Input of a verification.
 struct VerificationRequest {
-  std::string job;                     ///< file
-  std::vector<std::string> programs;   ///< as fabrication::program_name() takes them, in the order in which they run
-  std::string dialect = "auto";        ///< a word of fabrication::kNcDialectWords, or told from the text
-  std::optional<double> tolerance_nm;  ///< of facet planes; without one fabrication::usual_tolerance_nm()
-  std::string standing;  ///< stage before which all was cut by the job's own program; empty: the blank stands
-  FileTexts texts = {};  ///< of job and programs that are given in place of being read
+  std::string job;                     ///< job file
+  std::vector<std::string> programs;   ///< names as for fabrication::program_name(), in the order of execution
+  std::string dialect = "auto";        ///< name in fabrication::kNcDialectWords; "auto": recognised from the text
+  std::optional<double> tolerance_nm;  ///< tolerance for facet planes; empty: fabrication::usual_tolerance_nm()
+  /// Name of a stage. All stages before it are assumed to be cut already, by the program of the job. Empty: the blank
+  /// is uncut.
+  std::string standing;
+  FileTexts texts = {};  ///< contents of files that are used instead of reading these files
 };
 
 struct VerificationRun {
   VerificationRequest request;
   fabrication::Job job;
   fabrication::Machine machine;
-  std::vector<fabrication::NcProgram> programs;  ///< as they were read, behind what made what stands
-  std::size_t standing = 0;                      ///< so many of the programs made it, and are not judged
+  std::vector<fabrication::NcProgram> programs;  ///< programs for the stages before, followed by the given programs
+  std::size_t standing = 0;                      ///< number of programs at the beginning that are not checked
   fabrication::Verification result;
   Warnings warnings;
 };
 
-/// Reads the job, its machine and the programs, and carries the programs out.
-/// \throw InputError for a file that cannot be read or understood, with its line
+/// Reads the job, its machine and the programs, and simulates the programs.
+/// \throw InputError, with file and line, for a file that cannot be read or understood
 VerificationRun run_verification(const VerificationRequest& request, const Cancellation* cancellation = nullptr);
 
-/// What the programs leave against the design, for a picture.
+/// Map of the height errors of the machined surface, for a picture.
 struct ErrorMap {
   fabrication::ErrorField field;
-  double shown_nm = 0.0;  ///< heights beyond +- this are drawn as this
+  double shown_nm = 0.0;  ///< range of the colour scale: heights beyond +- this value are clamped
 };
 
 ErrorMap error_map(const VerificationRun& run);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The study behind `retrace fabricate`: plans a job and tells the tool path through one element.
+// Study of the command `retrace fabricate`: plans a job, and computes the tool path through one element.
 
 #include <filesystem>
 #include <string>
@@ -17,11 +17,11 @@ namespace retrace::studies {
 struct FabricationRequest {
   std::filesystem::path job_file;
   std::string dialect = "rs274ngc";
-  FileTexts texts = {};  ///< of files that are given in place of being read
+  FileTexts texts = {};  ///< contents of files that are used instead of reading these files
   fabrication::PlanOptions options;
 };
 
-/// A job as a plan and its programs in one dialect.
+/// Planned job, with its programs in one dialect.
 struct FabricationResult {
   fabrication::Job job;
   fabrication::Machine machine;
@@ -33,12 +33,13 @@ struct FabricationResult {
   std::string program_file(std::size_t k) const { return plan.programs[k].name + file_ending; }
 };
 
-/// Reads and plans a job. \throw InputError
+/// Reads and plans a job.
+/// \throw InputError for an invalid job
 FabricationResult fabricate(const FabricationRequest& request);
 
-/// The way of the tool through one element. Of a prism in the section across its root: u to the side of facet 2, z up,
-/// in mm from the root. Of a cube corner in the plane of facet 1: u along its level line towards its second dihedral
-/// edge, z up its slope, in mm from the apex.
+/// Move of the tool in one element, in a section. For a prism, the section is across the root: u points to the side of
+/// facet 2 and z up, measured from the root. For a cube corner, the section is the plane of facet 1: u points along its
+/// horizontal line towards its second dihedral edge and z up the facet, measured from the apex.
 struct SectionMove {
   fabrication::Motion motion = fabrication::Motion::translate;
   double from_u_mm = 0.0;
@@ -47,11 +48,11 @@ struct SectionMove {
   double to_z_mm = 0.0;
 };
 
-/// All cutting moves of the first element that is cut, those of roughing stages or of the others; of a cube corner
-/// those on facet 1.
+/// Returns all cutting moves of the first element. For a cube corner, returns only the moves on facet 1.
+/// \param roughing true: moves of roughing stages; false: moves of all other stages
 std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing);
 
-/// For each element that is cut its place in the order of cutting, from 1, within the first stage of its orientation.
+/// Returns, for each element, its number in the order of cutting, from 1, in the first stage of its orientation.
 std::vector<std::int64_t> cutting_places(const FabricationResult& result);
 
 }  // namespace retrace::studies

@@ -45,12 +45,14 @@ bool is_dmc(const JobRequest& request) {
   return strategy_of(request.strategy) == fabrication::Strategy::dmc;
 }
 
-/// Diamond micro chiseling needs a head that tilts: the ideal machine is another one.
+/// Returns the name of the machine. Diamond micro chiseling needs a tilting head, so "ideal" is replaced by
+/// "ideal-dmc".
 std::string machine_of(const JobRequest& request) {
   return is_dmc(request) && request.machine == "ideal" ? "ideal-dmc" : request.machine;
 }
 
-/// \throw InputError at `where` for a cube corner that is canted
+/// Checks that an element is not canted, because canted cube corners cannot be cut.
+/// \throw InputError at `where` if it is canted
 void check_upright(const geometry::Element& element, const InputLocation& where) {
   const double cant_deg = geometry::cant_of(element).deg;
   if (cant_deg != 0.0)
@@ -59,8 +61,8 @@ void check_upright(const geometry::Element& element, const InputLocation& where)
                                  where.key == "element.cant_deg" ? "" : "element.cant_deg ", shortest(cant_deg)));
 }
 
-/// The element of the design, its dihedral error included if it is a prism.
-/// \throw InputError for one that the strategy does not cut
+/// Returns the element of the design. The dihedral error of a prism is included in its apex angle.
+/// \throw InputError for an element that the strategy does not cut
 geometry::Element element_of(const Design& design, const JobRequest& request) {
   if (design.part().array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
@@ -101,7 +103,7 @@ void warn_of_errors(const PartSpec& part, const std::string& name, MadeJob& made
                                                name, is_prism(part) ? "facet tilts, " : "")});
 }
 
-/// Partial elements of the array, whether or not a mask is to leave out others.
+/// Returns the number of partial elements of the array, regardless of a mask.
 std::int64_t partial_elements(const PartSpec& part) {
   if (!part.substrate && part.array.arrangement != Arrangement::offset &&
       part.array.arrangement != Arrangement::honeycomb && part.array.arrangement != Arrangement::triangular)
@@ -131,7 +133,9 @@ void add_warnings(const Design& design, MadeJob& made) {
     made.job.notes.push_back("cavities are triangular: those at the border reach beyond the elements' outlines");
 }
 
-/// \throw InputError for zones that differ in more than sizes, angles, places and turns of cube corners
+/// Checks that all zones can be cut in one job. Zones may differ in size, angles, positions and rotation of their cube
+/// corners.
+/// \throw InputError for zones with other differences, or for prisms
 void check_zones(const Design& design, const JobRequest& request) {
   const std::vector<geometry::PartZone>& zones = design.zoned()->spec.zones;
   for (std::size_t z = 0; z < zones.size(); ++z) {
@@ -145,7 +149,7 @@ void check_zones(const Design& design, const JobRequest& request) {
   check_cuts_zones(request);
 }
 
-/// Rounds to a step that is far below the increments of controls.
+/// Rounds a length to a multiple of 1e-9 mm, which is far below the increments of controls.
 double rounded_mm(double mm) {
   constexpr double kStepsPerMm = 1e9;
   return std::round(mm * kStepsPerMm) / kStepsPerMm;
@@ -156,7 +160,8 @@ double aperture_mm(const geometry::Element& element) {
   return hexagonal != nullptr ? hexagonal->aperture_mm : std::get<geometry::TriangularCube>(element).aperture_mm;
 }
 
-/// Adds to the job the elements of each zone. Rotated triangles form a separate zone of the job.
+/// Adds the elements of each zone of the design to the job. Elements of a zone with different rotations form separate
+/// zones of the job.
 void add_zones(const Design& design, MadeJob& made) {
   Job& job = made.job;
   const geometry::ZonedSpec spec = zones_of(design);
@@ -198,7 +203,7 @@ void add_zones(const Design& design, MadeJob& made) {
     made.warnings.push_back({"partial_elements_not_cut", cut_warning(design.source_name(), made.partial_elements)});
 }
 
-/// Warns about the parts of elements that are removed by cavities of another zone.
+/// Adds a warning if cavities remove parts of elements in other zones.
 /// \pre the job has zones and is valid
 void tell_overcut(MadeJob& made) {
   Job& job = made.job;

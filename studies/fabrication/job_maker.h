@@ -1,6 +1,6 @@
 #pragma once
 
-// Makes a fabrication job of a design: which elements are cut, with which tool, machine and process.
+// Makes a fabrication job from a design, with a tool, a machine and a process.
 
 #include <filesystem>
 #include <optional>
@@ -14,12 +14,12 @@
 
 namespace retrace::studies {
 
-/// What a design does not say of its fabrication.
+/// Properties of a job that a design does not contain.
 struct JobRequest {
-  std::string machine = "ideal";  ///< a shipped one, or a file
+  std::string machine = "ideal";  ///< name of a shipped machine, or a machine file
   double tool_width_mm = 0.0;
   std::string strategy = "two-step";
-  std::string process = "thesis-acrylic";  ///< a shipped one, or a file
+  std::string process = "thesis-acrylic";  ///< name of a shipped process, or a process file
   std::string workpiece = "mould";
   double shrinkage_percent = 0.0;
 };
@@ -32,19 +32,21 @@ struct MadeJob {
   Warnings warnings;
 };
 
-/// What can be told of a request without a design: its words, machine and process. \throw InputError
+/// Checks the strategy, workpiece, machine and process of a request, which do not depend on a design.
+/// \throw InputError for an invalid value
 void check_making(const JobRequest& request);
 
 /// Checks that the strategy supports designs with zones.
 /// \throw InputError at --strategy if it does not
 void check_cuts_zones(const JobRequest& request);
 
-/// Whether the strategy cuts the design's element. \throw InputError at --strategy, and for designs that nothing cuts
+/// Checks that the strategy can cut the elements of the design.
+/// \throw InputError at --strategy, or for a design that no strategy can cut
 void check_element(const Design& design, const JobRequest& request);
 
-/// Returns the fabrication job of a design. The design is an array of elements or has zones of cube corners. The job
-/// contains the dihedral errors of the design and, for cube corners, its facet tilts. It does not contain the random
-/// errors, edge radii and scratches of [surface], and it omits partial elements. Warnings name what is not cut.
+/// Returns the fabrication job of a design, which is an array of elements or has zones of cube corners. The job
+/// contains the dihedral errors of the design and, for cube corners, its facet tilts. It omits partial elements, and
+/// the random errors, edge radii and scratches of [surface]. Warnings list all omissions.
 /// \throw InputError for designs and requests that cannot be cut
 MadeJob make_job(const Design& design, const JobRequest& request);
 

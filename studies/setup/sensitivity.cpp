@@ -88,7 +88,7 @@ std::vector<Vec3> edge_ends(const Machine& machine, const EdgeCut& cut, double h
   return {back.point(tip - half), back.point(tip + half)};
 }
 
-/// How far the edge of a facet's last cut ends over another facet that was cut too.
+/// Computes how far the last cut of a facet ends above or below another facet.
 void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut& other, double half_width_mm,
                const SetupQuantity& quantity, Sensitivity& row) {
   const EdgeCut& cut = ending.cut().cut;
@@ -103,8 +103,8 @@ void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut&
   }
 }
 
-/// Returns points of the tool in the workpiece frame: the ends of the cutting edge at the root and at the rims of both
-/// facets, and the points of the tool that are one facet length above these ends at the root.
+/// Returns points of the tool in the workpiece frame. They are both ends of the cutting edge at the root, both ends at
+/// the rims of both facets, and points at a height of one facet length above the ends at the root.
 /// \param machine machine that executes the axis positions
 /// \param planned machine for which the axis positions were planned
 std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, const PlacedCut& ending,
@@ -126,8 +126,8 @@ std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, co
   return places;
 }
 
-/// Computes by how much the ends of the tool cut into the walls. A displacement of the edge along the root moves one of
-/// its ends into a wall.
+/// Computes how far the ends of the tool cut into the walls per unit of a quantity. A displacement of the edge along
+/// the root moves one of its ends into a wall.
 void tell_walls(const Machine& machine, const PlacedCut& ending, double half_width_mm, const SetupQuantity& quantity,
                 Sensitivity& row) {
   if (machine.tilt == Tilt::head) return;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a unit of every quantity of the set-up does to the facets of a job, to its chips and to its roots.
+// Computes the sensitivity of facets, chips and roots to each quantity of the set-up.
 
 #include <cstddef>
 #include <string>
@@ -12,46 +12,47 @@
 
 namespace retrace::studies {
 
-/// Facets of one number of elements that stand alike, the same one of each.
+/// Kind of facet: facets with the same number in elements of the same orientation.
 struct FacetKind {
-  std::size_t facet = 0;  ///< from 0
-  bool rotated = false;   ///< of elements that are rotated
+  std::size_t facet = 0;  ///< index of the facet, from 0
+  bool rotated = false;   ///< true: facets of rotated elements
 
-  std::string name() const;  ///< "facet 1", "facet 1 of turned elements"
+  std::string name() const;  ///< name such as "facet 1" or "facet 1 of turned elements"
   bool operator==(const FacetKind&) const = default;
 };
 
-/// What a um or an arcsec does to the facets of a kind: to the one whose plane moves farthest.
+/// Change of the facets of one kind per um or arcsec, for the facet whose plane moves farthest.
 struct FacetEffect {
-  double distance_nm = 0.0;   ///< of its middle, along its outward normal: positive leaves material
-  double up_arcmin = 0.0;     ///< positive where it rises away from the root, which closes the groove
-  double along_arcmin = 0.0;  ///< positive where it rises along the root, of a cube corner along its level line
-  double farthest_nm = 0.0;   ///< of its corners: the largest distance, signed
+  double distance_nm = 0.0;   ///< displacement of the facet's center along its outward normal; positive leaves material
+  double up_arcmin = 0.0;     ///< tilt, positive if the facet rises away from the root, which narrows the groove
+  double along_arcmin = 0.0;  ///< tilt, positive if the facet rises along the root (cube corner: horizontal line)
+  double farthest_nm = 0.0;   ///< displacement of the corner that moves farthest, with its sign
 };
 
 struct Sensitivity {
   const fabrication::SetupQuantity* quantity = nullptr;
-  std::vector<FacetEffect> facets;  ///< by Sensitivities::kinds
-  double chip_nm = 0.0;       ///< by which the chip of a cut changes most, from how the material was left before it
-  double root_left_nm = 0.0;  ///< at most, that an end of the edge stops short of another facet
-  double root_cut_nm = 0.0;   ///< at most, that it goes below one
+  std::vector<FacetEffect> facets;  ///< effects in the order of Sensitivities::kinds
+  double chip_nm = 0.0;             ///< maximum change of the chip thickness of a cut
+  double root_left_nm = 0.0;        ///< maximum distance by which an end of the edge ends above another facet
+  double root_cut_nm = 0.0;         ///< maximum depth by which an end of the edge goes below another facet
   /// Maximum displacement, along the root, of an end of the edge or of the tool above this end.
   double wall_nm = 0.0;
 
-  double farthest_nm() const;  ///< of all facets, unsigned
+  double farthest_nm() const;  ///< largest absolute displacement of all facets
   double largest_nm() const;   ///< maximum change of facets, chips and roots; walls are excluded
 };
 
 struct Sensitivities {
   std::vector<FacetKind> kinds;
-  std::vector<Sensitivity> rows;  ///< the largest first
+  std::vector<Sensitivity> rows;  ///< sorted by size, the largest first
 };
 
-/// Elements in which a set-up shows most: of those that stand alike the one in the middle and those farthest out.
-/// Ascending.
+/// Returns the elements in which errors of the set-up have the largest effect. For each orientation, they are the
+/// element in the center and the outermost elements. The indices are ascending.
 std::vector<std::size_t> outermost_elements(const std::vector<fabrication::CutElement>& elements);
 
-/// Of the elements that are outermost. \param plan of the job on the machine
+/// Computes the sensitivities of the outermost elements.
+/// \param plan plan of the job on the machine
 Sensitivities sensitivities(const fabrication::Job& job, const fabrication::Machine& machine,
                             const fabrication::Plan& plan);
 

@@ -28,7 +28,7 @@ struct BlankSetup {
   double deepest_mm = 0.0;                           ///< root or apex below the face
   double stock_mm = 0.0;                             ///< by which the face stands over the rims, on a base
   std::string base;                                  ///< what its face is like, on a base; empty: flat
-  std::vector<std::string> zones;                    ///< one for each zone: description of the elements that are cut
+  std::vector<std::string> zones;                    ///< for each zone: description of its elements
   /// Blank and fixture together: from the top of what the machine's file has under the workpiece to the zero; none
   /// where it has nothing.
   std::optional<double> fixture_height_mm;

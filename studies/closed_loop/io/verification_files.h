@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents and tables of `retrace verify`.
+// Writes the JSON document and the table of `retrace verify`.
 
 #include <string>
 
@@ -8,10 +8,10 @@
 
 namespace retrace::studies {
 
-/// The document `retrace.verification/1`.
+/// Returns the document `retrace.verification/1`.
 std::string verification_json(const VerificationRun& run, double elapsed_s);
 
-/// A short table for people.
+/// Returns a short table for the terminal.
 std::string verification_table(const VerificationRun& run);
 
 }  // namespace retrace::studies
