@@ -44,7 +44,7 @@ void ControlCheck::begin(const NcProgram& program) {
   wrong_.clear();
   if (program.coordinate_system != 0 && program.coordinate_system != control_.coordinate_system)
     findings_.add("setup", 0,
-                  fmt::format("the program speaks of coordinate system {}, the machine's axes are those of {}",
+                  fmt::format("the program uses coordinate system {}, the machine's axes belong to {}",
                               program.coordinate_system, control_.coordinate_system),
                   program.coordinate_system, control_.coordinate_system);
 }
@@ -69,7 +69,7 @@ void ControlCheck::way(const NcSettings& settings, const NcMotion& motion) {
       unknown += fmt::format("{}{}", unknown.empty() ? "" : ", ", kNcAxisLetters[axis]);
   findings_.add(
       "unknown_position", motion.place.line,
-      fmt::format("Z goes below {} mm while the program does not know where {} is", shortest(rule_.safe_z_mm), unknown),
+      fmt::format("Z goes below {} mm while the position of {} is not known", shortest(rule_.safe_z_mm), unknown),
       motion.to.z_mm, rule_.safe_z_mm);
 }
 
@@ -86,10 +86,10 @@ void ControlCheck::first_move(const NcSettings& settings, const NcMotion& motion
   if ((motion.absolute | motion.shortest) != kZBit || motion.to.z_mm < safe_mm - z_slack_mm_)
     findings_.add("first_move", motion.place.line,
                   std::isfinite(safe_mm)
-                      ? fmt::format("the first move must be of Z alone, to {} mm or higher: nothing is known of where "
-                                    "the tool stands",
+                      ? fmt::format("the first move must move only Z, to {} mm or higher, because the position of the "
+                                    "tool is not known",
                                     shortest(safe_mm))
-                      : "the first move must be of Z alone: nothing is known of where the tool stands",
+                      : "the first move must move only Z, because the position of the tool is not known",
                   motion.to.z_mm, std::isfinite(safe_mm) ? safe_mm : 0.0);
 }
 
@@ -98,11 +98,11 @@ void ControlCheck::stop(const NcSettings& settings, const AxisPositions& at, con
     if (!holds && has_moved_) findings_.add("unsafe_stop", place.line, std::move(message));
   };
   ask((known_ & rule_.axes) == rule_.axes && at.z_mm >= rule_.safe_z_mm - z_slack_mm_,
-      fmt::format("the program stops while Z stands at {} mm, must be {} mm or higher", shortest(at.z_mm),
+      fmt::format("the program stops while Z is at {} mm, it must be at {} mm or higher", shortest(at.z_mm),
                   shortest(rule_.safe_z_mm)));
   const auto is_at_zero = [](double deg) { return std::abs(std::remainder(deg, 360.0)) < kSlack; };
   ask(is_at_zero(at.a_deg) && is_at_zero(at.b_deg) && is_at_zero(at.c_deg),
-      "the program stops while the rotary axes do not stand at 0, where the operator works");
+      "the program stops while the rotary axes are not at 0, where the operator works");
   ask(!settings.mist_on.value_or(false), "the program stops with the mist on");
   const NcSpindle spindle = settings.spindle.value_or(NcSpindle::stopped);
   ask(spindle == NcSpindle::stopped || spindle == NcSpindle::stopped_by_text,
@@ -116,7 +116,7 @@ void ControlCheck::cut(const NcSettings& settings, const NcPlace& place) {
   if (turns_wrong("blending", rule_.may_blend || settings.exact_stop.value_or(false)))
     findings_.add("blending", place.line, "the tool cuts while blocks are blended: corners are rounded");
   if (turns_wrong("mist", !rule_.needs_mist || settings.mist_on.value_or(false)))
-    findings_.add("mist", place.line, "the tool cuts without the mist that the process asks for");
+    findings_.add("mist", place.line, "the tool cuts without the mist that the process requires");
   spindle(settings, place);
 }
 
@@ -146,7 +146,7 @@ void ControlCheck::rest(double seconds, const NcPlace& place) {
   const bool is_stop = std::isinf(seconds);
   findings_.add("dwell_too_long", place.line,
                 is_stop ? "the program stops for the operator while the tool is in the material"
-                        : fmt::format("the tool rests in the material for {} s, at most {} are allowed",
+                        : fmt::format("the tool dwells in the material for {} s, at most {} s are allowed",
                                       fixed(rested_s_, 3), fixed(rule_.most_rest_s, 3)),
                 is_stop ? 0.0 : rested_s_, rule_.most_rest_s);
 }
@@ -219,12 +219,12 @@ void ControlCheck::words_of_axes(const NcMotion& motion) {
     const bool is_modulo = control_.modulo_axes.find(letter) != std::string::npos;
     if (is_modulo && has_bit(motion.absolute, letter) && (to[axis] < 0.0 || to[axis] >= turn_deg))
       findings_.add("word", motion.place.line,
-                    fmt::format("{} is a modulo axis: a place of {} degrees without DC() is an alarm", letter,
+                    fmt::format("{} is a modulo axis: a position of {} degrees without DC() causes an alarm", letter,
                                 shortest(to[axis])),
                     to[axis], turn_deg);
     if (!is_modulo && has_bit(motion.shortest, letter))
       findings_.add("word", motion.place.line,
-                    fmt::format("DC() is asked of {}, which is none of the machine's modulo_axes", letter));
+                    fmt::format("DC() is used for {}, which is not one of the machine's modulo_axes", letter));
   }
 }
 
@@ -294,7 +294,7 @@ void ControlCheck::feed(const NcMotion& motion, double process_mm_per_min) {
   };
   if (is_too_fast(feed, process_mm_per_min, motion)) find("feed_too_high", "the process allows", process_mm_per_min);
   if (is_too_fast(kLeastShare * process_mm_per_min, feed, motion))
-    find("feed_too_low", "the tool rubs below a tenth of the process's, of", kLeastShare * process_mm_per_min);
+    find("feed_too_low", "the tool rubs below a tenth of the process's feed,", kLeastShare * process_mm_per_min);
 }
 
 }  // namespace retrace::fabrication

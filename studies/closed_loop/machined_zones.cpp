@@ -139,9 +139,12 @@ ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::pat
   const InputLocation at{"", 0, "--as-machined"};
   const std::optional<Design> design = design_beside(job, job_file);
   if (!design)
-    throw InputError(at, "the regions of zones are those of the job's design, which must be where the job names it");
+    throw InputError(
+        at,
+        "the regions of the zones are taken from the job's design, but this file does not exist at the path "
+        "that the job gives");
   if (!design->zoned())
-    throw InputError(at, "the regions of zones are those of the job's design, which has no [[zone]]");
+    throw InputError(at, "the regions of the zones are taken from the job's design, but it has no [[zone]]");
   ZonedPart part = *design->zoned();
   part.spec = zones_of(*design);
   const DesignElements designed(part.spec);

@@ -326,9 +326,9 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
                                                geometry::prism_block(job.array, fabrication::prism_of(job)).counts,
                                                design.where("array.mask"));
   if (job.strategy == fabrication::Strategy::dmc && request.workpiece != fabrication::kWorkpieceWords[0])
-    throw InputError(
-        {"", 0, "--workpiece"},
-        "must be mould for cube corners, whose cavities are not their elements, got " + in_quotes(request.workpiece));
+    throw InputError({"", 0, "--workpiece"},
+                     "must be mould for cube corners, because the cavities differ from the elements, got " +
+                         in_quotes(request.workpiece));
   fabrication::check_job(job, {design.source_name(), 0, ""});
   made.elements = static_cast<std::int64_t>(fabrication::cut_elements(job).size());
   design.zoned() ? tell_overcut(made) : add_warnings(design, made);

@@ -163,7 +163,7 @@ TEST_F(ZoneJobCommand, AsMachinedNeedsTheDesignOfTheJob) {
   folder_.write("other.toml", text.replace(text.find(name), name.size(), "design = \"gone.toml\""));
   const Outcome gone = retrace(folder_, {"verify", "other.toml", "nc/program.ngc", "--as-machined", "part.toml"});
   EXPECT_EQ(gone.code, 2);
-  EXPECT_NE(gone.err.find("--as-machined: the regions of zones are those of the job's design"), std::string::npos)
+  EXPECT_NE(gone.err.find("--as-machined: the regions of the zones are taken from the job's design"), std::string::npos)
       << gone.err;
   EXPECT_FALSE(exists("part.toml"));
 }

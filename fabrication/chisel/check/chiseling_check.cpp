@@ -85,7 +85,8 @@ void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
     const double limit_mm = short_limit_mm(cut, g);
     if (short_mm > limit_mm)
       find("chip_not_separated", cut.place, cut.element,
-           fmt::format("the tip stops {} um short of its layer's apex: the chip hangs on", fixed(1e3 * short_mm, 3)),
+           fmt::format("the tip stops {} um above the apex of its layer: the chip does not separate",
+                       fixed(1e3 * short_mm, 3)),
            1e3 * short_mm, 1e3 * limit_mm);
   }
   const double limit_mm = layer_limit_mm(cut.element);
@@ -94,7 +95,7 @@ void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
   const bool begins_layer = tip_mm < *least - limit_mm;
   if (begins_layer && hangs_mm > limit_mm)
     find("chip_not_separated", cut.place, cut.element,
-         fmt::format("facet {} was not cut as deep as the others before the next layer: its chip hangs on",
+         fmt::format("facet {} was not cut as deep as the others before the next layer: its chip does not separate",
                      most - state.left_mm.begin() + 1),
          1e3 * hangs_mm, 1e3 * limit_mm);
 }
@@ -107,11 +108,11 @@ void ChiselingCheck::close() {
   if (!open_) return;
   if (!is_long_enough(open_->rest_s))
     find("missing_dwell", open_->place, open_->element,
-         fmt::format("the cut turns at the apex without its dwell of {} s", shortest(process_.dwell_s)), 0,
-         process_.dwell_s);
+         fmt::format("the cut changes its direction at the apex without the dwell of {} s", shortest(process_.dwell_s)),
+         0, process_.dwell_s);
   if (!open_->went_up)
     find("chip_not_separated", open_->place, open_->element,
-         "the cut does not go up its second edge: its chip hangs on");
+         "the cut does not go up its second edge: its chip does not separate");
   State& state = states_[open_->element];
   state.left_mm[open_->facet] = std::min(state.left_mm[open_->facet], open_->tip_mm[open_->facet]);
   state.last = open_->place;
@@ -125,8 +126,9 @@ void ChiselingCheck::finish() {
     const auto [least, most] = std::minmax_element(state.left_mm.begin(), state.left_mm.end());
     const double limit_mm = layer_limit_mm(i);
     if (state.last.line == 0 || *most - *least <= limit_mm) continue;
-    find("layer_unfinished", state.last, i, "the last layer was not cut on all three facets: its chip hangs on",
-         1e3 * (*most - *least), 1e3 * limit_mm);
+    find("layer_unfinished", state.last, i,
+         "the last layer was not cut on all three facets: its chip does not separate", 1e3 * (*most - *least),
+         1e3 * limit_mm);
   }
 }
 

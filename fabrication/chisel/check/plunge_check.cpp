@@ -114,7 +114,8 @@ void PlungeCheck::check_chip() {
   const bool meets = before && before->tip_mm[f] <= open_->tip_mm[f] + tolerance_mm;
   if (meets) return;
   find("chip_not_separated", open_->place, open_->element,
-       "the plunge neither passes the other facet nor meets a cut along it that does: its chip hangs on",
+       "the plunge does not pass the other facet, and no cut along that facet passes this one: its chip does not "
+       "separate",
        1e3 * (open_->tip_mm[g] - std::min(state.surface_mm[g], 1e3)), 0.0);
 }
 

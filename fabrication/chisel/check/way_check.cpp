@@ -63,16 +63,19 @@ void WayCheck::turn(const NcMotion& motion) {
   }
   const double clearance_mm = kClearanceShare * job_.process.rotary_clearance_mm;
   if (machine_.tilt == Tilt::table && tip.z() < highest_mm + clearance_mm)
-    findings_.add("turn_too_low", motion.place.line,
-                  fmt::format("the turning blank comes up to Z {} mm while the tool stands at Z {} mm, must keep {} mm",
-                              fixed(highest_mm, 3), fixed(tip.z(), 3), fixed(clearance_mm, 3)),
-                  tip.z(), highest_mm + clearance_mm);
+    findings_.add(
+        "turn_too_low", motion.place.line,
+        fmt::format("the rotating blank reaches Z {} mm while the tool is at Z {} mm, the clearance must be at "
+                    "least {} mm",
+                    fixed(highest_mm, 3), fixed(tip.z(), 3), fixed(clearance_mm, 3)),
+        tip.z(), highest_mm + clearance_mm);
   // The blank remains horizontal. A tilting head rotates the tool about B, so the tip must stay above the blank's face.
   if (machine_.tilt == Tilt::head && lowest_tip_mm < clearance_mm)
-    findings_.add("turn_too_low", motion.place.line,
-                  fmt::format("the tip comes to {} mm over the blank's face while the axes turn, must keep {} mm",
-                              fixed(lowest_tip_mm, 3), fixed(clearance_mm, 3)),
-                  lowest_tip_mm, clearance_mm);
+    findings_.add(
+        "turn_too_low", motion.place.line,
+        fmt::format("the tip is {} mm above the blank's face while the axes rotate, at least {} mm are required",
+                    fixed(lowest_tip_mm, 3), fixed(clearance_mm, 3)),
+        lowest_tip_mm, clearance_mm);
 }
 
 /// Checks a rotary move whose start position is not known. Only the safe Z position of the machine is clear of all
@@ -80,10 +83,11 @@ void WayCheck::turn(const NcMotion& motion) {
 void WayCheck::turn_from_anywhere(const NcMotion& motion) {
   const double safe_mm = machine_.first_z_mm();
   if (motion.from.z_mm < safe_mm - rounding_slack(motion, 'Z'))
-    findings_.add("turn_too_low", motion.place.line,
-                  fmt::format("the axes turn from where they happen to be while Z stands at {} mm, below {} mm",
-                              fixed_apart(motion.from.z_mm, safe_mm, 3), shortest(safe_mm)),
-                  motion.from.z_mm, safe_mm);
+    findings_.add(
+        "turn_too_low", motion.place.line,
+        fmt::format("rotary axes with unknown positions move while Z is at {} mm, which must be at least {} mm",
+                    fixed_apart(motion.from.z_mm, safe_mm, 3), shortest(safe_mm)),
+        motion.from.z_mm, safe_mm);
 }
 
 /// Returns sampled positions of a rotary move. If two axes move, each axis may move at its own speed. All combinations

@@ -177,7 +177,7 @@ class CoverageCheck {
     const bool is_wide = step_mm > path_.feed_mm + kPlacesMm;
     if (is_wide && !was_wide_)
       add("feed_step", pass, i,
-          fmt::format("the cut lies {} um from the one before it, the feed is {}",
+          fmt::format("the distance to the previous cut is {} um, at most the feed of {} um is allowed",
                       fixed_apart(1e3 * step_mm, 1e3 * path_.feed_mm, 3), fixed(1e3 * path_.feed_mm, 3)),
           step_mm, path_.feed_mm);
     was_wide_ = is_wide;
