@@ -1,6 +1,6 @@
 #pragma once
 
-// Turned parts as data: freeform surface, tool, path, machine and tolerances.
+// Data of a turned part: freeform surface, tool, path, machine and tolerances.
 
 #include <optional>
 #include <string>
@@ -13,17 +13,17 @@
 
 namespace retrace::fabrication::turning {
 
-/// A part to be turned: its surface, the tool, the path, the machine and what is asked of the result.
+/// Part to be turned: its surface, the tool, the path, the machine and the tolerances.
 struct TurnedPart {
   std::string title;
   geometry::FreeformSurface surface;
   TurningTool tool;
-  bool skew_is_least = false;  ///< the file asks for the least skew that clears; `tool` has it
+  bool skew_is_least = false;  ///< true: the file requests the minimum skew, which `tool` contains
   PathOptions path;
   TurningMachine machine;
   double form_tolerance_nm = 10.0;
   std::size_t map_pixels = 101;
-  std::optional<double> mesh_thickness_mm;  ///< of what is moulded in it, as a mesh; nothing: no mesh
+  std::optional<double> mesh_thickness_mm;  ///< thickness of the moulded part in the mesh; empty: no mesh is written
   int mesh_rings = 100;
   Warnings warnings;
 };

@@ -1,7 +1,6 @@
 #pragma once
 
-// Turning tools as mounted, and whether they clear a surface: clearance of the flank and sharp arc of the nose at every
-// slope.
+// Turning tools as mounted. Computes the clearance of the flank and the sharp arc of the nose that a surface requires.
 
 #include <functional>
 #include <optional>
@@ -16,17 +15,17 @@
 
 namespace retrace::fabrication::turning {
 
-/// A diamond with a round nose and a conical flank, as it is mounted.
+/// Diamond tool with a round nose and a conical flank, as mounted.
 struct TurningTool {
   double nose_radius_mm = 0.2;
-  double window_deg = 120.0;    ///< angle of the arc that is sharp (its sweep), symmetric about the tool's axis
-  double clearance_deg = 12.0;  ///< of the conical flank, against the normal of the rake face
-  double rake_deg = 0.0;        ///< positive: the rake face leans back
-  double skew_deg = 0.0;        ///< turn of the tool about its shank, from the cutting direction towards outwards
+  double window_deg = 120.0;    ///< angle of the sharp arc (sweep), symmetric about the axis of the tool
+  double clearance_deg = 12.0;  ///< clearance angle of the conical flank, relative to the normal of the rake face
+  double rake_deg = 0.0;        ///< rake angle; positive: the rake face is inclined backwards
+  double skew_deg = 0.0;        ///< rotation of the tool about its shank, from the cutting direction outwards
 };
 
-/// What A. Sohn and N. Naples tried with good finish (Single-point diamond turning of features with large azimuthal
-/// slope, Fig. 10).
+/// Range of rake and skew angles that gave a good finish in published tests (A. Sohn and N. Naples, Single-point
+/// diamond turning of features with large azimuthal slope, Fig. 10).
 inline constexpr double kTriedRakeLowDeg = -45.0;
 inline constexpr double kTriedRakeHighDeg = 18.0;
 inline constexpr double kTriedSkewDeg = 60.0;
@@ -34,30 +33,32 @@ inline constexpr double kTriedSkewDeg = 60.0;
 /// Remarks on rake and skew outside of what was tried.
 Warnings tool_warnings(const TurningTool& tool);
 
-/// Directions of the tool in cylindrical components of the part: outward, along the cut, up.
+/// Directions of the tool, in cylindrical components of the part: outward, along the cut, up.
 struct ToolFrame {
-  geometry::Vec3 rake_normal;  ///< t, out of the rake face, in the direction of the cut
-  geometry::Vec3 across;       ///< s, along the edge at its lowest point
-  geometry::Vec3 up;           ///< u = from the lowest point to the middle of the nose, in the rake face
+  geometry::Vec3 rake_normal;  ///< t, normal out of the rake face, in the direction of the cut
+  geometry::Vec3 across;       ///< s, direction along the edge at its lowest point
+  geometry::Vec3 up;           ///< u, direction from the lowest point to the center of the nose, in the rake face
 };
 ToolFrame tool_frame(const TurningTool& tool);
 
-/// How a tool stands to a surface where it touches it.
+/// Requirements on the tool at a point of contact.
 struct Contact {
-  double clearance_needed_deg = 0.0;  ///< asin(n . t): the conical clearance must not be less
-  double window_angle_deg = 0.0;      ///< of the touching point on the nose, from its lowest point; sign as `across`
+  double clearance_needed_deg = 0.0;  ///< minimum conical clearance angle: asin(n . t)
+  double window_angle_deg = 0.0;  ///< angle of the point of contact on the nose, from its lowest point towards `across`
 };
 
-/// The vector test: the surface's normal n against the rake normal t. The flank's line behind the touching point,
-/// -t cos a + m sin a, m the part of n in the rake face, stays above the surface as long as n . t <= sin a.
-/// \param normal unit, out of the material, in the same components as ToolFrame
+/// Compares the surface normal n with the rake normal t. The line of the flank behind the point of contact has the
+/// direction -t cos a + m sin a, where m is the component of n in the rake face. It is above the surface if
+/// n . t <= sin a.
+/// \param normal unit normal out of the material, in the components of ToolFrame
 Contact contact_of(const ToolFrame& frame, const geometry::Vec3& normal);
 
-/// asin(sin a / cos skew): the steepest fall along the cut that a tool with that clearance can follow (Sohn, Naples,
-/// eq. 1): the vector test for zero rake and a surface without radial slope. \pre sin a <= cos skew
+/// Returns the maximum slope along the cut that a tool with a given clearance can follow: asin(sin a / cos skew) (Sohn,
+/// Naples, eq. 1). It is the result of contact_of() for zero rake and a surface without radial slope.
+/// \pre sin a <= cos skew
 Angle clearance_along_cut(Angle clearance, Angle skew);
 
-/// The largest of both over a surface.
+/// Maximum requirements on the tool over a surface.
 struct ClearanceFigures {
   double clearance_needed_deg = -90.0;
   geometry::Vec2 clearance_at_mm = geometry::Vec2::Zero();
@@ -69,20 +70,20 @@ struct ClearanceFigures {
   }
 };
 
-/// Where a tool touches: a place of the part, its outward and cutting direction, the surface's slopes.
+/// Point of contact on the part, and the slopes of the surface in the outward and the cutting direction.
 struct SlopeSample {
   geometry::Vec2 at_mm = geometry::Vec2::Zero();
-  double radial = 0.0;  ///< dz/dr, or across the raster's lines
-  double along = 0.0;   ///< dz along the cut
+  double radial = 0.0;  ///< slope dz/dr, or slope across the lines of a raster
+  double along = 0.0;   ///< slope along the cut
 };
 
-/// The slopes that a tool meets along a path: every place once, sampled on circles or lines.
+/// Returns the slopes of the surface along a path, sampled on circles or lines.
 std::vector<SlopeSample> slopes_along(const geometry::FreeformSurface& surface, const PathOptions& options);
 
 ClearanceFigures clearance_figures(const TurningTool& tool, const std::vector<SlopeSample>& samples);
 
-/// The skew nearest to 0 within +-most_deg with which the tool clears all samples, to 0.01 degrees; nothing if none
-/// does.
+/// Returns the skew closest to 0, within +-most_deg, with which the tool clears all samples. The resolution is 0.01
+/// degrees. Returns nothing if there is no such skew.
 std::optional<double> least_skew_deg(TurningTool tool, const std::vector<SlopeSample>& samples, double most_deg);
 
 }  // namespace retrace::fabrication::turning

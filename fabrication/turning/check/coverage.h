@@ -1,20 +1,20 @@
 #pragma once
 
-// Whether the cuts of a turned part lie beside each other as they should: turn by turn or line by line, over the whole
-// region.
+// Checks that the cuts of a turned part cover the whole region, turn by turn or line by line.
 
 #include "fabrication/turning/check/cuts.h"
 
 namespace retrace::fabrication::turning {
 
 struct CoverageFigures {
-  double step_mm_max = 0.0;  ///< from a cut to the one before it
-  bool is_orderly = true;    ///< every cut goes on in its direction, so that what is left can be found
-  bool is_whole = true;      ///< no place of the region lies farther than a feed from a cut
+  double step_mm_max = 0.0;  ///< maximum distance between neighbouring cuts
+  bool is_orderly = true;    ///< true if every cut moves forward; otherwise the machined surface cannot be computed
+  bool is_whole = true;      ///< true if no part of the region is left uncut
 };
 
-/// Finds blocks that do not go on (`direction`), cuts that lie farther than the feed from the one before them
-/// (`feed_step`) or off the tool's skew (`skew`), and parts of the region that no cut reaches (`uncut`).
+/// Checks the order and the distance of the cuts. Adds findings for blocks that do not move forward (`direction`), for
+/// cuts that are farther than the feed from the previous cut (`feed_step`), for cuts that are not on the line of the
+/// tool's skew (`skew`), and for parts of the region without cuts (`uncut`).
 CoverageFigures check_coverage(const TurnedPart& part, const TurningCuts& cuts, FindingList& findings);
 
 }  // namespace retrace::fabrication::turning

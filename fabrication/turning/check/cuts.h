@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the programs of a turned part: their cuts, and what stands in the way of carrying them out as they are meant.
+// Reads the cuts from the programs of a turned part, and checks settings that would change their execution.
 
 #include <cstdint>
 #include <string>
@@ -13,38 +13,38 @@
 
 namespace retrace::fabrication::turning {
 
-/// A move without cutting: its lowest place.
+/// Move without cutting, with the lowest Z of the move.
 struct FreeMove {
   double lowest_mm = 0.0;
   std::size_t program = 0;
   std::int32_t line = 0;
 };
 
-/// A place that the tool goes down to by Z alone.
+/// Downward move of only Z, with its end point.
 struct DownMove {
   AxisPositions at;
-  double stroke_mm = 0.0;  ///< of a servo there
+  double stroke_mm = 0.0;  ///< stroke of a fast tool servo at the end point
   std::size_t program = 0;
   std::int32_t line = 0;
 };
 
-/// What programs do, one after another.
+/// Moves of all programs, in the order of execution.
 struct TurningCuts {
-  std::vector<std::string> programs;  ///< files
-  std::vector<NcDialect> dialects;    ///< by program
-  std::vector<double> end_mm;         ///< by program: Z at its end
+  std::vector<std::string> programs;  ///< file names of the programs
+  std::vector<NcDialect> dialects;    ///< dialect of each program
+  std::vector<double> end_mm;         ///< Z at the end of each program
   std::vector<CutPass> passes;
-  std::vector<FreeMove> free_moves;  ///< but for those that rise straight up
+  std::vector<FreeMove> free_moves;  ///< moves without cutting, except vertical upward moves
   std::vector<DownMove> down_moves;
-  double blend_mm = 0.0;  ///< by which a path may be left at most where its moves meet, as programs say
-  double lowest_travel_mm[3] = {0.0, 0.0, 0.0};  ///< of X, Y and the slide's Z
-  double highest_travel_mm[3] = {0.0, 0.0, 0.0};
+  double blend_mm = 0.0;                          ///< maximum path tolerance between moves that the programs set
+  double lowest_travel_mm[3] = {0.0, 0.0, 0.0};   ///< minimum positions of X, Y and the slide Z
+  double highest_travel_mm[3] = {0.0, 0.0, 0.0};  ///< maximum positions of X, Y and the slide Z
 };
 
-/// Reads programs and looks at their settings, spindle, feeds and travel.
+/// Reads the cuts of programs, and checks their settings, spindle, feeds and travel.
 TurningCuts read_cuts(const TurnedPart& part, const std::vector<NcProgram>& programs, FindingList& findings);
 
-/// Adds the strokes of the table of a fast tool servo, `c_deg,stroke_mm`, to the slide's heights.
+/// Adds the strokes of a fast tool servo to the Z positions of the slide. The table has the columns `c_deg,stroke_mm`.
 /// \throw InputError for a table that cannot be read
 void add_strokes(TurningCuts& cuts, const std::string& table, const std::string& file, FindingList& findings);
 

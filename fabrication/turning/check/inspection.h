@@ -1,6 +1,7 @@
 #pragma once
 
-// Inspects what turning programs leave: cusps against their closed form, form error, interference, rms.
+// Inspects the surface that turning programs produce: cusp heights compared with their closed form, form error,
+// interference and rms.
 
 #include <optional>
 #include <vector>
@@ -10,28 +11,28 @@
 
 namespace retrace::fabrication::turning {
 
-/// Turns or lines next to the rim and the centre that have no neighbours or turn on the spot: the surface is not judged
-/// there.
+/// Width, in feeds, of the margins at the rim and at the center that are not inspected. Cuts at the rim have no
+/// neighbours, and at the center, the tool hardly moves over the part.
 inline constexpr double kRimFeeds = 4.0;
 
-/// The region that is inspected: a circle's or a rectangle's, without the rim that neighbouring cuts do not finish.
+/// Region of the part that is inspected: a circle or a rectangle. A margin at the rim is excluded.
 struct InspectedRegion {
   bool is_round = true;
   double radius_mm = 1.0;
-  double half_width_mm = 1.0;   ///< along the lines of a raster (y)
-  double half_height_mm = 1.0;  ///< across them (x)
+  double half_width_mm = 1.0;   ///< half of the size along the lines of a raster (y)
+  double half_height_mm = 1.0;  ///< half of the size across the lines of a raster (x)
   double feed_mm = 5e-3;
 };
 
-/// A short profile across the cuts.
+/// Short profile of the surface across the cuts.
 struct CuspSample {
   geometry::Vec2 at_mm = geometry::Vec2::Zero();
-  double scallop_nm = 0.0;    ///< mean height of its cusps above the valleys beside them, square to the surface
-  double predicted_nm = 0.0;  ///< the closed form there; 0 where the curvature changes too much for it
-  double valley_nm = 0.0;     ///< the deepest or highest valley's deviation from the design: the form error
+  double scallop_nm = 0.0;    ///< mean height of the cusps above the neighbouring valleys, along the surface normal
+  double predicted_nm = 0.0;  ///< height by the closed form; 0 if the curvature changes too much for it
+  double valley_nm = 0.0;     ///< form error: deviation of the deepest or highest valley from the design
 };
 
-/// What programs leave against the design. Deviations are square to the surface, positive where material is left.
+/// Result of an inspection. Deviations are along the surface normal and positive if material is left.
 struct Inspection {
   std::vector<CuspSample> cusps;
   std::size_t compared = 0;      ///< of them, with a closed form

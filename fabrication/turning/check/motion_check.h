@@ -1,6 +1,6 @@
 #pragma once
 
-// What the axes of a lathe do along cuts, from their positions and times alone, against the machine's limits.
+// Checks speed, acceleration and jerk of a lathe's axes along cuts. They are computed from positions and times.
 
 #include <array>
 
@@ -8,27 +8,27 @@
 
 namespace retrace::fabrication::turning {
 
-/// What an axis does over cuts, less what the rounding of the words to nanometres alone may make of it.
+/// Motion of an axis over cuts. The maximum effect of rounded positions is subtracted from all values.
 struct AxisMotion {
   double low_mm = 0.0;
   double high_mm = 0.0;
   double speed_mm_per_s = 0.0;
-  double acceleration_mm_per_s2 = 0.0;  ///< from block to block
+  double acceleration_mm_per_s2 = 0.0;  ///< maximum acceleration between neighbouring blocks
   double jerk_mm_per_s3 = 0.0;
 };
 
 struct MotionFigures {
-  std::array<AxisMotion, 4> axes;  ///< X, Y, the slide's Z, servo; travel with the moves between cuts
+  std::array<AxisMotion, 4> axes;  ///< X, Y, slide Z, servo; travel includes the moves between cuts
   double spindle_rpm = 0.0;
-  double c_acceleration_deg_per_s2 = 0.0;  ///< ends of cuts included, where C stands still
+  double c_acceleration_deg_per_s2 = 0.0;  ///< maximum acceleration of C, including start and stop of cuts
   double blocks_per_s = 0.0;
-  double time_s = 0.0;  ///< of cuts
+  double time_s = 0.0;  ///< total time of the cuts
 };
 
-/// Speed, acceleration and jerk of X, Y, Z and a servo between blocks and within moves by cubics, whose acceleration
-/// may have steps where they meet, so that jerk is that from block to block; and of C, whose acceleration is that from
-/// a standstill and back as well where the machine limits it; C's speed and the speed along the lines of a raster
-/// against the path's; blocks in a second. Adds the worst of every kind, axis and program.
+/// Checks speed, acceleration and jerk of X, Y, Z and a servo, between blocks and in cubic moves. The acceleration of
+/// cubic moves may have steps at their ends, so jerk is computed between blocks. The acceleration of C includes start
+/// and stop if the machine limits it. Also checks the speed of C, the speed along the lines of a raster, and the number
+/// of blocks per second. Adds the worst finding of each kind, axis and program.
 MotionFigures check_motion(const TurnedPart& part, const TurningCuts& cuts, FindingList& findings);
 
 }  // namespace retrace::fabrication::turning

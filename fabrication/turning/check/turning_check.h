@@ -1,6 +1,6 @@
 #pragma once
 
-// Judges programs of a turned part by their text: what the machine is asked to do, and what the tool leaves.
+// Checks the programs of a turned part: the motion of the machine, and the machined surface.
 
 #include <optional>
 #include <string>
@@ -12,29 +12,31 @@
 
 namespace retrace::fabrication::turning {
 
-/// What programs were found to do, from the part's file and their text alone. The findings are in the list that was
-/// given.
+/// Result of the check of programs. It depends only on the part file and on the text of the programs.
 struct TurningCheck {
   MotionFigures motion;
   TouchFigures touch;
   CoverageFigures coverage;
-  std::size_t points = 0;  ///< of cuts
-  /// By which a control that blends moves leaves the path at most: what the programs allow, or, if that is less, what
-  /// parabolas between the middles of the moves leave of their corners. Part of the form error that is judged.
+  std::size_t points = 0;  ///< number of points of all cuts
+  /// Maximum deviation from the path due to blending. It is the tolerance that the programs allow, or the deviation of
+  /// parabolas between the centers of the moves, whichever is smaller. It is added to the form error.
   double blend_nm = 0.0;
   std::size_t passes = 0;
-  /// What is left; nothing where cuts that do not go on or leave places out make it impossible to find.
+  /// Machined surface. Empty if it cannot be computed, because cuts do not move forward or leave parts of the region
+  /// uncut.
   std::optional<Envelope> envelope;
   Inspection inspection;
 };
 
-/// A table of strokes of a fast tool servo.
+/// Table with the strokes of a fast tool servo.
 struct StrokeTable {
   std::string file;
   std::string text;
 };
 
-/// \param cuts as read_cuts() gave them \param strokes where the part's servo is fast
+/// Checks the cuts of a turned part.
+/// \param cuts result of read_cuts()
+/// \param strokes table of strokes, for a part with a fast tool servo
 /// \throw InputError for a table of strokes that cannot be read
 TurningCheck check_turning(const TurnedPart& part, TurningCuts cuts, const std::optional<StrokeTable>& strokes,
                            FindingList& findings);
