@@ -18,17 +18,17 @@ constexpr double kNanometresAMm = 1e6;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUncut = std::numeric_limits<double>::infinity();
 constexpr int kMostSamples = 12;
-/// Of a feed: pixels smaller than this show cusps one by one.
+/// Pixel size, relative to the feed, below which single cusps are resolved.
 constexpr double kResolved = 0.25;
 
-/// What is found in one pixel, nm; not a number outside of the region, infinite where no cut passes.
+/// Deviations in one pixel, in nm. They are NaN outside of the region, and infinite where there is no cut.
 struct Pixel {
-  double any = kNone;       ///< at the place drawn
-  double greatest = kNone;  ///< by its size
+  double any = kNone;       ///< deviation at the random point
+  double greatest = kNone;  ///< deviation with the largest absolute value
   double lowest = 0.0;
 };
 
-/// Draws places and takes what is found there into a pixel.
+/// Evaluates random points of a pixel.
 class PixelProbe {
  public:
   PixelProbe(const Envelope& envelope, const FreeformSurface& design, const InspectedRegion& region, const Vec2& low,
@@ -40,7 +40,8 @@ class PixelProbe {
     return low_ + side_ * Vec2(unit_interval(words[0]), unit_interval(words[1]));
   }
 
-  /// Takes a place; its deviation, not a number if it does not count.
+  /// Evaluates a point and updates the pixel.
+  /// \return the deviation, or NaN if the point is not inspected
   double take(const Vec2& p) {
     if (!is_inspected(region_, p)) return kNone;
     const double e = deviation_nm(envelope_, design_, p).value_or(kUncut);
@@ -61,7 +62,7 @@ class PixelProbe {
   }
 
  private:
-  /// A short profile across the cuts, and the greatest deviation between its samples.
+  /// Evaluates a short profile across the cuts, and finds the largest deviation between its samples.
   void take_feed_through(const Vec2& at) {
     const Vec2 outward = region_.is_round && at.norm() > 0.0 ? Vec2(at.normalized()) : Vec2(Vec2::UnitX());
     const double step = region_.feed_mm / kMostSamples;

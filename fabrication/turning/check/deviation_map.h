@@ -1,6 +1,6 @@
 #pragma once
 
-// The map of deviations of a turned surface from its design, with rms and deepest cut.
+// Computes the map of deviations of a turned surface from its design, with rms and the deepest cut.
 
 #include <functional>
 #include <optional>
@@ -10,21 +10,23 @@
 
 namespace retrace::fabrication::turning {
 
-/// Square to the surface, in nm; nothing where no cut passes.
+/// Returns the deviation of the machined surface from the design at a point, along the surface normal, in nm. Returns
+/// nothing where there is no cut.
 std::optional<double> deviation_nm(const Envelope& envelope, const geometry::FreeformSurface& design,
                                    const geometry::Vec2& p);
 
-/// Where f is largest between a and b, and its value there; golden section.
+/// Finds the maximum of f between a and b by golden section search.
+/// \return the position of the maximum and its value
 std::pair<double, double> largest_between(const std::function<double(double)>& f, double a, double b, int steps);
 
-/// Whether a place is inspected: not at the rim, nor on the spindle's axis.
+/// Returns true if a point is inspected. Points at the rim and near the spindle's axis are not inspected.
 bool is_inspected(const InspectedRegion& region, const geometry::Vec2& p);
 
-/// Fills the map of the result, its interference and its rms. A pixel shows the greatest deviation, with its sign, over
-/// the length of a feed across the cuts at a place drawn within it, found between samples by golden section; of
-/// pixels smaller than a quarter of a feed, the greatest at places drawn within them. So cusps finer than pixels do not
-/// show as waves that are not there. The rms is that of one place drawn in each pixel. \throw InputError if the
-/// programs leave a place of the region uncut
+/// Computes the map of the result, its interference and its rms. A pixel contains the deviation with the largest
+/// absolute value, with its sign. It is searched over the length of one feed across the cuts, through a random point of
+/// the pixel. In pixels smaller than a quarter of a feed, it is searched among random points. This avoids aliasing if
+/// cusps are finer than pixels. The rms is computed from one random point of each pixel.
+/// \throw InputError if the programs leave a part of the region uncut
 void fill_map(Inspection& result, const Envelope& envelope, const geometry::FreeformSurface& design,
               const InspectedRegion& region, std::size_t pixels);
 

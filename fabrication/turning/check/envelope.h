@@ -1,7 +1,6 @@
 #pragma once
 
-// The surface that a turning tool's arc leaves along the cuts of NC text: the lower envelope of its edge over every
-// place.
+// Computes the surface that a turning tool produces along the cuts of NC programs: the lower envelope of its edge.
 
 #include <cstdint>
 #include <optional>
@@ -14,51 +13,54 @@
 
 namespace retrace::fabrication::turning {
 
-/// Positions of the axes at the ends of the blocks of a cut, as read from NC text, the start of the first one included.
+/// Axis positions of a cut, as read from an NC program: the start of the first block, and the end of every block.
 struct CutPass {
   std::vector<double> x_mm;
   std::vector<double> y_mm;
-  std::vector<double> z_mm;  ///< of the tool, strokes of a servo included
+  std::vector<double> z_mm;  ///< Z of the tool, including the strokes of a servo
   std::vector<double> c_rad;
-  std::vector<double> duration_s;  ///< of the block that ends there; of the first 0
-  std::vector<std::int32_t> line;  ///< likewise
-  /// Of the whole block that ends there; 0 where a point lies within a move by a cubic.
+  std::vector<double> duration_s;  ///< time since the previous point; 0 for the first point
+  std::vector<std::int32_t> line;  ///< program line of the block that ends at the point
+  /// Duration of the whole block that ends at the point; 0 for a point inside of a cubic move.
   std::vector<double> block_s;
-  std::vector<double> servo_mm;  ///< what a servo adds to the slide's Z; empty: nothing
-  std::size_t program = 0;       ///< that it is of
+  std::vector<double> servo_mm;  ///< strokes of a servo, which are part of z_mm; empty: no servo
+  std::size_t program = 0;       ///< index of the program
   double seconds = 0.0;
 
   std::size_t size() const { return x_mm.size(); }
 };
 
-/// Gathers the cuts of a program: linear moves, without those that only change Z.
+/// Collects the cuts of a program. Cuts are linear moves, except moves of only Z.
 class CutRecorder : public NcSink {
  public:
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace& place, const AxisPositions& position) override;
 
-  /// The cuts so far; ends the one that is going on.
+  /// Ends the present cut and returns all cuts.
   std::vector<CutPass> take();
-  /// What a controller would not do as meant: cuts that stop at every point or have no time.
+  /// Returns findings about cuts that a control would execute wrongly: cuts with a stop at every point or without a
+  /// time.
   const std::vector<Finding>& findings() const { return findings_; }
 
  private:
   void end_pass();
 
   CutPass pass_;
-  double block_s_ = 0.0;  ///< of a block that goes on
+  double block_s_ = 0.0;  ///< duration so far of a block that is not complete
   std::vector<CutPass> passes_;
   std::vector<Finding> findings_;
 };
 
-/// What the sharp arc of a tool leaves along cuts: the lowest height of its edge over every place. Between two blocks
-/// the axes move evenly, as a controller interpolates them, C included. Knows nothing of how the cuts were planned.
+/// Surface that the sharp arc of a tool produces along cuts: the minimum height of its edge above each point. In a
+/// block, all axes including C move linearly, as the control interpolates them. The result does not depend on the
+/// planned path.
 class Envelope {
  public:
-  /// \throw InputError for cuts in which neither C rises throughout nor C stands and Y falls throughout
+  /// \throw InputError if there is a cut in which neither C always increases, nor C is constant and Y always decreases
   Envelope(const TurningTool& tool, std::vector<CutPass> passes);
 
-  /// Nothing where no cut passes. \pre not within a few feeds of the spindle's axis, where the edge turns on the spot
+  /// Returns the height of the surface at a point, or nothing where there is no cut.
+  /// \pre the point is at least a few feeds away from the spindle's axis
   std::optional<double> height_mm(double x_mm, double y_mm) const;
 
  private:
@@ -80,12 +82,12 @@ class Envelope {
   Index index_of(const CutPass& pass) const;
   double lift_mm(double aside_mm) const;
   void cross_turning(const CutPass& pass, const Index& index, double x_mm, double y_mm, double& lowest) const;
-  /// The crossing near an angle of the spindle, if there is one.
+  /// Finds the crossing of the edge over a point near an angle of the spindle, and updates the minimum height.
   void cross_at(const CutPass& pass, double r, double theta, double c, double& lowest) const;
   void cross_line(const CutPass& pass, double x_mm, double y_mm, double& lowest) const;
 
   double radius_mm_;
-  double reach_mm_;  ///< of the sharp arc, sideways
+  double reach_mm_;  ///< half of the width of the sharp arc
   double sin_rake_;
   double cos_rake_;
   std::vector<CutPass> passes_;

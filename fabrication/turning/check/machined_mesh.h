@@ -1,6 +1,6 @@
 #pragma once
 
-// The turned surface with its cusps as a mesh of the part that is moulded in it, to be traced.
+// Converts the turned surface with its cusps to a mesh of the moulded part, which can be traced.
 
 #include "fabrication/turning/check/inspection.h"
 #include "geometry/part/closed_boundary.h"

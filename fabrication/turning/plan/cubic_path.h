@@ -1,6 +1,7 @@
 #pragma once
 
-// The spiral of a turned part for controls that join points by cubics over time: few points, with velocities.
+// Computes the spiral of a turned part for controls that interpolate by cubic polynomials of time: few points, with
+// velocities.
 
 #include <vector>
 
@@ -9,26 +10,27 @@
 
 namespace retrace::fabrication::turning {
 
-/// Where the axes are and how fast they go, at the end of a move.
+/// Axis positions and velocities at the end of a move.
 struct CubicPoint {
   PathPoint place;
   Velocities velocities{};
-  double highest_mm = 0.0;  ///< of Z along the move that ends here
+  double highest_mm = 0.0;  ///< maximum Z along the move that ends at this point
 };
 
 struct CubicPath {
   std::vector<CubicPoint> points;
-  double error_nm = 0.0;  ///< largest distance at the tool between cubics and spiral where both were compared
+  double error_nm = 0.0;  ///< maximum distance, at the tool, between cubic moves and spiral, at the compared points
 };
 
-/// Times of such moves are whole multiples of this: what the coarsest of these controls takes (docs/nc_dialects.md).
+/// Time step of cubic moves, in s. Their durations are whole multiples of the step, which the coarsest control requires
+/// (docs/nc_dialects.md).
 inline constexpr double kCubicStepS = 1e-3;
 
-/// A spiral from a standstill to a standstill, its moves as long as the cubics of the axes stay within
-/// `options.cubic_error_nm` of it. Both are compared as densely as the straight path would have points.
-/// \param least_block_s no move is shorter
-/// \pre options.cubic_error_nm and options.spin_deg_per_s2; the slide alone makes the motion
-/// \throw InputError at `where` if the shortest moves are not within it, or for more than 2^26 points
+/// Computes a spiral of cubic moves that starts and ends at rest. The moves are as long as `options.cubic_error_nm`
+/// allows. Cubic moves and spiral are compared at as many points as the straight path would have.
+/// \param least_block_s minimum duration of a move
+/// \pre options.cubic_error_nm and options.spin_deg_per_s2 are given, and there is no fast tool servo
+/// \throw InputError at `where` if the error of the shortest moves is too large, or for more than 2^26 points
 CubicPath cubic_path(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& options,
                      double least_block_s, const InputLocation& where);
 

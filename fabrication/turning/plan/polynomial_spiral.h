@@ -1,6 +1,6 @@
 #pragma once
 
-// A fast special case of the turning path: spirals over polynomial surfaces.
+// Fast special case of the turning path: spirals over polynomial surfaces.
 
 #include <optional>
 
@@ -8,9 +8,9 @@
 
 namespace retrace::fabrication::turning {
 
-/// The spiral of a surface that is a polynomial everywhere, the quick way: by angles, without skew and rake, every turn
-/// has the same radial lines, on which the surface is a polynomial of one variable. Nothing if it is not of that kind,
-/// or so hollow that the nose may touch in two places.
+/// Computes the spiral of a polynomial surface. With points at equal angles, and without skew and rake, all turns have
+/// the same radial lines. On each line, the surface is a polynomial of one variable, which makes the computation fast.
+/// Returns nothing if the surface or the options do not have this form, or if the nose may have two points of contact.
 std::optional<Pass> polynomial_spiral(const geometry::FreeformSurface& surface, const TurningTool& tool,
                                       const PathOptions& options);
 

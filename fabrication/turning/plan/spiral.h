@@ -6,15 +6,16 @@
 
 namespace retrace::fabrication::turning {
 
-/// Places of the tool along a spiral, at any angle of the spindle.
+/// Positions of the tool along a spiral, as a function of the spindle's angle.
 class SpiralPlaces {
  public:
   SpiralPlaces(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& options);
 
-  /// Turns from the rim to the spindle's axis.
+  /// Returns the number of turns from the start to the spindle's axis.
   double whole_turns() const { return start_mm_ / feed_mm_; }
   double radius_mm(double turns) const { return start_mm_ - feed_mm_ * turns; }
-  /// Without its time. \param touch_rad angle on the nose where the search for the touching place starts; where it ends
+  /// Returns a point of the spiral, without its time.
+  /// \param touch_rad angle on the nose at which the search starts; receives the angle of the point of contact
   PathPoint at(double turns, double& touch_rad) const;
   double end_rad() const { return nose_.end_rad(); }
 
@@ -25,10 +26,10 @@ class SpiralPlaces {
   double skew_rad_;
 };
 
-/// C that goes from a standstill to the spindle's speed and back at an even acceleration.
+/// Rotation of C that accelerates uniformly from rest to the speed of the spindle, and decelerates to rest at the end.
 class SpinTimes {
  public:
-  /// \param whole_deg that it turns in all
+  /// \param whole_deg total angle of the rotation
   SpinTimes(double whole_deg, double speed_deg_per_s, double acceleration_deg_per_s2);
 
   double whole_s() const { return whole_s_; }
@@ -36,7 +37,7 @@ class SpinTimes {
   double c_deg(double time_s) const;
   double speed_deg_per_s(double time_s) const;
   double ramp_s() const { return speed_ / acceleration_; }
-  /// The same a little slower, so that both ramps and what is between take whole numbers of steps.
+  /// Returns a slightly slower rotation whose ramps, and the motion between them, take whole numbers of steps.
   SpinTimes in_whole_steps(double step_s) const;
 
  private:
@@ -46,8 +47,8 @@ class SpinTimes {
   double whole_s_;
 };
 
-/// Turns of the spindle from one point of the straight path to the next at that radius: points by equal arcs would be
-/// few near the centre, 24 a turn are the fewest.
+/// Returns the angle of the spindle, in turns, between neighbouring points of the straight path at a radius. There are
+/// at least 24 points per turn, because equal arc lengths would give too few points near the center.
 double turns_between_points(const PathOptions& options, double radius_mm);
 
 }  // namespace retrace::fabrication::turning

@@ -1,7 +1,7 @@
 #pragma once
 
-// Where the tool's nose provably touches the surface in one place only, so that compensation may skip its global
-// search.
+// Map of positions at which the tool's nose provably has only one point of contact. The nose compensation can omit its
+// global search there.
 
 #include <vector>
 
@@ -10,18 +10,18 @@
 
 namespace retrace::fabrication::turning {
 
-/// Where the nose is proved to touch the surface in one place only, so that the first one found is the only one: within
-/// the nose's reach the surface is nowhere as hollow as the nose, z'' < 1 / r along every line (docs/theory/turning.md,
-/// section Paths).
+/// Map of positions at which the nose has only one point of contact. The proof is that the surface below the nose is
+/// less concave than the nose: z'' < 1 / r along every line (docs/theory/turning.md, section Paths).
 class TouchMap {
  public:
-  /// Nothing is known anywhere.
+  /// Creates an empty map: nothing is proved at any position.
   TouchMap() = default;
-  /// What interval arithmetic can prove: of bases and lenslets without a formula, inside of the base's boundary, for
-  /// tools without rake. \param reach_mm how far from the origin the edge gets
+  /// Computes the map by interval arithmetic. The proof is possible inside of the base's boundary, for bases and
+  /// lenslets without a formula, and for tools without rake.
+  /// \param reach_mm maximum distance of the edge from the origin
   TouchMap(const geometry::FreeformSurface& surface, const TurningTool& tool, double reach_mm);
 
-  /// The edge of a tool whose lowest point stands over (x, y) touches in one place.
+  /// Returns true if a tool with its lowest point above (x, y) provably has only one point of contact.
   bool touches_once(double x_mm, double y_mm) const {
     const double column = (x_mm + half_mm_) * per_mm_;
     const double row = (y_mm + half_mm_) * per_mm_;
@@ -30,13 +30,13 @@ class TouchMap {
   }
 
  private:
-  static constexpr std::size_t kCells = 256;  ///< along each side of the square that is looked at
+  static constexpr std::size_t kCells = 256;  ///< number of cells along each side of the map
 
-  /// Nothing is known within the nose's radius of a rectangle.
+  /// Marks the surroundings of a rectangle, up to the radius of the nose, as not proved.
   void forget(const geometry::Vec2& low, const geometry::Vec2& high, double nose_mm);
 
   double half_mm_ = 0.0;
-  double per_mm_ = 0.0;  ///< cells
+  double per_mm_ = 0.0;  ///< number of cells per mm
   std::vector<char> once_ = {};
 };
 
