@@ -17,19 +17,19 @@ using MapAxis = surface_models::Axis;
 using surface_models::HeightMap, surface_models::Scratch, surface_models::SpectralPeak;
 
 constexpr double kUmPerMm = 1e3;
-/// What a line of a facet is compared with lies so far beside it at most.
+/// Maximum distance, in um, of the neighbouring lines with which a line of a facet is compared.
 constexpr double kBesideUm = 30.0;
-/// Waves of which fewer go on the facet are its form.
+/// Minimum number of periods on a facet. Longer waves belong to the form of the facet.
 constexpr double kLeastPeriods = 3.0;
-/// Frequencies are the same within this share, or the share of a period over the facet.
+/// Relative tolerance for equal frequencies, and tolerance in periods over the facet.
 constexpr double kSameFrequency = 0.02;
 constexpr double kSamePeriods = 0.5;
-/// Of the facets that show a place, those that must have a mark there if it is the edge's.
+/// Minimum fraction of the facets showing a position that must have a mark there, for a mark caused by the tool's edge.
 constexpr double kShareOfEdge = 0.5;
-/// Marks nearer to the end of what a facet shows are not seen.
+/// Minimum distance, in um, of detectable marks from the end of the measured area of a facet.
 constexpr double kUnseenUm = kBesideUm;
 
-/// Heights of places on a grid, the mean of those that fall into a cell; nothing in others.
+/// Averages the heights of points in the cells of a grid. Cells without points have no height.
 HeightMap laid_out(std::span<const Vec3> left, const Vec2& low_mm, const Vec2& high_mm, const Vec2& pitch_mm) {
   const auto cells = [&](Eigen::Index axis) {
     return 1 + static_cast<std::size_t>(std::lround((high_mm[axis] - low_mm[axis]) / pitch_mm[axis]));
@@ -50,7 +50,7 @@ HeightMap laid_out(std::span<const Vec3> left, const Vec2& low_mm, const Vec2& h
   return map;
 }
 
-/// The same without what lies in marks.
+/// Averages the heights of points in the cells of a grid, without the points inside of marks.
 HeightMap laid_out(const FacetRest& rest, std::span<const Vec3> left) {
   std::vector<Vec3> unmarked;
   for (const Vec3& p : left)
@@ -62,7 +62,7 @@ Eigen::Index across(MapAxis along) {
   return along == MapAxis::y ? 0 : 1;
 }
 
-/// One of a facet, for gathering.
+/// Wave or mark of a facet, used for collecting common ones.
 template <class Thing>
 struct Found {
   const FacetRest* rest = nullptr;
@@ -152,7 +152,8 @@ FacetRest marks_of(const FacetPlace& at, std::span<const Vec3> left, const Vec2&
     rest.low_mm = rest.low_mm.cwiseMin(p.head<2>());
     rest.high_mm = rest.high_mm.cwiseMax(p.head<2>());
   }
-  // One by one, the deepest first, and without those before it: lines beside a wide one stand out against it.
+  // Search the marks one by one, beginning with the deepest one, and exclude the marks found before. Otherwise, lines
+  // next to a wide mark would be detected as marks too.
   constexpr std::size_t kMostMarks = 16;
   while (rest.marks.size() < kMostMarks) {
     const HeightMap map = laid_out(rest, left);
@@ -208,7 +209,7 @@ std::vector<FacetMark> common_marks(const std::vector<FacetRest>& rests) {
     }
   std::vector<FacetMark> marks;
   for (const auto& group : groups) marks.push_back(gathered(group, rests));
-  // What stands out beside a chip on a facet that shows little of it.
+  // Remove false marks next to a chip mark, on facets that show only a part of the chip mark.
   const std::vector<FacetMark> all = marks;
   std::erase_if(marks, [&](const FacetMark& mark) {
     return std::ranges::any_of(all, [&](const FacetMark& chip) {

@@ -19,17 +19,17 @@ namespace {
 using namespace fabrication;
 using geometry::Vec3;
 
-/// Elements along either axis of the array that are traced.
+/// Number of traced elements along each axis of the array.
 constexpr double kElementsAcross = 2.0;
-/// Facets that move less than this are not traced again.
+/// Minimum displacement, in mm, of a facet for which the light is computed again.
 constexpr double kStillMm = 1e-12;
 
-/// Least power of beams that are followed, as a share of what falls on the part, of R_A on an element: what is told is
-/// then smooth to SetupLight::kLeastChangeOfRre and kLeastChangeOfRa. Facets that are askew split weaker beams without
-/// end.
+/// Minimum power of traced beams, as a fraction of the power on the part (for R_A: on an element). The results are then
+/// accurate to SetupLight::kLeastChangeOfRre and kLeastChangeOfRa. Without a minimum, tilted facets would split beams
+/// endlessly.
 constexpr double kCutoff = 1e-6;
 
-/// A piece of the job's array from its middle, all of its elements there.
+/// Returns the job with a small array of whole elements from the center of its array.
 Job patch_of(Job job) {
   if (job.array.arrangement == geometry::Arrangement::single) return job;
   geometry::ArrayLayout& array = job.array;
@@ -37,7 +37,7 @@ Job patch_of(Job job) {
   array.x_offset_mm = array.y_offset_mm = 0.0;
   const geometry::Vec2 size = geometry::bounding_box(geometry::aperture_outline(job.element)).size();
   const bool is_prism = std::holds_alternative<geometry::RtpElement>(job.element);
-  // Rows of bricks are shifted, and cube corners interlock: so many apertures hold that many elements at least.
+  // Offset rows are shifted, and cube corners interlock. A slightly larger area is needed for the number of elements.
   const double more = is_prism && array.arrangement != geometry::Arrangement::offset ? 0.0 : 1.01;
   array.x_length_mm = std::min(array.x_length_mm, (kElementsAcross + more) * (size.x() + array.x_gap_mm));
   array.y_length_mm = std::min(array.y_length_mm, (kElementsAcross + more) * (size.y() + array.y_gap_mm));
@@ -45,7 +45,7 @@ Job patch_of(Job job) {
   return job;
 }
 
-/// The cut that makes each facet: of passes side by side that nearest to its middle.
+/// Finds the last cut of each facet. Among parallel passes, it is the pass closest to the center of the facet.
 class LastCuts {
  public:
   LastCuts(const Job& job, const Machine& machine) : grooves_(designed_grooves(job)) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a unit of every quantity of the set-up does to the light that a moulded part sends back.
+// Computes the sensitivity of the retroreflected light of a moulded part to each quantity of the set-up.
 
 #include <filesystem>
 #include <optional>
@@ -14,23 +14,24 @@
 
 namespace retrace::studies {
 
-/// Of one part: RRE in each of the design's cones, light along the part's normal; R_A where standards measure it.
+/// Light of one part: RRE in each acceptance cone of the design for light along the part's normal, and R_A in the
+/// geometry of the standards.
 struct PartLight {
   std::vector<double> rre;
-  double r_a = 0.0;  ///< cd/(lx m^2), of smooth facets
+  double r_a = 0.0;  ///< R_A in cd/(lx m^2), for smooth facets
 };
 
-/// Of the machine as programs take it, and the changes with a um or an arcsec of each quantity, in the order of
-/// setup_quantities(). Exact, with diffraction, of a part of few elements from the middle of the array, smooth and
-/// clean.
+/// Light of the nominal machine, and its changes per um or arcsec of each quantity, in the order of setup_quantities().
+/// The computation is exact, with diffraction, for a few smooth and clean elements from the center of the array.
 struct SetupLight {
   static constexpr double kObservationDeg = 0.33;
-  static constexpr double kEntranceDeg = 5.0;      ///< to the side, H: across the roof edges of prisms
-  static constexpr double kApertureArcmin = 10.0;  ///< of source and receiver
+  static constexpr double kEntranceDeg = 5.0;      ///< entrance angle to the side (H), across the roof edges of prisms
+  static constexpr double kApertureArcmin = 10.0;  ///< aperture of source and receiver
 
-  /// Relative changes of R_A below this are not told from how beams of a perfect array interfere.
+  /// Minimum relative change of R_A that is significant. Smaller changes may be due to interference in a perfect array.
   static constexpr double kLeastChangeOfRa = 5e-4;
-  static constexpr double kLeastChangeOfRre = 1e-5;  ///< likewise, what is followed no further
+  /// Minimum change of RRE that is significant. Smaller changes may be due to truncated beams.
+  static constexpr double kLeastChangeOfRre = 1e-5;
 
   std::vector<double> cones_deg;
   PartLight nominal;
@@ -38,10 +39,12 @@ struct SetupLight {
   std::size_t elements = 0;
 };
 
-/// What is left out, and why, of a job whose light is not told; empty: it is.
+/// Returns the reason why the light of a job is not computed, or an empty text if it is computed.
 std::string why_no_setup_light(const fabrication::Job& job);
 
-/// \param job_file beside which its design lies \param warnings is told where that is missed
+/// Computes the light of the nominal machine and its changes.
+/// \param job_file job file, whose folder contains the design
+/// \param warnings receives a warning if the design does not exist
 /// \pre why_no_setup_light() is empty
 SetupLight setup_light(const fabrication::Job& job, const std::filesystem::path& job_file,
                        const fabrication::Machine& machine, Warnings& warnings);

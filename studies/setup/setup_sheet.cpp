@@ -25,7 +25,7 @@ using geometry::Vec3;
 
 constexpr double kUmPerMm = 1e3;
 
-/// Highest point of bodies that move with a carrier, or their lowest.
+/// Returns the maximum or minimum Z of the bodies that move with a carrier.
 std::optional<double> end_of_bodies(const Machine& machine, Carrier carrier, bool highest) {
   std::optional<double> end;
   for (const MachineBody& body : machine.bodies)
@@ -35,7 +35,7 @@ std::optional<double> end_of_bodies(const Machine& machine, Carrier carrier, boo
   return end;
 }
 
-/// The height to which a point of the face at that radius around C comes while the axes turn.
+/// Returns the maximum height of a point of the face, at a radius about C, while the rotary axes move.
 double highest_mm(const FabricationResult& result, double radius_mm) {
   constexpr int kAzimuths = 72;
   constexpr int kTilts = 24;
@@ -125,18 +125,19 @@ std::vector<int> optional_stops_of(const Plan& plan) {
   return stops;
 }
 
-/// Follows what stands on the facets of elements that are cut alike.
+/// Tracks the material that remains on the facets of elements that are cut in the same way.
 class Standing {
  public:
   Standing(const FabricationResult& result, std::size_t zone)
       : job_(result.job), zone_(zone), depth_mm_(geometry::element_depth_mm(blank_element(result.job, zone))) {}
 
-  /// After a cut along `facet`, from 1, that leaves so much. A plough leaves as much on the other one.
+  /// Updates the remaining material after a cut along `facet` (from 1). A plough leaves the same thickness on the other
+  /// facet.
   void cut(int facet, bool ploughs, double left_um) {
     left_um_[static_cast<std::size_t>(facet - 1)] = left_um;
     if (ploughs) left_um_[static_cast<std::size_t>(2 - facet)] = left_um;
   }
-  /// Of the root or the apex where the facets now meet; 0 until all are cut.
+  /// Returns the depth of the root or the apex; 0 until all facets are cut.
   double root_depth_mm() const {
     const bool is_cube = job_.strategy == Strategy::dmc;
     const std::size_t facets = is_cube ? 3 : 2;
@@ -160,7 +161,7 @@ class Standing {
   std::array<std::optional<double>, 3> left_um_;
 };
 
-/// The last program with a visit of each stage.
+/// Returns the last program that contains a visit of each stage.
 std::map<std::string, std::size_t> last_programs(const Plan& plan) {
   std::map<std::string, std::size_t> last;
   for (std::size_t k = 0; k < plan.programs.size(); ++k)
@@ -176,7 +177,7 @@ std::vector<StageCheck> checks_of(const FabricationResult& result) {
   std::map<std::pair<bool, std::int32_t>, Standing> standing;
   std::vector<StageCheck> checks;
   double seconds = 0.0;
-  // Turns of the table lie between stages.
+  // The time of rotary moves is distributed equally between the stages.
   const double between_s = plan.time.fixed_s / static_cast<double>(std::max<std::size_t>(1, plan.stages.size()));
   for (const Stage& stage : plan.stages) {
     const CuttingPose& pose = plan.poses[stage.pose];
@@ -218,7 +219,7 @@ SetupSheet setup_sheet(const FabricationResult& result, bool light) {
   try {
     sheet.light = setup_light(result.job, result.job.source, result.machine, sheet.warnings);
   } catch (const Error& error) {
-    // A design that has changed since, or has too many beams, must not keep the programs of a job back.
+    // An error in the computation of the light, for example due to a changed design, must not prevent the programs.
     sheet.why_no_light = error.what();
   }
   return sheet;

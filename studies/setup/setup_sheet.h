@@ -1,7 +1,7 @@
 #pragma once
 
-// All that who sets up a machine for a job must know, in the order of the work: blank, tool, zero, axes, control,
-// programs, what to measure, and what an error of each step costs.
+// Collects the data for setting up a machine for a job, in the order of the work: blank, tool, zero, axes, control,
+// programs, measurements, and the effect of errors in each step.
 
 #include <optional>
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace retrace::studies {
 
-/// Where an axis goes in all programs of a plan, in mm or degrees.
+/// Range of an axis in all programs of a plan, in mm or degrees.
 struct AxisTravel {
   char axis = 'X';
   double low = 0.0;
@@ -22,33 +22,33 @@ struct AxisTravel {
   fabrication::Interval limits;
 };
 
-/// The blank, seen from the zero: the middle of the array on its face.
+/// Set-up of the blank. The zero is the center of the array on its face.
 struct BlankSetup {
-  geometry::Vec2 array_mm = geometry::Vec2::Zero();  ///< along X and Y at A0 C0
-  double deepest_mm = 0.0;                           ///< root or apex below the face
-  double stock_mm = 0.0;                             ///< by which the face stands over the rims, on a base
-  std::string base;                                  ///< what its face is like, on a base; empty: flat
+  geometry::Vec2 array_mm = geometry::Vec2::Zero();  ///< size of the array along X and Y at A0 C0
+  double deepest_mm = 0.0;                           ///< maximum depth of roots or apexes below the face
+  double stock_mm = 0.0;                             ///< height of the face above the rims, on a substrate
+  std::string base;                                  ///< description of a face that is not flat; empty: flat
   std::vector<std::string> zones;                    ///< for each zone: description of its elements
-  /// Blank and fixture together: from the top of what the machine's file has under the workpiece to the zero; none
-  /// where it has nothing.
+  /// Height of blank and fixture together, from the table bodies of the machine file to the zero. Empty if the machine
+  /// file has no bodies below the workpiece.
   std::optional<double> fixture_height_mm;
-  double free_radius_mm = 0.0;  ///< around C, within which a face may reach and still turn under the tool
+  double free_radius_mm = 0.0;  ///< maximum radius about C of a face that can rotate below the tool
 };
 
-/// The tool as it must stand.
+/// Set-up of the tool.
 struct ToolSetup {
-  std::optional<double> free_length_mm;  ///< from the edge up to the holder of the machine's file; none without one
+  std::optional<double> free_length_mm;  ///< distance from the edge up to the holder; empty without a holder
   double plunge_rake_deg = 0.0;
-  std::optional<double> plough_rake_deg;  ///< of chisels
+  std::optional<double> plough_rake_deg;  ///< chisels only
 };
 
-/// What to measure when a stage has run: nothing of it is judged by the programs.
+/// Expected measurements after a stage. The programs do not check them.
 struct StageCheck {
   std::string stage;
-  std::size_t program = 0;     ///< in which it ends, from 0
-  double ends_s = 0.0;         ///< from the beginning of all programs
-  double left_um = 0.0;        ///< then on the facets that it cuts
-  double root_depth_mm = 0.0;  ///< then, below the rims
+  std::size_t program = 0;     ///< index of the program in which the stage ends
+  double ends_s = 0.0;         ///< time of the end of the stage since the start of the first program
+  double left_um = 0.0;        ///< thickness of the material that remains on the cut facets
+  double root_depth_mm = 0.0;  ///< depth of the root below the rims
 };
 
 struct SetupSheet {
@@ -56,18 +56,19 @@ struct SetupSheet {
   ToolSetup tool;
   std::vector<AxisTravel> travel;
   std::vector<std::string> control_needs;
-  std::vector<int> optional_stops;  ///< by program
+  std::vector<int> optional_stops;  ///< number of optional stops in each program
   std::vector<StageCheck> checks;
   Sensitivities sensitivities;
   std::optional<SetupLight> light;
   std::string why_no_light;
   Warnings warnings;
 
-  /// What a unit of a quantity changes of the light; null where that is not told.
+  /// Returns the change of the light per unit of a quantity, or null if it is not computed.
   const PartLight* change_of_light(const fabrication::SetupQuantity& quantity, fabrication::Tilt tilt) const;
 };
 
-/// \param light whether light is traced as well, which takes a second
+/// Collects the data for setting up a machine.
+/// \param light true: the light is computed as well, which takes a second
 SetupSheet setup_sheet(const FabricationResult& result, bool light = true);
 
 }  // namespace retrace::studies

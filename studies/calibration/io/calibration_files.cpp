@@ -25,7 +25,7 @@ std::string place_of(const MeasuredParts& parts, const Measurement& m) {
                      word_of(m.what), m.at.element, m.at.facet + 1, parts.jobs[m.part]);
 }
 
-/// How much more than their uncertainties say the residuals scatter; 1 without any to spare.
+/// Returns the scatter of the residuals divided by the expected scatter, or 1 if there are no degrees of freedom.
 double scatter(const Calibration& result) {
   return result.freedom == 0 ? 1.0 : std::sqrt(result.chi_square / static_cast<double>(result.freedom));
 }

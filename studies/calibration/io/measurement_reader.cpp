@@ -22,12 +22,12 @@ constexpr std::size_t kMostMeasurements = 10000;
 constexpr std::size_t kMostJobs = 32;
 constexpr NumberRange kElement{.low = 0.0, .high = 1e9};
 constexpr NumberRange kFacet{.low = 1.0, .high = 3.0};
-/// A degree, or a millimetre: what is farther off is another part.
+/// Range of measured values. Larger deviations, about a degree or a millimetre, mean that the wrong part was measured.
 constexpr NumberRange kValue{.low = -1e6, .high = 1e6};
 constexpr NumberRange kUncertainty{.low = 0.0, .low_included = false, .high = 1e6};
 constexpr NumberRange kAlongEdge{.low = -1.0, .high = 1.0};
 
-/// Which column holds what.
+/// Indices of the columns.
 struct Columns {
   std::size_t job, element, facet, what, value, uncertainty;
   std::optional<std::size_t> from_element, from_facet, at;
@@ -58,7 +58,7 @@ std::size_t whole(const CsvReader& row, std::size_t column, const NumberRange& r
   return static_cast<std::size_t>(value);
 }
 
-/// The facet that a value is told from; none where nothing stands.
+/// Returns the reference facet of a value, or nothing if the columns are empty.
 std::optional<FacetPlace> from_of(const CsvReader& row, const Columns& columns) {
   const auto is_given = [&](const std::optional<std::size_t>& column) { return column && !row[*column].empty(); };
   if (!is_given(columns.from_element) && !is_given(columns.from_facet)) return std::nullopt;
@@ -81,7 +81,7 @@ Measurement measurement_of(const CsvReader& row, const Columns& columns) {
   return m;
 }
 
-/// Reads rows and plans their jobs, each once.
+/// Reads the rows of a table, and plans each job one time.
 class Reader {
  public:
   Reader(std::string_view text, const fs::path& file, const FileTexts& texts)

@@ -38,7 +38,7 @@ constexpr std::size_t kMostPrograms = 100;
 constexpr NumberRange kSeconds{.low = 0.0, .low_included = false, .high = 1e8};
 constexpr NumberRange kLine{.low = 1.0, .high = 1e9};
 
-/// What a program does, line by line of its main part; moves that are alike stand once.
+/// Moves and dwells of a program for each line of its main part. Equal moves are stored one time.
 class Timeline final : public NcSink {
  public:
   explicit Timeline(const NcProgram& program) : program_(program) {
@@ -67,10 +67,11 @@ class Timeline final : public NcSink {
   int lines() const { return program_.lines; }
 
  private:
-  /// What the time of a move depends on: travels in nanometres and 1e-7 degrees, feed or time, and how it goes.
+  /// Key of equal moves, with all values that determine the time of a move: travels in nanometres and 1e-7 degrees,
+  /// feed or time, and kind of move.
   using Key = std::array<std::int64_t, kNcAxes + 4>;
 
-  /// What happens on these lines: main programs run from their first line to their last.
+  /// Returns the events of a range of lines. The events are sorted, because main programs have no jumps.
   template <class Event>
   static std::span<const Event> of_lines(const std::vector<Event>& events, int from_line, int to_line) {
     const auto first = std::ranges::lower_bound(events, from_line, {}, &Event::first);
@@ -103,7 +104,7 @@ class Timeline final : public NcSink {
   std::vector<std::pair<int, double>> dwells_;
 };
 
-/// Which column holds what.
+/// Indices of the columns.
 struct TimeColumns {
   std::size_t program, seconds, uncertainty;
   std::optional<std::size_t> from_line, to_line;
@@ -186,7 +187,7 @@ class TimeReader {
     return timelines_.try_emplace(name, std::move(program), read).first->second.timeline;
   }
 
-  /// A program with what it does.
+  /// Program with its moves and dwells.
   struct Known {
     std::unique_ptr<NcProgram> program;
     Timeline timeline;
