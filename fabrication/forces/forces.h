@@ -106,7 +106,7 @@ struct ForceSample {
 /// approach.
 std::vector<ForceSample> force_profile(const ForceModel& model, const CutConditions& cut);
 
-/// Remarks on conditions that the measurements do not cover, such as depths of cut below 5 um.
+/// Returns warnings about conditions outside of the measurements, such as depths of cut below 5 um.
 Warnings force_warnings(const ForceModel& model, const CutConditions& cut);
 
 /// Minimum depth of cut, in um, for which measurements confirm the linear model.

@@ -30,7 +30,7 @@ inline constexpr double kTriedRakeLowDeg = -45.0;
 inline constexpr double kTriedRakeHighDeg = 18.0;
 inline constexpr double kTriedSkewDeg = 60.0;
 
-/// Remarks on rake and skew outside of what was tried.
+/// Returns warnings if rake or skew is outside of the tested range.
 Warnings tool_warnings(const TurningTool& tool);
 
 /// Directions of the tool, in cylindrical components of the part: outward, along the cut, up.

@@ -55,7 +55,7 @@ struct Calibration {
   std::vector<double> residuals;    ///< residuals in standard uncertainties
   std::vector<Outlier> outliers;    ///< removed measurements, the worst first
   double chi_square = 0.0;
-  std::size_t freedom = 0;  ///< measurements less what is estimated
+  std::size_t freedom = 0;  ///< degrees of freedom: number of measurements minus number of estimated unknowns
   Warnings warnings;
 };
 

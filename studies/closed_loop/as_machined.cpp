@@ -204,10 +204,10 @@ ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
     part.warnings.push_back(
         {"zone_border_cavities_omitted",
          run.result.elements_overcut == 0
-             ? "cavities of hexagons extend into the land at borders of zones: this is left out"
+             ? "cavities of hexagons extend into the flat land at borders of zones: the design omits this"
              : fmt::format(
                    "cavities of hexagons extend beyond the elements' outlines at borders of zones, and remove {} "
-                   "mm2 of the apertures of other elements: left out",
+                   "mm2 of the apertures of other elements: the design omits this",
                    fixed(run.result.zone_overcut_mm2, 4))});
   return machined_zones(run.job, run.request.job, elements, part.warnings);
 }

@@ -30,7 +30,8 @@ struct MachinedBody {
 /// Returns the design from which a job was made, or nothing if the file does not exist in the folder of the job.
 std::optional<Design> design_beside(const fabrication::Job& job, const std::filesystem::path& job_file);
 
-/// As that design says. \param warnings is told where it is missed
+/// Returns thickness and material of the job's design, or default values.
+/// \param warnings receives a warning if the design does not exist
 MachinedBody machined_body(const fabrication::Job& job, const std::filesystem::path& job_file, Warnings& warnings);
 
 /// Returns the specification of the job's elements.

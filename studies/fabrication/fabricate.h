@@ -27,7 +27,7 @@ struct FabricationResult {
   fabrication::Machine machine;
   fabrication::Plan plan;
   std::string dialect;
-  std::string file_ending;  ///< of programs, with the dot
+  std::string file_ending;  ///< file extension of the programs, with the dot
   Warnings warnings;
 
   std::string program_file(std::size_t k) const { return plan.programs[k].name + file_ending; }

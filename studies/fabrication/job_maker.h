@@ -25,10 +25,10 @@ struct JobRequest {
 };
 
 struct MadeJob {
-  fabrication::Job job;               ///< names its design by the file's name alone
-  std::filesystem::path design_file;  ///< that it was made from, from the working directory; none: standard input
-  std::int64_t elements = 0;          ///< that are cut
-  std::int64_t partial_elements = 0;  ///< that the design has and the job leaves out
+  fabrication::Job job;               ///< job, which contains only the file name of its design, without the folder
+  std::filesystem::path design_file;  ///< path of the design; empty if it was read from standard input
+  std::int64_t elements = 0;          ///< number of elements that are cut
+  std::int64_t partial_elements = 0;  ///< number of partial elements of the design, which the job omits
   Warnings warnings;
 };
 

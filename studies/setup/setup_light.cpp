@@ -79,7 +79,8 @@ class LastCuts {
   std::vector<std::vector<std::optional<FacetEdgeCut>>> cuts_;
 };
 
-/// The design of the moulded patch but for its planes: smooth and clean, lit as the job's design says.
+/// Returns the design of the moulded patch without its facet planes. It is smooth and clean, with the illumination of
+/// the job's design.
 Design patch_design(const Job& patch, const std::filesystem::path& job_file, Warnings& warnings) {
   Design design;
   ElementArray array{machined_elements(patch, true), {}, {}};

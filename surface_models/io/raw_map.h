@@ -35,8 +35,8 @@ struct RawMap {
   std::size_t rows = 0;
   std::optional<double> x_pixel_um;
   std::optional<double> y_pixel_um;
-  std::optional<double> nm_per_unit;  ///< of the heights
-  std::vector<double> heights;        ///< columns * rows; NaN where missing
+  std::optional<double> nm_per_unit;  ///< nanometres per unit of the heights
+  std::vector<double> heights;        ///< columns * rows values; NaN where missing
   Warnings warnings;
 };
 

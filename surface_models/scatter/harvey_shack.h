@@ -122,7 +122,8 @@ class HarveyShack {
   double unmasked_share(const Vec3& direction) const { return slopes_.visible_share(direction); }
   /// \throw InputError if the slopes of the scattering heights are beyond the range of all models
   void require_in_range(double index, double wavelength_nm) const;
-  /// What lies outside the model's range at this index (of the denser side) and wavelength, one sentence each.
+  /// Returns a warning for each condition of the model that is violated at this wavelength. The index is that of the
+  /// denser side.
   Warnings warnings(double index, double wavelength_nm) const;
 
   /// Returns the density before it is scaled to the scattered fraction. In reflection, it is symmetric under exchange
