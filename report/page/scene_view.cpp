@@ -65,9 +65,10 @@ std::vector<std::string> add_scene(Page& page, const ResultFolder& folder) {
       const studies::DesignScene scene = studies::make_scene(quoted, lights);
       page.scene = scene_view(scene);
       std::string text =
-          "The most frequent ways of light that falls on an element in the middle, each drawn along its strongest "
-          "branch.";
-      if (!scene.remarks.empty()) text += fmt::format(" For the eye, {}.", fmt::join(scene.remarks, ", "));
+          "The most frequent light paths in an element at the center of the array. Only the strongest branch of each "
+          "path is drawn. Weaker branches, such as the reflection at the entrance face, are not drawn but are part of "
+          "RRE.";
+      if (!scene.remarks.empty()) text += fmt::format(" To keep the drawing clear, {}.", fmt::join(scene.remarks, ", "));
       section.paragraphs.push_back(text);
     } catch (const Error& error) {
       section.paragraphs.push_back(std::string("The design cannot be shown here: ") + error.what());

@@ -28,21 +28,21 @@ std::string face_name(FacetRole role) {
 std::string words_of(const raytrace::PathStep& step) {
   const std::string face = face_name(step.role);
   const std::string at = fmt::format("at {} deg", fixed_visible(step.incidence_deg, 1));
-  const std::string left = fmt::format("{} % goes on", fixed(100.0 * step.power, 1));
+  const std::string left = fmt::format("{} % of the incident power continues", fixed(100.0 * step.power, 1));
   switch (step.event) {
     case PathEvent::enters: return fmt::format("Enters {} {}; {}.", face, at, left);
     case PathEvent::total_reflection: return fmt::format("Total reflection at {} {}.", face, at);
     case PathEvent::reflection: return fmt::format("Reflected by {} {}; {}.", face, at, left);
     case PathEvent::leaves:
-      return fmt::format("Leaves through {}; {} % of what fell in.", face, fixed(100.0 * step.power, 1));
+      return fmt::format("Leaves through {} with {} % of the incident power.", face, fixed(100.0 * step.power, 1));
     case PathEvent::exits: return fmt::format("Leaves through {} {}, no total reflection; {}.", face, at, left);
     case PathEvent::enters_again: return fmt::format("Enters again through {} {}; {}.", face, at, left);
     case PathEvent::leaves_side:
-      return fmt::format("Leaves through {}; {} % of what fell in.", face, fixed(100.0 * step.power, 1));
+      return fmt::format("Leaves through {} with {} % of the incident power.", face, fixed(100.0 * step.power, 1));
     case PathEvent::escapes: return "Is lost behind the part.";
     case PathEvent::ends: break;
   }
-  return "Ends: what is left is faint.";
+  return "Ends, because the remaining power is negligible.";
 }
 
 std::string fate_of(const raytrace::LightPath& path) {

@@ -270,6 +270,32 @@ TEST(RoundedCuts, RandomNosesPass) {
   EXPECT_EQ(cut, noses);
 }
 
+/// On a machine with alignment errors, the tool is rotated relative to the facets, which changes the overlap of the
+/// cuts at dihedral edges. A job with zones is refused for fins there, or it passes verification.
+TEST(RoundedCuts, RandomNosesPassOnMachinesWithErrors) {
+  const int noses = retrace::test::sample_size(40, 500);
+  std::mt19937 bits(19);
+  int cut = 0;
+  int refused = 0;
+  for (int tried = 0; cut < noses && tried < 20 * noses; ++tried) {
+    const Job job = random_corner(bits);
+    if (!fits(job)) continue;
+    const Machine m = crooked_machine();
+    std::string text;
+    try {
+      text = text_of(job, m);
+    } catch (const InputError&) {
+      ++refused;
+      continue;
+    }
+    ++cut;
+    const Verification v = verified(job, m, text);
+    EXPECT_TRUE(v.passes()) << job_text(job) << listed(v);
+  }
+  EXPECT_EQ(cut, noses);
+  EXPECT_GT(refused, 0);
+}
+
 /// A Fanuc control rounds positions to its increments. A job of cube corners passes verification, or it is refused with
 /// the name of the key to change.
 TEST(RoundedCuts, CubeCornersOfEveryIncrementSystemPassOrAreRefused) {

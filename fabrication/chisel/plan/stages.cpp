@@ -136,8 +136,12 @@ class StageMaker {
   /// give thicker chips at dihedral edges.
   void add_poses_by_turn() {
     std::vector<CuttingPose> poses;
-    for (const auto& [group, stance] : groups_)
-      for (int facet = 1; facet <= 3; ++facet) poses.push_back(next_pose(group, facet));
+    for (const auto& [group, stance] : groups_) {
+      std::array<CuttingPose, 3> of_group;
+      for (int facet = 1; facet <= 3; ++facet) of_group[static_cast<std::size_t>(facet) - 1] = next_pose(group, facet);
+      check_v_in_poses(job_, machine_, of_group, stance);
+      poses.insert(poses.end(), of_group.begin(), of_group.end());
+    }
     const double sense = machine_.c.sign.value;
     const auto turn_deg = [&](const CuttingPose& pose) {
       const double c_deg = -sense * pose.rounded.c_deg;
