@@ -50,7 +50,7 @@ SceneView scene_view(const studies::DesignScene& scene) {
   return view;
 }
 
-std::vector<std::string> add_scene(Page& page, const ResultFolder& folder) {
+Warnings add_scene(Page& page, const ResultFolder& folder) {
   Warnings warnings = folder.warnings;
   const auto* const design = first_design(folder);
   if (design == nullptr) return warnings;

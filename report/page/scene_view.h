@@ -13,7 +13,7 @@ SceneView scene_view(const studies::DesignScene& scene);
 
 /// Gives a page the view of the design that its results quote, in the light that they are of. A page without its view
 /// is better than none. \return why it has none, if so
-std::vector<std::string> add_scene(Page& page, const ResultFolder& folder);
+Warnings add_scene(Page& page, const ResultFolder& folder);
 
 /// Gives a page a section in which the design that its results quote can be changed; none of one that names files, or
 /// that results do not quote.

@@ -288,7 +288,7 @@ namespace {
 
 /// Returns a warning for each correlation length or waviness period whose rms height is missing in the document. An
 /// explicit height of 0 causes no warning, because parameter studies vary heights starting from 0.
-std::vector<std::string> lengths_without_heights(const Document& document) {
+Warnings lengths_without_heights(const Document& document) {
   Warnings warnings;
   for (const auto& [length, height] : {std::pair("surface.correlation_length_um", "surface.roughness_sq_nm"),
                                        {"surface.correlation_length_down_um", "surface.roughness_sq_nm"},
