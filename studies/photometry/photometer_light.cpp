@@ -46,11 +46,11 @@ std::vector<IndexAt> index_table(const Design& design, const materials::Spectrum
     sum += flux.weights[k];
   }
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
-  std::vector<std::string> told_before;
+  Warnings ignored;
   // The model of a rough surface is slow to build and does not change the refractive indices.
   Design smooth = design;
   smooth.surface.texture = SmoothTexture{};
-  const OpticsOfDesign optics(smooth, library, told_before);
+  const OpticsOfDesign optics(smooth, library, ignored);
   const auto steps = static_cast<int>(std::ceil((high_nm - low_nm) / kIndexStepNm));
   std::vector<IndexAt> table;
   for (int k = 0; k <= steps; ++k) try {
@@ -143,8 +143,8 @@ Photometer Photometer::with_knees(const std::vector<double>& knees_nm) const try
   Photometer changed = *this;
   const materials::Spectrum light = lamp_->light(knees_nm);
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
-  std::vector<std::string> told_before;
-  const OpticsOfDesign optics(design_, library, told_before);
+  Warnings ignored;
+  const OpticsOfDesign optics(design_, library, ignored);
   changed.weights_ = light.weights;
   changed.model_.spectral.clear();
   for (std::size_t k = 0; k < light.size(); ++k)
