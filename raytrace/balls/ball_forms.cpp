@@ -7,8 +7,8 @@
 namespace retrace::raytrace {
 namespace {
 
-// Number of heights at which the return error is evaluated. The error is smooth except at the end, where its slope is
-// infinite.
+// Number of heights from 0 to 1 at which the return error is evaluated. The error is a smooth function of the height
+// except at height 1, where its slope is infinite.
 constexpr int kHeights = 20000;
 
 double sine_of_step(int k) {
@@ -44,7 +44,7 @@ double share_within(double half_angle_rad, double index, double spacer_index, do
     const double from = error(k) - half_angle_rad;
     const double to = error(k + 1) - half_angle_rad;
     if (from <= 0.0 && to <= 0.0) share += outer - inner;
-    // If the limit is crossed within a step, the error is interpolated linearly.
+    // If the error crosses the limit `half_angle_rad` between two heights, it is interpolated linearly.
     if ((from <= 0.0) != (to <= 0.0)) share += (outer - inner) * std::max(-from, -to) / std::abs(to - from);
   }
   return share;

@@ -8,7 +8,8 @@ namespace retrace::raytrace {
 namespace {
 
 constexpr double kRowOverPitch = 0.5 * std::numbers::sqrt3;
-// Maximum number of steps of half a pitch of a nearly horizontal ray between the balls. After that, it is not traced.
+// Maximum number of steps for which a ray between the balls is followed. Each step is half a pitch long, measured along
+// the plane. A nearly horizontal ray that needs more steps is not traced further.
 constexpr int kMostCells = 4096;
 /// Index offsets of a ball and its six neighbours.
 constexpr std::array<BallIndex, 7> kAround = {{{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}}};
@@ -33,7 +34,8 @@ BallIndex BallLattice::nearest(const Vec2& place_mm) const {
   double r_along = std::round(along);
   double r_row = std::round(row);
   const double r_third = std::round(third);
-  // The three values must add up to 0. The one with the largest rounding error is computed from the other two.
+  // The three hexagonal coordinates of a ball add up to 0. After rounding, the coordinate with the largest rounding
+  // error is therefore computed from the other two.
   const double off_along = std::abs(r_along - along);
   const double off_row = std::abs(r_row - row);
   const double off_third = std::abs(r_third - third);

@@ -19,7 +19,7 @@ struct BallIndex {
   bool operator==(const BallIndex&) const = default;
 };
 
-/// Lattice of the balls of a layer, with the search for the ball that light in the air above z = 0 meets.
+/// Lattice of the balls of a layer. It finds the ball that a ray in the air above z = 0 meets.
 class BallLattice {
  public:
   explicit BallLattice(const BallLayer& layer) : radius_mm_(layer.radius_mm()), pitch_mm_(layer.pitch_mm) {}
@@ -33,11 +33,11 @@ class BallLattice {
     BallIndex ball;
     Vec3 from_centre_mm = Vec3::Zero();
   };
-  /// Result of the search along a ray in the air. If the ray meets no ball above z = 0 and does not leave, it reaches
-  /// the plane z = 0 between the balls.
+  /// Result of the search along a ray in the air. A ray that meets no ball above z = 0 either leaves the layer, or
+  /// reaches the plane z = 0 between the balls.
   struct Way {
     std::optional<Hit> hit;
-    bool leaves = false;       ///< true if the ray rises; without a hit, it leaves for good
+    bool leaves = false;       ///< true if the ray rises; it leaves for good if it has no hit
     bool goes_astray = false;  ///< true if the ray is so close to horizontal that it would pass too many balls
   };
   /// \param leaving ball from whose surface the ray starts, which is excluded from the search; null for none

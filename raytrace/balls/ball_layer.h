@@ -16,7 +16,7 @@ namespace retrace::raytrace {
 struct BallLayer {
   double diameter_mm = 0.0;             ///< > 0
   double mirror_offset_mm = 0.0;        ///< distance from the ball to the bowl; 0 if the back of the ball is coated
-  double mirror_half_angle_deg = 90.0;  ///< angle from -z to the edge of the mirror at the ball's centre; at most 90
+  double mirror_half_angle_deg = 90.0;  ///< angle between -z and the mirror's edge, seen from the ball's centre; <= 90
   std::optional<double> pitch_mm;       ///< pitch of an infinite hexagonal layer, >= diameter_mm; none: a single ball
 
   double radius_mm() const { return 0.5 * diameter_mm; }

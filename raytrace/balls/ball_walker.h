@@ -60,7 +60,7 @@ class BallWalker {
   void meet_mirror(Ray ray, const Vec3& position_mm, const Vec3& normal, bool from_ball);
   void leave(const Ray& ray);
   void keep(Ray ray);
-  /// Queues both branches, or one of them with the power of both.
+  /// Queues both branches of an interface (reflected and refracted), or a random one of them with the power of both.
   void keep_branches(Ray one, Ray other);
   bool is_mirrored(const Vec3& normal) const;
 

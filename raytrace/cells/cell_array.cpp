@@ -11,7 +11,8 @@ using geometry::Vec2, geometry::Vec3;
 
 namespace {
 
-// Number of periods in which the neighbours of a cell are searched. A cell extends less than one period beyond its own.
+// Number of periods in which the neighbours of a cell are searched. A cell extends less than one period beyond the
+// period that it belongs to.
 constexpr int kReach = 2;
 
 CellArray::Facet facet_of(const geometry::CellFacet& facet, geometry::FacetRole role) {
@@ -24,7 +25,7 @@ CellArray::Facet facet_of(const geometry::CellFacet& facet, geometry::FacetRole 
 CellArray::Column column_of(const geometry::Cell& cell) {
   CellArray::Column column;
   for (const geometry::CellFacet& facet : cell.facets) {
-    const bool is_retro = cell.is_element || facet.is_edge;  // rounded rims extend over the adjacent flat land
+    const bool is_retro = cell.is_element || facet.is_edge;  // rounded rims extend over the flat land next to them
     column.facets.push_back(
         facet_of(facet, is_retro ? geometry::FacetRole::retro_facet : geometry::FacetRole::flat_back));
   }
@@ -37,7 +38,7 @@ CellArray::Column column_of(const geometry::Cell& cell) {
   return column;
 }
 
-/// Returns true if the highest of all planes is the surface over every facet's outline.
+/// Returns true if the surface is the upper envelope of all planes: it is the maximum of their heights everywhere.
 bool is_upper_envelope(const geometry::Cell& cell, const CellArray::Column& column, double tolerance_mm) {
   for (const geometry::CellFacet& facet : cell.facets)
     for (const Vec2& corner : facet.outline)
@@ -45,8 +46,8 @@ bool is_upper_envelope(const geometry::Cell& cell, const CellArray::Column& colu
   return true;
 }
 
-/// Returns cells over which the surface is the highest of the facets' planes. Cells with rounded rims do not have this
-/// property and are divided into their facets.
+/// Divides cells so that the surface over each result is the upper envelope of the planes of its facets. Cells with
+/// rounded rims do not have this property and are divided into their facets.
 std::vector<geometry::Cell> convex_cells(const std::vector<geometry::Cell>& cells, double tolerance_mm) {
   std::vector<geometry::Cell> convex;
   for (const geometry::Cell& cell : cells) {
@@ -70,8 +71,8 @@ void for_each_shift(const Vec2& period_mm, const Visit& visit) {
     for (int i = -kReach; i <= kReach; ++i) visit(Vec2(i * period_mm.x(), j * period_mm.y()));
 }
 
-/// Returns true if two surfaces have the same height between two points. Both surfaces are convex, so that it is
-/// sufficient to compare them where the facets of either surface change along the line.
+/// Returns true if two surfaces have the same height along the line from `a` to `b`. Both surfaces are convex, so that
+/// it is sufficient to compare them where the facets of either surface change along the line.
 bool is_level(const geometry::Cell& cell, const CellArray::Column& here, const CellArray::Column& there,
               const geometry::Cell& other, const Vec2& shift, const Vec2& a, const Vec2& b, double tolerance_mm) {
   const Vec2 along = (b - a).normalized();

@@ -1,7 +1,7 @@
 #pragma once
 
-// Infinite arrays as columns over convex cells. In a column, a ray finds the next facet or neighbour without a search
-// tree.
+// Infinite arrays of elements, represented as columns over convex cells. In a column, a ray finds the next facet or
+// neighbour without a search tree.
 
 #include <optional>
 #include <vector>
@@ -13,9 +13,10 @@
 
 namespace retrace::raytrace {
 
-/// An infinite array as columns. Each column is the space above one cell of the period. Over a cell, the part is the
-/// space above all planes of its facets. It is therefore convex, and a ray finds its next facet without a search tree.
-/// Coordinates are those of the lattice. Columns of different height are separated by vertical walls.
+/// An infinite array of elements, represented by columns. Each column is the space above one cell of the period. Over a
+/// cell, the part is the space above all planes of its facets. It is therefore convex, and a ray finds its next facet
+/// without a search tree. Coordinates are those of the lattice. Columns of different height are separated by vertical
+/// walls.
 class CellArray {
  public:
   struct Facet {
@@ -30,7 +31,7 @@ class CellArray {
     std::uint32_t column = 0;
     geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< added to this column's coordinates to get the neighbour's
     double until_mm = 0.0;                             ///< end of the interval along the edge
-    bool is_level = true;                              ///< true if both surfaces have the same height along it
+    bool is_level = true;                              ///< true if both surfaces have equal heights along the interval
   };
   struct Edge {
     geometry::Vec2 normal = geometry::Vec2::Zero();  ///< unit normal that points out of the cell
@@ -54,7 +55,7 @@ class CellArray {
 
   /// Inner region of a finite part, in which the borders of the part have no effect.
   struct Inner {
-    geometry::Rectangle where_mm;  ///< all columns that overlap it, and their neighbours, are complete
+    geometry::Rectangle where_mm;  ///< region; all columns that overlap it, and their neighbours, are complete
     geometry::Vec2 anchor_mm = geometry::Vec2::Zero();  ///< origin of the lattice on the part
   };
 

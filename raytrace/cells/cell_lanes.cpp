@@ -17,7 +17,7 @@ HWY_INLINE V absorbed(const Rays& rays, std::size_t k, std::size_t count, V way,
   return hn::IfThenElseZero(present(k, count), hn::Sub(before.i, after.i));
 }
 
-/// Length of a path along a ray, as a fraction. Fractions are compared without division, and only the result is
+/// Length of a path along a ray, as a fraction. Fractions are compared without division. Only the smallest one is
 /// divided.
 struct Way {
   V over;   ///< numerator, not negative
@@ -237,7 +237,7 @@ std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach,
 }
 
 /// Wraps the coordinate into [0, period).
-/// \param stands_at the removed periods are added to this array unless it is null
+/// \param stands_at array to which the removed periods are added; may be null
 HWY_INLINE void store_folded(V at, double period, double* to, double* stands_at, std::size_t k) {
   const V periods = hn::Floor(hn::Mul(at, splat(1.0 / period)));
   store(hn::NegMulAdd(periods, splat(period), at), to, k);

@@ -62,8 +62,9 @@ struct LinearForm {
   double x = 0.0, y = 0.0, c = 0.0;
 };
 
-/// Faces that rays have met. The value of `which` is 0 for a facet, with its normal. 1 is the top of the surface for
-/// rays inside, and nothing, below all facets, for rays outside. 2 + k is border k.
+/// Faces that rays have met. `which` contains a number per ray. 0 is a facet, whose normal is stored in `normal`. 1 is
+/// the top of the surface for rays inside the material. For rays outside, 1 means that they are below all facets and
+/// have met nothing. 2 + k is border k.
 struct Met {
   double* which = nullptr;
   std::array<double*, 3> normal{};
@@ -100,8 +101,8 @@ void refine(const Rays& rays, std::size_t count, const Border& border, double nu
 /// \param to may be equal to `from`
 std::size_t select(const double* which, double wanted, std::size_t count, const Rays& from, const Rays& to);
 
-/// Sets `which` to the index of the first polygon of which no form is negative, or to the number of polygons if there
-/// is none.
+/// Sets `which` to the index of the first polygon that contains the ray, which means that all of its linear forms are
+/// at least 0 at the position of the ray. If there is no such polygon, `which` becomes the number of polygons.
 /// \param first_form index of the first form of each polygon, and the number of forms
 void mark_polygon(const Rays& rays, std::size_t count, std::span<const LinearForm> forms,
                   std::span<const std::uint32_t> first_form, double* which);
@@ -112,9 +113,9 @@ std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, double*
 /// Converts positions to the coordinates of another period.
 void shift(const Rays& rays, std::size_t count, const geometry::Vec2& shift);
 
-/// Parameters of mark_beyond(), which extrapolates rays to a height and tests whether they are outside of a rectangle
-/// on the part. `which` becomes `number` for such rays. Only rays whose `which` is `of` are tested. Returns their
-/// number.
+/// Parameters of mark_beyond(). That function extrapolates rays to a height and tests whether they are then outside of
+/// a rectangle on the part. If so, their `which` becomes `number`. Only rays whose `which` equals `of` are tested. The
+/// function returns the number of marked rays.
 /// \pre rays.have_periods()
 struct Reach {
   double height_mm = 0.0;  ///< height above the rays to which they are extrapolated along their direction
@@ -141,7 +142,7 @@ struct Branches {
 };
 
 /// Appends the branches of rays at faces to `reflected` and `transmitted`.
-/// \param index_ratio refractive index before divided by that after the face
+/// \param index_ratio refractive index before the face divided by the index after the face
 Branches meet_faces(const Rays& rays, std::size_t count, const Meeting& meeting, double index_ratio,
                     const Rays& reflected, const Rays& transmitted);
 

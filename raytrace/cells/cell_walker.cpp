@@ -8,7 +8,8 @@ namespace {
 
 using geometry::FacetRole;
 
-// More values of `which` that lanes::advance_inside() and lanes::advance_outside() return.
+// More values of `which`, in addition to those in the class. The first border is number 2. kHandedOver marks rays that
+// leave the region in which this class traces them.
 constexpr std::size_t kFirstBorder = 2;
 constexpr double kHandedOver = -1.0;
 // Maximum distance of a position from its column that is caused by rounding, relative to the period.
@@ -189,7 +190,7 @@ std::optional<std::uint32_t> CellWalker::fullest() {
   return std::nullopt;
 }
 
-/// Adds rays to a stream that have been written behind its last ray.
+/// Adds rays to a stream. Their data have already been written behind its last ray.
 void CellWalker::grow(std::uint32_t number, std::size_t more) {
   if (more == 0) return;
   RayStore& rays = streams_[number].rays;
@@ -198,7 +199,7 @@ void CellWalker::grow(std::uint32_t number, std::size_t more) {
   if (std::bit_width(before) != std::bit_width(before + more)) waits(number);
 }
 
-/// Adds rays to a stream that come from another column. Rays that leave the inner region of the part are handed over.
+/// Adds rays that come from another column to a stream. Rays that leave the inner region of the part are handed over.
 void CellWalker::come_in(std::uint32_t number, std::size_t more, const Vec2& shift) {
   if (more == 0) return;
   const Stream& stream = streams_[number];
@@ -254,7 +255,7 @@ lanes::Meeting CellWalker::meeting(double number, bool inside) {
   return {met(), number, inside ? -1.0 : 1.0, policy_.split_power, random()};
 }
 
-/// Ends the rays of `moved_` that have met a face with this number, and adds their power to an account.
+/// Ends the rays of `moved_` that have met a face with this number, and adds their power to an account of the ledger.
 void CellWalker::book(double number, Account account) {
   const lanes::Share share = lanes::sum_of(met_.data(), number, moved_.rays(), moved_.size());
   tally_->other[account] += share.power;

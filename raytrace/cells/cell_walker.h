@@ -34,9 +34,10 @@ inline std::uint32_t owner_of(const lanes::Rays& rays, std::size_t k) {
   return rays.numbers == lanes::kRayNumbers ? static_cast<std::uint32_t>(rays[lanes::kOwner][k]) : 0;
 }
 
-/// Traces light through an infinite array, column by column, with many rays at a time. All rays above or below the
-/// surface of a column are queued in one stream. The stream with the most rays is processed first, with SIMD. Rays that
-/// leave the inner region of a finite part are handed over to PathWalker. One walker serves one thread.
+/// Traces light through an infinite array, column by column, with many rays at a time. Rays wait in streams. Each
+/// stream contains the rays on one side of the surface of one column. The stream with the most rays is processed first,
+/// with SIMD. Rays that leave the inner region of a finite part are handed over to PathWalker. One walker serves one
+/// thread.
 class CellWalker {
  public:
   /// A ray that the walker does not trace further.
@@ -51,9 +52,9 @@ class CellWalker {
   class Observer {
    public:
     virtual ~Observer() = default;
-    /// Light leaves through the entrance face, see ExitObserver::leaves().
+    /// Called when light leaves through the entrance face, see ExitObserver::leaves().
     virtual void leaves(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) = 0;
-    /// Light leaves through the back.
+    /// Called when light leaves through the back.
     virtual void is_transmitted(std::uint32_t owner, double power) = 0;
   };
 
@@ -65,8 +66,8 @@ class CellWalker {
   CellWalker(CellWalker&&) = default;
 
   /// Traces light that enters at the points `first` to `first + count - 1` of SobolSquare(key_x, key_y), each with
-  /// power 1. The points are mapped to the rectangle `entrance_mm`, which is relative to the centre, or one period of
-  /// an infinite part. Random choices depend only on `key`, `replicate` and `first`.
+  /// power 1. The points are mapped to the rectangle `entrance_mm` (relative to the centre), or to one period of an
+  /// infinite part. Random choices depend only on `key`, `replicate` and `first`.
   void trace(const geometry::Rectangle& entrance_mm, std::uint64_t key_x, std::uint64_t key_y, std::uint32_t first,
              std::size_t count, RandomKey key, std::uint32_t replicate, Tally& tally);
 
@@ -78,7 +79,8 @@ class CellWalker {
 
   /// Returns the rays that the last trace() or follow() has not traced to their end. There are none in infinite parts.
   const std::vector<HandedOver>& handed_over() const { return handed_over_; }
-  /// Returns the number of random choices made so far with the number of the first point.
+  /// Returns the number of random choices that the last trace() or follow() has made. Each choice uses this number and
+  /// the number of the first point as counters of the random generator.
   std::uint32_t choices() const { return choices_; }
 
  private:

@@ -1,5 +1,6 @@
-// Member functions of CellWalker that process rays one by one: for forms, textures and layers, and for entrance faces
-// that scatter. These computations take so long that SIMD would save little time.
+// Member functions of CellWalker that process rays one by one. They are used for facets with a form (a smooth deviation
+// from the plane), a texture or layers, and for entrance faces that scatter. These computations take so long that SIMD
+// would save little time.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,7 +12,7 @@ namespace retrace::raytrace {
 
 using geometry::FacetRole;
 
-/// Returns the facet of a column whose normal is nearest to a normal.
+/// Returns the facet of a column whose normal is nearest to `normal`.
 std::size_t CellWalker::facet_of(const Stream& stream, const Vec3& normal) const {
   const std::vector<lanes::Plane>& facets = shapes_[stream.column].facets;
   const auto turned = [&](const lanes::Plane& facet) { return (facet.normal - normal).squaredNorm(); };

@@ -9,7 +9,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace retrace::raytrace::lanes::HWY_NAMESPACE {
 
-/// Rotates the axis of Stokes parameters as Light::turn_to_axis(), for axes of any length.
+/// Rotates the axis of Stokes parameters in the same way as Light::turn_to_axis(), but for axes of any length.
 /// \param over 1 / (|axis|^2 |to|^2)
 HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V3& to, V over) {
   const V c = dot(to, axis);
@@ -24,7 +24,7 @@ HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V
 struct Interface {
   S reflected, transmitted;
   V3 mirrored, refracted;
-  V3 axis;  ///< first axis of both
+  V3 axis;  ///< first axis of the Stokes parameters of both branches
 };
 
 /// Returns an axis perpendicular to the plane of incidence. At normal incidence, the present axis is returned, because
@@ -62,7 +62,8 @@ HWY_INLINE Shares shares(double index_ratio, V ci, V root, V a_s, V b_p, V over,
   const V total_im = hn::IfThenElseZero(hn::Not(grazes), hn::Mul(over, hn::MulAdd(re_s, im_p, hn::Mul(im_s, re_p))));
   return {hn::IfThenElse(total, one, hn::Mul(r_s, r_s)), hn::IfThenElse(total, one, hn::Mul(r_p, r_p)),
           hn::IfThenElse(total, total_re, hn::Mul(r_s, r_p)), hn::IfThenElseZero(total, total_im),
-          // 4 ratio ci root / ((a_s + root) (ci + b_p)); squares of the amplitudes are fractions of the power
+          // t_s t_p = 4 ratio ci root / ((a_s + root) (ci + b_p)); the squares of t_s and t_p are fractions of the
+          // power
           hn::IfThenElseZero(hn::Not(total), hn::Mul(over, hn::Mul(splat(4.0 * index_ratio), hn::Mul(ci, root))))};
 }
 
@@ -127,7 +128,7 @@ HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& refle
   const V at = hn::MulAdd(number, splat(kGolden), splat(meeting.start));
   const V u = hn::Sub(at, hn::Floor(at));
   const M takes_reflected = hn::Lt(hn::Mul(u, power), r);
-  // In this case, no random choice is needed.
+  // If both branches of all rays continue, or no light is transmitted, no random choice is needed.
   if (hn::AllTrue(D(), hn::Or(hn::Or(both, hn::Not(here)), hn::Le(t, hn::Zero(D())))))
     return {here, hn::And(here, both)};
   // The chosen branch receives the power of both.

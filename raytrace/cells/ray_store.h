@@ -33,7 +33,7 @@ class RayStore {
     values_.swap(values);
     capacity_ = capacity;
   }
-  /// \pre the memory is reserved
+  /// \pre memory for `size` rays has been reserved
   void resize(std::size_t size) { size_ = size; }
 
   /// Returns the arrays, beginning at ray `first`.
@@ -44,7 +44,7 @@ class RayStore {
     return all;
   }
 
-  /// \pre both have the same number of values per ray
+  /// \pre both stores have the same number of values per ray
   void swap(RayStore& other) noexcept {
     values_.swap(other.values_);
     std::swap(capacity_, other.capacity_);

@@ -26,7 +26,7 @@ HWY_INLINE VU mixed(VU node, std::uint64_t key) {
   return hn::Xor(x, hn::ShiftRight<14>(x));
 }
 
-/// Returns digits with the flips of nested_flips().
+/// Returns `digits` after the bits given by nested_flips() have been flipped (nested scrambling).
 HWY_INLINE VU scrambled(VU digits, std::uint64_t key) {
   const U u;
   const VU one = hn::Set(u, 1);

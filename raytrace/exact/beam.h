@@ -63,7 +63,7 @@ struct EntryPoint {
   }
 };
 
-/// Identity and position of a cell of the back surface.
+/// Identity and position of a cell (an element or a flat area) of the back surface.
 struct CellPlace {
   std::uint64_t id = 0;           ///< identical for all copies of a patch, or for all cells of identical shape
   Vec2 offset_mm = Vec2::Zero();  ///< displacement of this copy
@@ -134,16 +134,18 @@ struct Beam {
   double power = 0.0;             ///< power at the start of the beam, as a fraction of the incident power
   PathLength path_length;         ///< length of the path in the material
   EntryPoint entry;               ///< point of the entrance face where the light entered
-  std::vector<TexturedHit> hits;  ///< facets met, in order: textured ones with BeamPolicy::keeps_phases, or with form
+  /// Facets that the light has met, in order: those with a form and, with BeamPolicy::keeps_phases, textured facets.
+  std::vector<TexturedHit> hits;
   Plane start;                    ///< the beam is in the half space start.height(p) >= 0
   bool inside = true;
-  geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which it left the part
+  geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which light left the part
   std::uint32_t depth = 0;                                              ///< number of interfaces so far
   std::uint32_t level_steps = 0;                                        ///< number of steps since the last interface
   /// Displacements from this beam to all identical beams at identical elements, including the displacement 0 of this
   /// beam. The pointer is null if the beam represents only itself.
   std::shared_ptr<const BeamPlaces> places;
-  /// Index in EqualPlaces::regions() of the region that contains all `places`. It is used for parts with zones only.
+  /// Index in EqualPlaces::regions() of the region that contains all `places`. It is used only for parts with zones
+  /// (regions with different arrays).
   std::uint32_t region = 0;
 
   double place_count() const { return places ? static_cast<double>(places->size()) : 1.0; }

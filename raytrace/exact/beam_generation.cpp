@@ -15,7 +15,7 @@ namespace {
 
 /// Philox stream of the offsets of systematic resampling.
 constexpr std::uint32_t kResamplingStream = 7;
-// Directions whose components differ by less than this value are sorted as equal.
+// Directions whose components differ by less than this value are treated as equal when beams are sorted.
 constexpr double kOneDirection = 1e-7;
 // Generations with less total power than this value are not traced.
 constexpr double kLeastPower = 1e-14;

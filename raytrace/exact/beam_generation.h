@@ -44,7 +44,7 @@ class BeamGeneration {
 
  private:
   struct Entry {
-    std::uint64_t order;  ///< sorting key: rank of the direction, then Morton code of the position
+    std::uint64_t order;  ///< sorting key: rank of the direction in the upper bits, Morton code of the position below
     std::size_t beam;
     double power_up_to;  ///< cumulative power: sum over all entries up to this entry, which is included
   };

@@ -8,7 +8,7 @@
 namespace retrace::raytrace {
 namespace {
 
-// Number of positions of a beam that are compared with the borders per unit of BeamWalk::work().
+// Number of positions of a beam whose comparison with the borders counts as one unit of BeamWalk::work().
 constexpr std::size_t kPlacesPerWork = 16;
 
 /// An interval of the entrance face along one axis, and the displacements to its copies.

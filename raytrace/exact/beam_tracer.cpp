@@ -14,8 +14,8 @@
 namespace retrace::raytrace {
 namespace {
 
-// The first cut-off is the power that may be truncated, times kFirstCutoffOfGoal. It is limited to the range from
-// kFirstCutoff to kHighestFirstCutoff. Later cut-offs are lower.
+// The first cut-off is kFirstCutoffOfGoal times the power that may be truncated, limited to the range from kFirstCutoff
+// to kHighestFirstCutoff. Later cut-offs are lower.
 constexpr double kFirstCutoffOfGoal = 100.0;
 constexpr double kFirstCutoff = 1e-6;
 constexpr double kHighestFirstCutoff = 1e-3;

@@ -36,17 +36,17 @@ struct WeakBeams {
 
 /// Criteria that end the tracing of beams.
 struct BeamPolicy {
-  /// Minimum power of a beam that is traced. In a finite part, identical beams at identical elements count together.
-  /// Without a value, the cut-off starts at 100 times `truncated_goal`, but between 1e-6 and 1e-3. It then decreases
-  /// until the truncated power is at most `truncated_goal`.
+  /// Minimum power of a beam that is traced. In a finite part, the powers of identical beams at identical elements are
+  /// added for this comparison. Without a value, the cut-off starts at 100 times `truncated_goal`, but between 1e-6 and
+  /// 1e-3. It then decreases until the truncated power is at most `truncated_goal`.
   std::optional<double> cutoff;
   /// Resampling of the beams whose power is below `cutoff`. Without a value, these beams are not traced further and
   /// their power is added to `truncated`. Only BeamTracer::trace() supports resampling.
   /// \pre `cutoff` is set and all facets are plane; rough facets require `keeps_phases`
   std::optional<WeakBeams> weak;
   double truncated_goal = kFinestGoal;
-  /// Amount of BeamTrace::work() up to which beams are traced even after `truncated_goal` is reached, down to
-  /// `kFinestGoal`. Fast traces become more accurate in this way.
+  /// Amount of BeamTrace::work() up to which tracing continues even after `truncated_goal` is reached. It then ends
+  /// when the truncated power is at most `kFinestGoal`. Fast traces become more accurate in this way.
   std::uint64_t spare_work = 0;
   std::uint64_t max_beams = 100'000'000;  ///< maximum number of traced beams, including the search for the cut-off
   /// If true, facets of neighbouring cells are treated separately even if they are in one plane. Every returned beam
@@ -60,7 +60,7 @@ struct BeamPolicy {
 
 struct BeamResult {
   std::vector<Ledger> ledgers;  ///< one per acceptance cone, in the order given
-  std::vector<Stokes> stokes;   ///< Stokes vectors of the retroreflected light per cone, along source_axis()
+  std::vector<Stokes> stokes;   ///< Stokes vectors of the retroreflected light per cone; first axis: source_axis()
   /// Standard error of the RRE per cone. An interval of +-1.96 standard errors has a confidence of 95 %. It is 0
   /// without WeakBeams. Its minimum is the power of one survivor divided by the number of replicates, because beams
   /// that no replicate has traced may have this power.
@@ -74,7 +74,7 @@ struct BeamResult {
 /// A beam that leaves the part through the entrance face, or is reflected there from outside.
 struct ReturnedBeam {
   Vec3 direction = Vec3::UnitZ();
-  Stokes stokes;            ///< Stokes vector of the whole beam, along source_axis()
+  Stokes stokes;            ///< Stokes vector of the whole beam; its first axis is source_axis()
   double efficiency = 0.0;  ///< power as a fraction of the light that is incident on the entry region of the beam
   std::uint32_t depth = 0;  ///< number of interfaces inside the part; 0 if the light never entered
   std::size_t cone = 0;     ///< index of the narrowest cone that contains the beam, or the number of cones if none does
@@ -121,10 +121,10 @@ using BeamObserver = std::function<void(const ReturnedBeam&)>;
 /// number of beams, so that no sampling is needed. Power below the cut-off, or lost between polygons by rounding, is
 /// added to `truncated`. Weak beams can be resampled instead (BeamPolicy::weak).
 ///
-/// Facets with a form are treated as planes, and the points where beams meet them are recorded. Only with
-/// BeamPolicy::by_cell do these points belong to one facet each.
-/// At textured facets, only the mean field is traced (mean_field(), mean_field_share()). The scattered power is added
-/// to `truncated`, except with BeamPolicy::keeps_phases. All threads may share one tracer.
+/// Facets with a form are treated as planes, and the points where beams meet them are recorded. Each of these points
+/// belongs to a single facet only if BeamPolicy::by_cell is set. At textured facets, only the mean field is traced
+/// (mean_field(), mean_field_share()). The scattered power is added to `truncated`, except with
+/// BeamPolicy::keeps_phases. All threads may share one tracer.
 class BeamTracer {
  public:
   enum class Elements { each_by_itself, equal_at_once };
@@ -171,7 +171,7 @@ class BeamTrace {
 
   /// Continues until the goal is reached or the total work is `most_work`.
   /// \return true if the goal is reached; false if it is not reached or the trace was cancelled
-  /// \throw BudgetError as BeamTracer::trace()
+  /// \throw BudgetError in the same cases as BeamTracer::trace()
   bool advance(std::uint64_t most_work, const Cancellation* cancel);
   /// Returns the work done so far; expected_work() returns the estimated total. The unit is one test of a beam against
   /// the bounding box of a facet, about 20 ns. The number does not depend on the machine.

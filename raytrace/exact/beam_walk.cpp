@@ -22,20 +22,20 @@ constexpr double kJoinShare = 1e-13;
 constexpr double kMergeShare = 1e-11;
 // Maximum length, in element sizes, of one step of a nearly horizontal beam. kMaxLevelSteps limits the number of steps.
 constexpr double kReachInElements = 4.0;
-// Maximum step length of a beam that represents several positions. It is shorter, because fewer positions then reach a
-// border within the step.
+// Maximum step length of a beam that represents several positions. It is shorter than kReachInElements, because fewer
+// positions then reach a border within the step.
 constexpr double kReachOfShared = 2.0;
-// The same step length is used for slowly descending beams. The limit is the distance, in element sizes, between the
-// points where the near and the far side of the beam enter the layer of elements. A horizontal beam above the layer
-// meets no facet.
+// Limit of the distance, in element sizes, that a slowly descending beam travels until all of its corners are in the
+// layer of elements. If the distance is longer, a step is measured from the point where the lowest corner enters the
+// layer. A horizontal beam above the layer meets no facet.
 constexpr double kFarInElements = 64.0;
 constexpr std::uint32_t kMaxLevelSteps = 1000;
 constexpr double kLastCutoff = 1e-25;
 // Number of facets of an element above which the incident light is divided into several fragments. Each fragment then
 // meets about this number of facets.
 constexpr double kFacetsOfPiece = 30.0;
-// Factors by which the cut-off decreases between passes. The gentle factor is used for coarse goals, because one pass
-// with the other factor may trace much more than is needed.
+// Factors by which the cut-off decreases between passes. A pass traces all beams above the present cut-off. The gentle
+// factor is used for coarse goals, because one pass with the other factor may trace much more than is needed.
 constexpr double kFall = 0.1;
 constexpr double kGentleFall = 0.3;
 // Measured work of clipping two polygons, and the constant work per beam. The unit is a test of a bounding box.
@@ -219,9 +219,11 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
   return End::done;
 }
 
-/// Returns true if enough power has been traced and further work would take time. The function may be called at any
-/// time, because the open power never increases. For the finest goals, the sum `pending_.power` is too inaccurate, and
-/// the queue itself is tested.
+/// Returns true if the trace may stop. With a falling cut-off, this is the case if the power of the beams not yet
+/// traced (the open power) is at most the goal. Until `spare_work` has been done, the finest goal is used instead. The
+/// function may be called at any time, because the open power never increases. For the finest goals, the sum
+/// `pending_.power` is too inaccurate, and the queue itself is tested. With the other approaches, the trace stops when
+/// the queue is empty.
 bool BeamWalk::may_stop() const {
   if (approach_ != Approach::falling) return pending_.beams.empty();
   if (policy_.truncated_goal <= kFinestGoal) return pending_.beams.empty() && deferred_.power <= policy_.truncated_goal;
@@ -338,7 +340,7 @@ void BeamWalk::advance(const Beam& beam) {
   book_rest(beam, beam.share - used);
 }
 
-/// Returns the parts of a beam's cross-section that no candidate covers.
+/// Returns the parts of a beam's cross-section that no candidate (facet that may block the beam) covers.
 FlatPolygons BeamWalk::what_passes(const FlatPolygon& whole) {
   FlatPolygons rest;
   rest.push_back(whole);
@@ -365,7 +367,9 @@ Horizon BeamWalk::horizon_of(const Beam& beam) const {
   const double dz = beam.direction.z();
   const double slack = 1e-6 * part_.size_mm;
   if (dz > -kGrazing && low >= setup_.top_mm - merge_mm_) return {};
-  double first = 0.0;  // distance at which the whole beam is in the layer, or its lowest corner if that takes very long
+  // Distance at which all corners of the beam are in the layer. If it exceeds kFarInElements, it is replaced by the
+  // distance at which the lowest corner enters the layer.
+  double first = 0.0;
   double last = kInfinity;
   if (dz > 0.0) last = (setup_.top_mm - low) / dz;
   if (dz < 0.0) {

@@ -54,7 +54,7 @@ struct Candidate {
 
 /// Distance along a beam up to which facets are searched.
 struct Horizon {
-  double t = 0.0;        ///< distance in mm from each corner of the cross-section
+  double t = 0.0;        ///< distance in mm along the beam, from each corner of its cross-section
   bool limited = false;  ///< true if the beam may meet further facets beyond this distance
 };
 
@@ -71,7 +71,7 @@ class BeamWalk {
   enum class Approach { falling, fixed, kept };
   /// Starts the trace.
   /// \param cutoff minimum power of traced beams. Approach::fixed does not change it. Approach::falling lowers it until
-  ///        the truncated power is small enough. Approach::kept keeps weaker beams until lower_cutoff_to().
+  ///        the truncated power is small enough. Approach::kept keeps weaker beams until lower_cutoff_to() is called.
   void enter(const geometry::Polygon& entrance, double cutoff, Approach approach);
   enum class End { done, paused, cancelled, cutoff_too_high };
   /// Traces beams above the cut-off until the goal is reached, the total work is `most_work`, or too many beams are

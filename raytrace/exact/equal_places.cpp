@@ -13,7 +13,8 @@ namespace {
 using geometry::Part, geometry::PatchCell, geometry::PatchFacet, geometry::Placement, geometry::Rectangle,
     geometry::SurfacePatch;
 
-// Relative tolerance of comparisons: corners match within this fraction of the element size, normals within this value.
+// Relative tolerance of comparisons. Corners are equal if they agree within this fraction of the element size. Normals
+// are equal if they agree within this value.
 constexpr double kSameCorner = 1e-9;
 // Minimum number of periods along at least one axis. In smaller arrays, each element is traced separately.
 constexpr double kFewestPeriods = 2.0;

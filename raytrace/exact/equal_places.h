@@ -16,7 +16,7 @@
 namespace retrace::raytrace {
 
 /// Translational symmetry of an array: identical cells, and the region in which a shift by one period maps each cell to
-/// an identical cell. In a part with zones, each region has its own symmetry.
+/// an identical cell. In a part with zones (areas with different arrays), each region has its own symmetry.
 class EqualPlaces {
  public:
   /// Returns the symmetry of a part, or nothing if it cannot be used. This is the case if the array has too few

@@ -79,7 +79,7 @@ void make_convex(FlatPolygon& polygon) {
 
 void join_convex(FlatPolygons& polygons, double least_area) {
   if (polygons.size() < 2) return;
-  // Polygons whose boxes do not touch have no convex union.
+  // Polygons whose bounding boxes do not touch have no convex union.
   const double slack_mm = std::sqrt(least_area);
   boost::container::small_vector<Box, 16> boxes;
   for (const FlatPolygon& polygon : polygons) boxes.push_back(box_around(polygon, slack_mm));

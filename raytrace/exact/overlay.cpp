@@ -24,7 +24,7 @@ using Tree = bg::index::rtree<Entry, bg::index::quadratic<16>>;
 
 constexpr double kPieceMergeShare = 1e-11;
 constexpr double kLeastPieceShare = 1e-13;
-// Tolerance for equal corners and straight edges when polygons are joined, as a fraction of the size.
+// Tolerance for equal corners and straight edges when polygons are joined, as a fraction of `size_mm`.
 constexpr double kFuseShare = 1e-10;
 
 TreeBox box_of(const FlatPolygon& polygon) {
@@ -45,7 +45,7 @@ struct Overlay::Hidden {
 
   double merge_mm;
   double least_area;
-  std::vector<ValuedPolygon> pieces;  ///< an empty polygon is one that was divided
+  std::vector<ValuedPolygon> pieces;  ///< an empty polygon marks an entry that was divided into others
   Tree tree;
 
   void add(FlatPolygon polygon, double value) {
@@ -235,7 +235,7 @@ class Fusion {
 
   double near_mm_;
   double value_tolerance_;
-  std::vector<ValuedPolygon> pieces_;  ///< an empty polygon is one that was joined to another
+  std::vector<ValuedPolygon> pieces_;  ///< an empty polygon marks an entry that was joined to another
   PointLookup<Edge> edges_;
   std::deque<std::size_t> open_;
 };

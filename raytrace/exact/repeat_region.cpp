@@ -12,7 +12,7 @@ using geometry::Polygon, geometry::Rectangle;
 
 // Maximum relative difference between the area of a period and the total area of its cells.
 constexpr double kUncovered = 1e-6;
-// Minimum size of a region, in periods. In smaller regions, each element is traced separately.
+// Minimum area of a region, in units of the area of a period. In smaller regions, each element is traced separately.
 constexpr double kFewestPeriodsOfRegion = 4.0;
 // Minimum fraction of the region's area that must remain when cells that do not repeat are excluded. If less remains,
 // each element of the region is traced separately.

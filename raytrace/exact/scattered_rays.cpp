@@ -17,7 +17,8 @@ constexpr double kClearance = 1e-9;
 // Maximum number of rays per round. It separates the random numbers of different rounds.
 constexpr std::uint32_t kRaysOfRound = 1U << 26;
 // Maximum fraction of an ordinary ray's power that may fall into the widest cone if additional rays to the source are
-// used. Above this fraction, ordinary rays sample the cone well enough.
+// used. An ordinary ray starts in a random direction of the scattering lobe. Above this fraction, ordinary rays sample
+// the cone well enough.
 constexpr double kNarrow = 0.1;
 // Power of a ray to the source, as a fraction of an ordinary ray's power, below which Russian roulette is applied.
 constexpr double kLeastShare = 0.05;

@@ -15,7 +15,7 @@
 namespace retrace::raytrace {
 namespace {
 
-/// Philox stream of the rays of scattered light.
+/// Number of the Philox random stream that is used for the rays of scattered light.
 constexpr std::uint32_t kScatterStream = 8;
 constexpr double kFirstThreshold = 1e-3;
 constexpr double kLastThreshold = 1e-10;

@@ -74,8 +74,8 @@ class CellIndex {
           const geometry::Vec2 low = cell.lower.head<2>() + offset;
           const geometry::Vec2 high = cell.upper.head<2>() + offset;
           if ((low.array() > upper.array()).any() || (high.array() < lower.array()).any()) continue;
-          // A cell is listed in every bucket that it overlaps. It is visited in the first of these buckets in the
-          // query.
+          // A cell is listed in every bucket that it overlaps. To visit it only one time, it is visited in the first of
+          // these buckets that the query covers.
           if (std::max(bucket(low.x(), 0), i0) != i || std::max(bucket(low.y(), 1), j0) != j) continue;
           visit(part_.patches[part_.placements[e.placement].patch], cell, offset,
                 part_.placements[e.placement].height_mm);
