@@ -131,12 +131,12 @@ struct Beam {
   /// Transmittance of the material along the path from the entrance face to the start of this beam. It is the mean over
   /// the polygon `corners`.
   double transmission = 1.0;
-  double power = 0.0;             ///< power at the start of the beam, as a fraction of the incident power
-  PathLength path_length;         ///< length of the path in the material
-  EntryPoint entry;               ///< point of the entrance face where the light entered
+  double power = 0.0;      ///< power at the start of the beam, as a fraction of the incident power
+  PathLength path_length;  ///< length of the path in the material
+  EntryPoint entry;        ///< point of the entrance face where the light entered
   /// Facets that the light has met, in order: those with a form and, with BeamPolicy::keeps_phases, textured facets.
   std::vector<TexturedHit> hits;
-  Plane start;                    ///< the beam is in the half space start.height(p) >= 0
+  Plane start;  ///< the beam is in the half space start.height(p) >= 0
   bool inside = true;
   geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which light left the part
   std::uint32_t depth = 0;                                              ///< number of interfaces so far

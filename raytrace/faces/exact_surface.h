@@ -33,7 +33,7 @@ class ExactSurface {
   /// which they leave. Rays outside meet facets through which they enter.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
-  /// Replaces `best` if the ray meets one of some facets of a placement nearer than `best`. The result does not depend
+  /// Replaces `best` if the ray meets a facet of `range` at a smaller distance than `best`. The result does not depend
   /// on the order of searches. Values of t slightly below 0 are preserved.
   /// \param tolerance_mm distance by which facets are enlarged
   void search(const SurfaceRay& ray, std::uint32_t placement, const FacetRange& range, double tolerance_mm,

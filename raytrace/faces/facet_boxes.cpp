@@ -10,7 +10,8 @@ namespace {
 constexpr std::uint32_t kFewFacets = 16;
 // Maximum number of boxes per facet.
 constexpr double kMostPieces = 8.0;
-// Minimum largest component of a unit vector for a facet along it to have a single box. Such a box is nearly full.
+// Minimum cosine of the angle between the longest direction of a facet and the nearest coordinate axis, for the facet
+// to have a single box. The box of such a facet contains little empty space.
 constexpr double kAlongAnAxis = 0.98;
 
 std::vector<Vec3> corners_of(const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet) {

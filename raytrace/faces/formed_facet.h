@@ -1,6 +1,6 @@
 #pragma once
 
-// Facets with a form: the frame of a facet, and the normal of its surface.
+// Facets with a form (a smooth deviation from the plane): the frame of a facet, and the normal of its surface.
 
 #include "raytrace/light/optics.h"
 
@@ -23,9 +23,10 @@ struct FacetFrame {
   Vec2 local(const Vec3& p) const { return {level.dot(p - origin_mm), down.dot(p - origin_mm)}; }
 };
 
-/// Returns the normal of the surface with its form, out of the part. It is evaluated at the point where light meets the
-/// plane of the facet. The distance between the surface and the plane, less than some um, is neglected. At grazing
-/// incidence, a ray could leave on the wrong side of the plane. In this case, the normal of the plane is returned.
+/// Returns the normal of the facet's surface including its form. The normal points out of the part. It is evaluated at
+/// the point where light meets the plane of the facet. The distance between the surface and the plane, less than some
+/// um, is neglected. At grazing incidence, a ray could leave on the wrong side of the plane. In this case, the normal
+/// of the plane is returned.
 /// \param normal normal of the plane
 /// \param direction unit direction of the light before it meets the facet
 /// \param inside true if the light comes from the body

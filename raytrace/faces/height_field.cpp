@@ -16,7 +16,7 @@ constexpr double kWithinY = geometry::kWithinEntranceCell[1];
 
 // Safety factor for curvatures that are estimated from the slopes at the corners of a cell.
 constexpr double kBendMargin = 2.0;
-// Relative difference of heights, as a fraction of the part's size, that is caused by rounding.
+// Difference of heights that is caused by rounding, as a fraction of the part's size.
 constexpr double kSameHeight = 4e-16;
 // Margin above the highest and below the lowest point, as a fraction of the part's size.
 constexpr double kRoom = 1e-12;
@@ -108,7 +108,8 @@ void HeightField::widen_bends() {
   cells_ = std::move(wide);
 }
 
-/// Search along one ray. g(t) is the distance from the surface along z, positive on the side of the ray.
+/// Search along one ray. g(t) is the distance of the ray from the surface, measured along z. It is positive on the side
+/// from which the ray comes.
 struct HeightField::Search {
   const HeightField& field;
   const SurfaceRay& ray;
@@ -135,7 +136,8 @@ struct HeightField::Search {
     return {{{0, 0}, t}, normal};
   }
 
-  /// Returns the intersection between a point on the side of the ray and a point beyond the surface, by bisection.
+  /// Returns the intersection between two points of the ray by bisection. At `clear`, the ray is on the side from which
+  /// it comes; at `beyond`, it has crossed the surface.
   EntranceHit between(double clear, double beyond) const {
     for (int k = 0; k < kMostIterations; ++k) {
       const double middle = 0.5 * (clear + beyond);
@@ -148,7 +150,8 @@ struct HeightField::Search {
   /// Returns a distance within which the curvature cannot bring back a ray that starts on the surface and leaves it.
   static double free_way(double slope, double bend) { return bend > 0.0 ? 2.0 * slope / bend : kInfinity; }
 
-  /// Returns a distance that a ray with this gap can travel without crossing the surface.
+  /// Returns a distance that a ray can travel without crossing the surface, if it has this gap (distance from the
+  /// surface, and slope of this distance).
   static double safe_step(const Gap& g, double bend) {
     const double root = std::sqrt(g.slope * g.slope + 2.0 * bend * g.value);
     if (g.slope < 0.0) return 2.0 * g.value / (root - g.slope);
@@ -179,7 +182,7 @@ std::optional<EntranceHit> HeightField::Search::within(const Cell& cell, double 
     }
   }
   for (int k = 0; k < kMostIterations; ++k) {
-    if (!std::isfinite(g.value)) return std::nullopt;  // outside of the outline by rounding
+    if (!std::isfinite(g.value)) return std::nullopt;  // the point is outside of the outline because of rounding
     if (g.value <= same_mm) {
       if (g.value < -same_mm && last_clear >= 0.0) return between(last_clear, t);
       // After one more Newton step, the error is below rounding.
@@ -229,7 +232,7 @@ std::optional<std::array<double, 2>> HeightField::span_of(const SurfaceRay& ray,
   const double z = ray.origin.z();
   const double near_mm = ray.inside ? lowest_mm() - room_mm : highest_mm() + room_mm;
   const double far_mm = ray.inside ? highest_mm() + room_mm : lowest_mm() - room_mm;
-  const double way = ray.inside ? 1.0 : -1.0;  // sign of z towards the entrance surface
+  const double way = ray.inside ? 1.0 : -1.0;  // sign of the z direction in which the entrance surface is
   if (way * dz > 0.0) {
     const bool starts_on = ray.source.placement != FacetRef::kNone;
     const double from = starts_on ? 0.0 : std::max(0.0, (near_mm - z) / dz);

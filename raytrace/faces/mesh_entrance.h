@@ -17,7 +17,7 @@ class MeshEntrance : public EntranceFace {
 
  private:
   /// Returns true if the ray passes through the whole range of heights of the surface, from its side, before `t_max`.
-  /// It then meets the surface, except for gaps between triangles by rounding.
+  /// It then meets the surface, except for gaps between triangles that are caused by rounding.
   bool crosses(const SurfaceRay& ray) const;
 
   geometry::Part part_;  ///< heights are relative to the lowest point of the surface

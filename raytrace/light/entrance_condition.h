@@ -24,19 +24,20 @@ struct Dust {
   double forward_share = 0.0;  ///< fraction of the scattered light that continues to the other side of the dust
 };
 
-/// Haze: a fraction of the light in the air at the face is scattered. Its direction cosines along the face are shifted
-/// by a random vector with the density exp(-shift^2 / spread^2). Shifts to directions outside of the unit disc are
-/// omitted.
+/// Haze: a fraction of the light in the air at the face is scattered. The direction of this light changes: its
+/// direction cosines along the face are shifted by a random vector with the density exp(-shift^2 / spread^2). Shifts to
+/// directions outside of the unit disc are omitted.
 struct Haze {
-  double share = 0.0;   ///< fraction of the light that is shifted at each passage, 0 to 1
+  double share = 0.0;   ///< fraction of the light that is deflected at each passage, 0 to 1
   double spread = 0.0;  ///< > 0 if `share` is > 0
 };
 
-/// Fine scratches. Light that meets a scratch is shifted as by Haze, but only perpendicular to the scratch.
+/// Fine scratches. Light that meets a scratch is deflected in the same way as by Haze, but only perpendicular to the
+/// scratch.
 struct FineScratches {
   double coverage = 0.0;                   ///< fraction of the face under scratches, 0 to 1
   double spread = 0.0;                     ///< > 0 if `coverage` is > 0
-  std::optional<double> azimuth_rad = {};  ///< direction of the scratches, from +x; none: random directions
+  std::optional<double> azimuth_rad = {};  ///< direction of the scratches, from +x; if not set: random directions
 };
 
 /// Condition of a plane entrance face. The face is clean if all fractions are 0 and there are no layers.

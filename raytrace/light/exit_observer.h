@@ -22,7 +22,7 @@ struct Departure {
 
 /// Receives the light that leaves the part, path by path. Light that the entrance face reflects from outside is
 /// normally the same for all paths and is not reported. It is reported if the face is curved or scatters, and for rays
-/// with directions of their own.
+/// that have individual directions of incidence.
 class ExitObserver {
  public:
   virtual ~ExitObserver() = default;

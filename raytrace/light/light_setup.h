@@ -33,7 +33,7 @@ struct LightSetup {
   std::vector<Side> sides;  ///< empty for an infinite part
   Vec3 to_source = Vec3::UnitZ();
   Light incident;                         ///< incident light, which travels along -to_source
-  const DirectionScore* score = nullptr;  ///< function of the directions of leaving light that is summed; may be null
+  const DirectionScore* score = nullptr;  ///< function of the exit direction whose values are summed; may be null
   std::vector<double> cone_chord2;        ///< per cone: squared distance between unit vectors to its edge and its axis
 
   bool infinite() const { return sides.empty(); }
@@ -63,7 +63,7 @@ struct LightSetup {
 };
 
 /// Sums of power over paths or beams. Light that leaves through the entrance face is stored per acceptance cone, so
-/// that one trace gives the results for several cones.
+/// that a single trace gives the results for several cones.
 struct Tally {
   explicit Tally(std::size_t cone_count = 0, std::size_t score_size = 0)
       : returned(cone_count + 1), scattered(cone_count + 1), front(cone_count + 1), score(score_size, 0.0) {}

@@ -23,7 +23,7 @@ struct WetBack;
 struct Optics {
   double index = 1.0;                     ///< refractive index of the body, relative to the air around it; >= 1
   double back_index = 1.0;                ///< refractive index of the medium behind the back, relative to the air
-  double absorption_per_mm = 0.0;         ///< Napierian, for power
+  double absorption_per_mm = 0.0;         ///< absorption coefficient of the power, base e
   bool mirror_facets = false;             ///< retro facets reflect all light
   materials::LayerStack facet_layers;     ///< layers on the retro facets; one of them may be opaque
   materials::LayerStack entrance_layers;  ///< layers on the entrance face; all of them transmit light
@@ -35,7 +35,7 @@ struct Optics {
   double wavelength_nm = 587.56;               ///< in vacuum; used only for scattering
   std::shared_ptr<const WetBack> wet;          ///< elements with a different medium behind them; null if there are none
 
-  /// Returns the index before divided by the index after a face of the back surface.
+  /// Returns the refractive index before a face of the back surface divided by the index after the face.
   double ratio_at_back(bool inside) const { return inside ? index / back_index : back_index / index; }
   /// Returns true if border walls, below z = 0, have other optical properties than the sides of the plate above them.
   bool border_walls_differ() const { return absorbing_walls || back_index != 1.0; }

@@ -12,10 +12,10 @@
 
 namespace retrace::raytrace {
 
-/// Power that groups of polygons send into directions. The fields of the polygons of a group are added, and the powers
-/// of the groups are added. Different cells often have the same strong polygons and differ only in weak ones. The
-/// transform of a polygon is therefore computed one time for all cells that have it. Groups of resampled beams are
-/// separated by replicate.
+/// Far-field power of groups of polygons as a function of the direction. A polygon is the part of the entrance face
+/// through which a plane wave leaves. The fields of the polygons of a group are added, and the powers of the groups are
+/// added. Different cells often have the same strong polygons and differ only in weak ones. The transform of a polygon
+/// is therefore computed one time for all cells that have it. Groups of resampled beams are separated by replicate.
 class ApertureField {
  public:
   ApertureField() = default;

@@ -11,7 +11,8 @@ using std::numbers::pi;
 
 // Ratio of radii below which the smaller disc is treated as a point.
 constexpr double kPoint = 1e-9;
-// Number of points along a radius per detail. kFewest and kMost are the minimum and the maximum number of points.
+// Number of integration points along a radius, per detail of the averaged function. kFewest and kMost are the minimum
+// and the maximum number of points.
 constexpr double kPointsAlongADetail = 2.0;
 constexpr double kFewest = 6.0;
 constexpr double kMost = 96.0;

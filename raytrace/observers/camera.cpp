@@ -37,14 +37,15 @@ constexpr std::uint32_t kCameraCellStream = 14;
 constexpr std::uint32_t kGuideStream = 15;
 // Approximate number of paths per wavelength that the cell engine traces together.
 constexpr std::size_t kPathsTogether = 4096;
-// Number of the training pass of a PixelGuide. The passes of a picture have smaller numbers.
+// Number of the training pass of a PixelGuide. A pass traces kPointsPerPass paths through every pixel. The passes of a
+// picture have smaller numbers.
 constexpr std::uint32_t kFirstPass = 0xffffffff;
 // Minimum side length of a tile in pixels, and maximum number of tiles along a side of the picture. A PixelGuide has
 // one map per tile.
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMostTiles = 8;
 
-/// A path of the camera, which begins where the ray meets the part.
+/// A path of the camera, which begins where a ray from the pupil meets the part.
 struct Look {
   Contact contact;
   double luminance = 0.0;                              ///< luminance along the path, cd/m^2
@@ -379,7 +380,7 @@ void CameraTracer::Hidden::look(const WorldRay& ray, std::size_t wavelength, std
   block.resume(on, wavelength, {seed, kCameraChoiceStream}, point, pixel, choices);
 }
 
-/// Returns the area of the entrance face that a pixel shows. Returns nothing if the pixel also shows other things.
+/// Returns the area of the entrance face that a pixel shows. Returns nothing if the pixel also shows something else.
 std::optional<PixelPlace> CameraTracer::Hidden::place_of(std::uint32_t pixel) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);

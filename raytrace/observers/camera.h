@@ -85,9 +85,9 @@ struct CameraImage {
 
   /// Adds the pass with the number `passes`.
   void add(const CameraPass& pass);
-  /// Returns the standard error of a pixel, estimated from the spread of its passes. If the pixel shows the part, the
-  /// mean over the 5 x 5 pixels around it is used if it is larger. A pixel without a sample of the rare bright paths
-  /// would otherwise have a standard error that is too small.
+  /// Returns the standard error of a pixel, estimated from the spread of its passes. If the pixel shows the part and
+  /// the mean variance of the 5 x 5 pixels around it is larger, this variance is used. A pixel without a sample of the
+  /// rare bright paths would otherwise have a standard error that is too small.
   /// \pre passes > 1
   double std_error(std::size_t pixel) const;
   /// Returns the mean luminance of the part; part_error() returns its standard error.

@@ -110,7 +110,7 @@ class Luminaire {
   DiscAverage discs_;
   double radius_mm_ = 0.0;
   double pupil_radius_mm_ = 0.0;
-  double intensity_ = 0.0;  ///< towards the target, in lx mm^2
+  double intensity_ = 0.0;  ///< luminous intensity towards the target, in lx mm^2
 };
 
 /// Returns the first intersection of a ray with a curved or plane film. The film touches the plane z = thickness_mm at

@@ -36,7 +36,7 @@ struct FieldPolygon {
   double power = 0.0;      ///< power for the polarization of the incident light
   /// Facets with texture or form on the path. `amplitude` and `power` do not include the phase shifts of these facets.
   std::vector<FieldHit> hits;
-  double phase_variance = 0.0;  ///< variance of the phase by all textures of `hits`
+  double phase_variance = 0.0;  ///< variance of the phase that all textures of `hits` cause
   double mean_factor = 1.0;     ///< factor of the mean amplitude, exp(-phase_variance / 2)
 };
 
@@ -45,7 +45,8 @@ struct CoherentGroup {
   std::vector<FieldPolygon> polygons;
   double copies = 1.0;     ///< number of cells with this field; for resampled light, number of equal beams
   double extent_mm = 0.0;  ///< diameter of a circle about the common centroid that contains all polygons
-  std::optional<std::uint32_t> replicate = {};  ///< set for a resampled beam; powers are divided by their number
+  /// Number of the replicate of a resampled beam. The powers of such a beam are divided by the number of replicates.
+  std::optional<std::uint32_t> replicate = {};
 
   double power() const;           ///< returns the power of all copies
   double specular_power() const;  ///< returns the power of the mean field of all copies

@@ -1,6 +1,7 @@
 #pragma once
 
-// Detector maps: where the returned light leaves and entered the entrance face, and its directions.
+// Detector maps of the returned light: the points of the entrance face where it leaves and where it entered, and its
+// directions.
 
 #include <cstdint>
 #include <vector>
@@ -33,7 +34,8 @@ struct PixelValues {
 struct DetectorMaps {
   PixelValues leaving;   ///< irradiance at the points where light leaves; its mean over the face is the RRE
   PixelValues entering;  ///< irradiance of the same light at the points where it entered: the footprint
-  PixelValues per_sr;    ///< fraction of the incident power per steradian, in the bins of `angles`; for all directions
+  /// Fraction of the incident power per steradian in the bins of `angles`. It is not limited to the acceptance cone.
+  PixelValues per_sr;
   double outside = 0.0;  ///< fraction of the incident power that leaves in directions outside of `angles`
   double rre = 0.0;
   double std_error = 0.0;  ///< standard error of `rre`
@@ -43,7 +45,7 @@ struct DetectorMaps {
 };
 
 /// Computes the maps from beams of polygonal cross-section. Pixels contain the exact area that polygons cover.
-/// \throw BudgetError as BeamTracer::trace()
+/// \throw BudgetError in the same cases as BeamTracer::trace()
 DetectorMaps exact_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
                                  const DetectorSetting& setting, const BeamPolicy& policy,
                                  const Cancellation* cancel = nullptr);

@@ -9,8 +9,8 @@ namespace {
 
 using geometry::Vec2, std::numbers::pi;
 
-/// Returns the solid angle of a rectangle of equidistant angles: the integral of sin(r) / r over its area, by a Gauss
-/// rule with 3 x 3 points.
+/// Returns the solid angle of a rectangle in the azimuthal equidistant projection, whose coordinates are the angles of
+/// ReturnFrame. It is the integral of sin(r) / r over the rectangle, computed with a Gauss rule of 3 x 3 points.
 double square_solid_angle(const Vec2& middle_rad, double width_rad, double height_rad) {
   const GaussRule rule = gauss_legendre(3);
   double sum = 0.0;

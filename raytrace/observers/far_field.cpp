@@ -29,7 +29,7 @@ constexpr double kFarthestCosine = 20.0;
 constexpr double kFarInBends = 4.0;
 constexpr std::uint64_t kTailKey = 0x2545f4914f6cdd1dU;
 
-/// Returns the derivatives of the direction cosines x and y by the angles to the right and upwards.
+/// Returns the derivatives of the direction cosines x and y with respect to the angles to the right and upwards.
 Eigen::Matrix2d axes_of(const ReturnFrame& frame) {
   Eigen::Matrix2d axes;
   axes << frame.right.head<2>(), frame.up.head<2>();
@@ -45,7 +45,8 @@ ReturnFrame frame_about(const Vec3& direction) {
 }
 
 /// Returns the mean and the standard error over the replicates.
-/// \param sums the sum over beams that were traced exactly, followed by each replicate divided by their number
+/// \param sums the sum over beams that were traced exactly, followed by each replicate divided by the number of
+///        replicates
 FarFieldIntensity mean_of_replicates(const Eigen::ArrayXd& sums) {
   const Eigen::Index count = sums.size() - 1;
   if (count == 0) return {sums[0], 0.0};

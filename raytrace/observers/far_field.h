@@ -30,13 +30,14 @@ struct FarFieldPolicy {
   /// If there are few polygons, all beams are diffracted.
   double undiffracted_share = 1e-4;
   std::size_t most_polygons = 20'000;  ///< maximum number of diffracted polygons; weaker ones are not diffracted
-  /// Minimum width of diffraction patterns that are computed. The patterns of larger cells are narrower. They are not
-  /// diffracted, because the averages over the discs of source and receiver hide their pattern.
+  /// Minimum width of diffraction patterns that are computed. Larger cells have narrower patterns. Their light is not
+  /// diffracted, because averaging over the discs of source and receiver hides the pattern.
   double finest_detail_rad = 0.0;
   /// Number of replicates of WeakBeams, or 0 without weak beams. A resampled beam does not interfere with other beams.
   std::uint32_t replicates = 0;
-  /// Form of the retro facets as in the tracer's optics; null if they are plane. It must outlive the collector. The
-  /// form deflects diffracted light, and also the rays of cells that are too large to be diffracted.
+  /// Form of the retro facets (deviation from their planes) as in the tracer's optics; null if they are plane. It must
+  /// outlive the collector. The form deflects diffracted light, and also the rays of cells that are too large to be
+  /// diffracted.
   const surface_models::FacetForm* form = nullptr;
   /// Checked between polygons. If it is set, all results are invalid. It must outlive the far field.
   const Cancellation* cancel = nullptr;
@@ -81,7 +82,7 @@ class FarField {
 
   /// Returns the power in each bin of a grid; the last element is the power outside of the grid. Undiffracted light is
   /// added to the bin of its direction. The power of diffracted light is its density at the centre of a bin times the
-  /// solid angle.
+  /// solid angle of the bin.
   std::vector<double> binned(const ReturnFrame& frame, const DirectionGrid& grid) const;
 
   /// Power inside and outside of the cone about the direction to the source. Both are integrated independently.
@@ -197,8 +198,9 @@ class FarFieldCollector {
   std::vector<Piece> pieces_;
   std::map<Place, PiecesOfCell> cells_;
   std::uint64_t alone_ = 0;  ///< number of waves and beams with a Place of their own
-  std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;  ///< Place::beam, by CellTrail::met and wave
-  PointLookup<std::size_t> directions_;                               ///< indices into the rays
+  /// Place::beam for each pair of CellTrail::met and a wave.
+  std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;
+  PointLookup<std::size_t> directions_;  ///< indices into the rays
 };
 
 }  // namespace retrace::raytrace

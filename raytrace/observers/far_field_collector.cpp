@@ -25,7 +25,7 @@ using geometry::Vec2, std::numbers::pi;
 constexpr double kOneDirection_rad = 1e-9;
 // Beams with less power than this value are not diffracted.
 constexpr double kFaint = 1e-10;
-// Up to this number of polygons, all beams are diffracted. The full power of an undiffracted beam has a single
+// Up to this number of polygons, all beams are diffracted. The total power of an undiffracted beam goes in a single
 // direction. If the discs of source and receiver are smaller than a diffraction spot, such a beam appears much too
 // bright.
 constexpr std::size_t kFewPolygons = 256;
@@ -49,7 +49,7 @@ Eigen::Matrix2cd incident_coherency(const Stokes& s) {
   return 0.5 * c;
 }
 
-/// Rounded data by which the fields of two cells are compared.
+/// Rounded data with which the fields of two cells are compared.
 using Signature = std::vector<std::int64_t>;
 
 /// Appends the points, in the frames of the facets, where facets with a form were met.
@@ -92,8 +92,8 @@ Signature signature_of(const CoherentGroup& group, double size_mm) {
   return all;
 }
 
-/// Returns the number of copies of `group` that have the power of `other`, for two groups of the same shape. The powers
-/// of resampled beams are arbitrary.
+/// Returns the number of copies of `group` that have the same power as `other`, for two groups of the same shape. The
+/// powers of resampled beams are arbitrary.
 double copies_in(const CoherentGroup& group, const CoherentGroup& other) {
   return other.power() * group.copies / group.power();
 }
@@ -126,7 +126,8 @@ void FarFieldCollector::add_ray(const FarFieldRay& ray) {
   field_.rays_[index].power += ray.power;
 }
 
-/// Adds the specular fraction of a ray. The scattered fraction is added to the power without a direction.
+/// Adds the specular fraction of a ray. The scattered fraction is added to `unplaced_power_`, the power whose direction
+/// is not computed.
 void FarFieldCollector::add_scattering_ray(const FarFieldRay& ray, double phase_variance) {
   const double specular = std::exp(-phase_variance) * ray.power;
   field_.unplaced_power_ += ray.power - specular;

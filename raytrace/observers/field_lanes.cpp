@@ -34,7 +34,8 @@ HWY_INLINE Complex unit(V phase) {
   return {hn::Cos(D(), left), hn::Sin(D(), left)};
 }
 
-/// Returns the mean of exp(-i x) over phases x between those of two corners, as mean_along() of polygon_transform.cpp.
+/// Returns the mean of exp(-i x) over phases x between those of two corners, in the same way as mean_along() of
+/// polygon_transform.cpp.
 HWY_INLINE Complex mean_along(V phase_from, const Complex& from, V phase_to, const Complex& to) {
   const V step = hn::Sub(phase_to, phase_from);
   const auto is_short = hn::Le(hn::Abs(step), splat(0.05));

@@ -20,7 +20,8 @@ namespace {
 
 using geometry::Vec2, surface_models::FacetForm;
 
-// Number of points along an edge of the triangles over which phases are averaged. It is exact for quadratic phases.
+// Number of points along an edge of the triangles over which phases are averaged. The average is exact for quadratic
+// phases.
 constexpr std::size_t kPoints = 3;
 // Corners are merged if their distance is less than this fraction of the polygon's size.
 constexpr double kOneCorner = 1e-12;
@@ -116,8 +117,9 @@ struct LinearPhase {
     }
   }
 
-  /// Returns the number of equal strips, perpendicular to an axis, for which the error by the curvature along this axis
-  /// decreases to `left`. The error is proportional to the square of the width of a strip.
+  /// Returns the number of equal strips, perpendicular to an axis, into which a polygon must be divided. The error that
+  /// the curvature along this axis causes then decreases to `left`. The error is proportional to the square of the
+  /// width of a strip.
   std::size_t strips(std::size_t axis, double left) const {
     const double all = across[0].bend + across[1].bend;
     const double share = all > 0.0 ? across[axis].bend / all : 0.5;

@@ -35,7 +35,7 @@ struct EntranceAngles {
   Angle h;
 };
 
-/// Direction to the source as in design files.
+/// Direction to the source, given by the same two angles as in design files.
 struct SourceAngles {
   Angle incidence;  ///< 0 to 180 degrees
   Angle azimuth;    ///< -180 to 180 degrees; 0 at normal incidence

@@ -11,7 +11,8 @@ namespace {
 
 using geometry::Vec2;
 
-/// Number of paths per bin of a map, for the paths of the whole picture. kMostBins is the maximum number of bins.
+/// Number of training samples of a whole picture per bin of a map. It determines the number of bins, which is at most
+/// kMostBins.
 constexpr std::size_t kPathsPerBin = 32;
 constexpr std::size_t kMostBins = std::size_t{1} << 16U;
 /// Weight of the expected mean of a bin, as a number of paths. It stabilizes the map, because few paths of a bin are

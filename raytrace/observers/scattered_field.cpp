@@ -33,7 +33,7 @@ constexpr double kOnePlane = 1e-8, kOneOffset = 1e-3;
 constexpr double kNoPlaces = 1e-9;
 // Corners are merged if their distance is less than this fraction of the polygon's size.
 constexpr double kMergedCorners = 1e-9;
-// Ratio of singular values below which a map is treated as a reflection at a line.
+// Ratio of the singular values of a map below which the map is treated as a reflection at a line.
 constexpr double kFolded = 0.1;
 // Width of the term that is subtracted from fringes where partner points coincide, relative to the width of the
 // covariance. For a reflection at a line, the remaining integral is that of the complementary error function.

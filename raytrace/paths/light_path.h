@@ -18,7 +18,7 @@ namespace retrace::raytrace {
 enum class PathEvent {
   enters,            ///< through the entrance face from outside
   total_reflection,  ///< at a facet, a wall, a side or the entrance face
-  reflection,        ///< at the same faces, but not total: Fresnel reflection, a film or a mirror
+  reflection,        ///< at one of these faces, but not total: Fresnel reflection, a film or a mirror
   leaves,            ///< through the entrance face; the path ends
   exits,             ///< through a facet or wall into the air behind the part
   enters_again,      ///< through a facet from the air behind the part

@@ -29,7 +29,7 @@ struct Sampling {
   enum class Kind { stratified, plain };
   Kind kind = Kind::stratified;
   std::uint32_t seed = 1;
-  std::optional<std::uint64_t> rays;  ///< number of rays, rounded up to whole replicates; none: until the target
+  std::optional<std::uint64_t> rays;  ///< number of rays, rounded up to whole replicates; not set: as many as needed
   double target_error = 1e-4;         ///< target standard error of the RRE, > 0
   std::uint64_t max_rays = 1U << 26;  ///< maximum number of rays if `rays` is not set
 };
@@ -95,7 +95,7 @@ class MonteCarlo {
   using TraceTask = std::function<std::optional<Tally>(const Task&)>;
 
   TraceTask one_by_one(const PathSetup& setup, const Sampling& sampling, const Cancellation* cancel) const;
-  /// \param paths for the rays that leave the inner region of a finite part; null for an infinite part
+  /// \param paths data for tracing the rays that leave the inner region of a finite part; null for an infinite part
   TraceTask by_cells(const LightSetup& setup, const PathSetup* paths, const PathPolicy& policy, std::uint32_t seed,
                      const Cancellation* cancel) const;
   /// Adds the rays with the numbers `from` to `until` - 1 of every replicate to its tally.

@@ -76,7 +76,7 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
 
 bool PathWalker::leave_entrance_face(const State& state) {
   if (state.entrance_source == FacetRef{})
-    return finish(state, Account::transmitted);  // the light has never met the part
+    return finish(state, Account::transmitted);  // in this case, the light has never met the part
   if (state.entered) {
     leave(state, state.light, state.direction);
     return false;

@@ -15,12 +15,13 @@ namespace {
 
 using geometry::FacetRole;
 
-// Maximum number of tiles of an infinite surface that a straight ray may cross. After that, it counts as trapped.
+// Maximum number of stored tiles of an infinite surface that a straight ray may cross (see PathSetup::tile_half_mm). A
+// ray that crosses more tiles counts as trapped.
 constexpr int kMaxWraps = 1000;
 // Maximum number of reflections in mirrors_to_entrance(). Paths in prisms and cube corners have at most three.
 constexpr int kMostMirrors = 8;
 
-// Without a cut-off, and with every branch followed, the paths of a ray split without end.
+// If there is no cut-off and every branch is traced, the paths of a ray split without end.
 [[noreturn]] void fail_on_segments(std::uint64_t max_segments) {
   throw BudgetError(fmt::format(
       "a ray has more than {} segments after it has split: give a larger --cutoff, or a larger --split of retrace rays",
@@ -356,7 +357,7 @@ void PathWalker::leave(const State& state, const Light& light, const Vec3& direc
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 
-/// Records light that the entrance face reflects before it enters the part.
+/// Records light that the entrance face reflects before the light enters the part.
 void PathWalker::send_back(const State& state, const Light& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction, to_source_);
   (state.scattered ? tally_.scattered : tally_.front)[cone] += seen_from_above(light, direction);

@@ -23,8 +23,9 @@ void turn(Ray& ray, const Vec3& direction) {
   ray.scattered = true;
 }
 
-/// Shifts the direction cosines of a ray along the face. A shift to a point outside of the unit disc is omitted.
-/// Scattering is then reciprocal: the density from one direction to another is the same in reverse.
+/// Changes the direction of a ray by adding `by` to its direction cosines along the face. Nothing is changed if the sum
+/// is outside of the unit disc. Scattering is then reciprocal: the density from one direction to another is the same in
+/// reverse.
 void shift(Ray& ray, const Vec2& by) {
   const Vec2 along = ray.direction.head<2>() + by;
   const double left = 1.0 - along.squaredNorm();
@@ -38,8 +39,8 @@ Vec2 uniform_in_disc(RandomStream& random) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Scatters a ray without polarization according to Lambert's law. The direction cosines are uniform over the unit
-/// disc.
+/// Scatters a ray according to Lambert's law, so that the direction cosines are uniform over the unit disc. The
+/// scattered light is unpolarized.
 void scatter_evenly(Ray& ray, bool up, RandomStream& random) {
   const Vec2 along = uniform_in_disc(random);
   const double z = std::sqrt(std::max(1e-300, 1.0 - along.squaredNorm()));
@@ -112,7 +113,7 @@ void SoiledEntrance::meet_clean(const Ray& ray, Event& event) const {
   pass_haze(ray, event, [&](const Ray& passed) { meet_face(passed, event); });
 }
 
-/// Processes a ray between the haze and the body. Both branches are traced, as at a facet.
+/// Processes a ray at the face itself, between the haze and the body. Both branches are traced, as at a facet.
 void SoiledEntrance::meet_face(const Ray& ray, Event& event) const {
   if (optics_.entrance.is_rough()) {
     const TexturedReturn back = meet_textured_facet(as_facet_, Vec3::UnitZ(), ray, event.split_power, event.random);
@@ -195,7 +196,8 @@ void SoiledEntrance::meet_dust(Ray ray, Event& event) const {
   event.result.truncated += ray.light.power();
 }
 
-/// Processes a ray at a position under a scratch. The scratch shifts the ray on both sides of the face.
+/// Processes a ray at a position under a scratch. The scratch changes the direction of the ray on both sides of the
+/// face.
 void SoiledEntrance::meet_scratch(Ray ray, Event& event) const {
   const FineScratches& scratches = optics_.entrance.scratches;
   const double along = scratches.azimuth_rad ? *scratches.azimuth_rad : pi * event.random.next();
@@ -217,7 +219,7 @@ void SoiledEntrance::leave_drop(Ray ray, Event& event) const {
   meet_clean(ray, event);
 }
 
-/// Processes a ray at a random point of the base of a drop, whose radius is 1.
+/// Processes a ray at a random point of the base of a drop. Lengths are in units of the radius of the base.
 void SoiledEntrance::meet_drop(Ray ray, Event& event) const {
   const Drops& drops = optics_.entrance.drops;
   const double water = optics_.entrance.water_index;

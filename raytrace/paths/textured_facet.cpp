@@ -23,7 +23,7 @@ surface_models::ScatterEvent event_of(const Optics& optics, bool inside, const V
   return {direction, from, to, optics.wavelength_nm, inside};
 }
 
-/// Returns the scattering event of a ray in the facet's frame, without a surface patch.
+/// Returns the scattering event of a ray in the facet's frame. The surface patch that the ray meets is not set.
 /// \param normal unit normal of the facet, which points out of the part
 LocalEvent event_at(const Optics& optics, const Vec3& normal, const Ray& ray) {
   LocalEvent local;
