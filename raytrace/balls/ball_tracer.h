@@ -9,9 +9,10 @@
 
 namespace retrace::raytrace {
 
-/// Estimates the RRE and the ledger of balls with mirrors behind them by Monte Carlo tracing (BallWalker). The beam on
-/// a layer covers one period of the plane that touches the balls from above. The beam on a single ball covers the cross
-/// section of the ball. The standard errors are computed from replicates as in MonteCarlo.
+/// Estimates the RRE (retroreflective efficiency) and the ledger (power by destination) of balls with mirrors behind
+/// them. The estimate uses Monte Carlo tracing (BallWalker). The beam on a layer covers one period of the plane that
+/// touches the balls from above. The beam on a single ball covers the cross section of the ball. The standard errors
+/// are computed from replicates as in MonteCarlo.
 class BallTracer {
  public:
   explicit BallTracer(const BallLayer& layer) : layer_(layer) {}

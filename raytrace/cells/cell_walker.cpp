@@ -300,7 +300,7 @@ void CellWalker::fall(bool scattered) {
     grow(stream, more);
     left -= more;
   }
-  // All rays should be in a piece, because the pieces fill the period.
+  // All rays should be in a piece, because the pieces fill the period. If rays remain, they are counted as lost.
   tally_->misses += left;
   tally_->other[Account::lost] += static_cast<double>(left);
 }
@@ -319,7 +319,7 @@ void CellWalker::advance(std::uint32_t number) {
   moved_.swap(stream.rays);
   reserve(moved_.size());
   truncate_weak();
-  // A batch moves each ray at most one time.
+  // A batch moves each ray at most one time, so that a path cannot meet more interfaces than there are batches.
   if (++batches_ > policy_.max_events) {
     tally_->other[Account::truncated] += lanes::sum(moved_.rays(), moved_.size());
     return;

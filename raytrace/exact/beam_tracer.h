@@ -1,7 +1,7 @@
 #pragma once
 
-// The exact engine. It traces polygonal beams through a part without sampling. Its results are the RRE, the ledger and
-// every returned beam.
+// The exact engine. It traces polygonal beams through a part without sampling. Its results are the RRE (retroreflective
+// efficiency), the ledger (power by destination) and every returned beam.
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -61,9 +61,9 @@ struct BeamPolicy {
 struct BeamResult {
   std::vector<Ledger> ledgers;  ///< one per acceptance cone, in the order given
   std::vector<Stokes> stokes;   ///< Stokes vectors of the retroreflected light per cone; first axis: source_axis()
-  /// Standard error of the RRE per cone. An interval of +-1.96 standard errors has a confidence of 95 %. It is 0
-  /// without WeakBeams. Its minimum is the power of one survivor divided by the number of replicates, because beams
-  /// that no replicate has traced may have this power.
+  /// Standard error of the RRE (retroreflective efficiency) per cone. An interval of +-1.96 standard errors has a
+  /// confidence of 95 %. It is 0 without WeakBeams. Its minimum is the power of one survivor divided by the number of
+  /// replicates, because beams that no replicate has traced may have this power.
   std::vector<double> std_error;
   std::uint64_t beams = 0;
   std::uint32_t depth = 0;  ///< number of interfaces on the longest path

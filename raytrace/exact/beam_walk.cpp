@@ -505,9 +505,9 @@ FlatPolygons BeamWalk::visible_pieces(std::size_t k) const {
   return visible;
 }
 
-/// Returns the visible parts of all candidates in the plane of candidate k. Facets of neighbouring elements that
-/// continue each other do therefore not split a beam. The result is empty if the candidate was processed with an
-/// earlier one.
+/// Returns the visible parts of all candidates in the plane of candidate k. Coplanar facets of neighbouring elements
+/// therefore do not split a beam. The result is empty if the candidate has already been processed together with an
+/// earlier candidate.
 FlatPolygons BeamWalk::visible_on_plane_of(std::size_t k) {
   FlatPolygons visible;
   if (candidates_[k].is_met) return visible;

@@ -99,7 +99,7 @@ class BeamWalk {
   /// Adds power that is not traced further to the ledger.
   void book_truncated(double power) { tally_.other[Account::truncated] += power; }
   const Tally& tally() const { return tally_; }
-  /// Returns the power that is compared with the cut-off.
+  /// Returns the power that is compared with the cut-off (see BeamPolicy::cutoff).
   double strength_of(const Beam& beam) const { return setup_.infinite() ? beam.power : beam.total_power(); }
   /// Returns one of the beams that a beam represents, as a beam for a single position.
   Beam at_place(const Beam& beam, std::size_t place) const;

@@ -18,7 +18,7 @@ namespace retrace::raytrace {
 class BeamGeneration;
 
 /// Trace of one direction of incidence with a BeamTracer. It is repeated in rounds with lower thresholds until the
-/// standard error of the RRE is below the target.
+/// standard error of the RRE (retroreflective efficiency) is below the target.
 ///
 /// Beams with more power than the threshold w are traced exactly, as BeamTrace does. Each generation of weaker beams
 /// with the total power P is resampled: n = ceil(P / (kThinning w)) beams survive, each with the power P / n. They are

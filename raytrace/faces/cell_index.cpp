@@ -10,7 +10,8 @@ using geometry::Vec2;
 CellIndex::CellIndex(const geometry::Part& part, const Vec2& centre_mm) : part_(part), centre_mm_(centre_mm) {
   if (part.period_mm) {
     infinite_ = true;
-    // The patch contains its periods row by row. Only the cells of the central period are stored.
+    // The patch of an infinite part contains several periods, stored row by row. Only the cells of the central period
+    // are stored here.
     const auto side = static_cast<std::uint32_t>(2 * part.periods_beyond + 1);
     const auto each = static_cast<std::uint32_t>(part.patches[0].cells.size()) / (side * side);
     const std::uint32_t first = (side * side / 2) * each;

@@ -29,8 +29,8 @@ class ExactSurface {
 
   const Facet& facet(FacetRef ref) const { return part_->patches[placements_[ref.placement].patch].facets[ref.facet]; }
 
-  /// Returns the first facet that the ray meets on its side, up to `t_max`. Rays inside the part meet facets through
-  /// which they leave. Rays outside meet facets through which they enter.
+  /// Returns the first facet that the ray meets on the side from which it comes, up to `t_max`. Rays inside the part
+  /// meet facets through which they leave. Rays outside meet facets through which they enter.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
   /// Replaces `best` if the ray meets a facet of `range` at a smaller distance than `best`. The result does not depend

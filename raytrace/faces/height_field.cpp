@@ -147,7 +147,8 @@ struct HeightField::Search {
     return hit_at(beyond, gap(beyond));
   }
 
-  /// Returns a distance within which the curvature cannot bring back a ray that starts on the surface and leaves it.
+  /// Returns a distance for a ray that starts on the surface and moves away from it. Within this distance, the
+  /// curvature of the surface is too small for a second intersection.
   static double free_way(double slope, double bend) { return bend > 0.0 ? 2.0 * slope / bend : kInfinity; }
 
   /// Returns a distance that a ray can travel without crossing the surface, if it has this gap (distance from the

@@ -92,7 +92,8 @@ class FacetsByPlace {
   PointLookup<std::size_t> by_middle_;
 };
 
-/// Returns the facets of the central period of an infinite part. The patch contains its periods row by row.
+/// Returns the facets of the central period of an infinite part. The patch of such a part contains several periods,
+/// stored row by row.
 std::vector<StandingFacet> central_facets(const Part& part) {
   const SurfacePatch& patch = part.patches.front();
   const auto side = static_cast<std::size_t>(2 * part.periods_beyond + 1);

@@ -306,7 +306,7 @@ Contact CameraTracer::Hidden::contact_of(const WorldRay& ray) const {
   return {Contact::What::outside, at, at, Eigen::Matrix3d::Identity(), 0};
 }
 
-/// Rows of the picture that are traced together in one pass. Each thread reuses its block to reuse the memory.
+/// Rows of the picture that are traced together in one pass. Each thread reuses its block to avoid memory allocations.
 struct CameraTracer::Hidden::Block {
   explicit Block(const Hidden& h)
       : sight(h.luminaire, h.scene.surroundings, h.scene.film.has_value(), looks), starts(h.setups.size()) {
@@ -399,7 +399,8 @@ std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden
   if (is_guided(pixel)) {
     const auto words = philox({seed, kGuideStream}, pass, pixel);
     auto points = guide->points(*place_of(pixel), {words[0], words[1], words[2], words[3]});
-    // Points are assigned to wavelengths by their index. A random rotation gives every wavelength guided points.
+    // The index of a point determines its wavelength. The points are rotated by a random number of indices, so that
+    // every wavelength receives points that the guide has selected.
     const auto turn = static_cast<std::ptrdiff_t>(philox({seed, kGuideStream}, pass, pixel, 1)[0] % kPointsPerPass);
     std::rotate(points.begin(), points.begin() + turn, points.end());
     return points;

@@ -67,8 +67,8 @@ struct WeighedOptics {
   double weight = 1.0;  ///< fraction of the luminous flux; the weights add up to 1
 };
 
-/// Result of one pass over a picture. It contains the luminance (cd/m^2) of the pixels, row by row from the top. The
-/// fraction of each pixel that shows the part follows. The last element is the sum of the luminances that show the
+/// Result of one pass over a picture. It first contains the luminance (cd/m^2) of each pixel, row by row from the top,
+/// and then the fraction of each pixel that shows the part. The last element is the sum of the luminances that show the
 /// part.
 using CameraPass = std::vector<double>;
 

@@ -39,7 +39,8 @@ struct FarFieldPolicy {
   /// outlive the collector. The form deflects diffracted light, and also the rays of cells that are too large to be
   /// diffracted.
   const surface_models::FacetForm* form = nullptr;
-  /// Checked between polygons. If it is set, all results are invalid. It must outlive the far field.
+  /// Request for cancellation, which is checked between polygons. If it is set, all results are invalid. It must
+  /// outlive the far field.
   const Cancellation* cancel = nullptr;
 };
 

@@ -32,7 +32,7 @@ constexpr std::size_t kFewPolygons = 256;
 // Steps to which quantities are rounded to compare the fields of cells: lengths in element sizes, direction cosines,
 // amplitudes, and paths in mm.
 constexpr double kLengthStep = 1e-7, kCosineStep = 1e-8, kAmplitudeStep = 1e-7, kPathStep_mm = 1e-7;
-// Step for the points where facets were met, in element sizes, and for their slopes.
+// Rounding step for the points where light met facets, in element sizes, and for the derivatives of these points.
 constexpr double kHitStep = 1e-6;
 // Polygons are joined if their union differs from a convex polygon by less than this fraction of size_mm^2.
 constexpr double kJoinOutlinesShare = 1e-10;
@@ -52,7 +52,7 @@ Eigen::Matrix2cd incident_coherency(const Stokes& s) {
 /// Rounded data with which the fields of two cells are compared.
 using Signature = std::vector<std::int64_t>;
 
-/// Appends the points, in the frames of the facets, where facets with a form were met.
+/// Appends to `key` the points where light met facets with a form. The coordinates are those of the facets' frames.
 void add_form_keys(const std::vector<FieldHit>& hits, double size_mm, Signature& key) {
   for (const FieldHit& hit : hits) {
     if (hit.path_per_height == 0.0) continue;
@@ -62,7 +62,7 @@ void add_form_keys(const std::vector<FieldHit>& hits, double size_mm, Signature&
   }
 }
 
-/// Appends the corners of a convex polygon.
+/// Appends the corners of a convex polygon to `key`.
 void add_corner_keys(const geometry::Polygon& polygon, double size_mm, Signature& key) {
   std::vector<std::array<std::int64_t, 2>> corners;
   for (const Vec2& p : polygon)

@@ -61,7 +61,8 @@ PhotometricGeometry geometry_of(const PhotometricDirections& directions) {
   geometry.alpha = Angle::from_rad(angle_between(s, directions.to_observer));
   geometry.beta2 = Angle::from_rad(std::atan2(normal.x(), std::hypot(normal.y(), normal.z())));
   geometry.beta1 = wrapped(std::atan2(normal.y(), normal.z()));
-  // The second axis is perpendicular to the normal and the first axis. epsilon is the angle from it to the datum mark.
+  // The second axis is perpendicular to the normal and the first axis. epsilon is the angle from the second axis to the
+  // datum mark.
   const Vec3 second = Vec3::UnitZ().cross(first);
   geometry.epsilon = wrapped(std::atan2(second.x(), second.y()));
   return geometry;

@@ -35,8 +35,9 @@ constexpr double kNoPlaces = 1e-9;
 constexpr double kMergedCorners = 1e-9;
 // Ratio of the singular values of a map below which the map is treated as a reflection at a line.
 constexpr double kFolded = 0.1;
-// Width of the term that is subtracted from fringes where partner points coincide, relative to the width of the
-// covariance. For a reflection at a line, the remaining integral is that of the complementary error function.
+// Width of the term that is subtracted from fringes where two partner points coincide, relative to the width of the
+// covariance. Light at partner points of the entrance face has met the same points of facets. For a reflection at a
+// line, the remaining integral is that of the complementary error function.
 constexpr double kDipWidth = 2.0 / pi;
 // Minimum common area as a fraction of the polygon's area. Smaller areas are neglected.
 constexpr double kLeastCommonShare = 1e-6;

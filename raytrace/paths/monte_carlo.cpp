@@ -19,7 +19,7 @@
 namespace retrace::raytrace {
 namespace {
 
-// Philox stream of the entry points. The streams of other random numbers are defined in replicates.h.
+// Number of the Philox random stream for entry points. The streams of other random numbers are defined in replicates.h.
 constexpr std::uint32_t kEntryStream = 3;  // plain sampling
 
 std::size_t score_size(const LightSetup& setup) {

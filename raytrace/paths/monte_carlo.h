@@ -1,7 +1,7 @@
 #pragma once
 
-// The Monte Carlo engine. It computes the RRE and the ledger of a part with standard errors. It traces rays with Embree
-// or, for arrays, cell by cell.
+// The Monte Carlo engine. It computes the RRE (retroreflective efficiency) and the ledger (power by destination) of a
+// part with standard errors. It traces rays with Embree or, for arrays, cell by cell.
 
 #include <cstdint>
 #include <functional>

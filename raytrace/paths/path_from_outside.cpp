@@ -76,7 +76,7 @@ PathWalker::Medium PathWalker::medium_at(Vec3 position, double tolerance_mm) con
   return out_of_body ? Medium::body : Medium::below;
 }
 
-/// Starts a path at a finite part. Returns false if the light passes the part; otherwise, its branches are queued.
+/// Starts a path at a finite part. Returns false if the light misses the part; otherwise, its branches are queued.
 bool PathWalker::arrive_at_body(State& state) {
   const double tolerance = start_tolerance(state.position);
   const Span span = span_over_outline(setup_, state.position, state.direction);

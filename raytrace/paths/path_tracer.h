@@ -73,7 +73,7 @@ class PathWalker {
     FacetRef entrance_source;                                             ///< facet of a curved entrance face just left
     bool above = false;                                                   ///< in the air above a curved entrance face
     bool entered = false;                                                 ///< has passed a curved entrance face
-    geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which it left the part
+    geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which light left
     std::uint32_t events = 0;
     Vec2 shift_mm = Vec2::Zero();  ///< infinite part: vector from `position`, in the central period, to the true one
   };

@@ -17,7 +17,7 @@
 namespace retrace::raytrace {
 namespace {
 
-// Philox stream of the random choices along a path.
+// Number of the Philox random stream for the random choices along a path.
 constexpr std::uint32_t kRayChoiceStream = 17;
 // Number of rays per task. It is small enough for load balancing and large enough to make the overhead negligible.
 constexpr std::size_t kRaysTogether = 1024;

@@ -70,7 +70,7 @@ double with_unseen(double spread, double rays, double largest) {
 }
 
 double student_factor(std::size_t replicates) {
-  // Abramowitz and Stegun, 26.7.5, divided by z.
+  // Quantile of Student's t distribution (Abramowitz and Stegun, 26.7.5) divided by the normal quantile z.
   constexpr double z2 = kNormal95 * kNormal95;
   const double nu = static_cast<double>(replicates - 1);
   const double first = (z2 + 1.0) / 4.0;

@@ -39,8 +39,8 @@ void check_lost(const MonteCarloResult& result) {
                       result.misses, result.rays, cone.ledger[Account::lost]));
 }
 
-/// Returns the standard error of the RRE of one cone. It combines the spread of the replicates with an allowance for
-/// paths that no ray has taken, see with_unseen().
+/// Returns the standard error of the RRE (retroreflective efficiency) of one cone. It combines the spread of the
+/// replicates with an allowance for paths that no ray has taken, see with_unseen().
 /// \param spread standard deviation of the mean over replicates, see ConeResult::spread
 /// \param rays total number of rays in all replicates
 double std_error_of(double spread, double rays) {

@@ -16,7 +16,7 @@ namespace retrace::raytrace {
 /// Monte Carlo tracers use MonteCarlo::kReplicates independent scrambles of the same points. The estimate is the mean
 /// of these replicates, and its error is computed from their spread.
 
-/// Philox streams of random numbers: for the scrambles of entry points, and for the choices along a path.
+/// Numbers of the Philox random streams: for the scrambles of entry points, and for the choices along a path.
 inline constexpr std::uint32_t kScrambleStream = 1;
 inline constexpr std::uint32_t kChoiceStream = 2;
 
