@@ -144,8 +144,8 @@ void BallWalker::follow_in_spacer(const Ray& ray) {
   const double reach2 = towards * towards - ray.position_mm.squaredNorm();
   const double radius = layer_.radius_mm();
   const bool inwards = towards > 0.0;
-  // The ray travels either from the ball outward to the bowl, or from the bowl inward to the ball. A ray that came from
-  // the ball meets the ball again.
+  // The ray travels either from the ball outward to the bowl, or from the bowl inward to the ball. The bowl is
+  // concentric with the ball, so that a ray from the ball meets the ball again after its reflection.
   const double length = inwards ? towards - std::sqrt(std::max(0.0, reach2 + radius * radius))
                                 : towards + std::sqrt(std::max(0.0, reach2 + rho * rho));
   Vec3 position = ray.position_mm + length * ray.direction;

@@ -100,7 +100,8 @@ class CellWalker {
     Vec2 shift_mm = Vec2::Zero();
     Vec3 wall_normal = Vec3::Zero();  ///< normal of the wall, which points out of the part
   };
-  /// A border with several neighbours or a wall. The results of lanes::refine() are numbered from `to` on.
+  /// Border of a column that needs the additional test lanes::refine(), because it has several neighbours or a wall.
+  /// The results of this test are numbered from `to` on.
   struct Refinement {
     double number = 0.0;
     double to = 0.0;

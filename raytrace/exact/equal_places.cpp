@@ -146,8 +146,8 @@ CellPlace EqualPlaces::place_of(const SurfacePatch& patch, const PatchCell& cell
   return {shape.id, offset_mm + shape.shift_mm};
 }
 
-/// Finds the rectangle in which shifts by one period map cells to identical cells. A cell without an identical cell one
-/// period further on limits the rectangle on the side to which the cell is nearer.
+/// Finds the rectangle in which shifts by one period map cells to identical cells. If a cell has no identical cell one
+/// period away, the rectangle is reduced on the side that is nearer to the cell.
 void EqualPlaces::find_region(const Part& part, const Vec2& centre_mm) {
   PointLookup<std::uint64_t> cells(near_mm_);
   const auto visit_all = [&](const auto& visit) {

@@ -8,8 +8,8 @@
 namespace retrace::raytrace {
 
 /// Digits of a nested scramble. The upper digits form kScrambleBlocks blocks of kScrambleLevels digits, and one hash
-/// gives the random bits of a block. No two of 2^25 aligned points have all of these digits in common, so that one hash
-/// is sufficient for the remaining digits.
+/// gives the random bits of a block. No two points in a block of 2^25 consecutive points, aligned to a multiple of
+/// 2^25, have all of these digits in common. One hash is therefore sufficient for the remaining digits.
 inline constexpr int kScrambleLevels = 5;
 inline constexpr int kScrambleBlocks = 5;
 inline constexpr int kScrambleRest = 32 - kScrambleLevels * kScrambleBlocks;
@@ -40,9 +40,9 @@ constexpr std::uint32_t nested_flips(std::uint32_t digits, std::uint64_t key) {
   return (flips << kScrambleRest) | (scramble_hash(key, node) >> (32 - kScrambleRest));
 }
 
-/// Owen-scrambled Sobol points in the unit square. Any 2^k consecutive aligned points are stratified. Each scramble,
-/// given by a pair of keys, is an independent unbiased estimator with nearly normal errors (Sobol 1967; Owen 1995; Loh
-/// 2003).
+/// Owen-scrambled Sobol points in the unit square. Any 2^k consecutive points are stratified if the index of the first
+/// one is a multiple of 2^k. Each scramble, given by a pair of keys, is an independent unbiased estimator with nearly
+/// normal errors (Sobol 1967; Owen 1995; Loh 2003).
 ///
 /// The scramble is nested: every digit is flipped by a random bit that depends on the digits above it. Affine scrambles
 /// and scrambles of few bits take less time. Their errors have heavy tails, so that standard errors from 32 replicates
