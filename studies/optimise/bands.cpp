@@ -20,14 +20,15 @@ std::optional<double> nominal_of(const std::string& key, const Design& design) {
   return design.document->number_if(key);
 }
 
-/// Returns a first step with a small loss, which depends on the unit in the key's name.
+/// Returns the first step of the search for the end of a band. It causes only a small loss. It depends on the unit in
+/// the key's name.
 double first_step(const std::string& key, double nominal) {
   if (key.ends_with("_arcmin") || key.ends_with("_um") || key.ends_with("_nm")) return 0.01;
   if (key.ends_with("_deg")) return 1e-4;
   return 1e-6 * std::max(1.0, std::abs(nominal));
 }
 
-/// Computes the quantity of a design in which one key deviates from its value.
+/// Computes the first quantity of the objective for a design in which the value of one key is changed.
 class OffDesign {
  public:
   OffDesign(const Study& study, const OptimiseRequest& request, const Variant& best, const std::string& key,
@@ -51,7 +52,8 @@ class OffDesign {
     return nominal_of(key_, make_candidate(study_, values_).design());
   }
 
-  /// Returns the quantity with a sign so that larger is better. Returns nothing if there is no such design.
+  /// Returns the quantity, negated if it is minimized, so that larger is better. Returns nothing if the design with
+  /// this value of the key is invalid.
   std::optional<double> at(double value) const {
     Study study = study_;
     PointValues values = values_;
@@ -78,7 +80,8 @@ class OffDesign {
   std::optional<std::size_t> parameter_;
 };
 
-/// Returns the change in one direction at which the loss is reached. Returns nothing if designs become invalid before.
+/// Returns the maximum change in one direction for which the relative loss of the quantity stays below `loss`. Returns
+/// nothing if designs become invalid before this loss is reached.
 std::optional<double> band_to(const OffDesign& off, double nominal, double direction, double step, double loss) {
   constexpr int most_doublings = 40;
   constexpr int bisections = 30;

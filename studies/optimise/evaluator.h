@@ -1,7 +1,7 @@
 #pragma once
 
-// Evaluates the designs of all stages of a search. Each design is computed only once; results in the store are used
-// again.
+// Evaluates the designs of all stages of a search: first scan, refinement and neighbours of the best design. Each
+// design is computed only once; results in the store are used again.
 
 #include <map>
 #include <set>
@@ -38,8 +38,8 @@ class Evaluator {
   const std::string& ran_out_because() const { return ran_out_because_; }
   /// Returns the value of a quantity, or nothing if the quantity has no value for this design.
   std::optional<double> value(const Variant& variant, const std::string& quantity) const;
-  /// Returns the slope of the objective by a parameter. Returns nothing if a quantity of the objective has no computed
-  /// slope.
+  /// Returns the derivative (slope) of the objective with respect to a parameter. Returns nothing if the derivative of
+  /// a quantity of the objective cannot be computed.
   std::optional<double> slope(const PointValues& design, std::size_t parameter) const;
 
  private:
@@ -53,8 +53,8 @@ class Evaluator {
   ResultStore& store_;
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
-  std::map<std::string, std::size_t> numbers_;  ///< index in seen_, by parameter values
-  std::map<std::string, StoredPoint> stored_;   ///< points of an earlier run, by parameter values
+  std::map<std::string, std::size_t> numbers_;  ///< index in `seen_` for the parameter values of a design
+  std::map<std::string, StoredPoint> stored_;   ///< points of an earlier run, for the parameter values of a design
   std::vector<Variant> seen_;
   std::set<std::uint64_t> taken_;  ///< numbers of the points in the store
   std::size_t ran_out_ = 0;

@@ -19,11 +19,12 @@ namespace {
 
 /// Number of combinations of discrete values that are refined.
 constexpr std::size_t kRefined = 3;
-/// Maximum loss by rounding to fewer digits, as a fraction of the objective.
+/// Maximum loss of the objective that rounding the parameters may cause, as a fraction of the objective.
 constexpr double kForRoundness = 1e-6;
-/// Maximum loss by choosing a cheaper design, as a fraction of the objective.
+/// Maximum loss of the objective for which a cheaper design is proposed, as a fraction of the objective.
 constexpr double kNearlyAsGood = 0.01;
-/// Minimum gain of a cheaper design, as a fraction of the value of the chosen design.
+/// Minimum gain of a cheaper design in the quantity for which it is proposed, as a fraction of the chosen design's
+/// value.
 constexpr double kWorthIt = 1e-3;
 constexpr std::uint64_t kMostCombinations = 10'000;
 constexpr const char* kStoreKind = "retrace.optimum/1";
@@ -46,7 +47,7 @@ bool is_better(const Variant& a, const Variant& b) {
   return *a.objective > *b.objective;
 }
 
-/// Designs of the first scan.
+/// Generates the designs with which the search begins (first scan).
 class Scan {
  public:
   Scan(const Study& study, const OptimiseRequest& request) : study_(study), request_(request) {
@@ -183,8 +184,8 @@ class Search {
   }
 
  private:
-  /// Searches for the limits of feasibility along a line of designs, by bisection. The last feasible design before a
-  /// limit may be the best.
+  /// Searches along a line of designs, by bisection, for the points at which the constraints begin or cease to be
+  /// satisfied. The last feasible design before such a point may be the best.
   void look_at_edges(const std::vector<Variant>& line) {
     if (continuous_.size() != 1) return;
     for (std::size_t k = 0; k + 1 < line.size(); ++k)
@@ -205,7 +206,8 @@ class Search {
     }
   }
 
-  /// Returns the design rounded to as few digits as possible without a loss of the objective.
+  /// Returns the design with its parameters rounded to as few digits as possible without a significant loss of the
+  /// objective.
   Variant rounded(const Variant& best) {
     constexpr int most_digits = 9;
     for (int digits = 1; digits <= most_digits && !continuous_.empty(); ++digits) {
@@ -264,8 +266,8 @@ std::string why_not(const Variant& variant, const Variant& best, const OptimiseR
   return fmt::format("objective lower by {:.3g}", less);
 }
 
-/// Returns the best of the designs that were not chosen because of some constraints.
-/// \param excluded function that returns true for such a design
+/// Returns the best of the designs that were excluded, such as by constraints.
+/// \param excluded function that returns true if a design was excluded
 template <class Excluded>
 std::optional<Variant> best_excluded(const Evaluator& evaluator, Excluded excluded) {
   std::optional<Variant> found;

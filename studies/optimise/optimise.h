@@ -39,9 +39,9 @@ struct OptimiseRequest {
   double band_loss = 0.01;            ///< relative loss of the objective that ends a band
 };
 
-/// Design that has been evaluated.
+/// Evaluated design with its results.
 struct Variant {
-  std::uint64_t number = 0;  ///< number of its point in the store
+  std::uint64_t number = 0;  ///< number of the design's point in the result store
   PointValues values;        ///< values of the parameters, in the order of the study
   bool failed = false;
   std::string reason;  ///< error message if the computation failed
@@ -62,14 +62,14 @@ struct Rejected {
 struct ToleranceBand {
   std::string key;
   double nominal = 0.0;
-  /// Maximum decrease of the value; none: no loss within the tested range, or no decrease is possible.
+  /// Maximum decrease of the value. None if a decrease is not possible or causes no loss within the tested range.
   std::optional<double> down;
   std::optional<double> up;
 };
 
 struct Optimum {
   std::optional<Variant> best;  ///< none if no design is feasible
-  std::string none_because;     ///< constraint that excludes all designs
+  std::string none_because;     ///< why no design is feasible; empty if there is a best design
   std::vector<Variant> front;   ///< feasible designs that no other design dominates
   std::vector<Rejected> rejected;
   std::optional<Variant> cheaper;  ///< loses at most 1 % of the objective and is best on the front's other axes
@@ -106,7 +106,7 @@ Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 /// For a single continuous parameter, limits of feasibility are then located by bisection. The best designs are refined
 /// within bounds and constraints. Finally, values are rounded if this does not make the design worse. Designs that are
 /// already in the store are not computed again, and the result is the same.
-/// \throw OutputError as ResultStore::record()
+/// \throw OutputError if a result cannot be stored
 Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
                  const Cancellation* cancel);
 

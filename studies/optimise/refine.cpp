@@ -16,15 +16,16 @@ double share_of(const Interval& interval, double value) {
 
 namespace {
 
-/// Maximum number of slopes. A slope takes about as much time as a hundred evaluations.
+/// Maximum number of computed derivatives (slopes). A derivative takes about as much time as a hundred evaluations.
 constexpr int kMostSlopes = 12;
 constexpr double kSmallestStep = 1e-8;
 constexpr double kDifference = 1e-6;
 
-/// Thrown if a required slope is not available.
+/// Thrown if a required derivative (slope) is not available.
 struct NoSlope {};
 
-/// Design as a vector of the continuous parameters, each as a fraction of its interval.
+/// Optimization problem for NLopt. A design is a vector of its continuous parameters, each as a fraction of its
+/// interval.
 class Problem {
  public:
   Problem(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Variant& from)
@@ -37,7 +38,7 @@ class Problem {
       if (study.parameters[k].interval) continuous_.push_back(k);
   }
 
-  std::exception_ptr thrown;  ///< exception of the last evaluation for NLopt
+  std::exception_ptr thrown;  ///< exception of the last evaluation that NLopt requested
 
   std::size_t dimensions() const { return continuous_.size(); }
 
@@ -104,7 +105,7 @@ double excess(const Side& side, const std::vector<double>& shares, std::vector<d
   return here;
 }
 
-/// Runs a function that NLopt calls. NLopt discards exceptions, so that an exception is stored and the search is
+/// Runs a function that NLopt calls. NLopt discards exceptions. Therefore the exception is stored, and the search is
 /// stopped.
 template <class Work>
 double kept(Problem& problem, Work work) {
@@ -152,7 +153,7 @@ void run(nlopt::algorithm algorithm, const OptimiseRequest& request, Problem& pr
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {
-    // NLopt has failed. The designs that it has evaluated are used nevertheless.
+    // NLopt has failed. The search continues with the designs that NLopt has evaluated.
   }
   if (problem.thrown) std::rethrow_exception(std::exchange(problem.thrown, nullptr));
 }
@@ -169,7 +170,8 @@ bool refine(const Study& study, const OptimiseRequest& request, Evaluator& evalu
   } catch (const NoSlope&) {
     has_slopes = false;
   }
-  // Methods with slopes find the maximum of a smooth function. A second search without slopes also handles kinks.
+  // Methods with derivatives find the maximum of a smooth function. A second search without derivatives also handles
+  // kinks.
   run(nlopt::LN_COBYLA, request, problem, limits);
   return has_slopes;
 }

@@ -6,15 +6,16 @@
 
 namespace retrace::studies {
 
-/// Limits of a refinement without slopes.
+/// Limits of a refinement without derivatives.
 struct RefineLimits {
   int most_looks = 60;
   double first_step = 0.02;  ///< as a fraction of each interval
 };
 
-/// Improves the continuous values of a feasible design within bounds and constraints. It uses exact slopes of the
-/// objective if they are available (SLSQP), otherwise no slopes (COBYLA). The evaluator stores all evaluated designs.
-/// \return true if slopes were used
+/// Improves the continuous values of a feasible design within bounds and constraints. It uses exact derivatives of the
+/// objective if they are available (SLSQP), otherwise no derivatives (COBYLA). The evaluator stores all evaluated
+/// designs.
+/// \return true if derivatives were used
 bool refine(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Variant& from,
             const RefineLimits& limits = {});
 
