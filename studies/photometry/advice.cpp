@@ -15,14 +15,14 @@ namespace retrace::studies {
 namespace {
 
 constexpr std::size_t kSearchParts = 1;
-// Changes of the errors of angle that are tried, in minutes of arc.
+// Changes of the angles between facets that are tried, in minutes of arc.
 constexpr std::array<double, 14> kAngleSteps = {0.5,  -0.5, 1.0,  -1.0, 1.5,  -1.5, 2.0,
                                                 -2.0, 3.0,  -3.0, 4.5,  -4.5, 7.0,  -7.0};
 // Factors of the element size that are tried.
 constexpr std::array<double, 8> kSizeFactors = {0.7, 1.4, 0.5, 2.0, 0.35, 2.8, 0.25, 4.0};
 constexpr int kBisections = 4;
-// Ratio of a reading to its limit that counts as passing during the search. It is above 1 because the search uses few
-// wavelengths.
+// Minimum ratio of a reading to its limit that counts as passing during the search. It is above 1 because the search
+// uses few wavelengths and is therefore less accurate.
 constexpr double kEnough = 1.01;
 constexpr double kMostErrorArcmin = 300.0;
 constexpr double kNothingMade = -1.0;  // result of ratio_at() if the part cannot be made

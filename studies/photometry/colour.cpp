@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kColourParts = 4;
 // Distance to a boundary, in standard errors, below which a colour is undetermined.
 constexpr double kErrorsOfAColour = 2.0;
-// Difference of the seeds of consecutive responses. It is odd, so that all responses have different seeds.
+// Difference between the seeds for consecutive colour matching functions (x, y, z). It is odd, so that all seeds are
+// different.
 constexpr std::uint32_t kSeedStep = 0x85ebca6bU;
 
 /// Tristimulus values of the returned light in one geometry, and their standard errors.
@@ -24,7 +25,8 @@ struct MeasuredTristimulus {
   bool lacks_diffraction = false;
 };
 
-/// Measures the tristimulus values for each setting, in the order of the settings. Returns nothing if it was cancelled.
+/// Measures the tristimulus values in each geometry of `settings`, in their order. Returns nothing if the measurement
+/// was cancelled.
 std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Design& design,
                                                                      const PhotometryRequest& request,
                                                                      const Photometer& photometer,
@@ -47,8 +49,8 @@ std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Desig
   return measured;
 }
 
-/// Returns the standard error of of_x x + of_y y. The derivatives by X, Y and Z are (of_x - m, of_y - m, -m) / (X + Y +
-/// Z), where m = of_x x + of_y y.
+/// Returns the standard error of of_x x + of_y y. Its derivatives with respect to X, Y and Z are (of_x - m, of_y - m,
+/// -m) / (X + Y + Z), where m = of_x x + of_y y.
 double error_of(double of_x, double of_y, const materials::Chromaticity& at, const MeasuredTristimulus& measured) {
   const double sum = measured.values[0] + measured.values[1] + measured.values[2];
   const double mean = of_x * at.x + of_y * at.y;

@@ -9,8 +9,9 @@
 
 namespace retrace::studies {
 
-/// Returns the request for one response. Each of the three responses traces one third of the rays of a direction.
-/// \param response index of x, y or z
+/// Returns the request for measuring one tristimulus value. Each of the three measurements traces one third of the rays
+/// of a direction.
+/// \param response index of the colour matching function: 0 for x, 1 for y, 2 for z
 PhotometryRequest request_of_response(const PhotometryRequest& request, std::size_t response);
 
 /// Measures the colour in the geometry of the standard, or at its first test point. The tristimulus values are measured

@@ -39,8 +39,8 @@ bool concerns(const LimitLine& line, const TestProgramme& programme) {
          (line.colour.empty() || known_colour(line.colour) == programme.colour);
 }
 
-/// Returns the requested choice, or the only one if none was requested.
-/// \param option command-line option of the choice
+/// Returns the requested name, or the only available name if none was requested.
+/// \param option command-line option of the name, for error messages
 std::string choice(const std::vector<std::string>& there_are, const std::optional<std::string>& asked,
                    const std::string& option, std::string_view of_what) {
   if (there_are.empty()) {
@@ -88,7 +88,7 @@ std::vector<std::string> colours_of(const LimitTable& table, const std::string& 
 }
 
 /// Adds the test points of a row, one for each combination of signs.
-/// \param by line that multiplies the limits of the row; null: none
+/// \param by line with the factor by which the limits of the row are multiplied; null: no factor
 void add_points(const LimitRow& row, const LimitFactor* by, std::vector<TestPoint>& points) {
   const double minimum = by != nullptr ? by->factor * row.minimum : row.minimum;
   const LimitStatus status = by != nullptr ? std::max(row.status, by->status) : row.status;

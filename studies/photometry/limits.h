@@ -41,8 +41,7 @@ struct LimitLine {
   int line = 0;
 };
 
-/// Test point of a limits file.
-/// \pre its colour is given
+/// Test point of a limits file. Its colour is always given.
 struct LimitRow : LimitLine {
   double observation_deg = 0.0;
   std::vector<double> v_deg;           ///< one angle, or both signs of an angle
@@ -71,7 +70,7 @@ struct LimitArea : LimitLine {
 struct ColourBoundary : LimitLine {
   double observation_deg = 0.0;
   double v_deg = 0.0;
-  std::vector<double> v_beside_deg{};  ///< as for a test point
+  std::vector<double> v_beside_deg{};  ///< see LimitRow::v_beside_deg
   double h_deg = 0.0;
   double of_x = 0.0, of_y = 0.0, most = 0.0;
   std::string text;  ///< text of the limit in the file, such as "y <= 0.335"
@@ -100,7 +99,8 @@ struct TestPoint {
   LimitStatus status = LimitStatus::recalled;
   int line = 0;             ///< line of the table
   std::string source = {};  ///< source of the value; empty: not given
-  /// Angles that replace v_deg if the face mirrors the lamp there; the minimum counts.
+  /// Angles that replace v_deg if the face reflects the lamp directly to the receiver. The minimum of their readings
+  /// counts.
   std::vector<double> v_beside_deg{};
 };
 
@@ -116,9 +116,9 @@ struct TestProgramme {
 };
 
 /// Selects a test plan from a table.
-/// \param standard name of the standard in the table; none if the table has only one
-/// \param part_class, colour none if there is only one
-/// \throw InputError at the option, with the available names
+/// \param standard name of the standard in the table; may be omitted if the table has only one
+/// \param part_class, colour may be omitted if the standard has only one
+/// \throw InputError with the location of the command-line option and with the available names
 TestProgramme programme_of(const LimitTable& table, const std::optional<std::string>& standard,
                            const std::optional<std::string>& part_class, const std::optional<std::string>& colour);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Groups of directions of incidence that share one tracing: equal directions, and mirror images if the part is
-// mirror-symmetric.
+// Groups of directions of incidence for which light is traced only one time: equal directions, and mirror images of a
+// direction if the part is mirror-symmetric.
 
 #include <array>
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace retrace::studies {
 
-/// Direction of incidence that shares the tracing of another one. The signs of x and y transform its directions of view
-/// into those of the traced light.
+/// Direction of incidence that uses the traced light of the group's first direction. Multiplying x and y by `signs`
+/// transforms directions of view into those of the traced light.
 struct SharedDirection {
   std::size_t index = 0;
   geometry::Vec2 signs = geometry::Vec2::Ones();
@@ -22,10 +22,10 @@ struct SharedDirection {
   }
 };
 
-/// Group of directions that share one tracing. The first direction is traced and has no mirrored axis.
+/// Group of directions that share one trace. The first direction is the one that is traced; its signs are 1.
 using LitAlike = std::vector<SharedDirection>;
 
-/// Groups directions to the source that share one tracing. The order of the directions is kept.
+/// Groups directions to the source that can share one trace. The order of the directions is kept.
 /// \param mirrors for x and y: true if the part and the polarisation of the light are mirror-symmetric along this axis
 std::vector<LitAlike> lit_alike(const std::vector<geometry::Vec3>& to_source, const std::array<bool, 2>& mirrors);
 

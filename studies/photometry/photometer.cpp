@@ -16,8 +16,8 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
 
-// Maximum power, as a fraction of a direction's power, that may lack diffraction because the budget of polygons is
-// exhausted.
+// Maximum power for which diffraction may be omitted because the budget of polygons is exhausted, as a fraction of the
+// direction's power.
 constexpr double kMostBeyondBudget = 1e-4;
 
 Angle deg(double value) {
@@ -36,7 +36,7 @@ materials::SpectralCurve absorption_per_mm(const Design& design) {
   return curve;
 }
 
-/// Returns the length of the path of light through a design and back, which determines the absorption by a dye.
+/// Returns the length of the path of light into a design and back out, which determines the absorption by a dye.
 double way_through_mm(const Design& design) {
   if (design.balls()) return 2.0 * design.balls()->diameter_mm;
   const geometry::Part part = part_of_design(design, nullptr);
@@ -67,7 +67,7 @@ double cell_width_mm(const Design& design) {
   return std::get<geometry::TriangularCube>(design.part().element).aperture_mm;
 }
 
-/// Returns the design with the light of the photometer.
+/// Returns the design with the lamp of the photometer as its light.
 Design lit(Design design, const PhotometryRequest& request, const materials::Spectrum& light) {
   LightSpectrum spectrum;
   spectrum.kind = LightSpectrum::Kind::lines;
@@ -258,7 +258,8 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
     double per_sr = 0.0;
     double squares = 0.0;
-    double missing = 0.0;  // sum and not root of squares, because the missing light of all wavelengths is similar
+    double missing = 0.0;  // linear sum instead of a root of squares, because the missing light is similar for all
+                           // wavelengths
     for (std::size_t w = 0; w < pieces.size(); ++w) {
       per_sr += weights_[w] * pieces[w].per_sr[k];
       if (!pieces[w].missing_per_sr.empty()) missing += weights_[w] * pieces[w].missing_per_sr[k];
@@ -276,7 +277,8 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   return reading;
 }
 
-/// Returns no mirror symmetry for facets with a form, because its frame may not be symmetric.
+/// Returns no mirror symmetry if the facets have a form (deviation from a plane), because the form may not be
+/// symmetric.
 std::array<bool, 2> Photometer::mirrors() const {
   const raytrace::Stokes& light = design_.light.polarisation;
   std::array<bool, 2> mirrors{};

@@ -18,7 +18,7 @@
 
 namespace retrace::studies {
 
-/// Direction of light and several observation angles, for one measurement of a design.
+/// Geometry of one measurement: a direction of light and several observation angles.
 struct PhotometerSetting {
   double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
   std::vector<double> observation_deg;
@@ -34,7 +34,8 @@ PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions);
 raytrace::ReturnFrame frame_of(const PhotometerSetting& setting);
 
 /// Spectral response of the receiver.
-enum class PhotometricResponse { x_bar, y_bar, z_bar };  ///< functions of the CIE 1931 observer; y_bar is V
+enum class PhotometricResponse { x_bar, y_bar, z_bar };  ///< CIE 1931 colour matching functions; y_bar is V
+                                                         ///< is V(lambda)
 
 struct PhotometerReading {
   std::vector<double> r_a;  ///< R_A for each observation angle, in cd/(lx m^2)
@@ -42,7 +43,7 @@ struct PhotometerReading {
   std::vector<double> r_a_error;
   PhotometricDirection direction;
   std::vector<double> map_r_a;
-  bool lacks_diffraction = false;  ///< true: the reading lacks significant diffraction
+  bool lacks_diffraction = false;  ///< true: diffraction is significant but not included in the reading
 };
 
 /// Measures the coefficients of retroreflection of a design, as a goniophotometer does. Each direction of incidence is
@@ -51,7 +52,7 @@ class Photometer {
  public:
   /// \param parts number of spans of the lamp's spectrum, with two wavelengths each
   /// \param response response of the receiver; values are relative to its response to the light that falls on the part
-  /// \throw InputError as make_model()
+  /// \throw InputError in the same cases as make_model()
   Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts,
              PhotometricResponse response = PhotometricResponse::y_bar);
 
@@ -92,13 +93,14 @@ class Photometer {
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
   /// Returns the reason why readings lack diffraction, for messages.
   std::string why_undiffracted() const;
-  /// Returns the cell width, in mm, from which diffraction is not significant.
+  /// Returns the smallest cell width, in mm, for which diffraction is not significant.
   double least_undiffracted_mm() const;
-  /// Returns the photometer of the mean field, with diffraction, for a part whose rough facets were measured without
+  /// Returns a photometer that measures, with diffraction, only the mean field of a part with rough facets: the field
+  /// averaged over the random heights, without scattered light. The full photometer has measured the part without
   /// diffraction. The mean field is nowhere brighter than the part (docs/theory/photometry.md). Returns nothing for
-  /// other parts, and if the request selects another engine or far field.
+  /// other parts, and if the request selects another engine or no diffraction.
   std::optional<Photometer> mean_field() const;
-  /// Switches later measurements to Monte Carlo.
+  /// Makes later measurements use Monte Carlo.
   void leave_exact() { is_exact_ = false; }
   bool is_exact() const { return is_exact_; }
   /// Makes later measurements faster and less accurate, because fewer resampled beams represent the weak beams. Such
@@ -108,8 +110,8 @@ class Photometer {
   /// The cut-off power of beams is higher. The search structures of the part may use at most half of their memory
   /// budget, because another photometer measures the part at the same time.
   void only_first_answer() { is_guide_ = is_first_answer_ = true; }
-  /// Ignores the mirror image of the light in later measurements. This is the light that the entrance face reflects
-  /// from outside, and from inside between elements that reflect it back.
+  /// Ignores the mirror image of the light in later measurements. The mirror image is the light that the entrance face
+  /// reflects, either at its outer side, or at its inner side between two retroreflections by elements.
   /// \pre is_exact()
   void leave_out_mirror_image() { has_mirror_image_ = false; }
 
@@ -122,7 +124,7 @@ class Photometer {
     double path_length_mm = 0.0;                 ///< path length of returned light inside the part
     std::size_t parts = 1;                       ///< number of spans of the spectrum, each with two wavelengths
 
-    /// Returns the traced wavelengths and their weights. The weights exclude the absorption in the body.
+    /// Returns the traced wavelengths and their weights. The weights do not include the absorption in the body.
     /// \param knees_nm wavelengths at which total reflection begins or ends at a facet, in ascending order
     materials::Spectrum light(const std::vector<double>& knees_nm) const;
   };
@@ -141,8 +143,9 @@ class Photometer {
     double beyond_budget = 0.0;  ///< power that lacks diffraction because the budget of polygons is exhausted
     bool complete = false;
   };
-  /// Minimum width of cells that need no diffraction, in units of the wavelength divided by the angular diameter of the
-  /// discs. Diffraction of wider cells carries less than 1 % past the edge of a disc (docs/theory/photometry.md).
+  /// Minimum width of cells for which diffraction need not be computed, in units of the wavelength divided by the
+  /// angular diameter of the discs (apertures of source and receiver). For wider cells, diffraction carries less than 1
+  /// % of the light past the edge of a disc (docs/theory/photometry.md).
   static constexpr double kWidthsWithoutDiffraction = 64.0;
 
   raytrace::FarFieldPolicy far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const;
@@ -160,24 +163,25 @@ class Photometer {
   std::optional<Traced> traced(const geometry::Vec3& to_source, std::size_t wavelength,
                                const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                                double coarseness = 1.0) const;
-  /// Measures all settings whose light comes from one direction, from a single traced far field. Returns one piece for
+  /// Measures all settings whose light comes from one direction, from a single traced far field. Returns one Piece for
   /// each element of `alike`, in this order.
   std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
                                      std::size_t wavelength, const raytrace::BeamTracer& tracer,
                                      const Cancellation* cancel) const;
-  /// Returns true if all light is traced, including the light that rough facets scatter. Otherwise only the mean field,
-  /// which rough facets do not scatter, is traced. Readings are then lower bounds.
+  /// Returns true if all light is traced, including the light that rough facets scatter. Otherwise only the mean field
+  /// is traced: the light that rough facets do not scatter. Readings are then lower bounds.
   bool traces_all_light() const { return model_.optics.is_smooth() || keeps_phases_; }
   void estimate_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike, std::size_t wavelength,
                         const Traced& traced, const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                         std::vector<Piece>& pieces) const;
   void look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
             std::size_t wavelength, Piece& piece) const;
+  /// Measures one setting at one wavelength by ray tracing.
   /// \param tracer ray tracer of the part; null for balls, which have their own tracer
   Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
                         Progress& progress, const Cancellation* cancel) const;
-  /// Measures all settings by ray tracing. Returns false if it was cancelled.
-  /// \param pieces receives the pieces by setting and wavelength
+  /// Measures all settings by ray tracing. Returns false if the measurement was cancelled.
+  /// \param pieces receives the contributions of all wavelengths, with the indices [setting][wavelength]
   bool measure_by_rays(const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel,
                        std::vector<std::vector<Piece>>& pieces) const;
   /// Groups the settings by their knees and returns the indices of the settings in each group. Knees are the
@@ -194,7 +198,7 @@ class Photometer {
   std::size_t middle_wavelength() const;
   std::uint32_t seed_of(std::size_t wavelength) const;
   bool resamples_weak() const;   ///< true: beams below the cut-off power are resampled; false: they are truncated
-  double element_count() const;  ///< number of elements that share the light, >= 1
+  double element_count() const;  ///< number of elements over which the light is distributed, >= 1
   double cutoff() const;
   std::uint32_t replicates() const;
 
@@ -210,7 +214,8 @@ class Photometer {
   bool is_first_answer_ = false;
   bool has_mirror_image_ = true;
   bool has_form_ = false;
-  bool keeps_phases_ = false;  ///< true: rough facets scatter by phases of the exact engine, with diffraction
+  bool keeps_phases_ = false;  ///< true: the exact engine, with diffraction, traces the light that rough facets scatter
+                               ///< as random phases of beams
 };
 
 /// Returns the relative spectral power of a CIE illuminant, per nm.

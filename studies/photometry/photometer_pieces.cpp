@@ -36,10 +36,11 @@ constexpr double kCutoffOfGuide = 3.0;
 constexpr double kCutoffOfFirstAnswer = 10.0;
 // Maximum number of beams per direction and wavelength. If more beams are needed, the engine `auto` uses Monte Carlo.
 constexpr std::uint64_t kMostBeams = 4'000'000;
-// Minimum trace of the linear map from exit to entry position by which a beam counts as mirror image of the light. The
-// map is ReturnedBeam::entry_from_exit. Its trace is 2 for a plane mirror and at most 0 for retroreflection.
+// Minimum trace of the matrix ReturnedBeam::entry_from_exit (entry position as a function of exit position) for which a
+// beam counts as mirror image of the light. The trace is 2 for a plane mirror and at most 0 for retroreflection.
 constexpr double kLeastMirrorTrace = 1.0;
-// Maximum number of lattice points of the window for which the power in the window is integrated.
+// Maximum number of lattice points inside the window of directions for which the power in the window is still
+// integrated.
 constexpr double kMostLatticePoints = 300'000.0;
 
 // Maximum truncated power, as a fraction of the incident power, that is neglected. If more power is truncated,
@@ -51,7 +52,7 @@ constexpr double kCoarseness = 20.0;
 constexpr double kBytesPerCell = 200.0;
 // Memory, in bytes, that FarFieldCollector needs for each returned beam of each cell.
 constexpr double kBytesPerBeamOfCell = 8.0;
-// Minimum number of returned beams per cell, from which the memory is estimated before tracing.
+// Assumed number of returned beams per cell, a lower bound, with which the required memory is estimated before tracing.
 constexpr double kLeastBeamsOfCell = 10.0;
 
 [[noreturn]] void fail_on_memory() {
@@ -66,7 +67,7 @@ class FarFieldMemory {
  public:
   /// Adds the memory of a returned beam.
   /// \throw TraceBudgetError if this far field exceeds the memory budget
-  /// \throw SharedMemoryShort as BeamMemory::require_shared()
+  /// \throw SharedMemoryShort in the same cases as BeamMemory::require_shared()
   void add(const raytrace::ReturnedBeam& beam) {
     const double count = beam.place_count();
     const double new_cells = std::max(0.0, count - cells_);
@@ -93,7 +94,7 @@ geometry::Vec3 receiver_in(const ReturnFrame& frame, double observation_deg) {
   return frame.direction({0.0, Angle::from_deg(observation_deg).rad()});
 }
 
-/// Returns the power that rough facets scatter out of a beam that keeps its phases.
+/// Returns the power that rough facets scatter out of a beam whose random phases are recorded (TexturedHit).
 double scattered_power(const raytrace::ReturnedBeam& beam) {
   double variance = 0.0;
   for (const raytrace::TexturedHit& hit : beam.hits) variance += hit.phase.variance();
@@ -116,7 +117,7 @@ double Photometer::cutoff_of_element() const {
   return element_count() * cutoff();
 }
 
-/// Returns the cut-off power as a fraction of all light.
+/// Returns the cut-off power as a fraction of all incident light.
 double Photometer::cutoff() const {
   const double elements = element_count();
   const double given = request_.cutoff.value_or(0.0) / elements;
@@ -221,7 +222,7 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
   std::vector<Piece> pieces(alike.size(), common);
   for (std::size_t k = 0; k < alike.size() && !is_cancelled(cancel); ++k)
     look(settings[alike[k].index], alike[k], field, wavelength, pieces[k]);
-  // After a cancellation, some pieces have no intensities. Empty pieces are therefore returned.
+  // After a cancellation, some contributions have no intensities. Empty contributions are therefore returned.
   if (is_cancelled(cancel)) return std::vector<Piece>(alike.size());
   if (traces_all_light()) estimate_missing(settings, alike, wavelength, *traced, tracer, cancel, pieces);
   for (Piece& piece : pieces) piece.complete = !is_cancelled(cancel);

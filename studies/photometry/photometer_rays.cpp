@@ -37,8 +37,9 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
   piece.truncated = traced.cones.back().ledger[raytrace::Account::truncated];
   piece.per_sr.assign(traced.score.begin(), traced.score.begin() + receivers);
   piece.error_per_sr.assign(traced.score_error.begin(), traced.score_error.begin() + receivers);
-  // The spread of the replicates does not include the light of paths that no ray has taken. with_unseen() adds an
-  // allowance for this light. A single ray contributes at most its power times the maximum of the receiver's kernel.
+  // The standard error from the spread of the replicates does not cover light on paths that no ray has taken.
+  // with_unseen() adds an allowance for this light. A single ray contributes at most its power times the maximum of the
+  // receiver's kernel.
   for (double& error : piece.error_per_sr)
     error = raytrace::with_unseen(raytrace::student_factor(raytrace::MonteCarlo::kReplicates) * error,
                                   static_cast<double>(traced.rays), kernel_.per_sr(0.0));

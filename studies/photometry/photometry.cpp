@@ -87,10 +87,10 @@ void check(const PhotometryRequest& request) {
                                    shortest(request.window_deg), shortest(point.observation_deg)));
 }
 
-/// Settings of the measurement: one for each direction of light, with all its observation angles.
+/// Geometries that are measured (settings). Each direction of light has one setting with all its observation angles.
 struct Plan {
   std::vector<PhotometerSetting> settings;
-  /// Indices of setting and observation angle.
+  /// Readings of each test point, as pairs of the indices of setting and observation angle.
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> readings_of_point;
 };
 
@@ -101,7 +101,7 @@ std::size_t index_of(std::vector<double>& values, double value) {
   return values.size() - 1;
 }
 
-/// Returns true if the entrance face sends a mirror image of the source back when the light is perpendicular to it.
+/// Returns true if the entrance face reflects the lamp back to the lamp for perpendicular light.
 bool mirrors_source(const Design& design) {
   return !design.balls() && !design.entrance && !design.idealisation.lossless_entrance;
 }
@@ -112,7 +112,8 @@ std::vector<double> measured_v_deg(const Point& point, bool mirrors) {
   return mirrors && !point.v_beside_deg.empty() ? point.v_beside_deg : std::vector{point.v_deg};
 }
 
-/// \param mirrors true if the entrance face sends a mirror image of the source back
+/// Returns the settings that are measured for the test points of a request.
+/// \param mirrors true if the entrance face reflects the lamp back to the lamp
 Plan plan_of(const PhotometryRequest& request, bool mirrors) {
   Plan plan;
   std::map<std::tuple<double, double, double>, std::size_t> known;
@@ -128,7 +129,7 @@ Plan plan_of(const PhotometryRequest& request, bool mirrors) {
   return plan;
 }
 
-/// Readings by setting. Empty for settings that were not measured.
+/// Readings for each setting. Empty for settings that were not measured.
 using Readings = std::vector<std::optional<PhotometerReading>>;
 
 /// Returns all readings of each test point, in the order of the points. Empty for points that were not measured.
@@ -171,7 +172,7 @@ std::vector<PhotometricPoint> least_of(const std::vector<std::vector<Photometric
   return points;
 }
 
-/// Returns settings for the maps: one for each entrance angle that is measured.
+/// Returns settings for the far-field maps: one for each measured direction of light, up to kMostMaps.
 std::vector<PhotometerSetting> map_settings(const PhotometryRequest& request, const Plan& plan) {
   std::vector<PhotometerSetting> settings;
   for (const PhotometerSetting& measured : plan.settings)
@@ -209,7 +210,7 @@ bool add_pictures(const Design& design, const PhotometryRequest& request, const 
   return true;
 }
 
-/// Measures the table of readings of a design. Returns nothing if it was cancelled.
+/// Measures the readings of a design at all test points. Returns nothing if the measurement was cancelled.
 std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photometer, const PhotometryRequest& request,
                                                       Plan plan, const Cancellation* cancel) {
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
@@ -218,7 +219,7 @@ std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photomet
   return least_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
 }
 
-/// Measures the tables of changed designs. Directions of light are measured one after the other. Directions at which
+/// Measures the readings of changed designs. Directions of light are measured one after the other. Directions for which
 /// earlier designs failed come first.
 class TablesOfChanges {
  public:
@@ -228,7 +229,7 @@ class TablesOfChanges {
     std::iota(order_.begin(), order_.end(), 0U);
   }
 
-  /// Measures a table as described for TableOfDesign.
+  /// Measures the readings of a changed design as described for TableOfDesign.
   std::optional<std::vector<PhotometricPoint>> table(const Design& design, std::size_t parts, double enough) {
     Photometer photometer(design, request_, parts);
     if (!exact_) photometer.leave_exact();
@@ -366,7 +367,7 @@ bool PhotometryStudy::follows_beams() const {
 namespace {
 
 /// Replaces readings that lack diffraction by the readings of the mean field if these are above the limits. The mean
-/// field of a part with rough facets is a lower bound. Returns false if the computation was cancelled.
+/// field, which excludes scattered light, gives lower bounds. Returns false if the computation was cancelled.
 bool raise_to_mean_field(const Photometer& photometer, const PhotometryRequest& request, const Plan& plan,
                          const Cancellation* cancel, std::vector<PhotometricPoint>& points) {
   const auto lacks = [](const PhotometricPoint& p) { return p.lacks_diffraction; };
@@ -381,7 +382,7 @@ bool raise_to_mean_field(const Photometer& photometer, const PhotometryRequest& 
       bound.is_lower_bound = true;
       points[k] = bound;
     }
-  } catch (const BudgetError&) {  // too many beams, so that there is no lower bound
+  } catch (const BudgetError&) {  // too many beams for a lower bound
   }
   return true;
 }
@@ -412,7 +413,7 @@ std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer
   }
 }
 
-/// Adds a proposal for a change of a design that fails. Returns false if the computation was cancelled.
+/// Adds a proposal for a change with which a failing design passes. Returns false if the computation was cancelled.
 bool add_change(const Photometer& photometer, const Plan& plan, const Cancellation* cancel, PhotometryResult& result) {
   const Design& design = result.design;
   const PhotometryRequest& request = result.request;

@@ -38,22 +38,23 @@ inline constexpr std::uint64_t kUsualRaysOfDirection = std::uint64_t{1} << 20;
 /// Request for the coefficients of retroreflection of a part at the test points of a standard.
 struct PhotometryRequest {
   TestProgramme programme;
-  std::string limits_source;  ///< origin of the limits: the name of a standard or a file
+  std::string limits_source;  ///< area of the real part, to which R_I refers, > 0; the design defines only its
+                              ///< structure
   double area_cm2 = 0.0;      ///< area of the part to which R_I refers, > 0; the design only shows the structure
   std::vector<double> rotation_deg = {0.0};  ///< rotations epsilon of the part; the minimum reading over them counts
   raytrace::PhotometricApertures apertures;
   double window_deg = 2.0;  ///< half-angle of the computed far field; 0.05 to 10
   PhotometricLight light = PhotometricLight::illuminant_a;
   std::string dye;                                 ///< name of the dye; empty: no dye
-  materials::SpectralCurve dye_absorption_per_mm;  ///< absorption of the dye; empty: no dye
+  materials::SpectralCurve dye_absorption_per_mm;  ///< any engine except stochastic and cell
   bool diffraction = true;
   Engine engine = Engine::automatic;  ///< neither stochastic nor cell
   /// Minimum power of beams that are traced exactly, as a fraction of the power on one element.
   std::optional<double> cutoff;
   std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays per direction; empty: kUsualRaysOfDirection
   std::uint32_t seed = 1;
-  bool pictures = false;  ///< true: maps and curves are computed
-  /// True: the power inside and outside the window is integrated, as a check that takes long.
+  bool pictures = false;  ///< True: the power inside and outside the window is integrated. This check is slow.
+  /// true: if the design fails, a change with which it passes is searched for
   bool window_power = false;
   bool advice = true;   ///< true: if the design fails, a change is searched
   bool colour = false;  ///< true: the chromaticity of the returned light is computed; not for the design's own light
@@ -94,16 +95,17 @@ struct PhotometricPoint {
 struct PhotometricDirection {
   double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
   double incidence_deg = 0.0, azimuth_deg = 0.0;
-  double rre = 0.0;        ///< RRE for the design's widest cone by geometrical optics, in the light of the photometer
+  double rre = 0.0;        ///< RRE for the design's widest acceptance cone, without diffraction, in the light of the
+                           ///< photometer
   double std_error = 0.0;  ///< standard error of the RRE
-  double truncated = 0.0;  ///< maximum amount by which the RRE may be too low
-  /// Power inside and outside of the window, through the entrance face, at one wavelength. Not computed by Monte Carlo,
-  /// and not for large cells, which would take too long.
+  double truncated = 0.0;  ///< maximum power that the RRE may lack because weak beams were truncated
+  /// Power that leaves the entrance face inside and outside of the window, at one wavelength. Not computed by Monte
+  /// Carlo, and not for large cells, which would take too long.
   struct Split {
     double wavelength_nm = 0.0;
     double window = 0.0;
     double outside = 0.0;
-    double geometric = 0.0;  ///< power by geometrical optics, which `window` and `outside` must add up to
+    double geometric = 0.0;  ///< power without diffraction; the sum of `window` and `outside` must be equal to it
   };
   std::optional<Split> split;
 };
@@ -142,15 +144,16 @@ struct ColourPoint {
   double std_error = 0.0;  ///< standard error of the margin
 };
 
-/// Colour of the returned light. Of all requested geometries, the one with the smallest margin to its boundaries is
-/// kept.
+/// Colour of the returned light. If it is measured in several geometries, this is the colour with the smallest margin
+/// to its boundaries.
 struct PhotometricColour {
   double observation_deg = 0.0;
   double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
   std::optional<materials::Chromaticity> chromaticity;  ///< none if no light returns
   materials::Chromaticity std_error;                    ///< standard errors of x and y
   std::vector<ColourPoint> boundaries;                  ///< empty if the boundaries of the standard are not known
-  bool lacks_diffraction = false;                       ///< true: the result lacks significant diffraction
+  bool lacks_diffraction = false;                       ///< true: diffraction is significant but not included in the
+                                                        ///< result
   bool is_of_another_light = false;  ///< true: the light is not CIE A, for which the boundaries are defined
   std::string reason;                ///< reason of an undetermined verdict; empty otherwise
 
@@ -192,20 +195,20 @@ inline constexpr double kSystematicErrorOfFirstAnswer = 0.02;
 
 /// Preliminary readings at the test points, from a much faster and less accurate computation.
 struct PhotometricFirstAnswer {
-  std::vector<PhotometricPoint> points;  ///< one for each test point; their verdicts must not be used
+  std::vector<PhotometricPoint> points;  ///< one reading for each test point; verdicts of these points must not be used
   std::vector<double> wavelengths_nm;
   bool lacks_diffraction = false;  ///< true if diffraction is omitted although the request includes it
 };
 
-/// Returns the common verdict of several points. One point that fails decides; otherwise one that is undetermined. If
-/// limits are unconfirmed or the test plan is incomplete, the verdict is at most `unconfirmed`.
+/// Returns the common verdict of several points. It is `fail` if any point fails, otherwise `undetermined` if any point
+/// is undetermined. If limits are unconfirmed or the test plan is incomplete, the verdict is at most `unconfirmed`.
 Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme);
 
 /// Compares the area of a part with the limits of a test plan. Returns pass, fail, or `unconfirmed` if the part
 /// satisfies a limit that is unconfirmed.
 Verdict area_verdict(const TestProgramme& programme, double area_cm2);
 
-/// Study of a checked request, ready to run.
+/// Photometric study of a design. The constructor checks the request, and run() computes the readings.
 class PhotometryStudy {
  public:
   /// \throw InputError for numbers out of range, an observation angle outside the window, and an unknown material
@@ -220,7 +223,7 @@ class PhotometryStudy {
   double cutoff() const;
 
   /// Computes the readings.
-  /// \throw BudgetError if power was lost
+  /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
   PhotometryResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
   /// Computes preliminary readings with fewer wavelengths and either fewer rays or a higher cut-off power of beams. The

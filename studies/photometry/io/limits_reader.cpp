@@ -33,7 +33,7 @@ enum Column : std::size_t {
   kMinimum,
   kUnit,
   kStatus,
-  kSource,  // column that may be missing
+  kSource,  // the only column that may be missing
   kColumns,
 };
 constexpr std::array<std::string_view, kColumns> kHeader = {
@@ -55,7 +55,8 @@ std::vector<double> signed_numbers(const CsvReader& row, Column column, std::str
   return {*value};
 }
 
-/// Angle V of a test point, and angles that replace it if the face mirrors the lamp there. Example: `0 or +-5`.
+/// Angle V of a test point, and the angles that replace it if the face reflects the lamp directly to the receiver at V.
+/// Example: `0 or +-5`.
 struct V {
   std::vector<double> deg;
   std::vector<double> beside_deg;
@@ -79,7 +80,7 @@ std::string named(const CsvReader& row, Column column) {
   return printable(row[column]);
 }
 
-/// Returns the part of a line that rows of every kind have in common.
+/// Returns a row in which only the members are set that all kinds of lines have: standard, line number and classes.
 template <class Row>
 Row begun(const CsvReader& row) {
   Row result;

@@ -168,6 +168,7 @@ std::string_view light_text(PhotometricLight light) {
   return {};
 }
 
+/// Returns a line with the verdict.
 /// \param reason reason of an undetermined verdict
 std::string verdict_text(Verdict verdict, const TestProgramme& programme, const std::string& reason = {}) {
   switch (verdict) {
