@@ -24,7 +24,7 @@ void check_spindle(const fabrication::PlanedPart& part, const std::string& diale
 PlaningResult plane(const std::string& part_file, const std::string& dialect) {
   using namespace fabrication;
   PlaningResult result;
-  const std::string ending(ending_of(dialect));  // refuses unknown dialects before anything is planned
+  const std::string ending(ending_of(dialect));  // refuses unknown dialects before the planning begins
   result.part = read_planed_part(part_file);
   check_spindle(result.part, dialect);
   result.dialect = dialect;

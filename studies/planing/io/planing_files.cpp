@@ -20,8 +20,8 @@ namespace {
 using namespace fabrication;
 using Json = nlohmann::ordered_json;
 
-/// Published seconds per frame for the lens of E. D. Bulatov, S. A. Gridin and A. A. Danilenko. Its two programs have
-/// about 2500 frames in 5 h and 3500 frames in 8 h.
+/// Published machining times per frame (single move), in s, for the lens of E. D. Bulatov, S. A. Gridin and A. A.
+/// Danilenko. The two programs of this lens have about 2500 frames in 5 h and 3500 frames in 8 h.
 constexpr double kPublishedSecondsPerFrame[] = {7.2, 8.2};
 
 double per_frame(double time_s, std::int64_t frames) {
@@ -85,7 +85,7 @@ double form_error_mm(const PlanedPart& part, const PlaningCheck& check) {
   return part.mill ? std::max(check.standing_mm_max, check.gouge_mm_max) : check.path_distance_mm_max;
 }
 
-/// Adds the data of a program that follow from its text.
+/// Adds the data that are computed from a program's text.
 void add_run(const PlaningCheck& check, std::size_t program, Json& json) {
   json["frames"] = check.frames[program];
   json["hours"] = check.time_s[program] / 3600.0;
@@ -103,7 +103,7 @@ Json programs_json(const PlaningResult& result) {
 }
 
 /// Adds the data of the machine and its checks.
-/// \param plan choices of the planner; null if they are not known
+/// \param plan plan of the programs; null for programs of unknown origin
 void add_machine(const PlanedPart& part, const PlaningCheck& check, const PlaningPlan* plan, Json& json) {
   if (part.mill) {
     json["fast_feed_mm_per_min"] = part.mill->fast_feed_mm_per_min;

@@ -10,7 +10,8 @@ namespace retrace::studies {
 
 /// Returns the document `retrace.planing/1` (docs/commands.md).
 std::string planing_json(const PlaningResult& result);
-/// Returns the profile of a milled part as CSV with the columns x_mm, design_mm and left_mm.
+/// Returns the profile of a milled part as CSV with the columns x_mm, design_mm (height of the design) and left_mm
+/// (height that the programs leave).
 std::string planing_csv(const PlaningResult& result);
 std::string planing_table(const PlaningResult& result);
 
