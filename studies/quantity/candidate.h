@@ -19,13 +19,13 @@
 
 namespace retrace::studies {
 
-/// Settings of the analysis, for quantities that do not give their own.
+/// Settings of the analysis for quantities that do not have their own.
 struct AnalysisSettings {
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  double rotation_deg = 0.0;  ///< rotation of the part about its normal, counter-clockwise as seen from the light
+  double rotation_deg = 0.0;  ///< rotation of the part about its normal, counter-clockwise as seen from the source
   Engine engine = Engine::automatic;
-  std::optional<double> target_error;  ///< as RreRequest::target_error
+  std::optional<double> target_error;  ///< see RreRequest::target_error
   std::optional<std::uint64_t> rays;
   std::optional<double> cutoff;
   std::uint32_t seed = 1;
@@ -46,7 +46,7 @@ class Candidate {
   /// Returns the object to which the quantity being measured reports its progress. May be null.
   Progress* progress() const { return progress_; }
   /// Returns the part, which is built at the first call.
-  /// \throw InputError as part_of_design()
+  /// \throw InputError in the same cases as part_of_design()
   const geometry::Part& part() const {
     if (!part_) part_ = part_of_design(design_, nullptr);
     return *part_;

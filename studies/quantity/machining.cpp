@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kUmPerMm = 1e3;
 constexpr double kSecondsPerMinute = 60.0;
-/// Tolerance within which a tool fits the width of an element: one nanometre.
+/// Allowed difference between tool width and element width for a tool that fits the element: one nanometre.
 constexpr double kFitMm = 1e-6;
 
 double facet_length_mm(const geometry::RtpElement& element) {
@@ -32,11 +32,11 @@ double allowance_mm(const MachiningProcess& process) {
   return process.finishing_cuts * process.finishing_depth_um / kUmPerMm;
 }
 
-/// Returns the time of several cuts including the returns. The depths of the cuts add up to `depths_mm`; each cut
-/// includes the step to the next.
+/// Returns the time of several cuts and of the returns after them. The depths of the cuts add up to `depths_mm`. Each
+/// return includes the step to the next cut.
 double plunges_s(double cuts, double depths_mm, double step_mm, double feed_mm_per_min,
                  const MachiningProcess& process) {
-  // The facet is vertical during the cut, and the face of the workpiece is at 45 degrees to it.
+  // The facet is vertical during the cut. The surface of the workpiece is inclined by 45 degrees to the facet.
   const double approach_mm = std::numbers::sqrt2 * process.clearance_um / kUmPerMm;
   const double path_mm = cuts * approach_mm + depths_mm;
   return seconds(path_mm, feed_mm_per_min) + cuts * process.dwell_s +

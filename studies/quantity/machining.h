@@ -11,11 +11,11 @@
 
 namespace retrace::studies {
 
-/// Process by which prisms are cut: single-point inverted cutting. The defaults are those of the offset samples in
-/// acrylic of Milliken (2017), section 2.7.
+/// Process in which prisms are cut one by one with a plunging tool: single-point inverted cutting. The defaults are
+/// those of the offset samples in acrylic of Milliken (2017), section 2.7.
 struct MachiningProcess {
   std::optional<double> tool_width_mm;  ///< none: the tool is as wide as the element
-  double clearance_um = 200.0;          ///< clearance normal to the face of the workpiece
+  double clearance_um = 200.0;          ///< clearance perpendicular to the surface of the workpiece
   double roughing_depth_um = 15.0;      ///< depth of a roughing cut
   double finishing_depth_um = 5.0;
   int finishing_cuts = 2;  ///< number of finishing cuts of each facet
@@ -23,10 +23,12 @@ struct MachiningProcess {
   double finishing_feed_mm_per_min = 20.0;
   double traverse_feed_mm_per_min = 200.0;
   double plough_length_um = 100.0;
-  double dwell_s = 0.1;  ///< dwell time at every root
+  double dwell_s = 0.1;  ///< Cutting strategy: two_step or unidirectional. With unidirectional, there are no finishing
+                         ///< cuts.
   /// Strategy two_step or unidirectional. With unidirectional, facets are not finished.
   fabrication::Strategy strategy = fabrication::Strategy::two_step;
-  double edge_radius_um = 0.0;  ///< radius of the tool's cutting edge, which becomes the radius of the roots
+  double edge_radius_um = 0.0;  ///< true: the design gets the facet texture and the root radius that result from
+                                ///< cutting
   bool surface_as_cut = false;  ///< true: facets and roots get the texture and the radius of the cutting process
 };
 
@@ -42,7 +44,7 @@ double roughing_cuts(const geometry::RtpElement& element, const MachiningProcess
 
 /// Returns the time, in seconds, of the tool path for one element. Every roughing cut approaches and plunges at cutting
 /// feed, dwells, removes its chip and returns at traverse feed. Finishing cuts plunge along both facets. An element
-/// wider than the tool takes several passes side by side. For an element of 0.451 mm, the path takes 27.7 s and the
+/// wider than the tool is cut in several passes side by side. For an element of 0.451 mm, the path takes 27.7 s and the
 /// measured time is 29.2 s (docs/theory/sizing.md).
 /// \pre the apex angle is 90 degrees, within a few degrees
 double seconds_per_element(const geometry::RtpElement& element, const MachiningProcess& process);

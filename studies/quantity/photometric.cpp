@@ -70,7 +70,7 @@ class PhotometricQuantity final : public Quantity {
     PhotometryRequest request = table_->request;
     const AnalysisSettings& analysis = candidate.analysis();
     request.engine = analysis.engine;
-    // Rays of photometry have no cut-off, so that the cut-off is passed on only to engines that trace beams. The study
+    // Photometry by rays has no cut-off. Therefore the cut-off is passed only to engines that trace beams. The study
     // reader refuses a cut-off that no quantity uses.
     if (is_one_of(request.engine, kExactEngines)) request.cutoff = analysis.cutoff;
     request.rays = analysis.rays;
@@ -85,8 +85,8 @@ class PhotometricQuantity final : public Quantity {
     return result.complete ? Points{result.points, result.measured, result.readings, result.reason} : Points{};
   }
 
-  /// Returns the margin to the limit. A margin that lacks requested diffraction is refused, because it would be
-  /// mistaken for a verdict.
+  /// Returns the margin to the limit. A margin is refused if requested diffraction is missing in it, because it would
+  /// be mistaken for a verdict.
   Measured margin_of(const PhotometricPoint& point, const std::string& reason) const {
     if (point.lacks_diffraction && table_->request.diffraction)
       throw BudgetError(fmt::format("the margin of the photometry is undetermined: {}", reason));

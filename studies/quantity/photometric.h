@@ -19,9 +19,10 @@ enum class PhotometricFigure {
   r_a              ///< coefficient of retroreflection, cd/(lx m^2)
 };
 
-/// Standard by which a study measures every design. Engine, samples, cut-off and seed are those of the analysis.
+/// Photometric measurement of every design of a study by one standard. Engine, samples, cut-off and seed are those of
+/// the analysis.
 struct PhotometricTable {
-  std::string key;  ///< identifier of the table within the study
+  std::string key;  ///< identifier of the measurement within the study
   PhotometryRequest request;
   /// True if the study names no dye. The dye of the standard's colour then applies to designs without a spectral
   /// absorption of their own.
@@ -31,10 +32,10 @@ struct PhotometricTable {
 /// Selection of a value from a table of readings.
 struct PhotometricChoice {
   std::optional<std::size_t> point;  ///< index of the test point, from 0; none: the minimum over all points
-  /// One reading of a test point. If it is not set, the minimum of all readings of the point is used.
-  /// `beside` is the index of the angle V. There are several such angles for V = 0, because readings are taken beside
-  /// the mirror image of the lamp. For a part without a mirror image, all these angles are equal to V of the point.
-  /// `turn` is the index of the rotation of the part.
+  /// Selection of one reading of a test point. If it is not set, the minimum of all readings of the point is used.
+  /// `beside` is the index of the angle V. There are several such angles for V = 0, where the entrance face reflects
+  /// the lamp directly to the receiver, so that readings are taken at angles beside 0. For a part without this mirror
+  /// image, all these angles are equal to V of the point. `turn` is the index of the rotation of the part.
   struct Reading {
     std::size_t beside = 0;
     std::size_t turn = 0;
@@ -42,7 +43,7 @@ struct PhotometricChoice {
   std::optional<Reading> reading;
 };
 
-/// Returns a photometric quantity. All quantities of a table share one measurement of a candidate.
+/// Returns a photometric quantity. For each candidate, all quantities with the same table share one measurement.
 std::shared_ptr<const Quantity> make_photometric(std::string name, std::shared_ptr<const PhotometricTable> table,
                                                  const PhotometricChoice& choice, PhotometricFigure figure);
 

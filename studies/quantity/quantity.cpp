@@ -42,8 +42,8 @@ struct Share {
   double std_error = 0.0;
 };
 
-/// Returns the weighted mean. Directions use the same random numbers, so that their errors are correlated and added
-/// linearly.
+/// Returns the weighted mean. All directions use the same random numbers. Therefore their errors are correlated and are
+/// added linearly.
 Share mean_of(const std::vector<Share>& shares, const std::vector<double>& weights) {
   Share mean;
   double total = 0.0;
@@ -101,7 +101,7 @@ class ShareQuantity final : public Quantity {
     if (request.engine != Engine::automatic && request.engine != Engine::exact) return std::nullopt;
     request.engine = Engine::exact;
     request.derivatives = true;
-    // Removes settings of the engine `auto` that the engine `exact` does not accept.
+    // Resets those settings of the engine `auto` that the engine `exact` does not accept.
     request.rays.reset();
     if (request.cutoff) request.target_error.reset();
     const RreResult result = RreStudy({design_of(candidate)}, request).run(nullptr, cancel);
@@ -150,7 +150,7 @@ double full_element_area_mm2(const geometry::PartSpec& spec) {
 }
 
 std::optional<double> total_reflection_limit_deg(const Design& design) {
-  if (design.part().substrate) return std::nullopt;  // elements on a base have different orientations
+  if (design.part().substrate) return std::nullopt;  // on a substrate, elements have different orientations
   const auto library = materials::MaterialLibrary::shipped();
   const OpticalModel model = make_model(design, library);
   double least = model.spectral.front().optics.index;
@@ -158,26 +158,27 @@ std::optional<double> total_reflection_limit_deg(const Design& design) {
   return tir_limit_deg(design.part(), least, model.optics.back_index);
 }
 
-/// Returns the machining time in hours. The machine cuts only whole elements.
+/// Returns the machining time in hours. Only whole elements are machined.
 double machining_time_h(const Candidate& candidate) {
   constexpr double seconds_per_hour = 3600.0;
   return static_cast<double>(candidate.part().elements_full) *
          seconds_per_element(prism_of(candidate), candidate.machining()) / seconds_per_hour;
 }
 
-/// Returns the width that remains beside the tool in an element. 0 if the process gives no tool width.
+/// Returns the width of an element minus the width of the tool. 0 if the process defines no tool width.
 double tool_fit_mm(const Candidate& candidate) {
   const double width_mm = prism_of(candidate).width_mm;
   return width_mm - candidate.machining().tool_width_mm.value_or(width_mm);
 }
 
-/// Returns the design of a candidate that has only one kind of element.
-/// \throw InputError for other designs
+/// Returns the design of a candidate that is an array of equal elements, flat or on a substrate.
+/// \throw InputError for designs with balls, solids, zones or a curved entrance face
 const Design& elements_of(const Candidate& candidate, const std::string& name) {
   check_taken(candidate.design(), {.what = name, .wet_backs = true});
   return candidate.design();
 }
 
+/// Returns the value of a quantity that needs no ray tracing.
 /// \param name name of the quantity, for messages
 std::optional<double> plain_value(PlainQuantity which, const Candidate& candidate, const std::string& name) {
   constexpr double um_per_mm = 1e3;
@@ -185,8 +186,8 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
     case PlainQuantity::elements_full: return static_cast<double>(candidate.part().elements_full);
     case PlainQuantity::elements_partial: return static_cast<double>(candidate.part().elements_partial);
     case PlainQuantity::element_depth_mm:
-      // The depth of a part on a base includes the depth of the base, so that the depth of a single element is
-      // computed.
+      // The depth of a part on a substrate includes the depth of the substrate. Therefore the depth of a single element
+      // is computed instead.
       return candidate.design().elements() && candidate.design().part().substrate
                  ? geometry::element_depth_mm(candidate.part().spec.element, candidate.part().spec.angle_errors)
                  : candidate.part().element_depth_mm;

@@ -15,18 +15,18 @@ namespace retrace::studies {
 
 /// Value of a quantity for a candidate.
 struct Measured {
-  std::optional<double> value;  ///< none if the quantity has no value, such as a limit that does not exist
+  std::optional<double> value;  ///< none if the quantity is not defined for this candidate
   double std_error = 0.0;
 };
 
-/// Limit to which a margin refers. The margin is value / limit - 1.
+/// Limit of a quantity that is a margin. The margin is value / limit - 1.
 struct QuantityLimit {
   double value = 0.0;
   std::string unit;
 };
 
-/// Quantity that a study computes for every design. Sweeps, optimizations and tolerance studies use the other studies
-/// only through this interface. Objects have no state and are shared by threads.
+/// Quantity that a study computes for every design. Sweeps, optimizations and tolerance studies compute RRE, photometry
+/// and other results only through this interface. Objects have no state and are shared by threads.
 class Quantity {
  public:
   explicit Quantity(std::string name) : name_(std::move(name)) {}
@@ -45,14 +45,14 @@ class Quantity {
   virtual std::string tracing() const { return {}; }
   /// Returns a readable description of the quantity, such as "20' V 5 H -20".
   virtual std::string label() const { return name_; }
-  /// Returns true if the value of a part with several kinds of cells is the area-weighted mean of their values. A
-  /// minimum of several values does not have this property.
+  /// Returns true if the quantity of a part with several kinds of cells is the area-weighted mean of the cells' values.
+  /// This is not the case for a minimum of several values.
   virtual bool adds_up() const { return true; }
-  /// Returns the limit to which a margin refers. Returns nothing for other quantities.
+  /// Returns the limit of a quantity that is a margin. Returns nothing for other quantities.
   virtual std::optional<QuantityLimit> limit() const { return std::nullopt; }
-  /// Returns the slope of the quantity by a parameter of the design, in the unit of the parameter. Returns nothing if
-  /// the slope is unreliable or available only by finite differences.
-  /// \throw Error as measure()
+  /// Returns the derivative (slope) of the quantity with respect to a parameter of the design, in the unit of the
+  /// parameter. Returns nothing if the derivative is unreliable or available only by finite differences.
+  /// \throw Error in the same cases as measure()
   virtual std::optional<double> slope(const Candidate& candidate, RreParameter parameter,
                                       const Cancellation* cancel) const;
 
@@ -69,11 +69,12 @@ struct AngleWindow {
   bool by_solid_angle = false;                       ///< true: weights proportional to |sin t|; false: equal weights
 };
 
-/// Combination of the values at several directions; `each` makes one quantity for each direction.
+/// Method by which the values for several directions are combined. With `each`, they are not combined: each direction
+/// becomes a quantity.
 enum class Reduction { mean, least, each };
 
-/// Fraction of the incident light over a window of directions: RRE, or another account of the ledger. With
-/// Reduction::each, every quantity has a window of one direction.
+/// Fraction of the incident light over a window of directions: RRE, or another account (category of power) of the
+/// ledger. With Reduction::each, every quantity has a window of one direction.
 struct ShareSpec {
   AngleWindow window;
   Reduction reduction = Reduction::mean;

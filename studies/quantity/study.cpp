@@ -65,8 +65,8 @@ PointValues some_values(const Study& study) {
 
 namespace {
 
-/// Returns the value of a parameter that is shown in this form, or nothing if there is none. An end of an interval may
-/// differ by rounding errors.
+/// Returns the value of a parameter that tables show as `shown`, or nothing if there is none. A number may lie outside
+/// an interval by a rounding error.
 std::optional<ParameterValue> value_of(const Parameter& parameter, const std::variant<double, std::string>& shown) {
   const auto found = std::ranges::find(parameter.values, shown, &ParameterValue::shown);
   if (found != parameter.values.end()) return *found;

@@ -24,7 +24,7 @@ struct ParameterValue {
   std::variant<double, std::string> shown;
 };
 
-/// Interval that includes both ends.
+/// Interval; both ends belong to it.
 struct Interval {
   double from = 0.0;
   double to = 0.0;
@@ -38,7 +38,7 @@ struct Interval {
 struct Distribution {
   enum class Kind { normal, uniform, triangular };
   Kind kind = Kind::normal;
-  double mean = 0.0;              ///< normal: mean; triangular: most frequent value
+  double mean = 0.0;              ///< normal: mean; triangular: mode
   double sigma = 0.0;             ///< normal: standard deviation, > 0
   std::optional<Interval> range;  ///< uniform and triangular: required; normal: limits of the distribution
 
@@ -55,33 +55,36 @@ struct Parameter {
   std::optional<Distribution> distribution;
   InputLocation location;
 
-  /// Returns a number as the value of a parameter.
+  /// Converts a number to the value of a parameter.
   static ParameterValue value_of(double number);
 };
 
-/// Contents of a study file that all kinds of studies use.
+/// Contents of a study file that sweeps, optimizations and tolerance studies have in common.
 struct Study {
   std::string source;  ///< name of the file as given
   std::string title;
   std::shared_ptr<const schema::Document> document;  ///< document of the study file
-  std::string design_file;                           ///< file of the base design, from the working directory
+  std::string design_file;                           ///< path of the base design's file, relative to the working
+                                                     ///< directory
   std::map<std::string, std::string> design_texts;   ///< texts of the design files, by name of the file
-  std::vector<std::string> files;      ///< all files that are read: the study, designs, and files that these name
-  std::vector<std::string> overrides;  ///< texts of the option --set
+  std::vector<std::string> files;      ///< all files that are read: the study, its designs, and the files that the
+                                       ///< designs and quantities name
+  std::vector<std::string> overrides;  ///< values of the option --set
   std::uint32_t seed = 1;
   std::vector<Parameter> parameters;
   Quantities quantities;
-  /// Parts that define the study, each with a canonical text. Two studies with equal parts have equal points.
+  /// Parts that define the study, each as a name and a canonical text. Two studies with equal parts have equal points.
   std::vector<std::pair<std::string, std::string>> parts;
 };
 
 /// Values of the parameters at one point of a study, in the order of the parameters.
 using PointValues = std::vector<ParameterValue>;
 
-/// Returns an example value of each parameter.
+/// Returns one allowed value of each parameter, as an example.
 PointValues some_values(const Study& study);
 
-/// Returns the values that tables show as `shown`. Returns nothing if a parameter does not have such a value.
+/// Returns the values of all parameters from the form in which tables show them. Returns nothing if a parameter does
+/// not have such a value.
 std::optional<PointValues> values_of(const Study& study, const std::vector<std::variant<double, std::string>>& shown);
 
 }  // namespace retrace::studies

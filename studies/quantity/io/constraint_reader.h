@@ -12,10 +12,12 @@
 namespace retrace::studies {
 
 /// Reads the tables [[constraint]] of a study; there may be none.
-/// \throw InputError for invalid keys, and for a constraint over a part of many cells
+/// \throw InputError for invalid keys, and for `over = "part"`, which only compositions (parts with several kinds of
+/// cells) allow
 std::vector<Constraint> read_constraints(const Study& study);
 
-/// Object of a constraint in a composition. The order is that of the words of `constraint.over`.
+/// Object to which a constraint of a composition (part with several kinds of cells) applies. The order is that of the
+/// words of the key `constraint.over`.
 enum class ConstraintOver { cell, part };
 /// Reads the constraints of a composition that apply to cells or to the part.
 /// \throw InputError for invalid keys

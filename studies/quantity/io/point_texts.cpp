@@ -24,8 +24,8 @@ std::vector<PointValues> points_of_texts(const Study& study) {
   return points;
 }
 
-/// Returns the position, for messages, at which a file is named. This is the parameter of the study that sets the
-/// file's key, or else the key in the design.
+/// Returns the position, for messages, at which a file is named. This is the position of the parameter that sets the
+/// file's key, or otherwise the position of the key in the design.
 InputLocation where_named(const Study& study, const NamedFile& named) {
   for (std::size_t k = 0; k < study.parameters.size(); ++k)
     if (std::ranges::count(study.parameters[k].keys, named.key) > 0)

@@ -29,6 +29,7 @@ struct PointTexts {
   std::vector<std::string> for_study;   ///< overrides of the study file, in addition to those with which it was read
 };
 
+/// Returns the files and overrides of one point.
 /// \param values one value for each parameter
 PointTexts texts_at(const Study& study, std::span<const ParameterValue> values);
 

@@ -19,8 +19,8 @@ using schema::Document;
 
 constexpr double kMostDirections = 10000.0;
 
-/// Returns the centres of `count` equal parts of a range. The mean over them is the mean over the range to second
-/// order.
+/// Returns the centres of `count` equal parts of a range. The mean of a function at these points approximates its mean
+/// over the range to second order.
 std::vector<double> middles(const Document& document, const std::string& at, const NumberRange& allowed) {
   const auto given = [&](const char* key, const NumberRange& range) {
     const double value = std::get<double>(document.named(at).at(key));
@@ -46,7 +46,7 @@ std::optional<std::vector<double>> angles_of(const Document& document, const std
   return document.numbers(at);
 }
 
-/// Returns the quantity, or with `each` one quantity for each direction.
+/// Returns one quantity, or, for Reduction::each, one quantity for each direction.
 Quantities shares_of(const std::string& name, const ShareSpec& spec) {
   if (spec.reduction != Reduction::each) return {make_share(name, spec)};
   using Angles = std::optional<std::vector<double>>;

@@ -6,8 +6,8 @@
 
 namespace retrace::studies {
 
-/// Index of the first word of a quantity's `kind` that is a PlainQuantity. The other plain quantities follow in their
-/// order.
+/// Index of the first word of the key `kind` that is a PlainQuantity. The words of the other plain quantities follow in
+/// the order of the enumeration.
 inline constexpr std::size_t kFirstPlainKind = 4;
 
 /// Returns the keys of study files: parameters, quantities, analysis and machining.

@@ -25,7 +25,7 @@ namespace {
 
 using schema::Document;
 
-/// Tables of a study that determine its points.
+/// Names of the tables that determine the points of a study.
 constexpr std::array<std::string_view, 8> kParts = {"parameter", "quantity",  "analysis",   "machining",
                                                     "sweep",     "tolerance", "constraint", "optimize"};
 constexpr double kMostValues = 100'000.0;
@@ -52,7 +52,7 @@ const Parameter* parameter_of(const Study& study, std::string_view key) {
   return found == study.parameters.end() ? nullptr : &*found;
 }
 
-/// Returns whether rays or beams are traced for a quantity of this kind: "rre" or "photometry".
+/// Returns true if rays or beams are traced for some quantity of this kind ("rre" or "photometry").
 bool is_traced(const Study& study, std::string_view kind) {
   return std::ranges::any_of(study.quantities, [kind](const auto& q) { return q->tracing().starts_with(kind); });
 }
@@ -144,15 +144,15 @@ Distribution read_distribution(const Document& document, const std::string& at) 
     if (!within.contains(distribution.mean))
       document.fail(at + ".mode", fmt::format("must be {}, got {}", within.text(), shortest(distribution.mean)));
   }
-  // A mean outside the range of the distribution is refused. All values would come from a tail of the distribution,
-  // which is probably a mistake.
+  // A mean outside the range of the distribution is refused because it is probably a mistake: all values would come
+  // from a tail of the distribution.
   if (normal && distribution.range &&
       (distribution.range->from > distribution.mean || distribution.range->to < distribution.mean))
     document.fail(at + ".mean", fmt::format("must lie between from and to, got {}", shortest(distribution.mean)));
   return distribution;
 }
 
-/// Makes the names of designs relative to the folder of the study.
+/// Makes the file names of designs relative to the folder of the study.
 void resolve_designs(const Document& document, const std::string& at, Parameter& parameter) {
   const fs::path folder = fs::path(document.source()).parent_path();
   for (ParameterValue& value : parameter.values) {
@@ -237,7 +237,7 @@ std::string fingerprint(const std::string& text) {
 }
 
 /// Returns the fingerprints of the files that the designs and quantities of a study name.
-/// \throw InputError at the position where the file is named if the file cannot be read
+/// \throw InputError if a file cannot be read; the location is that of the file's name
 std::string fingerprints(const std::vector<NamedFile>& files) {
   std::string parts;
   for (const auto& [file, key, where] : files) {
@@ -328,7 +328,7 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
     given = std::make_shared<const Document>(schema::with(study_format(), *given, texts.for_study));
   const Document& document = *given;
   const MachiningProcess machining = machining_of(document);
-  // Surface keys of the study take precedence over the surface that the machining process leaves.
+  // The surface that results from machining comes first, so that surface keys of the study override it.
   const std::vector<std::string> as_cut = surface_overrides(machining);
   texts.for_design.insert(texts.for_design.begin(), as_cut.begin(), as_cut.end());
   const Design varied = parse_design(study.design_texts.at(texts.design), texts.design, texts.for_design);
