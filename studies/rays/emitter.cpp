@@ -24,13 +24,13 @@ geometry::Vec2 polar(double radius, double turns) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Returns the radius r of a Gaussian beam within which the fraction u of the power lies; the fraction outside r is
-/// exp(-2 r^2).
+/// Returns the radius r, in units of the beam radius, within which the fraction u of a Gaussian beam's power lies. The
+/// fraction outside r is exp(-2 r^2).
 double gaussian_radius(double u) {
   return std::sqrt(-0.5 * std::log1p(-u));
 }
 
-/// Returns the angle between a ray and the axis, within which the fraction `u` of the power is emitted.
+/// Returns the half-angle of the cone around the axis into which the fraction `u` of the power is emitted.
 double polar_angle_rad(EmitterKind kind, double half_angle_rad, double u) {
   switch (kind) {
     case EmitterKind::lambertian: return std::asin(std::sqrt(u) * std::sin(half_angle_rad));
@@ -42,7 +42,7 @@ double polar_angle_rad(EmitterKind kind, double half_angle_rad, double u) {
     }
     case EmitterKind::collimated: break;
   }
-  // This form of 1 - cos has no cancellation at small angles.
+  // This form avoids the cancellation in 1 - cos at small angles.
   return 2.0 * std::asin(std::sqrt(u) * std::sin(0.5 * half_angle_rad));
 }
 

@@ -12,11 +12,11 @@
 
 namespace retrace::studies {
 
-/// Distribution of rays over the disc and over directions.
+/// Distribution of rays over positions on the disc and over directions.
 enum class EmitterKind {
   lambertian,  ///< uniform over the disc; constant radiance up to the half-angle
-  gaussian,    ///< both like exp(-2 (q / w)^2); w is half the diameter or the half-angle
-  collimated   ///< uniform over the disc, and per solid angle up to the half-angle
+  gaussian,    ///< positions and angles distributed as exp(-2 (q / w)^2); w is the radius of the disc or the half-angle
+  collimated   ///< uniform over the disc, and uniform per solid angle up to the half-angle
 };
 inline constexpr std::array<std::string_view, 3> kEmitterNames = {"lambertian", "gaussian", "collimated"};
 
@@ -45,7 +45,7 @@ inline constexpr std::uint64_t kMaxEmitterRays = std::uint64_t{1} << 40;
 struct EmitterRequest {
   EmitterKind kind = EmitterKind::lambertian;
   /// Diameter of the emitting disc. By default, a collimated emitter covers the entrance face, or one period of an
-  /// infinite part. Other emitters are points by default.
+  /// infinite part. Other emitters are points by default. In mm.
   std::optional<double> disc_mm;
   std::optional<double> half_angle_deg;  ///< none: 90 for `lambertian`, otherwise 0
   std::uint64_t rays = 1'000'000;

@@ -11,7 +11,7 @@
 
 namespace retrace::studies {
 
-/// Request for a placement. It gives either `at_mm`, or the angles and the distance.
+/// Position and direction that are requested for a source. Either `at_mm` is given, or the angles and the distance.
 struct RayPlacementRequest {
   std::optional<std::array<double, 3>> at_mm;   ///< origin of the source in the part frame
   std::optional<std::array<double, 3>> aim_mm;  ///< point at which the +z axis of the source is aimed
@@ -43,8 +43,8 @@ struct RayPlacement {
 Vec3 middle_of_face(const geometry::Part& part);
 
 /// Computes the placement of a source. The x axis of an aimed source is the part's x axis, projected perpendicular to
-/// the source's z axis. If both are parallel, the y axis is used. Without a request, the frame of the source is the
-/// part frame.
+/// the source's z axis. If the x axis of the part is parallel to this z axis, the part's y axis is used instead. If
+/// nothing is requested, the frame of the source is the part frame.
 /// \throw InputError for contradictory values and values out of range
 RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Part& part);
 

@@ -35,8 +35,8 @@ Vec3 three(std::span<const double> values, std::size_t ray, const char* array) {
   return v;
 }
 
-/// Reserves memory, in large pages if the system supports them. Each page is cleared at its first use, which would take
-/// longer than filling it if pages were small.
+/// Reserves memory, in large pages if the system supports them. The system clears each page at its first use. With
+/// small pages, this takes longer than filling the memory.
 template <class Value>
 void reserve_in_large_pages(std::vector<Value>& values, std::size_t count) {
   values.reserve(count);

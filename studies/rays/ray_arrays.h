@@ -14,14 +14,17 @@ namespace retrace::studies {
 struct RaySpans {
   std::span<const double> origins_mm;  ///< three numbers per ray
   std::span<const double> directions;  ///< three numbers per ray; any length above 0
-  std::span<const double> stokes;      ///< four numbers per ray, the first is its power; or four for all rays
-  std::span<const double> axes;        ///< three numbers per ray, perpendicular to the direction; empty: +x projected
+  std::span<const double> stokes;      ///< four numbers per ray, of which the first is the power; or four numbers for
+                                       ///< all rays
+  std::span<const double> axes;        ///< three numbers per ray, perpendicular to the direction; empty: the projected
+                                       ///< x axis
   std::span<const double> wavelengths_nm;  ///< one number per ray, one for all rays, or none
 };
 
 class ArraySource : public RaySource {
  public:
-  /// \throw InputError at the array: `origins`, `directions`, `stokes`, `axes` or `wavelength_nm`
+  /// \throw InputError with the name of the invalid array as location: `origins`, `directions`, `stokes`, `axes` or
+  /// `wavelength_nm`
   explicit ArraySource(const RaySpans& arrays);
 
   const RaySetInfo& info() const override { return info_; }
@@ -38,10 +41,10 @@ class ArraySource : public RaySource {
   TotalPower total_;
 };
 
-/// Sink that stores the leaving rays in arrays.
+/// Sink that stores the rays that leave the part in arrays.
 class ArraySink : public RaySink {
  public:
-  /// \param rays approximate number of rays, for which memory is reserved
+  /// \param rays approximate number of rays for which memory is reserved
   explicit ArraySink(std::size_t rays);
   void begin(const RaySinkLayout&) override {}
   void write(std::span<const AccountedRay> rays) override;

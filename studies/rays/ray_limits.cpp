@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kLeastNm = 100.0;
 constexpr double kMostNm = 100'000.0;
-// Tolerance of Stokes parameters, which may be in single precision.
+// Tolerance of checks on Stokes parameters, which may be given in single precision.
 constexpr double kRounding = 1e-5;
-// Minimum sine of the angle between axis and direction.
+// Minimum sine of the angle between the polarisation axis and the direction of a ray.
 constexpr double kLeastAcross = 1e-3;
 
 /// Multiplies a finite vector by a power of two so that its largest coordinate is between 1 and 2. A power of two

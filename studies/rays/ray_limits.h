@@ -9,9 +9,9 @@
 
 namespace retrace::studies {
 
-/// Returns true for wavelengths from X rays to the far infrared. Other values are probably in another unit.
+/// Returns true if a value in nm is between X rays and the far infrared. Other values are probably in another unit.
 bool is_wavelength(double nm);
-/// Returns the error message for a value that is no wavelength.
+/// Returns the error message for a value that is not a valid wavelength.
 std::string wavelength_text(double nm);
 
 /// Returns the unit vector in the direction of a vector. Very long and very short vectors cause no overflow or
@@ -37,8 +37,8 @@ class TotalPower {
 /// Returns the error message for a ray with which the total power exceeds kMaxTotalPower.
 std::string total_power_text(double power);
 
-/// Makes the axis of a ray perpendicular to its direction.
-/// \return error message on the Stokes parameters; null if they are valid
+/// Makes the polarisation axis of a ray perpendicular to its direction.
+/// \return error message on the Stokes parameters or the axis; null if they are valid
 const char* settle_stokes(SetRay& ray);
 
 }  // namespace retrace::studies

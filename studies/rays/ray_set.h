@@ -15,7 +15,7 @@ namespace retrace::studies {
 
 using geometry::Vec3;
 
-/// Kind of wavelength data in a set. The numbers are those of TM-25.
+/// Kind of wavelength data in a set. The numbers are those of the TM-25 format.
 enum class RaySpectrum : std::int32_t {
   unknown = 0,
   one_wavelength = 1,
@@ -24,7 +24,7 @@ enum class RaySpectrum : std::int32_t {
   table_of_each = 4
 };
 
-/// Descriptions of a set, in the order of TM-25.
+/// Texts that describe a set of rays, in the order of the TM-25 format.
 enum class RayText : std::size_t {
   light_source,
   manufacturer,
@@ -48,7 +48,7 @@ struct RaySetInfo {
   RaySpectrum spectrum = RaySpectrum::unknown;
   double wavelength_nm = 0.0;                    ///< wavelength of all rays for RaySpectrum::one_wavelength
   std::vector<materials::SpectralCurve> tables;  ///< relative power per nm
-  std::optional<double> radiant_w;               ///< flux of all rays, as given by the set
+  std::optional<double> radiant_w;               ///< total flux that the set claims
   std::optional<double> luminous_lm;
   std::string date;                             ///< date as given; empty: none
   std::array<std::u32string, kRayTexts> texts;  ///< empty: unknown
@@ -66,14 +66,14 @@ struct SetRay {
   double luminous_lm = 0.0;
   double tristimulus_x = 0.0;
   double tristimulus_z = 0.0;
-  /// S1, S2 and S3 divided by the power, with respect to `axis` and direction x axis.
+  /// S1, S2 and S3 divided by the power, in the transverse basis (`axis`, direction x `axis`).
   std::array<double, 3> stokes = {};
   Vec3 axis = Vec3::UnitX();  ///< perpendicular to the direction
   double wavelength_nm = 0.0;
   std::uint32_t table = 0;  ///< number of the spectral table, from 1
 };
 
-/// Ray that has left or missed a part, with its account.
+/// Ray that has left or missed a part, with the account (category) of its power in the ledger.
 struct AccountedRay : SetRay {
   std::uint64_t number = 0;  ///< number of the incident ray, from 1
   std::size_t account = 0;   ///< index in kRayAccounts

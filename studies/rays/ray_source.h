@@ -12,16 +12,16 @@
 
 namespace retrace::studies {
 
-/// Source of rays, in the frame of the source and in a fixed order.
+/// Source of rays. They have a fixed order and are in the frame of the source.
 class RaySource {
  public:
   virtual ~RaySource() = default;
   virtual const RaySetInfo& info() const = 0;
   /// Replaces `rays` by the next rays.
   /// \return false if there are no more rays
-  /// \throw InputError that names the position
+  /// \throw InputError with the position of an error in the source
   virtual bool read(std::size_t most, std::vector<SetRay>& rays) = 0;
-  /// Returns the fraction of the source that has been read, 0 to 1.
+  /// Returns the fraction of the source that has been read, from 0 to 1.
   virtual double share_read() const = 0;
   /// Returns warnings for the user. They are complete after the last ray.
   virtual Warnings warnings() const { return {}; }

@@ -20,7 +20,7 @@
 namespace retrace::studies {
 namespace {
 
-// Number of rays that are read and traced together. It limits the memory, because about as many rays leave.
+// Number of rays that are read and traced together. It limits the memory, because about as many rays leave the part.
 constexpr std::size_t kRaysAtATime = 16384;
 // Minimum number of rays that are traced together.
 constexpr std::size_t kFewestAtATime = 1024;
@@ -61,7 +61,7 @@ void settle_polarisation(const raytrace::Light& light, AccountedRay& ray) {
   ray.axis = (std::cos(turn) * light.s_axis + std::sin(turn) * ray.direction.cross(light.s_axis)).normalized();
 }
 
-/// Returns the distance from the centre of the entrance face to its farthest corner.
+/// Returns the distance from the centre of the entrance face to the corner farthest from it.
 /// \pre the part is finite
 double radius_of_face(const geometry::Part& part) {
   const geometry::Vec2 middle = middle_of_face(part).head<2>();
@@ -97,7 +97,7 @@ struct RayStudy::Hidden {
   RayRequest request;
   materials::MaterialLibrary library;
   OpticalModel model;
-  Warnings ignored;  ///< warnings that the model also contains
+  Warnings ignored;  ///< warnings of `optics`; `model` contains the same warnings
   OpticsOfDesign optics;
   RayPlacement placement;
 };
@@ -195,7 +195,7 @@ class RayStudy::Run {
     if (sink_ != nullptr) sink_->begin(layout_);
   }
 
-  /// Returns the data that leaving rays contain.
+  /// Returns the kinds of data that the leaving rays have.
   RaySinkLayout layout() const {
     RaySinkLayout layout{source_.info(), wavelengths_.are_several()};
     RaySetInfo& info = layout.info;

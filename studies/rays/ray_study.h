@@ -1,6 +1,7 @@
 #pragma once
 
-// Traces a set of rays through a part: all leaving rays, and the ledger of the power.
+// Traces a set of rays through a part. The result consists of all leaving rays and the ledger, which accounts for all
+// power.
 
 #include <cstdint>
 #include <memory>
@@ -21,9 +22,9 @@ namespace retrace::studies {
 struct RayRequest {
   RayPlacementRequest placement;
   /// Minimum fraction of a ray's power for which both branches at an interface are traced. Below it, one branch is
-  /// chosen at random and gets all power. With 1, at most one ray leaves for each incident ray.
+  /// chosen at random and carries the power of both. With 1, at most one ray leaves for each incident ray.
   double split = 1.0;
-  double cutoff = 1e-10;     ///< fraction of a ray's power below which it is not traced further
+  double cutoff = 1e-10;     ///< fraction of an incident ray's power below which a branch is not traced further
   bool keep_missed = false;  ///< true: rays that miss the part are also written
   bool stokes = false;       ///< true: polarisation is written even if the source has none
   std::uint32_t seed = 1;
@@ -35,7 +36,8 @@ enum class RayPower { radiant_w, luminous_lm };
 struct RayResult {
   Design design;
   RayRequest request;
-  /// Name of the source's file; empty: none \note set by the creator of the source, like the next two members.
+  /// Name of the source's file; empty if the source is not a file. The creator of the source sets this member and the
+  /// next two.
   std::string source_name;
   std::optional<Emitter> emitter;  ///< emitter that replaces a file
   std::string out_name;            ///< file to which rays were written; empty: none
@@ -71,8 +73,8 @@ class RayStudy {
 
   /// Traces all rays of a source.
   /// \param sink null: rays are only counted
-  /// \throw InputError as the source
-  /// \throw BudgetError if power was lost
+  /// \throw InputError if the source contains an error
+  /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
   RayResult run(RaySource& source, RaySink* sink, Progress* progress, const Cancellation* cancel) const;
 
  private:

@@ -15,11 +15,12 @@ namespace {
 
 // Philox stream of random wavelengths.
 constexpr std::uint32_t kWavelengthStream = 18;
-// Resolution of single wavelengths. Optical properties are computed for each wavelength that occurs.
+// Number of steps per nm to which wavelengths of rays are rounded. Optical properties are computed one time for each
+// rounded wavelength.
 constexpr double kStepsPerNm = 10.0;
 
 /// Returns the spectrum of a table. A table with one sample is a spectral line.
-/// \param efficiency null: weights by power
+/// \param efficiency luminous efficiency by which the power is weighted; null: not weighted
 materials::Spectrum spectrum_of(const materials::SpectralCurve& table, const materials::SpectralCurve* efficiency) {
   if (table.values.size() == 1)
     return materials::line_spectrum({{table.wavelengths_nm.front(), table.values.front()}}, efficiency);

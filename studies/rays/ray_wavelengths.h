@@ -15,8 +15,8 @@ namespace retrace::studies {
 /// Assigns a wavelength to each ray, and the index of the optical properties at this wavelength.
 class RayWavelengths {
  public:
-  /// Function that adds optical properties at a wavelength to the traced ones.
-  /// \return their index
+  /// Function that adds optical properties for one more wavelength.
+  /// \return index of these properties
   using Add = std::function<std::uint32_t(double wavelength_nm)>;
 
   /// \param light light of the design, for rays without wavelengths
@@ -24,10 +24,10 @@ class RayWavelengths {
   RayWavelengths(const RaySetInfo& info, const std::vector<SpectralOptics>& light, bool by_eye, std::uint32_t seed,
                  Add add);
 
-  /// Sets the wavelength of a ray. In sets of single wavelengths, it is rounded to 0.1 nm.
+  /// Sets the wavelength of a ray. If each ray of the set has its own wavelength, it is rounded to 0.1 nm.
   /// \return index of the optical properties
   std::uint32_t settle(SetRay& ray, std::uint64_t number);
-  /// Returns true if rays have several wavelengths.
+  /// Returns true if the rays have more than one wavelength.
   bool are_several() const;
 
   double shortest_nm() const { return shortest_nm_; }

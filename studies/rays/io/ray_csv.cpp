@@ -61,7 +61,7 @@ void RayCsvSource::fail(std::string_view column, std::string_view text) const {
   throw InputError({file_, line_, std::string(column)}, text);
 }
 
-/// Reads the next line that is not empty and splits it into values.
+/// Reads the next line that is not empty and splits it into values. Returns false if there is none.
 bool RayCsvSource::next_line() {
   text_.resize(kMostLineBytes);
   while (stream_->getline(text_.data(), static_cast<std::streamsize>(text_.size())) || stream_->gcount() > 0) {

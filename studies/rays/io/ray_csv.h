@@ -18,7 +18,7 @@
 namespace retrace::studies {
 
 /// Reads a table of rays.
-/// \throw InputError that names file, line and column
+/// \throw InputError with file, line and column
 class RayCsvSource : public RaySource {
  public:
   explicit RayCsvSource(const std::filesystem::path& file);
@@ -42,7 +42,7 @@ class RayCsvSource : public RaySource {
   std::uint64_t bytes_ = 0;
   std::uint64_t at_ = 0;
   std::string text_;
-  std::vector<std::string_view> values_;  ///< values of the current line
+  std::vector<std::string_view> values_;  ///< values in the current line
   std::array<int, 17> columns_ = {};      ///< column of each quantity; -1: the table does not have it
   std::size_t column_count_ = 0;
   int line_ = 0;
@@ -50,7 +50,8 @@ class RayCsvSource : public RaySource {
   RaySetInfo info_;
 };
 
-/// Writes a table of rays. Each line contains the number of the incident ray and the account of the ledger.
+/// Writes a table of rays. Each line contains the number of the incident ray and the account of the ray's power in the
+/// ledger.
 class RayCsvSink : public RaySink {
  public:
   /// \throw OutputError if the file cannot be written

@@ -11,15 +11,15 @@
 namespace retrace::studies {
 
 /// Opens a file of rays.
-/// \throw InputError that names the file and the position, or at `option` for an unknown ending
+/// \throw InputError with the file and the position of an error, or with the location `option` for an unknown ending
 std::unique_ptr<RaySource> open_ray_file(const std::filesystem::path& file, const std::string& option);
 
-/// Creates a file of rays. The file appears when it is finished.
-/// \throw InputError at `option` for an unknown ending
+/// Creates a file of rays. The file exists under its name only after RaySink::finish().
+/// \throw InputError with the location `option` for an unknown ending
 /// \throw OutputError if the file cannot be written
 std::unique_ptr<RaySink> make_ray_file(const std::filesystem::path& file, const std::string& option);
 /// Checks that a file of rays can be created.
-/// \throw InputError and OutputError as make_ray_file()
+/// \throw InputError, OutputError in the same cases as make_ray_file()
 void check_ray_file(const std::filesystem::path& file, const std::string& option);
 
 }  // namespace retrace::studies

@@ -9,7 +9,7 @@
 
 namespace retrace::studies {
 
-/// Stream and its length in bytes.
+/// Stream of a file and the length of the file in bytes.
 struct RayInput {
   std::unique_ptr<std::istream> stream;
   std::uint64_t bytes = 0;

@@ -17,10 +17,10 @@
 namespace retrace::studies {
 
 /// Reads a file of rays.
-/// \throw InputError that names the file and the byte
+/// \throw InputError with the file and the position of the byte
 class Tm25Source : public RaySource {
  public:
-  /// Opens a regular file.
+  /// Opens a regular file (not a pipe or a device).
   explicit Tm25Source(const std::filesystem::path& file);
   /// \param file name of the input, for messages
   Tm25Source(RayInput input, std::string file);
@@ -61,7 +61,7 @@ class Tm25Source : public RaySource {
   double luminous_lm_ = 0.0;
 };
 
-/// Writes a file of rays. Each ray has its account as an additional item.
+/// Writes a file of rays. Each ray has its account (category of power in the ledger) as an additional item.
 class Tm25Sink : public RaySink {
  public:
   /// \throw OutputError if the file cannot be written

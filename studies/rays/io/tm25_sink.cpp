@@ -16,7 +16,7 @@ using namespace tm25;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-/// Buffer of values in their binary representation.
+/// Buffer that collects values in their binary representation.
 class Bytes {
  public:
   template <class Value>
@@ -50,7 +50,7 @@ std::u32string wide(std::string_view ascii) {
   return {ascii.begin(), ascii.end()};
 }
 
-/// Returns the meaning of the numbers of the item `account`.
+/// Returns an explanation of the numbers in the additional item `account`.
 std::u32string legend() {
   std::string text = "account:";
   for (std::size_t k = 0; k < kRayAccounts.size(); ++k)

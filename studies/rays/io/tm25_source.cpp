@@ -20,7 +20,7 @@ using namespace tm25;
 // Maximum numbers of tables and items. Larger numbers in a file indicate damage.
 constexpr std::int32_t kMostTables = 100'000;
 constexpr std::int32_t kMostItems = 1000;
-// Relative tolerance between the flux of all rays and the flux in the header.
+// Relative tolerance between the sum of the rays' fluxes and the flux in the header.
 constexpr double kFluxTolerance = 0.01;
 // Tolerance of the squared length of a direction.
 constexpr double kUnitTolerance = 1e-4;
@@ -267,7 +267,7 @@ SetRay Tm25Source::ray_at(const char* record, std::uint64_t byte) {
     ray.tristimulus_x = flux_of("a tristimulus value");
     ray.tristimulus_z = flux_of("a tristimulus value");
   }
-  // Otherwise each ray has a wavelength, which is more precise than the tables.
+  // With the other kinds of spectra, each ray has a wavelength, which is more precise than the spectral tables.
   if (info_.spectrum == RaySpectrum::table_of_each) {
     const double table = next("a spectrum index");
     if (!(table >= 1.0 && table <= static_cast<double>(info_.tables.size())) || table != std::floor(table))
