@@ -34,7 +34,7 @@ void check(const Design& design) {
                      fmt::format("must be one angle here, got {}", design.detector.acceptance_half_angle_deg.size()));
 }
 
-/// Returns the design with the texture of a point.
+/// Returns the design with the facet texture of a point.
 /// \param where location for error messages about the texture
 Design textured(const Design& design, const RoughnessPoint& point, double waviness_length_um,
                 const InputLocation& where) {
@@ -53,8 +53,7 @@ RreRequest direction_of(const RoughnessRequest& asked) {
   return request;
 }
 
-/// Adds the warnings of a traced point. Several points of a curve may cause the same kind of warning; the first one is
-/// enough.
+/// Adds the warnings of a traced point. If several points cause the same kind of warning, only the first is kept.
 void add_warnings(RoughnessResult& result, const RreResult& traced) {
   for (const Warning& warning : traced.warnings)
     if (std::ranges::count(result.warnings, warning.id, &Warning::id) == 0) result.warnings.push_back(warning);
@@ -114,10 +113,10 @@ RoughnessStudy::~RoughnessStudy() = default;
 
 namespace {
 
-/// Collects traced points, which may come from other processes.
+/// Collects traced points. They may have been traced by other processes.
 class RoughnessLedger : public TaskLedger {
  public:
-  /// \param at request that contains the direction of incidence
+  /// \param at request whose direction of incidence is traced
   /// \param progress may be null
   RoughnessLedger(std::size_t size, const RoughnessRequest& at, Progress* progress)
       : at_(at), progress_(progress), found_(size) {

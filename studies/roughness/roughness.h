@@ -22,22 +22,23 @@ struct FacetGroup {
   std::string table;  ///< name of the file
   int line = 0;       ///< line of the first facet
   std::string name;
-  bool is_process = false;  ///< true: a process; false: a single facet
+  bool is_process = false;  ///< mean Sa of the height components below the cut-off wavelength of the measurement
   std::size_t facets = 0;
-  double roughness_sa_nm = 0.0;  ///< mean Sa below the cut-off wavelength of the measurement
+  double roughness_sa_nm = 0.0;  ///< mean Sa of the height components above the cut-off wavelength of the measurement
   double waviness_sa_nm = 0.0;   ///< mean Sa above the cut-off wavelength of the measurement
 };
 
 /// Request for the RRE of one design as a function of the roughness of its facets.
 struct RoughnessRequest {
-  std::vector<double> sa_nm;  ///< roughness values of the curves, each >= 0
+  std::vector<double> sa_nm;  ///< Correlation lengths, > 0. There is one curve for each value. The first value also
+                              ///< applies to measured facets.
   /// One curve for each value, > 0; the first also applies to measured facets.
   std::vector<double> correlation_length_um;
   double waviness_length_um = 200.0;  ///< waviness period of the measured facets, > 0
   std::vector<FacetGroup> measured;
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  std::optional<std::uint64_t> rays;  ///< number of rays per point; none: until target_error is reached
+  std::optional<std::uint64_t> rays;  ///< number of rays per point; none: rays are traced until target_error is reached
   double target_error = 1e-3;         ///< maximum standard error of RRE, as a fraction
   std::uint32_t seed = 1;
 };
@@ -54,7 +55,7 @@ struct RoughnessPoint {
 struct RoughnessResult {
   Design design;
   RoughnessRequest request;
-  double smooth_rre = 0.0;  ///< RRE of smooth facets, by the exact engine if this is fast
+  double smooth_rre = 0.0;  ///< RRE for smooth facets, from the exact engine if this is fast
   double smooth_std_error = 0.0;
   std::vector<RoughnessPoint> points;  ///< curves in the order of the request, then the measured facets
   std::uint64_t rays = 0;
@@ -66,7 +67,7 @@ struct RoughnessResult {
 /// Returns the rms height of a Gaussian height distribution with the given Sa.
 double gaussian_sq_nm(double sa_nm);
 
-/// Study of a checked request, ready to run.
+/// Roughness study of a design. The constructor checks the request, and run() computes the points.
 class RoughnessStudy {
  public:
   /// \throw InputError for a design with its own texture or several acceptance angles, for numbers out of range, and
@@ -77,11 +78,11 @@ class RoughnessStudy {
   /// Computes all points.
   /// \param share function that distributes the points among several processes with equal studies; none: this process
   ///        traces all
-  /// \throw BudgetError if power was lost
+  /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
   RoughnessResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                       const ShareTasks& share = {}) const;
-  /// Traces a point as a task with its number.
-  /// \throw BudgetError if power was lost
+  /// Traces one point, as a task of a computation that several processes share. `number` is the number of the task.
+  /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
   std::optional<std::string> compute_shared(std::uint64_t number, const Cancellation* cancel) const;
 
  private:

@@ -56,7 +56,7 @@ std::vector<FacetGroup> parse_facet_table(std::string_view content, const std::s
     if (table.rows() > kMostFacets) table.fail(fmt::format("at most {} facets are allowed", kMostFacets));
     FacetGroup& group = group_of(table, columns, groups, name);
     ++group.facets;
-    // Running means are used instead of sums, so that no sum overflows.
+    // Running means are used instead of sums because sums could overflow.
     const auto mean = [&](double& kept, double next) { kept += (next - kept) / static_cast<double>(group.facets); };
     mean(group.roughness_sa_nm, table.number(columns.roughness, kSaNm));
     if (columns.waviness) mean(group.waviness_sa_nm, table.number(*columns.waviness, kSaNm));
