@@ -9,16 +9,16 @@
 namespace retrace::studies {
 namespace {
 
-/// Maximum number of known kinks. If there are more, such as those of many wavelengths at many azimuths, none of them
-/// is used, and the search must find the kinks.
+/// Maximum number of known kinks. If there are more, as for many wavelengths at many azimuths, none of them is used.
+/// The search must then find the kinks.
 constexpr std::size_t kMostKinks = 64;
 
 double rounded(double value, double scale) {
   return std::round(value * scale) / scale + 0.0;  // -0 is 0
 }
 
-/// Returns a number with few decimals near the centre of an interval. It differs from the centre by at most a twentieth
-/// of the interval.
+/// Returns a number with few decimals near the centre of an interval. Its distance from the centre is at most a
+/// twentieth of the interval's length.
 double middle_of(double low, double high) {
   const double middle = 0.5 * (low + high);
   for (double scale = 1.0; scale < 1e9; scale *= 10.0)
@@ -37,7 +37,7 @@ std::vector<CurveSpan> merged(std::vector<CurveSpan> spans) {
   return apart;
 }
 
-/// Adds points until no gap is too wide.
+/// Inserts points until no gap between neighbours is wider than kWidestGapDeg.
 void fill(double low, double high, std::set<double>& places) {
   if (high - low <= AdaptiveCurve::kWidestGapDeg) return;
   const double middle = middle_of(low, high);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Selects the angles at which a curve of RRE is computed. They are denser at curved sections and kinks.
+// Selects the angles at which a curve of RRE is computed. The angles are closer together where the curve bends or has
+// kinks.
 
 #include <cstddef>
 #include <map>
@@ -40,27 +41,29 @@ class AdaptiveCurve {
   AdaptiveCurve(std::vector<CurveSpan> spans, const std::vector<double>& kinks, const std::vector<double>& fixed,
                 double tolerance);
 
-  /// Returns the next points to compute, in ascending order. Empty if the curves are accurate.
-  /// \pre values for all points of the last call were added
+  /// Adds the value of one more curve at a point.
+  /// \pre the order of the curves is the same at all points
   std::vector<double> next();
   /// Adds the value of a further curve at a point.
   /// \pre the order of the curves is the same at all points
   void add(double place, CurveValue value) { values_[place].push_back(value); }
 
-  /// Returns the maximum error of linear interpolation if the search ended at kMostPlaces. Otherwise returns 0.
+  /// Returns the maximum error of linear interpolation if the search ended because of kMostPlaces. Otherwise returns 0.
   double worst_left() const { return 2.0 * worst_left_; }
 
  private:
   /// Gap between two neighbouring points.
   struct Gap {
     double low = 0.0, high = 0.0;
-    double miss = 0.0;                 ///< error at the centre of the gap from which this gap was divided
-    bool is_half_of_straight = false;  ///< true: this error was small enough
+    double miss = 0.0;                 ///< interpolation error at the centre of the wider gap that was divided into
+                                       ///< this gap and its neighbour
+    bool is_half_of_straight = false;  ///< true: this error was within the tolerance
   };
 
   void begin(const CurveSpan& span, const std::vector<double>& kinks);
   double miss_of(const Gap& gap) const;
-  /// Adds the centres of gaps. If kMostPlaces does not allow all, those with the largest errors are added.
+  /// Starts to check gaps: adds their centres as points. If kMostPlaces does not allow all, those with the largest
+  /// errors are added.
   void look_at(std::vector<Gap> gaps);
 
   double tolerance_ = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Competition of the two beam methods for RRE: exact beams, and stochastic beams that resample weak beams. The method
-// with the smaller expected time continues.
+// Chooses between the two beam methods for RRE: exact beams, and stochastic beams that resample weak beams. The method
+// with the smaller expected remaining time continues.
 
 #include <functional>
 #include <memory>
@@ -21,10 +21,10 @@ double facets_of_cell(const geometry::Part& part);
 /// structures of the tracer exceed the memory budget.
 double beam_tracer_ns(const geometry::Part& part);
 
-/// Tracing of one direction at one wavelength by the faster of two methods. It ends when the exact engine has reached
-/// its goal, or the stochastic engine the target error. A method continues where it stopped if the other method turns
-/// out to be slower than expected. Decisions depend on counts of work and not on clocks, so that they are the same on
-/// every machine. Only one thread at a time may use an object.
+/// Tracing of one direction at one wavelength by the faster of two methods. It ends when exact beams have reached their
+/// goal, or stochastic beams the target error. A method continues where it stopped if the other method turns out to be
+/// slower than expected. Decisions depend on counts of work and not on clocks, so that they are the same on every
+/// machine. Only one thread at a time may use an object.
 class BeamRace {
  public:
   struct Options {
@@ -33,7 +33,7 @@ class BeamRace {
     raytrace::BeamObserver observer = {};
   };
 
-  /// \param scattered scattered light as for StochasticBeams; if it is given, beams are always resampled
+  /// \param scattered see StochasticBeams; if it is given, beams are always resampled
   /// \pre `tracer`, `scattered` and `cancel` exist as long as this object
   BeamRace(const raytrace::BeamTracer& tracer, const raytrace::ScatteredLight* scattered,
            const raytrace::Optics& optics, const raytrace::Illumination& illumination,
@@ -50,7 +50,7 @@ class BeamRace {
   /// \throw BudgetError if both methods are abandoned
   bool advance();
 
-  /// Returns true if the exact method has reached the goal, and false if it was the stochastic method.
+  /// Returns true if the exact method has reached the goal, and false if the stochastic method has reached it.
   /// \pre advance() has returned true
   bool is_exact() const { return is_exact_; }
   raytrace::BeamResult exact() const { return beams_->result(); }
@@ -64,7 +64,7 @@ class BeamRace {
 
   const Cancellation* cancel_;
   std::optional<raytrace::BeamTrace> beams_;  ///< none if facets scatter
-  /// Makes the stochastic beams when they are first needed.
+  /// Creates the stochastic beams when they are needed for the first time.
   std::function<std::unique_ptr<raytrace::StochasticBeams>()> make_stochastic_;
   std::unique_ptr<raytrace::StochasticBeams> stochastic_;
   double first_looks_ = 0.0;

@@ -13,7 +13,7 @@
 
 namespace retrace::studies {
 
-/// Returns the illumination of a point.
+/// Returns the illumination (direction and polarisation) for a point of RRE.
 raytrace::Illumination illumination_of(const RrePoint& at, const Design& design);
 
 /// Results that a request needs from returned beams in addition to RRE.
@@ -49,17 +49,17 @@ struct BeamAnswer {
 
 /// Traces the beams of one direction at one wavelength.
 /// \param part part for which `tracer` was made
-/// \throw BudgetError as BeamTracer::trace()
+/// \throw BudgetError in the same cases as BeamTracer::trace()
 BeamAnswer follow_beams(const raytrace::BeamTracer& tracer, const geometry::Part& part, const raytrace::Optics& optics,
                         const raytrace::Illumination& illumination, const std::vector<double>& cones_deg,
                         const raytrace::BeamPolicy& policy, const BeamQuestion& question, const Cancellation* cancel,
                         Progress* progress);
 
-/// Returns the points of a direction, one for each acceptance cone, from exact beams.
-/// \param at data that the points have in common
+/// Returns the points of a direction from exact beams, one for each acceptance cone.
+/// \param at point with the data that all cones have in common
 std::vector<RrePoint> points_of(const RrePoint& at, const std::vector<double>& cones_deg,
                                 const raytrace::BeamResult& traced);
-/// Returns the points of a direction, one for each acceptance cone, from a sampled result.
+/// Returns the points of a direction from a randomly sampled result, one for each acceptance cone.
 std::vector<RrePoint> points_of(const RrePoint& at, const raytrace::MonteCarloResult& traced);
 
 }  // namespace retrace::studies

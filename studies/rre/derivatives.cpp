@@ -17,7 +17,7 @@ namespace {
 
 using geometry::PartSpec, geometry::RtpElement, raytrace::Account;
 
-/// Rounding error of the exact engine, in addition to truncation.
+/// Rounding error of RRE from the exact engine. The error by truncated light is not included.
 constexpr double kRounding = 1e-12;
 constexpr double kArcminPerDeg = 60.0;
 
@@ -55,19 +55,20 @@ double value_of(const TracedDirection& at, RreParameter parameter) {
   return value_of(at.design, parameter);
 }
 
-/// Result of one trace.
+/// Summary of one trace.
 struct Traced {
   std::vector<double> rre;  ///< indexed by acceptance cone
   double truncated = 0.0;
-  double noise = 0.0;  ///< uncertainty of all values between similar traces
+  double noise = 0.0;  ///< uncertainty by which `rre` and `truncated` vary between traces at neighbouring parameter
+                       ///< values
 
   Sample rre_sample(std::size_t cone) const { return {rre[cone], noise}; }
   Sample truncated_sample() const { return {truncated, noise}; }
 };
 
-/// Returns the result of a trace with its noise. With a fixed cut-off, few beams cross the cut-off between similar
-/// traces, and each has less power than the cut-off. If the cut-off is determined in every trace, all truncated power
-/// may vary.
+/// Returns the summary of a trace with its noise. With a fixed cut-off, a small change of a parameter moves only a few
+/// beams across the cut-off, and each has less power than the cut-off. If the cut-off is determined in every trace, all
+/// truncated power may vary.
 Traced summary_of(const raytrace::BeamResult& traced, const raytrace::BeamPolicy& policy) {
   constexpr double kBeamsAtATime = 10.0;
   Traced summary;
@@ -78,16 +79,17 @@ Traced summary_of(const raytrace::BeamResult& traced, const raytrace::BeamPolicy
   return summary;
 }
 
-/// Returns the range and the first step of the differences. RRE is mostly smooth over this step. The step is larger if
-/// much power is truncated, because noise is divided by the step. The extrapolation tableau handles cases that are not
-/// smooth.
+/// Returns the range and the first step of the finite differences. RRE is mostly smooth over this step. The step is
+/// larger if much power is truncated, because noise is divided by the step. The extrapolation of the differences
+/// detects where RRE is not smooth.
 DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
   constexpr double kOpen = 1e-9;  // distance from an end that does not belong to the range
   constexpr double kLoud = 1e-9;
   const double wider = std::clamp(std::cbrt(summary_of(at.traced, at.policy).noise / kLoud), 1.0, 4.0);
   const double relative_step = 0.01 * wider;
   const double value = value_of(at, parameter);
-  // An error of angle deflects light by about three times this angle, so that light soon leaves a narrow cone.
+  // An error of the angle between facets deflects light by about three times this error. Therefore light soon leaves a
+  // narrow cone.
   const double angle_step = std::min(0.05 * wider, 0.1 * at.design.detector.acceptance_half_angle_deg.front());
   switch (parameter) {
     case RreParameter::size_mm: return {relative_step * value, kOpen * value};
@@ -100,7 +102,8 @@ DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
   return {};
 }
 
-/// Returns the numbers of full and partial elements for this element size. Returns nothing if there is no valid design.
+/// Returns the numbers of full and partial elements for an element size. Returns nothing if the design with this size
+/// is invalid.
 std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design& design, double size_mm) {
   try {
     const geometry::Part part = geometry::build_part(with(design, RreParameter::size_mm, size_mm).part());
@@ -110,8 +113,8 @@ std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design
   }
 }
 
-/// Shortens the first step until the array has the same elements at both ends. Returns false if there is no such step,
-/// because RRE is discontinuous here.
+/// Halves the first step until the array has the same elements at both ends of the step. Returns false if there is no
+/// such step, because RRE is discontinuous at this size.
 bool keep_elements(const Design& design, double size_mm, DifferenceRange& range) {
   constexpr int kHalvings = 10;
   const auto here = count_elements(design, size_mm);
@@ -121,8 +124,8 @@ bool keep_elements(const Design& design, double size_mm, DifferenceRange& range)
   return false;
 }
 
-/// Returns the policy of the point with a limit on beams in proportion to the point's beams. Near normal incidence,
-/// there may be a million times as many beams, which would have to be traced dozens of times.
+/// Returns the policy of the point, with a maximum number of beams in proportion to the beams that the point has
+/// needed. Without it, traces near normal incidence might need a million times as many beams, dozens of times.
 raytrace::BeamPolicy policy_nearby(const TracedDirection& at) {
   constexpr std::uint64_t kLeast = 200'000;
   constexpr std::uint64_t kTimes = 20;
@@ -133,7 +136,8 @@ raytrace::BeamPolicy policy_nearby(const TracedDirection& at) {
 
 struct Cancelled {};
 
-/// Traced result as a function of one parameter. Results are kept, because one trace yields the values of all cones.
+/// Traces a design as a function of one parameter. Results are kept, because one trace yields the values of all
+/// acceptance cones.
 class TraceByParameter {
  public:
   TraceByParameter(const TracedDirection& at, RreParameter parameter, const Cancellation* cancel)
@@ -141,8 +145,9 @@ class TraceByParameter {
     known_[value_of(at, parameter)] = summary_of(at.traced, at.policy);
   }
 
+  /// Returns the summary for a value of the parameter.
   /// \throw BudgetError if too many beams are needed
-  /// \throw InputError if there is no such part
+  /// \throw InputError if the part with this value is invalid
   /// \throw Cancelled if the computation was cancelled
   const Traced& operator()(double value) {
     auto known = known_.find(value);
@@ -188,7 +193,7 @@ std::string why_not(const Derivative& derivative) {
   return derivative.noise > kShows * derivative.error ? "what is cut off hides it" : "RRE has a kink or a jump here";
 }
 
-/// Returns the derivatives by one parameter, for each acceptance cone.
+/// Returns the derivatives with respect to one parameter, one for each acceptance cone.
 std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDirection& at,
                                           const Cancellation* cancel) {
   const std::size_t cones = at.design.detector.acceptance_half_angle_deg.size();
@@ -202,7 +207,8 @@ std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDi
   TraceByParameter trace(at, parameter, cancel);
   std::vector<RreDerivative> derivatives;
   try {
-    // Truncated power varies with the parameter, too. RRE may lack all of it.
+    // The truncated power also varies with the parameter. RRE may lack all of this power, so that its derivative is an
+    // error bound.
     const double truncation =
         at.policy.cutoff
             ? std::abs(differentiate([&](double x) { return trace(x).truncated_sample(); }, value, range).value)

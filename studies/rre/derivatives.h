@@ -1,6 +1,6 @@
 #pragma once
 
-// Derivatives of RRE by parameters of a design, computed with the exact engine.
+// Derivatives of RRE with respect to parameters of a design, computed with the exact engine.
 
 #include <optional>
 #include <string>
@@ -15,9 +15,9 @@
 
 namespace retrace::studies {
 
-/// Parameters by which RRE is differentiated. The size is that of the whole element: base and width of a prism in
-/// proportion, or the aperture of a cube corner. Gaps, margins and the lengths of the array do not change. Prisms have
-/// an apex angle. For cube corners, the dihedral errors of all edges change by the same amount.
+/// Parameters with respect to which RRE is differentiated. The size is that of the whole element: base and width of a
+/// prism in proportion, or the aperture of a cube corner. Gaps, margins and the lengths of the array do not change. The
+/// apex angle applies to prisms. For cube corners, the dihedral errors of all edges change by the same amount.
 enum class RreParameter { size_mm, apex_angle_deg, dihedral_error_deg, refractive_index, thickness_mm, incidence_deg };
 
 /// Returns the key of a parameter in files, with its unit.
@@ -30,28 +30,29 @@ std::vector<RreParameter> parameters_of(const Design& design);
 std::vector<std::string> keys_of(RreParameter parameter, const Design& design);
 
 /// Returns the value of a parameter in a design.
-/// \pre the parameter applies to the design and has a value of its own, unlike the index of a material
+/// \pre the parameter applies to the design, and the design contains its value; the index of a named material is not
+/// contained
 double value_of(const Design& design, RreParameter parameter);
 
 /// Returns the design with another value of a parameter.
-/// \pre as for value_of()
-/// \throw InputError if there is no such design
+/// \pre see value_of()
+/// \throw InputError if the design with this value is invalid
 Design with(const Design& design, RreParameter parameter, double value);
 
-/// Derivative of RRE by one parameter, in the unit of the parameter's name.
+/// Derivative of RRE with respect to one parameter, per unit of the parameter's name.
 struct RreDerivative {
   RreParameter parameter = RreParameter::incidence_deg;
   Derivative derivative;
   std::string left_out;  ///< reason why there is no derivative; empty if there is one
 };
 
-/// Traced direction of a design.
+/// Direction of incidence of a design, with the result of tracing it.
 struct TracedDirection {
   const Design& design;
   const OpticalModel& model;
   const raytrace::BeamTracer& tracer;  ///< tracer of model.part
   raytrace::Illumination illumination;
-  raytrace::BeamPolicy policy;         ///< policy of every evaluation, with a limit of 20 times the point's beams
+  raytrace::BeamPolicy policy;         ///< result for the design's acceptance cones
   const raytrace::BeamResult& traced;  ///< traced with the design's acceptance cones
 };
 

@@ -10,13 +10,15 @@
 
 namespace retrace::studies {
 
-/// Light that leaves the entrance face in one direction.
+/// Light that leaves the entrance face in one direction (spot of the far field).
 struct FarFieldSpot {
   Angle deviation;  ///< angle to the direction back to the source
-  /// Orientation of the deviation, from the first axis of raytrace::source_axis() towards the second.
+  /// Azimuth of the spot around the direction back to the source, from the first axis of raytrace::source_axis()
+  /// towards the second.
   Angle orientation;
   raytrace::Stokes stokes;        ///< Stokes parameters with respect to the axes of the spot's direction
-  std::uint32_t least_depth = 0;  ///< interfaces on the shortest path inside; 0: reflected by the face itself
+  std::uint32_t least_depth = 0;  ///< number of interfaces on the shortest path inside the part; 0: reflected at the
+                                  ///< outside of the entrance face
 };
 
 /// Directions in which light leaves the entrance face, for one direction of incidence.
@@ -46,7 +48,7 @@ class FarFieldBuilder {
 
   FarFieldSpot seen_from_source(const Spot& spot) const;
 
-  std::vector<Spot> spots_;  ///< the first spot is the direction to the source, even without light
+  std::vector<Spot> spots_;  ///< the first spot is the direction back to the source, even if it has no light
   raytrace::PointLookup<std::size_t> places_;
 };
 

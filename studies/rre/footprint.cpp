@@ -15,7 +15,7 @@ using geometry::Polygon, geometry::Vec2;
 constexpr double kEqualEfficiency = 1e-9;
 // Distance below which corners are merged, as a fraction of an element.
 constexpr double kMergeShare = 1e-11;
-// Vertical component of the normal below which facets count as walls, which are seen as lines.
+// Magnitude of the normal's z component below which a facet counts as a wall, which is seen edge-on from above.
 constexpr double kWall = 1e-6;
 
 /// Rounds coordinates to 1e-12 mm, which removes rounding errors.
@@ -24,7 +24,7 @@ Vec2 rounded(const Vec2& p) {
   return {std::round(p.x() * kSteps) / kSteps + 0.0, std::round(p.y() * kSteps) / kSteps + 0.0};
 }
 
-/// Returns the outline, starting at the lowest corner, or the leftmost of several.
+/// Returns the outline with the lowest corner first. If several corners are lowest, the leftmost of them is first.
 Polygon outline_of(const raytrace::FlatPolygon& polygon) {
   Polygon outline;
   for (const Vec2& p : polygon) outline.push_back(rounded(p));
@@ -73,7 +73,7 @@ void FootprintBuilder::add(const raytrace::ReturnedBeam& beam) {
   }
 }
 
-/// Inserts a region in which light enters. For an infinite part, regions beyond the period are shifted back by one
+/// Inserts a region through which light enters. For an infinite part, regions beyond the period are shifted back by one
 /// period.
 void FootprintBuilder::insert(const raytrace::FlatPolygon& entered, double efficiency) {
   if (!period_mm_) {
@@ -106,7 +106,7 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Returns the edges of an element that are not walls, and the number of facets at each edge.
+/// Returns the edges of the facets of an element, without facets that are walls, and the number of facets at each edge.
 std::map<Edge, int> edges_of(const geometry::SurfacePatch& patch, const geometry::PatchCell& cell) {
   std::map<Edge, int> edges;
   for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {

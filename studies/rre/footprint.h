@@ -1,6 +1,6 @@
 #pragma once
 
-// Active regions of the entrance face, collected from the beams of the exact engine.
+// Active regions of the entrance face (regions that return light), collected from the beams of the exact engine.
 
 #include <array>
 #include <optional>
@@ -15,7 +15,7 @@ namespace retrace::studies {
 /// Convex region of the entrance face that returns light.
 struct ActiveRegion {
   geometry::Polygon outline_mm;  ///< in the part frame
-  double efficiency = 0.0;       ///< returned power divided by the incident power of the region
+  double efficiency = 0.0;       ///< returned power divided by the power that is incident on the region
 };
 
 /// Regions of the entrance face that return light into the widest acceptance cone, for one direction. Reflection by the
@@ -55,9 +55,9 @@ class FootprintBuilder {
 struct EntranceFace {
   using Line = std::array<geometry::Vec2, 2>;
 
-  geometry::Polygon outline_mm;  ///< for infinite parts: central period
+  geometry::Polygon outline_mm;  ///< for infinite parts: outline of the central period
   bool is_periodic = false;
-  // Edges of the elements. For infinite parts: edges that reach into the central period.
+  // Edges of the elements. For infinite parts: edges of which at least a part is in the central period.
   std::vector<Line> rims_mm;
   std::vector<Line> roots_mm;  ///< edges between facets of one element
 };

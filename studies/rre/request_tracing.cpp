@@ -36,7 +36,7 @@ std::vector<Direction> directions_of(const std::vector<OpticalModel>& models, co
   return directions;
 }
 
-/// Makes the points of a direction if all its wavelengths have been traced.
+/// Computes the points of a direction if all its wavelengths have been traced.
 void finish(Direction& direction, const Design& design, const OpticalModel& model) {
   const auto& spectral = direction.spectral;
   if (std::any_of(spectral.begin(), spectral.end(), [](const auto& cones) { return cones.empty(); })) return;
@@ -54,9 +54,9 @@ void finish(Direction& direction, const Design& design, const OpticalModel& mode
   }
 }
 
-/// Returns the known kinks of RRE over incidence. Total reflection begins or ends there, at any of the requested
-/// azimuths and wavelengths. At half of an acceptance angle, the mirror reflection of the entrance face leaves the
-/// acceptance cone, because it rotates twice as fast as the part.
+/// Returns the known kinks of RRE as a function of incidence. Kinks are angles at which total reflection begins or
+/// ends, at any of the requested azimuths and wavelengths. Another kink is at half of an acceptance angle. There, the
+/// light that the entrance face reflects leaves the acceptance cone, because it rotates twice as fast as the part.
 std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                              const RreRequest& request) {
   std::vector<double> kinks;
@@ -80,7 +80,7 @@ std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vect
   return kinks;
 }
 
-/// Reports the progress of an unknown number of rounds. Each round counts as half of the remainder.
+/// Reports the progress of an unknown number of rounds. Each round is assumed to be half of the remaining work.
 class RoundProgress : public Progress {
  public:
   explicit RoundProgress(Progress* whole) : whole_(whole) {}
@@ -94,7 +94,7 @@ class RoundProgress : public Progress {
   double begin_ = 0.0;
 };
 
-/// Traces directions and makes their points.
+/// Traces directions and computes their points.
 void trace_points(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                   DirectionTracing& tracing, std::vector<Direction>& directions, Progress* progress) {
   tracing.trace(directions, progress);

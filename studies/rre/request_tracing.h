@@ -20,7 +20,7 @@ struct TracedRequest {
 /// Traces a request.
 /// \param only index of one of the designs; none: all designs
 /// \pre all designs are traced if incidences are chosen automatically
-/// \throw BudgetError as DirectionTracing::trace()
+/// \throw BudgetError in the same cases as DirectionTracing::trace()
 TracedRequest trace_request(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                             const RreRequest& request, std::optional<std::size_t> only, Progress* progress,
                             const Cancellation* cancel);

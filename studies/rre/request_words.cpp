@@ -1,4 +1,4 @@
-// Words and numbers of RRE requests, as used in command-line options.
+// Converts the names of RRE requests, as used in command-line options, to and from values, and checks numbers.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -53,8 +53,8 @@ void check(const RreRequest& request) {
   }
 }
 
-/// Refuses derivatives of parts with individual facet planes or a mask. Derivatives rebuild the part at perturbed
-/// sizes, but a table of facet planes cannot be perturbed.
+/// Refuses derivatives for parts with individual facet planes or a mask. Derivatives rebuild the part with changed
+/// sizes, but facet planes and masks are given only for one size.
 void check_planes(const Design& design, const RreRequest& request) {
   if (request.derivatives && design.facet_planes())
     throw InputError(design.where("part.facets"), "has no derivatives: leave out --derivatives");
@@ -116,8 +116,8 @@ void check_backs(const Design& design, const OpticalModel& model, const RreReque
                                                       engine_name(request.engine), design.source_name()));
 }
 
-/// Refuses engines of beams if facets or the entrance face split or bend beams. Stochastic beams are allowed if some of
-/// the light stays specular.
+/// Refuses engines that trace beams if facets or the entrance face split or bend beams. Stochastic beams are allowed if
+/// some of the light stays specular.
 void check_beams(const Design& design, const raytrace::Optics& optics, Engine engine) {
   const bool may_resample = raytrace::StochasticBeams::serves(optics);
   if (engine == Engine::stochastic ? may_resample : optics.keeps_beams()) return;
@@ -131,7 +131,7 @@ void check_beams(const Design& design, const raytrace::Optics& optics, Engine en
   throw refused(design.where_entrance_scatters(), "entrance faces that scatter split");
 }
 
-/// Returns the model of a design. Balls have a tracer of their own, so that most options are refused for them.
+/// Returns the model of a design. Balls have their own tracer. Therefore most options are refused for them.
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreRequest& request) {
   if (!design.balls()) {
     check_entrance(design, request);
@@ -183,8 +183,8 @@ RreStudy::~RreStudy() = default;
 
 namespace {
 
-/// Adds a warning if more power was truncated than the target error allows. If a cut-off was given, the limit is 1e-6,
-/// the smallest change that tables show.
+/// Adds a warning if more power was truncated than the target error allows. If the request gives a cut-off power, the
+/// limit is 1e-6, because tables show no smaller changes.
 void warn_of_truncation(const RreRequest& request, RreResult& result) {
   constexpr double kShows = 1e-6;
   const double allowed = request.cutoff ? kShows : std::max(kShows, target_error_of(request));
@@ -201,7 +201,7 @@ void warn_of_truncation(const RreRequest& request, RreResult& result) {
                                       shortest(worst->incidence_deg), shortest(worst->azimuth_deg))});
 }
 
-/// Returns the engine of all points. If points have different engines, returns `montecarlo` if all traced rays,
+/// Returns the engine of all points. If points have different engines, returns `montecarlo` if all engines trace rays,
 /// otherwise `mixed`.
 std::string engine_of(const std::vector<RrePoint>& points) {
   const auto all = [&](const auto& fits) { return std::all_of(points.begin(), points.end(), fits); };

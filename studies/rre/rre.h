@@ -1,7 +1,7 @@
 #pragma once
 
-// Retroreflective efficiency (RRE) of designs over directions of the light, and the distribution of all other power.
-// This study is behind `retrace rre`.
+// Retroreflective efficiency (RRE) of designs for given directions of light. Also the ledger, which accounts for all
+// power that is not retroreflected. This study is behind `retrace rre`.
 
 #include <cstdint>
 #include <memory>
@@ -37,33 +37,34 @@ Engine engine_from_name(std::string_view name);
 raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
-/// Engines of RRE (retroreflective efficiency) that trace rays. A request may give a number of rays only with them.
+/// Engines of RRE (retroreflective efficiency) that trace rays. A request may give a number of rays only for these
+/// engines.
 inline constexpr Engine kRayEngines[] = {Engine::automatic, Engine::montecarlo, Engine::cell, Engine::embree};
 /// Engines of photometry and pictures that trace rays.
 inline constexpr Engine kRayEnginesOfParts[] = {Engine::automatic, Engine::montecarlo, Engine::embree};
-/// Engines that may trace all light as beams.
+/// Engines that may trace all light as beams instead of random rays.
 inline constexpr Engine kExactEngines[] = {Engine::exact, Engine::automatic};
-/// Engines of RRE that stop following light below a cut-off power.
+/// Engines of RRE that stop tracing light below a cut-off power.
 inline constexpr Engine kCutoffEngines[] = {Engine::automatic, Engine::exact, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
-/// Engines of RRE that use a target error, even if the request also gives a cut-off power.
+/// Engines of RRE that trace until a target error is reached. This also holds if the request gives a cut-off power.
 inline constexpr Engine kTargetEngines[] = {Engine::automatic, Engine::stochastic, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
 /// Returns true if `engine` is one of `engines`.
 bool is_one_of(Engine engine, std::span<const Engine> engines);
 /// Refuses an option that is given although it has no effect with the requested engine.
 /// \param engines engines with which the option has an effect
-/// \throw InputError at `option`
+/// \throw InputError with the location `option`
 void check_has_effect(const char* option, bool is_given, Engine engine, std::span<const Engine> engines);
 
 /// Checks a fraction of the power.
-/// \throw InputError at `option` unless the value is between 0 and 1
+/// \throw InputError with the location `option` unless the value is between 0 and 1
 void check_share(double value, bool zero_allowed, const char* option);
 
 /// Default of RreRequest::target_error, as a fraction of the incident power.
 inline constexpr double kUsualTargetError = 1e-4;
 /// Maximum error of linear interpolation between automatically chosen incidences, as a fraction of the incident power.
-/// It applies if target_error is smaller.
+/// It is used instead of target_error if target_error is smaller.
 inline constexpr double kCurveTolerance = 1e-3;
 /// Engine of a result to which several engines have contributed.
 inline constexpr std::string_view kMixedEngines = "mixed";
@@ -72,22 +73,22 @@ inline constexpr std::string_view kMixedEngines = "mixed";
 struct RreRequest {
   std::vector<double> incidence_deg = {0.0};  ///< each in (-90, 90)
   /// Intervals in (-90, 90) in which further incidences are chosen automatically. They are the same for all designs and
-  /// azimuths. Incidences are added until linear interpolation between the points is within target_error or
-  /// kCurveTolerance. All incidences are then sorted in ascending order.
+  /// azimuths. Incidences are added until the error of linear interpolation between the points is at most target_error
+  /// or kCurveTolerance, whichever is greater. All incidences are then sorted in ascending order.
   std::vector<CurveSpan> incidence_spans;
   std::vector<double> azimuth_deg = {0.0};
   Engine engine = Engine::automatic;
   std::optional<std::uint64_t> rays;  ///< number of rays per point; none: until target_error is reached
-  /// Maximum standard error of Monte Carlo, and maximum power in `truncated` for the exact engine, as fractions of the
-  /// incident power. The default is kUsualTargetError, or half of kCurveTolerance if incidences are chosen
-  /// automatically. It is 1e-10 if the exact engine is requested by name or needed for other results.
+  /// Maximum standard error (Monte Carlo) or maximum truncated power (exact engine), as a fraction of the incident
+  /// power. The default is kUsualTargetError, or half of kCurveTolerance if incidences are chosen automatically. It is
+  /// 1e-10 if the exact engine is requested by name or needed for other results.
   std::optional<double> target_error;
   raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< `plain` uses Embree
   /// Minimum power that is traced, as a fraction of the incident power. Default: 1e-10 (Monte Carlo), or the value that
   /// target_error requires (exact).
   std::optional<double> cutoff;
   std::uint32_t seed = 1;
-  bool derivatives = false;  ///< exact engine: compute derivatives of RRE by parameters of the design
+  bool derivatives = false;  ///< exact engine: compute derivatives of RRE with respect to parameters of the design
   bool footprint = false;    ///< exact engine: compute the regions of the entrance face that return light
   bool far_field = false;    ///< exact engine: compute the directions in which light leaves the entrance face
 };
@@ -111,23 +112,23 @@ struct RrePoint {
   double wavelength_nm = 0.0;  ///< centroid of the spectrum if the design has one
   double acceptance_half_angle_deg = 0.0;
   double rre = 0.0;
-  double std_error = 0.0;  ///< error of sampling only; does not include the possible effect of `truncated`
+  double std_error = 0.0;  ///< error of random sampling only; light that was truncated may cause a further error
   /// Engine that was used: exact, stochastic, cell, embree or balls; kMixedEngines if wavelengths of a spectrum used
   /// several engines.
   std::string engine;
-  raytrace::Stokes stokes;  ///< Stokes parameters of the retroreflected light, along raytrace::source_axis()
+  raytrace::Stokes stokes;  ///< Stokes parameters of the retroreflected light, with respect to raytrace::source_axis()
   raytrace::Ledger ledger;
   std::uint64_t beams = 0;                      ///< exact and stochastic engine: number of beams traced for this point
   std::uint32_t depth = 0;                      ///< exact engine: number of interfaces on the longest path
   bool missed_target = false;                   ///< true: `std_error` is above the requested error at some wavelength
   std::vector<RreDerivative> derivatives = {};  ///< empty if they were not requested
-  /// Values at the wavelengths of a spectrum, of which the point is the mean.
+  /// Values at the wavelengths of a spectrum. The values of the point are their means.
   std::vector<SpectralRre> by_wavelength = {};
 };
 
 /// Results for one direction that were requested in addition to RRE.
 struct ReturnedLight {
-  RrePoint at;  ///< point of the widest acceptance cone
+  RrePoint at;  ///< point for the widest acceptance cone
   std::optional<Footprint> footprint;
   std::optional<FarField> far_field;
 };
@@ -138,8 +139,8 @@ struct RreResult {
   std::string engine = "none";  ///< engine that was used; "montecarlo" or "mixed" if there were several
   std::string engine_requested;
   std::uint32_t seed = 1;
-  std::vector<RrePoint> points;  ///< ordered by design, wavelength, azimuth, incidence, acceptance cone
-  /// One for each direction in this order, if footprints or far fields were requested.
+  std::vector<RrePoint> points;  ///< sorted by design, wavelength, azimuth, incidence, acceptance cone
+  /// Results for each direction, in the order of `points`. Empty unless footprints or far fields were requested.
   std::vector<ReturnedLight> returned;
   std::vector<EntranceFace> faces;  ///< one for each design, if footprints were requested
   std::uint64_t rays = 0;
@@ -148,24 +149,28 @@ struct RreResult {
   bool complete = true;
 };
 
-/// Study of a checked request, ready to run. The constructor reports all errors of the input.
+/// RRE study of designs. The constructor checks the request and reports all errors of the input; run() computes the
+/// points.
 class RreStudy {
  public:
-  /// \throw InputError for an engine that this version does not have, a direction out of range, and an unknown material
+  /// \throw InputError for an engine that is not part of this program, a direction out of range, and an unknown
+  /// material
   RreStudy(std::vector<Design> designs, RreRequest request);
   ~RreStudy();
 
   /// Computes RRE of every design at every direction.
-  /// \throw BudgetError if power was lost, or if too many beams are needed
+  /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if too many beams are
+  /// needed
   RreResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
-  // The following functions serve to trace designs in several processes. They require that no incidences are chosen
-  // automatically.
+  // The following functions are for tracing designs in several processes. They must not be used if incidences are
+  // chosen automatically.
 
   /// Computes the points of one design.
-  /// \throw BudgetError as run()
+  /// \throw BudgetError in the same cases as run()
   RreResult run_design(std::size_t design, const Cancellation* cancel) const;
-  /// Returns the result of run() for given points of all designs. It contains only RRE and no other requested results.
+  /// Returns the result that run() would return for given points of all designs. Only RRE is contained, not the other
+  /// requested results.
   RreResult result_of(std::vector<RrePoint> points) const;
 
  private:

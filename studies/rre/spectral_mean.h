@@ -8,15 +8,15 @@
 
 namespace retrace::studies {
 
-/// Point at one wavelength, and the fraction of the flux that it represents.
+/// Point at one wavelength, and its weight: the fraction of the flux that the wavelength represents.
 struct SpectralPoint {
   double weight = 0.0;
   RrePoint point;
 };
 
-/// Returns the point of the whole spectrum. RRE, ledger and Stokes parameters are means. The standard error is that of
-/// the mean of independent estimates. Beams are added up, and the depth is the maximum. Data of the direction are those
-/// of `at`.
+/// Combines the points of all wavelengths into the point of the spectrum. RRE, ledger and Stokes parameters are
+/// weighted means. The standard error is that of a mean of independent estimates. Numbers of beams are added, and the
+/// depth is the maximum. Data of the direction are copied from `at`.
 RrePoint spectral_mean(const RrePoint& at, const std::vector<SpectralPoint>& points);
 
 }  // namespace retrace::studies

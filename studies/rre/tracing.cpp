@@ -17,10 +17,10 @@
 namespace retrace::studies {
 namespace {
 
-// Expected times of the tracers, as measured by benchmarks/engine_choice.cpp. Decisions depend on counts of work and
-// not on clocks, so that they are the same on every machine.
-/// Time of one ray segment, and additional time for each facet of an element. In finite arrays, Embree traces rays near
-/// the borders.
+// Expected times of the tracers, as measured by benchmarks/engine_choice.cpp. Methods are chosen from counted work and
+// these times, and not from clocks, so that the choice is the same on every machine.
+// Time of one ray segment, and additional time for each facet of an element. In finite arrays, Embree traces rays near
+// the borders.
 struct SegmentCost {
   double ns = 0.0;
   double ns_per_facet = 0.0;
@@ -31,9 +31,9 @@ constexpr SegmentCost kEmbree{350.0, 25.0};
 /// Expected number of ray segments in the first round of Monte Carlo.
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
 /// Maximum time for constructing the beam tracer, as a fraction of the expected remaining time of ray tracing. With
-/// this limit, an unsuccessful attempt at beam tracing takes at most half of the time of ray tracing.
+/// this limit, an unsuccessful attempt to trace beams takes at most half of the time of ray tracing.
 constexpr double kMaxTracerShare = 0.3;
-/// Work, below the requested error, that beams may use anyway. It takes about 3 ms.
+/// Amount of work that beams may do even if their error is already below the requested error. It takes about 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
 
 /// Returns the sampling parameters of one wavelength. Rays are distributed in proportion to the weights w of the
@@ -64,8 +64,8 @@ bool asks_for_more(const RreRequest& request) {
   return request.footprint || request.far_field || request.derivatives;
 }
 
-/// Returns the limits for tracing beams. They are those of the request. If only the engine `exact` is requested, its
-/// finest goal applies.
+/// Returns the limits for tracing beams. The limits are those of the request. If the request gives no target error and
+/// only the engine `exact` can be used, the default goal of this engine applies.
 raytrace::BeamPolicy beam_policy(const RreRequest& request) {
   raytrace::BeamPolicy policy;
   policy.cutoff = request.cutoff;
@@ -104,16 +104,16 @@ class DesignTracing {
     follows_beams_ = may_follow_beams(design, model, request);
   }
 
-  /// Returns true if threads work on different directions. Otherwise all threads work on the same direction.
+  /// Returns true if each thread traces another direction. Otherwise all threads trace the same direction.
   bool takes_several() const { return follows_beams_; }
 
-  /// Sets the number of combinations of a direction and a wavelength. The construction time of the beam tracer is
-  /// divided evenly among them.
+  /// Sets the number of combinations of direction and wavelength that will be traced. The construction time of the beam
+  /// tracer is divided evenly among them.
   void expect(std::size_t units) {
     if (follows_beams_ && !tracer_ns_) tracer_ns_ = beam_tracer_ns(model_.part) / static_cast<double>(units);
   }
 
-  /// Traces a direction at one wavelength. Returns false if it was cancelled; the direction then has no new point.
+  /// Traces a direction at one wavelength. Returns false if tracing was cancelled; the direction then has no new point.
   /// \pre expect() was called
   bool trace(Direction& direction, std::size_t wavelength, Progress& progress) {
     if (!follows_beams_) return trace_rays(direction, wavelength, progress);
@@ -139,7 +139,7 @@ class DesignTracing {
     return cost.ns + cost.ns_per_facet * facets_of_cell(model_.part);
   }
 
-  /// Returns the beam tracer, which is constructed at the first call.
+  /// Returns the beam tracer. It is constructed at the first call.
   const raytrace::BeamTracer& beam_tracer() {
     using Elements = raytrace::BeamTracer::Elements;
     std::call_once(beam_tracer_is_made_, [this] {
@@ -149,7 +149,7 @@ class DesignTracing {
     return *beam_tracer_;
   }
 
-  /// Returns the ray tracer, which is constructed at the first call.
+  /// Returns the ray tracer. It is constructed at the first call.
   const raytrace::MonteCarlo& ray_tracer() {
     std::call_once(ray_tracer_is_made_, [this] {
       ray_tracer_.emplace(model_.part, ray_engine(), model_.entrance ? &*model_.entrance : nullptr);
@@ -210,7 +210,7 @@ class DesignTracing {
     return true;
   }
 
-  /// Returns the light that rough facets scatter. Null if facets do not scatter.
+  /// Returns the object that computes the light scattered by rough facets. Null if facets do not scatter.
   std::unique_ptr<raytrace::ScatteredLight> scattered_light(const raytrace::Optics& optics,
                                                             const raytrace::Illumination& illumination) {
     const raytrace::BeamTracer& tracer = beam_tracer();
@@ -228,7 +228,8 @@ class DesignTracing {
     return keep(direction, wavelength, beams);
   }
 
-  /// Exact and stochastic beam tracing for one direction (see BeamRace), and the light that rough facets scatter.
+  /// State of beam tracing for one direction: exact and stochastic beams (see BeamRace), and the light that rough
+  /// facets scatter.
   struct Beams {
     std::unique_ptr<raytrace::ScatteredLight> scattered;
     std::optional<BeamRace> race;
@@ -242,8 +243,7 @@ class DesignTracing {
                        BeamRace::Options{.may_resample = !request_.cutoff}, cancel_);
   }
 
-  /// Traces beams for one step. Beams that exceed a budget are abandoned, because ray tracing is always possible
-  /// instead.
+  /// Traces beams for one step. Beams that exceed a budget are abandoned, because rays can be traced instead.
   /// \return true if the beams have reached their goal
   static bool advance(Beams& beams) {
     try {
@@ -255,8 +255,8 @@ class DesignTracing {
     }
   }
 
-  /// Traces by the method that is expected to reach the goal first. The method is selected before every round. A method
-  /// continues where it stopped if another method turns out to be slower than expected.
+  /// Traces with the method (beams or rays) that is expected to reach the goal first. The method is selected before
+  /// every round. A method continues where it stopped if another method turns out to be slower than expected.
   bool trace_fastest(Direction& direction, std::size_t wavelength, Progress& progress) {
     const raytrace::Illumination illumination = illumination_of(direction.at, design_);
     const raytrace::Optics& optics = light(wavelength).optics;
@@ -288,7 +288,8 @@ class DesignTracing {
   raytrace::BeamPolicy beams_;
   raytrace::PathPolicy paths_;
   bool follows_beams_ = false;  ///< true: light may be traced as beams or rays; false: only as rays
-  /// Expected time, in ns, for constructing `beam_tracer_`, per direction and wavelength.
+  /// Expected time, in ns, for constructing `beam_tracer_`, divided by the number of combinations of direction and
+  /// wavelength.
   std::optional<double> tracer_ns_;
   std::once_flag beam_tracer_is_made_;
   std::optional<raytrace::BeamTracer> beam_tracer_;

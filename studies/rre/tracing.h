@@ -1,6 +1,7 @@
 #pragma once
 
-// Traces the directions of a request, each with the requested engine or the faster engine. Internal to studies/rre.
+// Traces the directions of a request. Each is traced with the requested engine, or with the engine that is expected to
+// be faster. Internal to studies/rre.
 
 #include <memory>
 #include <optional>
@@ -22,28 +23,29 @@ struct Direction {
   std::optional<FarField> far_field;
 };
 
-/// Returns true if the request allows beam tracing. It does not if it gives a number of rays or plain sampling.
+/// Returns true if the request allows beam tracing. A number of rays or plain sampling excludes it.
 bool may_follow_beams(const RreRequest& request);
-/// Returns true if beams can be traced for the request and the design. They cannot if facets bend beams, if all light
-/// is scattered, if backs differ, if the entrance face is curved, and for balls.
+/// Returns true if beams can be traced for the request and the design. They cannot be traced if facets bend beams, if
+/// all light is scattered, if the media behind the elements differ, if the entrance face is curved, and for balls.
 bool may_follow_beams(const Design& design, const OpticalModel& model, const RreRequest& request);
-/// Returns true if the request needs the exact engine, whatever the amount of work. This is so if results are requested
-/// that only this engine can compute.
+/// Returns true if the request must be traced with the exact engine, however long this takes. This is the case if the
+/// engine is requested by name, or if results are requested that only this engine computes.
 bool must_be_exact(const RreRequest& request);
 
 class DesignTracing;
 
-/// Traces directions of a request, in one or several calls. Data of a design are prepared when it is first traced, and
-/// kept if further directions may follow.
+/// Traces directions of a request, in one or several calls. The data of a design are prepared when the design is traced
+/// for the first time. They are kept if further directions may follow.
 class DirectionTracing {
  public:
   DirectionTracing(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
                    const RreRequest& request, const Cancellation* cancel);
   ~DirectionTracing();
 
-  /// Traces directions at all wavelengths. Directions that were cancelled remain empty.
+  /// Traces directions at all wavelengths. Directions that are not finished because of a cancellation remain empty.
   /// \pre all directions of a design are contiguous
-  /// \throw BudgetError if power was lost, or if too many beams are needed
+  /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if too many beams are
+  /// needed
   void trace(std::vector<Direction>& directions, Progress* progress);
 
  private:

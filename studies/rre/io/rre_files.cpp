@@ -154,7 +154,7 @@ std::string derivative_table(const RreResult& result) {
 
 namespace {
 
-/// Returns a closed ring, in which the last point is the same as the first.
+/// Returns a closed ring for GeoJSON, in which the last point is equal to the first.
 Json ring_of(const geometry::Polygon& outline) {
   Json ring = Json::array();
   for (std::size_t k = 0; k <= outline.size(); ++k) {
