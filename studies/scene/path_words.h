@@ -1,6 +1,6 @@
 #pragma once
 
-// Describes light paths in words.
+// Describes light paths in words for the user.
 
 #include <string>
 

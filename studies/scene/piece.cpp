@@ -14,7 +14,7 @@ namespace retrace::studies {
 namespace {
 
 constexpr int kGrid = 24;                     // number of entry points along an element
-constexpr std::size_t kPathsEach = 3;         // number of paths for each direction
+constexpr std::size_t kPathsEach = 3;         // number of kinds of paths that are shown for each direction of light
 constexpr std::size_t kMostTriangles = 4000;  // maximum number of triangles of a mesh that is shown
 
 geometry::Rectangle element_box(const geometry::Element& element) {
@@ -24,9 +24,10 @@ geometry::Rectangle element_box(const geometry::Element& element) {
 struct FewElements {
   Design design;
   std::vector<std::string> remarks;  ///< changes of the design
-  bool is_cut = false;               ///< true: the elements are part of a larger array
+  bool is_cut = false;               ///< differences from the design, for the user
 };
 
+/// Returns a design with a few elements of the given design, without features that are not shown.
 /// \param elements maximum number of elements along a side of an array
 FewElements few_elements(const Design& design, double elements) {
   FewElements few{design, {}};
@@ -68,7 +69,7 @@ FewElements few_elements(const Design& design, double elements) {
   return few;
 }
 
-/// Returns the edges between triangles that are not in one plane.
+/// Returns the edges at which two triangles meet that are not in one plane.
 std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   if (!geometry::is_closed_manifold(mesh)) return edges;
@@ -88,7 +89,8 @@ std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMe
   return edges;
 }
 
-/// Returns the boundary of the part. For a mesh, returns the mesh as it was read.
+/// Returns the boundary of the part. For a part that is read from a mesh, returns its back surface and its entrance
+/// face.
 geometry::BoundaryMesh boundary_of_part(const geometry::Part& part) {
   if (!part.patches[part.placements[0].patch].border_rim.empty()) return geometry::closed_boundary(part);
   const geometry::SurfacePatch& patch = part.patches[0];
@@ -106,7 +108,7 @@ geometry::BoundaryMesh boundary_of_part(const geometry::Part& part) {
   return mesh;
 }
 
-/// Sequence of events that distinguishes kinds of paths.
+/// Sequence of events along a path and of the facets on which they happen. Paths with equal sequences are of one kind.
 using Story = std::vector<std::pair<raytrace::PathEvent, geometry::FacetRole>>;
 
 Story story_of(const raytrace::LightPath& path) {
@@ -174,7 +176,7 @@ std::vector<ScenePath> Piece::stories(const SceneLight& light) const {
   std::map<Story, std::vector<raytrace::LightPath>> stories;
   for (int j = 0; j < kGrid; ++j)
     for (int i = 0; i < kGrid; ++i) {
-      // Points on lines of symmetry are avoided, because light would hit edges there.
+      // The grid points are shifted off the lines of symmetry, because light on these lines would hit edges.
       const geometry::Vec2 at((i + 0.43) / kGrid - 0.5, (j + 0.47) / kGrid - 0.5);
       raytrace::LightPath path = this->path(light, centre_mm_ + at.cwiseProduct(window));
       stories[story_of(path)].push_back(std::move(path));

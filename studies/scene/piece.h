@@ -20,7 +20,7 @@ struct SceneLight {
   double azimuth_deg = 0.0;
 };
 
-/// Light path, and the fraction of the light on one element that takes such a path.
+/// Light path, and the fraction of an element's light that takes paths of the same kind.
 struct ScenePath {
   raytrace::LightPath path;
   double incidence_deg = 0.0;
@@ -34,11 +34,12 @@ inline constexpr double kSceneElements = 4.0;
 /// plate before it hits the elements.
 inline constexpr double kLiveElements = 6.0;
 
-/// A few elements of a design, on a plate that is not thicker than they are wide. Rough facets are shown as smooth.
+/// A few elements of a design for display. Their plate is not thicker than the elements are wide. Rough facets are
+/// shown as smooth.
 class Piece {
  public:
   /// \param elements maximum number of elements along a side of an array
-  /// \throw InputError as make_model()
+  /// \throw InputError in the same cases as make_model()
   Piece(const Design& design, const materials::MaterialLibrary& library, double elements);
   Piece(const Piece&) = delete;
   Piece& operator=(const Piece&) = delete;
@@ -47,23 +48,23 @@ class Piece {
   const geometry::BoundaryMesh& mesh() const { return mesh_; }
   /// Returns the edges between faces.
   const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
-  /// Returns the differences from the design.
+  /// Returns the differences from the design, as texts for the user.
   const std::vector<std::string>& remarks() const { return remarks_; }
   const geometry::Vec2& centre_mm() const { return centre_mm_; }
 
-  /// Returns the position in the piece that corresponds to a position of the whole part on z = 0. Of several positions,
-  /// it is the nearest to the centre.
+  /// Returns the position in the piece that corresponds to a position of the whole part at z = 0. If several positions
+  /// correspond to it, returns the one nearest to the centre.
   geometry::Vec2 like_place(const geometry::Vec2& at_mm) const;
-  /// Returns the entry point for which light hits the elements of the piece as light that enters the whole part at
-  /// `at_mm` hits its elements.
+  /// Returns the point at which light must enter the piece in order to hit the same points of elements as light that
+  /// enters the whole part at `at_mm`. The two plates may have different thicknesses.
   geometry::Vec2 entry_of(const SceneLight& light, const geometry::Vec2& at_mm) const;
   /// Returns the path of light that enters at a point.
   raytrace::LightPath path(const SceneLight& light, const geometry::Vec2& entry_mm) const;
-  /// Returns up to three kinds of paths of light that hits an element in the centre, the most frequent first.
+  /// Returns up to three kinds of paths for light that hits the element in the centre, the most frequent kind first.
   std::vector<ScenePath> stories(const SceneLight& light) const;
 
  private:
-  /// Position of the piece on the lattice of the whole array.
+  /// Position of the piece relative to the lattice of the whole array.
   struct Lattice {
     geometry::Vec2 from_whole_mm = geometry::Vec2::Zero();
     geometry::Vec2 period_mm = geometry::Vec2::Zero();
@@ -77,7 +78,7 @@ class Piece {
   geometry::BoundaryMesh mesh_;
   std::vector<std::array<std::uint32_t, 2>> edges_;
   geometry::Vec2 centre_mm_ = geometry::Vec2::Zero();
-  std::optional<Lattice> lattice_;  ///< none: the piece is the whole part, or positions do not repeat
+  std::optional<Lattice> lattice_;  ///< none if the piece is the whole part, or if positions of the part do not repeat
   std::optional<raytrace::ExactSurface> surface_;
 };
 

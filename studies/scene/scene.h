@@ -11,21 +11,21 @@
 
 namespace retrace::studies {
 
-/// Design for display.
+/// Design as it is displayed.
 struct DesignScene {
   geometry::BoundaryMesh mesh;
-  std::vector<std::array<std::uint32_t, 2>> edges;  ///< edges between faces
+  std::vector<std::array<std::uint32_t, 2>> edges;  ///< edges between faces that are not in one plane
   std::vector<ScenePath> paths;
-  std::vector<std::string> remarks;  ///< differences from the design
+  std::vector<std::string> remarks;  ///< differences from the design, as texts for the user
 };
 
 /// Returns a still picture of a Piece, with up to three kinds of paths for each direction.
-/// \throw InputError as make_model()
+/// \throw InputError in the same cases as make_model()
 DesignScene make_scene(const Design& design, const std::vector<SceneLight>& lights);
 
 /// Returns the design from the JSON of a result (to_json()) for a picture. Texture, spectrum and polarisation are left
 /// out.
-/// \throw InputError if the JSON is no design
+/// \throw InputError if the JSON does not describe a design
 Design design_of_json(const nlohmann::ordered_json& json);
 
 }  // namespace retrace::studies
