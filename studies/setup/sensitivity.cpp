@@ -88,7 +88,8 @@ std::vector<Vec3> edge_ends(const Machine& machine, const EdgeCut& cut, double h
   return {back.point(tip - half), back.point(tip + half)};
 }
 
-/// Computes how far the last cut of a facet ends above or below another facet.
+/// Updates `row` with the distance by which the last cut of a facet (`ending`) ends above or below the facet `other`,
+/// per unit of a quantity.
 void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut& other, double half_width_mm,
                const SetupQuantity& quantity, Sensitivity& row) {
   const EdgeCut& cut = ending.cut().cut;
@@ -103,8 +104,9 @@ void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut&
   }
 }
 
-/// Returns points of the tool in the workpiece frame. They are both ends of the cutting edge at the root, both ends at
-/// the rims of both facets, and points at a height of one facet length above the ends at the root.
+/// Returns points of the tool, in the workpiece frame, that may touch the walls at the ends of a groove. They are both
+/// ends of the cutting edge at the root, both ends of the edge at the top of both facets, and points one facet length
+/// above the ends at the root.
 /// \param machine machine that executes the axis positions
 /// \param planned machine for which the axis positions were planned
 std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, const PlacedCut& ending,
@@ -126,8 +128,8 @@ std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, co
   return places;
 }
 
-/// Computes how far the ends of the tool cut into the walls per unit of a quantity. A displacement of the edge along
-/// the root moves one of its ends into a wall.
+/// Updates `row` with the depth by which the ends of the tool cut into the walls, per unit of a quantity. A
+/// displacement of the edge along the root moves one of its ends into a wall.
 void tell_walls(const Machine& machine, const PlacedCut& ending, double half_width_mm, const SetupQuantity& quantity,
                 Sensitivity& row) {
   if (machine.tilt == Tilt::head) return;

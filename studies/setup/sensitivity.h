@@ -1,6 +1,6 @@
 #pragma once
 
-// Computes the sensitivity of facets, chips and roots to each quantity of the set-up.
+// Computes how errors of the set-up displace facets, change chip thicknesses and displace the ends of cuts at roots.
 
 #include <cstddef>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace retrace::studies {
 
-/// Kind of facet: facets with the same number in elements of the same orientation.
+/// Kind of facet. All facets with the same number in elements with the same orientation are of one kind.
 struct FacetKind {
   std::size_t facet = 0;  ///< index of the facet, from 0
   bool rotated = false;   ///< true: facets of rotated elements
@@ -21,7 +21,8 @@ struct FacetKind {
   bool operator==(const FacetKind&) const = default;
 };
 
-/// Change of the facets of one kind per um or arcsec, for the facet whose plane moves farthest.
+/// Displacement and tilt of the facets of one kind, per um or arcsec of a set-up quantity. The values are those of the
+/// facet whose plane moves farthest.
 struct FacetEffect {
   double distance_nm = 0.0;   ///< displacement of the facet's center along its outward normal; positive leaves material
   double up_arcmin = 0.0;     ///< tilt, positive if the facet rises away from the root, which narrows the groove
@@ -31,15 +32,16 @@ struct FacetEffect {
 
 struct Sensitivity {
   const fabrication::SetupQuantity* quantity = nullptr;
-  std::vector<FacetEffect> facets;  ///< effects in the order of Sensitivities::kinds
+  std::vector<FacetEffect> facets;  ///< effects on the kinds of facets in Sensitivities::kinds, in this order
   double chip_nm = 0.0;             ///< maximum change of the chip thickness of a cut
-  double root_left_nm = 0.0;        ///< maximum distance by which an end of the edge ends above another facet
-  double root_cut_nm = 0.0;         ///< maximum depth by which an end of the edge goes below another facet
-  /// Maximum displacement, along the root, of an end of the edge or of the tool above this end.
+  double root_left_nm = 0.0;        ///< maximum distance by which an end of the cutting edge stops above another facet
+  double root_cut_nm = 0.0;         ///< maximum depth by which an end of the cutting edge goes below another facet
+  /// Maximum displacement, along the root, of the ends of the cutting edge and of points of the tool above these ends.
+  /// Such a displacement moves the tool into the walls at the ends of the groove.
   double wall_nm = 0.0;
 
-  double farthest_nm() const;  ///< largest absolute displacement of all facets
-  double largest_nm() const;   ///< maximum change of facets, chips and roots; walls are excluded
+  double farthest_nm() const;  ///< maximum absolute displacement over all facets
+  double largest_nm() const;   ///< maximum over facets, chips and roots; walls are not included
 };
 
 struct Sensitivities {
@@ -47,11 +49,11 @@ struct Sensitivities {
   std::vector<Sensitivity> rows;  ///< sorted by size, the largest first
 };
 
-/// Returns the elements in which errors of the set-up have the largest effect. For each orientation, they are the
-/// element in the center and the outermost elements. The indices are ascending.
+/// Returns the elements on which errors of the set-up have the largest effect: for each orientation, the element in the
+/// center and the outermost elements. The indices are ascending.
 std::vector<std::size_t> outermost_elements(const std::vector<fabrication::CutElement>& elements);
 
-/// Computes the sensitivities of the outermost elements.
+/// Computes the sensitivities from the cuts of the outermost elements.
 /// \param plan plan of the job on the machine
 Sensitivities sensitivities(const fabrication::Job& job, const fabrication::Machine& machine,
                             const fabrication::Plan& plan);

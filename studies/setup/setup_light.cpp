@@ -21,15 +21,16 @@ using geometry::Vec3;
 
 /// Number of traced elements along each axis of the array.
 constexpr double kElementsAcross = 2.0;
-/// Minimum displacement, in mm, of a facet for which the light is computed again.
+/// Displacement of a facet, in mm, above which its change of the light is computed. Smaller displacements are treated
+/// as no change.
 constexpr double kStillMm = 1e-12;
 
 /// Minimum power of traced beams, as a fraction of the power on the part (for R_A: on an element). The results are then
-/// accurate to SetupLight::kLeastChangeOfRre and kLeastChangeOfRa. Without a minimum, tilted facets would split beams
-/// endlessly.
+/// accurate to SetupLight::kLeastChangeOfRre and kLeastChangeOfRa. Without this minimum, tilted facets would split
+/// beams into ever smaller ones without end.
 constexpr double kCutoff = 1e-6;
 
-/// Returns the job with a small array of whole elements from the center of its array.
+/// Returns the job for a small patch: an array of a few whole elements from the center of the job's array.
 Job patch_of(Job job) {
   if (job.array.arrangement == geometry::Arrangement::single) return job;
   geometry::ArrayLayout& array = job.array;
@@ -37,7 +38,8 @@ Job patch_of(Job job) {
   array.x_offset_mm = array.y_offset_mm = 0.0;
   const geometry::Vec2 size = geometry::bounding_box(geometry::aperture_outline(job.element)).size();
   const bool is_prism = std::holds_alternative<geometry::RtpElement>(job.element);
-  // Offset rows are shifted, and cube corners interlock. A slightly larger area is needed for the number of elements.
+  // Offset rows are shifted against each other, and cube corners interlock. Therefore, a slightly larger area is needed
+  // for the same number of elements.
   const double more = is_prism && array.arrangement != geometry::Arrangement::offset ? 0.0 : 1.01;
   array.x_length_mm = std::min(array.x_length_mm, (kElementsAcross + more) * (size.x() + array.x_gap_mm));
   array.y_length_mm = std::min(array.y_length_mm, (kElementsAcross + more) * (size.y() + array.y_gap_mm));
@@ -45,7 +47,8 @@ Job patch_of(Job job) {
   return job;
 }
 
-/// Finds the last cut of each facet. Among parallel passes, it is the pass closest to the center of the facet.
+/// Finds the last cut of each facet. If parallel passes side by side are needed, it is the pass closest to the center
+/// of the facet.
 class LastCuts {
  public:
   LastCuts(const Job& job, const Machine& machine) : grooves_(designed_grooves(job)) {
@@ -79,8 +82,8 @@ class LastCuts {
   std::vector<std::vector<std::optional<FacetEdgeCut>>> cuts_;
 };
 
-/// Returns the design of the moulded patch without its facet planes. It is smooth and clean, with the illumination of
-/// the job's design.
+/// Returns the design of a part moulded from the patch, without its facet planes. It is smooth and clean, and it has
+/// the illumination of the job's design.
 Design patch_design(const Job& patch, const std::filesystem::path& job_file, Warnings& warnings) {
   Design design;
   ElementArray array{machined_elements(patch, true), {}, {}};

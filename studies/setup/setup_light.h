@@ -1,6 +1,6 @@
 #pragma once
 
-// Computes the sensitivity of the retroreflected light of a moulded part to each quantity of the set-up.
+// Computes how errors of the set-up change the retroreflected light of a moulded part.
 
 #include <filesystem>
 #include <optional>
@@ -14,21 +14,23 @@
 
 namespace retrace::studies {
 
-/// Light of one part: RRE in each acceptance cone of the design for light along the part's normal, and R_A in the
-/// geometry of the standards.
+/// Retroreflected light of one part: RRE (retroreflective efficiency) in each acceptance cone of the design for light
+/// along the part's normal, and R_A in a geometry of the standards.
 struct PartLight {
   std::vector<double> rre;
   double r_a = 0.0;  ///< R_A in cd/(lx m^2), for smooth facets
 };
 
-/// Light of the nominal machine, and its changes per um or arcsec of each quantity, in the order of setup_quantities().
-/// The computation is exact, with diffraction, for a few smooth and clean elements from the center of the array.
+/// Light of a part from a machine without errors, and its changes per um or arcsec of each set-up quantity, in the
+/// order of setup_quantities(). The computation is exact, with diffraction, for a few smooth and clean elements from
+/// the center of the array.
 struct SetupLight {
   static constexpr double kObservationDeg = 0.33;
   static constexpr double kEntranceDeg = 5.0;      ///< entrance angle to the side (H), across the roof edges of prisms
   static constexpr double kApertureArcmin = 10.0;  ///< aperture of source and receiver
 
-  /// Minimum relative change of R_A that is significant. Smaller changes may be due to interference in a perfect array.
+  /// Minimum relative change of R_A that is significant. Smaller changes may be due to interference, because all
+  /// elements of the computed array are equal.
   static constexpr double kLeastChangeOfRa = 5e-4;
   /// Minimum change of RRE that is significant. Smaller changes may be due to truncated beams.
   static constexpr double kLeastChangeOfRre = 1e-5;
@@ -42,7 +44,7 @@ struct SetupLight {
 /// Returns the reason why the light of a job is not computed, or an empty text if it is computed.
 std::string why_no_setup_light(const fabrication::Job& job);
 
-/// Computes the light of the nominal machine and its changes.
+/// Computes the light for a machine without errors, and the changes due to errors.
 /// \param job_file job file, whose folder contains the design
 /// \param warnings receives a warning if the design does not exist
 /// \pre why_no_setup_light() is empty

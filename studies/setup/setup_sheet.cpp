@@ -25,7 +25,7 @@ using geometry::Vec3;
 
 constexpr double kUmPerMm = 1e3;
 
-/// Returns the maximum or minimum Z of the bodies that move with a carrier.
+/// Returns the maximum or minimum Z of the machine bodies that move with the workpiece or with the tool (`carrier`).
 std::optional<double> end_of_bodies(const Machine& machine, Carrier carrier, bool highest) {
   std::optional<double> end;
   for (const MachineBody& body : machine.bodies)
@@ -35,7 +35,8 @@ std::optional<double> end_of_bodies(const Machine& machine, Carrier carrier, boo
   return end;
 }
 
-/// Returns the maximum height of a point of the face, at a radius about C, while the rotary axes move.
+/// Returns the maximum height that points of the workpiece's face, at a radius about the C axis, reach while the rotary
+/// axes move.
 double highest_mm(const FabricationResult& result, double radius_mm) {
   constexpr int kAzimuths = 72;
   constexpr int kTilts = 24;
@@ -125,19 +126,20 @@ std::vector<int> optional_stops_of(const Plan& plan) {
   return stops;
 }
 
-/// Tracks the material that remains on the facets of elements that are cut in the same way.
+/// Tracks the thickness of the material that remains on the facets of one element. It represents all elements that are
+/// cut in the same way.
 class Standing {
  public:
   Standing(const FabricationResult& result, std::size_t zone)
       : job_(result.job), zone_(zone), depth_mm_(geometry::element_depth_mm(blank_element(result.job, zone))) {}
 
-  /// Updates the remaining material after a cut along `facet` (from 1). A plough leaves the same thickness on the other
-  /// facet.
+  /// Updates the remaining material after a cut along `facet` (1 to 3). A cut that ploughs leaves the same thickness on
+  /// the other facet of the groove.
   void cut(int facet, bool ploughs, double left_um) {
     left_um_[static_cast<std::size_t>(facet - 1)] = left_um;
     if (ploughs) left_um_[static_cast<std::size_t>(2 - facet)] = left_um;
   }
-  /// Returns the depth of the root or the apex; 0 until all facets are cut.
+  /// Returns the current depth of the root (prism) or the apex (cube corner); 0 until all facets are cut.
   double root_depth_mm() const {
     const bool is_cube = job_.strategy == Strategy::dmc;
     const std::size_t facets = is_cube ? 3 : 2;
@@ -161,7 +163,7 @@ class Standing {
   std::array<std::optional<double>, 3> left_um_;
 };
 
-/// Returns the last program that contains a visit of each stage.
+/// Returns, for each stage (group of cuts in one pose), the last program that calls its subroutine.
 std::map<std::string, std::size_t> last_programs(const Plan& plan) {
   std::map<std::string, std::size_t> last;
   for (std::size_t k = 0; k < plan.programs.size(); ++k)
@@ -177,7 +179,7 @@ std::vector<StageCheck> checks_of(const FabricationResult& result) {
   std::map<std::pair<bool, std::int32_t>, Standing> standing;
   std::vector<StageCheck> checks;
   double seconds = 0.0;
-  // The time of rotary moves is distributed equally between the stages.
+  // The time of rotary moves between stages is distributed equally over the stages.
   const double between_s = plan.time.fixed_s / static_cast<double>(std::max<std::size_t>(1, plan.stages.size()));
   for (const Stage& stage : plan.stages) {
     const CuttingPose& pose = plan.poses[stage.pose];
@@ -219,7 +221,8 @@ SetupSheet setup_sheet(const FabricationResult& result, bool light) {
   try {
     sheet.light = setup_light(result.job, result.job.source, result.machine, sheet.warnings);
   } catch (const Error& error) {
-    // An error in the computation of the light, for example due to a changed design, must not prevent the programs.
+    // An error in the computation of the light, for example due to a changed design, must not prevent that programs are
+    // written.
     sheet.why_no_light = error.what();
   }
   return sheet;

@@ -14,7 +14,7 @@
 
 namespace retrace::studies {
 
-/// Range of an axis in all programs of a plan, in mm or degrees.
+/// Range of positions of an axis in all programs of a plan, in mm or degrees.
 struct AxisTravel {
   char axis = 'X';
   double low = 0.0;
@@ -22,33 +22,37 @@ struct AxisTravel {
   fabrication::Interval limits;
 };
 
-/// Set-up of the blank. The zero is the center of the array on its face.
+/// Set-up of the blank. The zero point is the center of the array on the face of the blank.
 struct BlankSetup {
-  geometry::Vec2 array_mm = geometry::Vec2::Zero();  ///< size of the array along X and Y at A0 C0
+  geometry::Vec2 array_mm = geometry::Vec2::Zero();  ///< size of the array along X and Y at A = 0 and C = 0
   double deepest_mm = 0.0;                           ///< maximum depth of roots or apexes below the face
-  double stock_mm = 0.0;                             ///< height of the face above the rims, on a substrate
-  std::string base;                                  ///< description of a face that is not flat; empty: flat
+  double stock_mm = 0.0;                             ///< thickness of the material above the tops of the elements
+                                                     ///< (rims), for parts on a substrate
+  std::string base;                                  ///< description of the shape of a face that is not flat; empty if
+                                                     ///< it is flat
   std::vector<std::string> zones;                    ///< for each zone: description of its elements
-  /// Height of blank and fixture together, from the table bodies of the machine file to the zero. Empty if the machine
-  /// file has no bodies below the workpiece.
+  /// Height of blank and fixture together, from the machine's bodies below the workpiece to the zero point. Empty if
+  /// the machine file has no such bodies.
   std::optional<double> fixture_height_mm;
-  double free_radius_mm = 0.0;  ///< maximum radius about C of a face that can rotate below the tool
+  double free_radius_mm = 0.0;  ///< maximum radius about C of a face that can be rotated and tilted below the retracted
+                                ///< tool
 };
 
 /// Set-up of the tool.
 struct ToolSetup {
-  std::optional<double> free_length_mm;  ///< distance from the edge up to the holder; empty without a holder
+  std::optional<double> free_length_mm;  ///< distance from the cutting edge up to the holder; empty if the machine file
+                                         ///< has no holder
   double plunge_rake_deg = 0.0;
   std::optional<double> plough_rake_deg;  ///< chisels only
 };
 
-/// Expected measurements after a stage. The programs do not check them.
+/// Expected measurements after a stage (group of cuts in one pose). The programs do not check them.
 struct StageCheck {
   std::string stage;
   std::size_t program = 0;     ///< index of the program in which the stage ends
-  double ends_s = 0.0;         ///< time of the end of the stage since the start of the first program
+  double ends_s = 0.0;         ///< time from the start of the first program to the end of the stage
   double left_um = 0.0;        ///< thickness of the material that remains on the cut facets
-  double root_depth_mm = 0.0;  ///< depth of the root below the rims
+  double root_depth_mm = 0.0;  ///< depth of the root below the tops of the elements (rims)
 };
 
 struct SetupSheet {
@@ -63,12 +67,12 @@ struct SetupSheet {
   std::string why_no_light;
   Warnings warnings;
 
-  /// Returns the change of the light per unit of a quantity, or null if it is not computed.
+  /// Returns the change of the light per unit of a quantity, or null if the light is not computed.
   const PartLight* change_of_light(const fabrication::SetupQuantity& quantity, fabrication::Tilt tilt) const;
 };
 
 /// Collects the data for setting up a machine.
-/// \param light true: the light is computed as well, which takes a second
+/// \param light true: the effect of errors on the light is also computed, which takes about a second
 SetupSheet setup_sheet(const FabricationResult& result, bool light = true);
 
 }  // namespace retrace::studies
