@@ -87,7 +87,8 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
   return part;
 }
 
-/// Returns the mesh of the design as a solid, with its repairs.
+/// Sets the mesh of a solid from a design that is read from a mesh or consists of zones. Repairs of the mesh are added
+/// to the warnings.
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
     check_taken(solid.design, {.what = fmt::format("--what {}", name_of(solid.what)), .wet_backs = true});

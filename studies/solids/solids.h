@@ -17,7 +17,7 @@ namespace retrace::studies {
 enum class SolidKind {
   element,  ///< one element on its plate, as with `arrangement = "single"`
   array,    ///< whole part
-  mould     ///< block behind the back surface, in which the part is moulded
+  mould     ///< block behind the back surface of the part, with which the part is moulded
 };
 
 /// Reads a kind of solid.
@@ -25,15 +25,16 @@ enum class SolidKind {
 SolidKind read_solid_kind(const std::string& word);
 std::string name_of(SolidKind kind);
 
-/// Maximum number of elements of a solid. Its boundary is one mesh in memory.
+/// Maximum number of elements of a solid. The whole boundary is one mesh in memory.
 inline constexpr std::int64_t kMostSolidElements = 200'000;
 
 struct SolidRequest {
   SolidKind what = SolidKind::array;
-  std::optional<double> block_mm;  ///< thickness of a mould below its deepest point, > 0; none: thickness of the plate
+  std::optional<double> block_mm;  ///< thickness of the mould below its deepest point, > 0; none: thickness of the
+                                   ///< plate
 };
 
-/// Closed boundary and its figures.
+/// Closed boundary of a solid, with its measures.
 struct Solid {
   Design design;
   SolidKind what = SolidKind::array;
@@ -49,8 +50,8 @@ struct Solid {
   Warnings warnings;
 };
 
-/// Builds the boundary of a solid. Facets are plane and smooth. Of the table [surface], only errors of angle and edges
-/// are used.
+/// Builds the boundary of a solid. Facets are plane and smooth. Of the design's table [surface], only angle errors and
+/// edges are used.
 /// \throw InputError for an infinite array (a single element is allowed), a mask that cannot be read, more than
 /// kMostSolidElements elements, and a block without thickness
 Solid make_solid(const Design& design, const SolidRequest& request);

@@ -10,13 +10,13 @@ namespace retrace::studies {
 
 enum class SolidFormat { stl, obj, gltf, step };
 
-/// Returns the format by the ending of a file's name, in lower or upper case: .stl, .obj, .glb, .step or .stp.
+/// Returns the format for the ending of a file's name, in lower or upper case: .stl, .obj, .glb, .step or .stp.
 /// \throw InputError for other endings
 SolidFormat solid_format(const std::string& file);
 
-/// Returns the content of a file in a format.
-/// \throw InputError if the solid touches itself along edges or has too short edges (STEP), if it is too large (glTF),
-/// and for a material without an index (glTF)
+/// Returns the content of a file in the given format.
+/// \throw InputError for STEP if the solid touches itself along edges or has too short edges
+/// \throw InputError for glTF if the solid is too large, or if its material has no refractive index
 std::string solid_text(const Solid& solid, SolidFormat format);
 
 /// Returns the document `retrace.export/1`.
