@@ -34,8 +34,8 @@ ProcessLocks::ProcessLocks(const std::filesystem::path& file)
   if (descriptor_ < 0) fail();
   for (; own_ < kMostProcesses; ++own_) {
     struct flock lock = byte_lock(own_);
-    // These locks belong to the open file and not to the process. Closing another descriptor of the file does not
-    // release them.
+    // The locks F_OFD_... belong to the open file and not to the process. Therefore, they are not released when another
+    // descriptor of the same file is closed.
     if (::fcntl(descriptor_, F_OFD_SETLK, &lock) == 0) return;
     if (errno != EAGAIN && errno != EACCES) fail();
   }
@@ -48,7 +48,7 @@ ProcessLocks::~ProcessLocks() {
 
 bool ProcessLocks::is_alive(std::int64_t owner) const {
   if (owner == own_) return true;
-  if (owner < 0 || owner >= kMostProcesses) return false;  // the lock file has no byte for such a number
+  if (owner < 0 || owner >= kMostProcesses) return false;  // the lock file has only kMostProcesses bytes
   struct flock lock = byte_lock(owner);
   return ::fcntl(descriptor_, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
 }

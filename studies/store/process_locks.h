@@ -18,7 +18,8 @@ class ProcessLocks {
   ProcessLocks(const ProcessLocks&) = delete;
   ProcessLocks& operator=(const ProcessLocks&) = delete;
 
-  /// Returns the byte of this process. Another process may later lock the byte of a dead process.
+  /// Returns the index of the byte that this process has locked. After the death of a process, another process may lock
+  /// its byte.
   std::int64_t own() const { return own_; }
   bool is_alive(std::int64_t owner) const;
 

@@ -22,7 +22,7 @@ namespace retrace::studies {
 namespace fs = std::filesystem;
 namespace {
 
-/// Number of the file format, stored as user_version. It changes when older programs would misinterpret the file.
+/// Number of the file format, stored as user_version. It is increased when older programs would misinterpret the file.
 constexpr int kFormat = 1;
 /// Identifier "rtrc" that distinguishes these files from other SQLite files.
 constexpr int kApplication = 0x72747263;
@@ -111,7 +111,7 @@ struct ResultStore::Database {
     throw OutputError(
         fmt::format("{}: cannot be written: {}; the points that are finished are kept", name(), error.getErrorStr()));
   }
-  /// Calls `work` while the mutex is locked, and converts errors of SQLite to errors of this program.
+  /// Calls `work` while the mutex is locked. Converts errors of SQLite to errors of this program.
   template <class Work>
   auto guarded(Work work) const {
     const std::lock_guard lock(mutex);
@@ -143,16 +143,16 @@ void ResultStore::Database::connect() {
                                               SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kWaitMs);
 }
 
-/// Returns true if the file has no tables yet. A file that has only its first page is also empty, because SQLite writes
-/// this page when the first transaction begins.
+/// Returns true if the file has no tables yet. A file with only its first page also counts as empty, because SQLite
+/// writes this page when the first transaction begins.
 bool ResultStore::Database::is_empty() const {
   return sqlite->execAndGet("PRAGMA page_count").getInt() <= 1 &&
          sqlite->execAndGet("PRAGMA application_id").getInt() == 0 &&
          sqlite->execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
 }
 
-/// Sets whether SQLite keeps the write-ahead log of a killed process when the file is closed. Otherwise, SQLite merges
-/// the log into the file.
+/// Sets whether the write-ahead log of a killed process remains when the file is closed. If it does not remain, SQLite
+/// merges it into the file.
 void ResultStore::Database::keep_log(bool keep) const {
   sqlite3_db_config(sqlite->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, keep ? 1 : 0, nullptr);
 }
@@ -174,15 +174,15 @@ void ResultStore::Database::open() {
   if (is_empty())
     make_tables();
   else if (!is_checked)
-    check();  // another process has created the store
+    check();  // another process has created the store in the meantime
   transaction.commit();
-  // With `synchronous = NORMAL`, commits are in the write-ahead log and survive the death of the process without
-  // waiting for the disk. A power failure may lose the last points, but never damages the file.
+  // With `synchronous = NORMAL`, a commit is only written to the write-ahead log, without waiting for the disk. It
+  // survives the death of the process. A power failure may lose the last points, but never damages the file.
   if (!file.empty()) switch_to_log();
 }
 
-/// Switches SQLite to a write-ahead log. Several attempts are needed, because the switch fails without waiting if
-/// another process is switching, too.
+/// Switches SQLite to a write-ahead log. Several attempts may be needed, because the switch fails immediately if
+/// another process is switching at the same time.
 void ResultStore::Database::switch_to_log() {
   for (int attempt = 0;; ++attempt) {
     try {
@@ -294,7 +294,8 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
   } catch (const SQLite::Exception& error) {
     database_->fail(error);
   }
-  // Claims with our owner number belong to an earlier process that has died.
+  // Each process has an owner number, its byte in the lock file. Claims with the number of this process are those of a
+  // dead process that had the same number.
   if (!file.empty())
     database_->guarded(
         [&] { database_->sqlite->exec(fmt::format("DELETE FROM claims WHERE owner = {}", database_->owner())); });
@@ -369,8 +370,7 @@ std::size_t ResultStore::claimed_by_others() {
       }
     }
     if (dead.empty()) return claimed;
-    // Another process may take over the owner number of a dead process. It cannot claim points before this transaction
-    // ends.
+    // Another process may get the owner number of a dead process. It cannot claim points before this transaction ends.
     SQLite::Transaction transaction(*database_->sqlite, SQLite::TransactionBehavior::IMMEDIATE);
     for (const std::int64_t owner : dead)
       if (!database_->locks->is_alive(owner))
@@ -429,7 +429,8 @@ bool is_duration(const SQLite::Column& value) {
 bool is_output(const SQLite::Column& value) {
   return is_nothing(value) || is_number(value);
 }
-/// Returns true if the value is a standard error: missing or >= 0. It may be missing because SQLite stores NaN as NULL.
+/// Returns true if the value is a valid standard error: >= 0 or missing. It may be missing because SQLite stores NaN as
+/// NULL.
 bool is_std_error(const SQLite::Column& value) {
   return is_nothing(value) || (value.isFloat() && value.getDouble() >= 0.0);
 }

@@ -17,13 +17,13 @@ namespace retrace::studies {
 /// Stored value of a parameter: a number, or a text for values of other types.
 using StoredValue = std::variant<double, std::string>;
 
-/// Stored value of a quantity at a point. Empty if the quantity has no value, such as a limit that does not exist.
+/// Stored value of a quantity at a point. The value is missing if the quantity is not defined at this point.
 struct StoredOutput {
   std::optional<double> value;
   double std_error = 0.0;
 };
 
-/// Finished point of a study. It was computed, or it failed for a reason that would occur again.
+/// Finished point of a study. It was computed, or it failed for a reason that would occur again in a repetition.
 struct StoredPoint {
   std::uint64_t point = 0;
   bool failed = false;
@@ -34,7 +34,8 @@ struct StoredPoint {
   std::string version;  ///< version of the program that computed the point
 };
 
-/// Contents of a store. They are compared with an existing file, so that a store of another study is refused.
+/// Description of the contents of a store. It is compared with an existing file, so that a store of another study is
+/// refused.
 struct StoreLayout {
   std::string kind;    ///< kind of the store, such as "retrace.sweep/1"
   std::string source;  ///< name of the study file, for messages
@@ -50,8 +51,8 @@ struct StoreLayout {
 enum class IfExists { refuse, resume, overwrite };
 
 /// Finished points in one SQLite file. Every point is committed separately, so that a killed process loses no finished
-/// points. Several processes on one machine may use one file. Each process computes the points that it has claimed;
-/// claims of dead processes are void. Several threads may use an object.
+/// points. Several processes on one machine may use one file. A process claims points before it computes them, so that
+/// no other process computes them. Claims of dead processes are void. Several threads may use an object.
 class ResultStore {
  public:
   /// \param file empty: the store is in memory and only this process can access it
@@ -64,7 +65,7 @@ class ResultStore {
   ResultStore& operator=(const ResultStore&) = delete;
 
   /// Claims a point for this process. Returns false if the point is finished or claimed by another living process.
-  /// \throw OutputError as record()
+  /// \throw OutputError in the same cases as record()
   bool claim(std::uint64_t point);
   /// Gives up a claim, so that another process may compute the point.
   void give_up(std::uint64_t point);
@@ -72,8 +73,8 @@ class ResultStore {
   /// \throw OutputError if the point cannot be written, for example because the disk is full; stored points are kept
   void record(const StoredPoint& point);
 
-  /// Voids the claims of dead processes.
-  /// \return number of points that other processes have claimed
+  /// Deletes the claims of dead processes.
+  /// \return number of points that other living processes have claimed
   std::size_t claimed_by_others();
   /// Returns the numbers of the finished points in ascending order.
   /// \throw InputError if the file is damaged
