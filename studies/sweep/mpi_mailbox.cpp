@@ -5,8 +5,8 @@
 namespace retrace::studies {
 
 std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life) {
-  // The module is loaded with global symbols, because the components that OpenMPI loads do not name the libraries that
-  // they need.
+  // The module is loaded with global symbols. OpenMPI loads components that use symbols of its libraries but are not
+  // linked to these libraries.
   static constexpr Module module{.name = "retrace_mpi",
                                  .function = "retrace_mpi_mailbox",
                                  .lack = "ranks of mpirun or srun cannot work together",

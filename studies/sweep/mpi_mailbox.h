@@ -1,7 +1,7 @@
 #pragma once
 
-// Messages between the ranks of an MPI job. MPI itself is used only in a module, mpi_module.cpp. Internal to
-// studies/sweep.
+// Messages between the ranks (processes) of an MPI job. MPI itself is used only in a module, mpi_module.cpp. Internal
+// to studies/sweep.
 
 #include <chrono>
 #include <memory>
@@ -17,18 +17,19 @@ struct Letter {
   std::string bytes;
 };
 
-/// Messages between the ranks of a job. A separate thread makes all MPI calls and also sends signs of life. No function
-/// of this class waits for MPI without a limit, even if another rank dies or MPI does not end. One thread reads; any
-/// thread may post.
+/// Sends and receives messages between the ranks of a job. A separate thread makes all MPI calls. It also sends signs
+/// of life: short messages that show that the process is alive. No function of this class waits for MPI without a
+/// limit, even if another rank dies or MPI does not end. Only one thread may read messages; any thread may post them.
 class MpiMailbox {
  public:
-  /// Does not finalize MPI unless close() was called.
+  /// Destroys the mailbox. MPI is finalized only if close() was called.
   virtual ~MpiMailbox() = default;
 
-  /// Waits for the start of MPI, which begins when the mailbox is made.
+  /// Waits until MPI has started. The start begins when the mailbox is created.
   /// \return true if MPI has started
   virtual bool wait_for_start(std::chrono::milliseconds patience) = 0;
 
+  /// Returns the number of this rank.
   /// \pre MPI has started, for this and all following functions
   virtual int rank() const = 0;
   virtual int size() const = 0;
@@ -40,9 +41,9 @@ class MpiMailbox {
   virtual std::optional<Letter> take(std::chrono::microseconds patience) = 0;
   /// Returns the time since the last message or sign of life of a rank.
   virtual std::chrono::duration<double> silence(int rank) const = 0;
-  /// Restarts the measurement of all silences, after this process itself was suspended.
+  /// Measures the silence of all ranks from now on. Used after this process itself was suspended.
   virtual void forgive_silence() = 0;
-  /// Stops sending to a rank that was given up. Its pending messages are not awaited.
+  /// Stops sending to a rank that was given up. Other functions do not wait for its pending messages.
   virtual void forget(int rank) = 0;
 
   /// Waits until all posted messages have been sent.
@@ -55,7 +56,7 @@ class MpiMailbox {
 
 /// Starts MPI.
 /// \param sign_of_life interval of signs of life: rank 0 sends them to all ranks, the other ranks send them to rank 0
-/// \throw OutputError if the module with MPI cannot be loaded
+/// \throw OutputError if the module that contains MPI cannot be loaded
 std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life);
 
 }  // namespace retrace::studies

@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::microseconds kPoll{100};
 constexpr int kSignOfLife = 0;
 
-/// Message that is being transferred. Its bytes must not move until MPI has finished.
+/// Message that is being transferred. Its bytes must not move in memory until MPI has finished the transfer.
 struct Transfer {
   MPI_Request request = MPI_REQUEST_NULL;
   int rank = 0;
@@ -55,10 +55,10 @@ struct MailboxState {
   std::set<int> forgotten;
   std::vector<Clock::time_point> heard;
 
-  // Members that only the thread uses. They are lists because MPI stores addresses of their elements.
+  // Members that only the thread with MPI calls uses. They are lists because MPI stores addresses of their elements.
   std::list<Transfer> outgoing;
   std::list<Transfer> incoming;
-  std::list<Transfer> given_up;  ///< MPI may write to these as long as the process lives
+  std::list<Transfer> given_up;  ///< transfers that MPI may still write to as long as the process lives
   Clock::time_point told_last;
 
   void run();
@@ -112,7 +112,7 @@ bool MailboxState::send_posted() {
   return !letters.empty();
 }
 
-/// Receives messages that have arrived. A long message may need several calls.
+/// Receives messages that have arrived. Receiving a long message may need several calls.
 /// \return true if any data had arrived
 bool MailboxState::receive() {
   for (;;) {
@@ -127,7 +127,8 @@ bool MailboxState::receive() {
     MPI_Irecv(transfer.bytes.data(), bytes, MPI_BYTE, transfer.rank, transfer.tag, MPI_COMM_WORLD, &transfer.request);
   }
   bool any = false;
-  std::set<int> unfinished;  // messages of a rank arrive in their order
+  std::set<int> unfinished;  // ranks with a message that is not complete; later messages of these ranks wait, to keep
+                             // the order
   for (auto transfer = incoming.begin(); transfer != incoming.end();) {
     if (unfinished.contains(transfer->rank) || !is_done(*transfer)) {
       unfinished.insert(transfer->rank);
@@ -201,7 +202,7 @@ class Mailbox final : public MpiMailbox {
  public:
   explicit Mailbox(std::chrono::milliseconds sign_of_life) : state_(std::make_shared<MailboxState>()) {
     state_->sign_of_life = sign_of_life;
-    // The thread is detached, because it could not be joined if MPI blocked it forever.
+    // The thread is detached. It could not be joined if MPI blocked it forever.
     std::thread([state = state_] { state->run(); }).detach();
   }
 
@@ -264,7 +265,7 @@ class Mailbox final : public MpiMailbox {
   }
 
  private:
-  std::shared_ptr<MailboxState> state_;  ///< shared with the thread, which may live longer than this object
+  std::shared_ptr<MailboxState> state_;  ///< shared with the thread, which may exist longer than this object
 };
 
 }  // namespace

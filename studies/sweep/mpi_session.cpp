@@ -26,25 +26,27 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Time without messages after which a rank is given up. It can be changed by the environment variable below.
+/// Time without messages after which a rank (process of the job) is given up. The environment variable below overrides
+/// it.
 constexpr double kSilenceS = 15.0;
 constexpr const char* kSilenceVariable = "RETRACE_MPI_SILENCE_S";
 /// Maximum time for the start of a job; large jobs start slowly.
 constexpr std::chrono::minutes kStart{10};
-/// Maximum time that rank 0 waits for the other ranks to leave, and that every rank waits for the end of MPI.
+/// Maximum time that rank 0 waits until the other ranks have left, and that every rank waits until MPI is finalized.
 constexpr std::chrono::seconds kPatience{10};
-// Maximum time that rank 0 waits for ranks after an interrupt, which must take less than a second.
+// Maximum time that rank 0 waits for other ranks after an interrupt. It is short because an interrupt must take less
+// than a second.
 constexpr std::chrono::milliseconds kLastCall{500};
 constexpr std::chrono::milliseconds kLook{20};
-/// Computing time of a batch of tasks below which the next batch is requested in advance.
+/// Computing time of a batch of tasks below which the next batch is requested before this batch is computed.
 constexpr std::chrono::seconds kQuick{1};
 
 enum Tag : int {
-  ask = 1,  ///< to rank 0: number of tasks that the rank wants
-  result,   ///< to rank 0: number of a task and its result
-  leaving,  ///< to rank 0: the rank leaves, with the reason
+  ask = 1,  ///< to rank 0: number of tasks that the sender wants
+  result,   ///< to rank 0: number of a finished task and its result
+  leaving,  ///< to rank 0: the sender leaves; contains the reason
   deal,     ///< from rank 0: numbers of tasks to compute
-  go        ///< from rank 0: no more tasks; contains whether all ranks can end MPI together
+  go        ///< from rank 0: there are no more tasks; contains whether all ranks can finalize MPI together
 };
 constexpr std::string_view kAllAreThere = "all";
 
@@ -71,9 +73,9 @@ struct MpiSession::State {
   std::unique_ptr<MpiMailbox> mailbox =
       open_mpi_mailbox(std::chrono::milliseconds(static_cast<long>(std::min(500.0, 1000.0 * silence.count() / 6.0))));
   std::set<int> there;      ///< rank 0: other ranks that have not been given up
-  std::set<int> at_work;    ///< rank 0: ranks in `there` that have not announced that they leave
+  std::set<int> at_work;    ///< rank 0: ranks in `there` that have not announced that they are leaving
   bool lost_ranks = false;  ///< true: ranks were lost, so that MPI cannot be finalized
-  bool may_go = false;      ///< other ranks: true after the message `go` of rank 0
+  bool may_go = false;      ///< other ranks: true after rank 0 has sent the message `go`
   bool has_ended = false;
   bool ended_well = true;
   Warnings remarks;
@@ -104,7 +106,7 @@ struct MpiSession::State {
   void end_other();
 };
 
-/// Tells all ranks to end. Ranks that do not answer within kPatience are given up.
+/// Sends the message to end to all ranks. Ranks that do not answer within kPatience are given up.
 void MpiSession::State::end_rank_0() {
   for (const int rank : there) mailbox->post(rank, Tag::go, lost_ranks ? "" : std::string(kAllAreThere));
   const auto deadline = Clock::now() + kPatience;
@@ -180,12 +182,13 @@ std::vector<std::uint64_t> tasks_of(const std::string& bytes) {
   return tasks;
 }
 
-/// Assignment of a ledger's tasks to ranks. The dealing thread and the computing threads may use it concurrently.
+/// Assignment of a ledger's tasks to ranks. The thread that deals out tasks and the threads that compute may use it
+/// concurrently.
 class Dealer {
  public:
   explicit Dealer(TaskLedger& ledger) : ledger_(ledger) {}
 
-  /// Takes tasks for a rank.
+  /// Takes tasks from the ledger and assigns them to a rank.
   std::vector<std::uint64_t> take(int rank, std::size_t wanted) {
     const std::lock_guard lock(mutex_);
     std::vector<std::uint64_t> tasks;
@@ -233,8 +236,8 @@ class Dealer {
   std::map<std::uint64_t, int> dealt_;
 };
 
-/// Computes the tasks of rank 0 itself, on a second thread beside the dealing thread. Errors are stored for the dealing
-/// thread.
+/// Computes the tasks of rank 0 itself. It uses a second thread in addition to the thread that deals out tasks. Errors
+/// are stored for the dealing thread.
 class OwnShare {
  public:
   OwnShare(const ComputeTask& compute, Dealer& dealer, std::size_t slots, const Cancellation* cancel)
@@ -270,7 +273,7 @@ class OwnShare {
   std::atomic<bool> stop_{false};
   std::atomic<bool> failed_{false};
   std::exception_ptr error_;
-  std::thread thread_;  ///< last member, because the thread uses the others
+  std::thread thread_;  ///< last member, because the thread uses the other members
 };
 
 /// Ranks that wait for tasks, and the number of tasks that each wants.
@@ -289,7 +292,8 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
     state.remarks.push_back({"rank_lost", fmt::format("rank {} {}; its points went to others", rank, why)});
   };
   const auto read = [&](const Letter& letter) {
-    if (!state.there.contains(letter.rank)) return;  // the rank was given up, although it is alive
+    if (!state.there.contains(letter.rank)) return;  // the rank was given up earlier, but it is alive
+                                                     // messages
     if (letter.tag == Tag::ask) waiting[letter.rank] = std::stoul(letter.bytes);
     if (letter.tag == Tag::result)
       dealer.finish(tasks_of(letter.bytes.substr(0, sizeof(std::uint64_t))).front(),
@@ -323,7 +327,7 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
       if (dealer.is_finished()) return true;
     }
   }
-  // After a stop, the results of tasks that other ranks still compute may arrive for a short time.
+  // After a cancellation, rank 0 waits a short time for the results of tasks that other ranks are still computing.
   const auto deadline = Clock::now() + kLastCall;
   const auto has_tasks = [&](int rank) { return dealer.has_tasks(rank); };
   while (std::any_of(state.at_work.begin(), state.at_work.end(), has_tasks) && Clock::now() < deadline)
@@ -347,8 +351,8 @@ void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Canc
       return;
     }
     const std::vector<std::uint64_t> tasks = tasks_of(letter->bytes);
-    // If tasks are quick, the next batch is requested before this batch is computed, to hide the latency of messages.
-    // If tasks are slow, they stay with rank 0 until a rank is idle.
+    // If tasks are quick, the next batch is requested before this batch is computed, which hides the latency of
+    // messages. Slow tasks are requested only when this rank is idle, so that they can be dealt to the next idle rank.
     if (is_quick) ask();
     const auto start = Clock::now();
     for_each_in_parallel(tasks.size(), [&](std::size_t k) {

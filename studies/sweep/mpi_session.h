@@ -13,17 +13,18 @@
 
 namespace retrace::studies {
 
-/// Computation on several machines. Rank 0 has the ledger and deals out tasks; the other ranks request tasks when they
-/// have none. MPI is used only if mpirun or srun launched the process. Silent ranks are given up, and their tasks are
-/// dealt to others. A rank that receives nothing from rank 0 ends. All waiting times are limited.
+/// Computation that is distributed over several machines. Rank 0 has the ledger of tasks and deals them out; the other
+/// ranks request tasks when they have none. MPI is used only if mpirun or srun launched the process. Ranks that are
+/// silent for too long are given up, and their tasks are dealt to others. A rank ends if it receives nothing from rank
+/// 0 for too long. All waiting times are limited.
 class MpiSession {
  public:
   /// Returns true if mpirun or srun launched this process with MPI.
   static bool is_launched();
   /// Initializes MPI.
-  /// \pre is_launched(); called at most one time in a process
+  /// \pre is_launched(); no other session has been created in this process
   /// \throw OutputError if the module with MPI cannot be loaded
-  /// \throw InputError if the limit of silence (RETRACE_MPI_SILENCE_S) is out of range
+  /// \throw InputError if the time limit in the environment variable RETRACE_MPI_SILENCE_S is out of range
   /// \throw BudgetError if MPI does not start
   MpiSession();
   /// Calls end().
@@ -33,22 +34,22 @@ class MpiSession {
 
   int rank() const;
 
-  /// Rank 0: deals out tasks and computes some itself, `slots` at a time.
-  /// \pre called at most one time
+  /// Deals out tasks to the other ranks. Also computes some tasks itself, `slots` at a time. Only for rank 0.
+  /// \pre deal() has not been called before
   /// \return true if all tasks are finished
   /// \throw Error of the ledger, or of a task that rank 0 computed
   bool deal(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots, const Cancellation* cancel);
-  /// Returns remarks of rank 0 on the other ranks, for the user.
+  /// Returns warnings about ranks that were lost or left, for the user. Only for rank 0.
   Warnings remarks() const;
 
-  /// Other ranks: compute the tasks that rank 0 deals out, `slots` at a time, until there are no more.
+  /// Computes tasks that rank 0 deals out, `slots` at a time, until there are no more. Only for ranks other than 0.
   /// \throw Error of a task; leave() must then be called
   void serve(const ComputeTask& compute, std::size_t slots, const Cancellation* cancel);
-  /// Other ranks: tells rank 0 that this rank cannot continue, and why.
+  /// Reports to rank 0 that this rank cannot continue, and why. Only for ranks other than 0.
   void leave(const std::string& why);
 
-  /// Rank 0: allows the other ranks to end, after its results are written. Before, the launcher might end all ranks as
-  /// soon as one ends with an error. Other ranks: wait for this permission.
+  /// Ends the session. Rank 0 must call it after its results are written; it allows the other ranks to end. The other
+  /// ranks wait for this permission, because the launcher may kill all ranks as soon as one ends with an error.
   /// \return true if MPI was finalized; otherwise, for example if ranks were lost, the process must end with _exit()
   bool end();
 

@@ -9,7 +9,7 @@
 namespace retrace::studies {
 namespace {
 
-/// Streams of random numbers that are used only here.
+/// Streams of random numbers that are used only in this file.
 constexpr std::uint32_t kScramble = 0x53776501U;
 constexpr std::uint32_t kShuffle = 0x53776502U;
 constexpr std::uint32_t kJitter = 0x53776503U;
@@ -23,8 +23,8 @@ std::uint32_t reversed(std::uint32_t v) {
   return ((v & 0x55555555U) << 1) | ((v >> 1) & 0x55555555U);
 }
 
-/// Applies a nested uniform scramble: every bit is flipped by a hash of the bits above it. The constants are those of
-/// Burley, J. Comp. Graphics Techniques 9, 2020.
+/// Applies a nested uniform scramble: each bit is flipped depending on a hash of the bits above it. The constants are
+/// those of Burley, J. Comp. Graphics Techniques 9, 2020.
 std::uint32_t scrambled(std::uint32_t digits, std::uint32_t key) {
   std::uint32_t v = reversed(digits);
   v ^= v * 0x3d20adeaU;
@@ -35,7 +35,8 @@ std::uint32_t scrambled(std::uint32_t digits, std::uint32_t key) {
   return reversed(v);
 }
 
-/// Returns the centre of one of 2^32 equal intervals. It is never 0 or 1, where quantiles may be infinite.
+/// Returns the centre of one of 2^32 equal intervals of the unit interval. It is never 0 or 1, where quantiles may be
+/// infinite.
 double middle(std::uint32_t word) {
   return (static_cast<double>(word) + 0.5) * 0x1p-32;
 }

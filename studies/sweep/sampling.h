@@ -13,7 +13,8 @@ namespace retrace::studies {
 class UnitSamples {
  public:
   enum class Kind {
-    sobol,            ///< Owen-scrambled by hashes (Laine and Karras 2011); best with a power of two
+    sobol,            ///< Sobol points with Owen scrambling by hashes (Laine and Karras 2011); `count` should be a
+                      ///< power of two
     latin_hypercube,  ///< one point in each of `count` equal intervals of every axis (McKay et al. 1979)
     monte_carlo       ///< independent random points
   };
@@ -34,7 +35,8 @@ class UnitSamples {
   std::size_t dimensions_;
   std::uint64_t count_;
   std::uint32_t seed_;
-  std::vector<std::vector<std::uint32_t>> permutations_;  ///< indexed by axis; for the Latin hypercube
+  std::vector<std::vector<std::uint32_t>> permutations_;  ///< permutations of the intervals, indexed by axis; only for
+                                                          ///< the Latin hypercube
 };
 
 }  // namespace retrace::studies

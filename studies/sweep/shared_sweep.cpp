@@ -21,7 +21,8 @@ std::string to_message(const StoredPoint& point) {
       .dump(-1, ' ', false, PointJson::error_handler_t::replace);
 }
 
-/// \param sweep sweep that contains the inputs of the point, which are not part of the message
+/// Reads a point from the message of another process.
+/// \param sweep sweep from which the inputs of the point are taken, because the message does not contain them
 StoredPoint from_message(const std::string& message, const Sweep& sweep) {
   const PointJson json = PointJson::parse(message);
   StoredPoint point;
@@ -40,7 +41,8 @@ StoredPoint from_message(const std::string& message, const Sweep& sweep) {
   return point;
 }
 
-/// Tasks for the points that a store lacks. Points that other processes have claimed in the store are awaited.
+/// Tasks for the points that are not in the store. If other processes have claimed points in the store, their results
+/// are awaited.
 class SweepLedger : public TaskLedger {
  public:
   SweepLedger(const Sweep& sweep, ResultStore& store, SweepObserver* observer)

@@ -7,11 +7,12 @@
 
 namespace retrace::studies {
 
-/// Computes the point of a sweep with this number as a task.
+/// Computes one point of a sweep as a task of a computation that several processes share. The number of the task is
+/// that of the point.
 std::optional<std::string> compute_shared(const Sweep& sweep, std::uint64_t number, const Cancellation* cancel);
 
-/// Computes the points that the store lacks, like run_sweep(), but `share` distributes them as tasks.
-/// \throw OutputError as run_sweep()
+/// Computes the points that are not in the store, like run_sweep(). `share` distributes them as tasks among processes.
+/// \throw OutputError in the same cases as run_sweep()
 /// \throw Error of `share`
 bool share_sweep(const Sweep& sweep, ResultStore& store, SweepObserver* observer, const ShareTasks& share);
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kWaitForOthers{50};
 
-/// Returns the kind of samples. Returns nothing for combinations without sampling.
+/// Returns the sampling method of a combination. Returns nothing for combinations without sampling.
 std::optional<UnitSamples::Kind> samples_of(Combine combine) {
   switch (combine) {
     case Combine::sobol: return UnitSamples::Kind::sobol;
@@ -143,8 +143,8 @@ StoreLayout Sweep::layout() const {
 
 namespace {
 
-/// Divides the progress of one point among its quantities. Quantities that share one tracing count as one. Quantities
-/// that trace nothing do not count.
+/// Divides the progress of one point among its quantities. Quantities that are computed from the same trace count as
+/// one. Quantities without ray or beam tracing do not count.
 class QuantityProgress {
  public:
   QuantityProgress(const Quantities& quantities, Progress* whole) : whole_(whole) {
@@ -165,7 +165,7 @@ class QuantityProgress {
   std::set<std::string> begun_;
 };
 
-/// Computes all quantities of a point. Returns nothing if it was cancelled.
+/// Computes all quantities of a point. Returns nothing if the computation was cancelled.
 std::optional<std::vector<StoredOutput>> measure_all(const Study& study, const PointValues& values,
                                                      const Cancellation* cancel, Progress* progress) {
   Candidate candidate = make_candidate(study, values);
@@ -217,8 +217,8 @@ struct SweepCount::State {
   }
 };
 
-/// Receives the progress of the points that were unfinished at the start, and passes the progress of the whole sweep on
-/// to the observer. A mutex serializes all calls of the observer.
+/// Converts the progress of the points that were unfinished at the start to the progress of the whole sweep, and passes
+/// it on to the observer. A mutex serializes all calls of the observer.
 struct SweepCount::Share : Progress {
   explicit Share(State& its_state)
       : state(its_state),
@@ -276,7 +276,8 @@ std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& point
   std::atomic<std::size_t> next{0};
   std::atomic<std::size_t> computed{0};
   for_each_in_parallel(points.size(), [&](std::size_t) {
-    // Points are computed in the order of their numbers, whatever index for_each_in_parallel() passes.
+    // Points are computed in ascending order of their numbers. The order of the indices of for_each_in_parallel() does
+    // not matter.
     const std::uint64_t number = points[next.fetch_add(1)];
     if (is_cancelled(cancel) || !store.claim(number)) return;
     TaskProgress::Task task(count.points());

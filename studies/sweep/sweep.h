@@ -21,13 +21,13 @@ namespace retrace::studies {
 /// Combination of the values of several parameters into points.
 enum class Combine {
   grid,    ///< all combinations of values; the last parameter varies fastest
-  zipped,  ///< first values of all parameters, second values of all parameters, and so on
+  zipped,  ///< first values of all parameters together, then second values, and so on
   sobol,
   latin_hypercube,
   monte_carlo  ///< independent random points
 };
 
-/// Plan of the points of a study. The number of a point determines its values.
+/// List of the points of a study. The number of a point determines its values.
 class PointPlan {
  public:
   virtual ~PointPlan() = default;
@@ -36,18 +36,18 @@ class PointPlan {
   virtual PointValues values(std::uint64_t point) const = 0;
 };
 
-/// Returns the values of parameters at given fractions (0..1) of their distributions, intervals or lists.
+/// Returns the values of the parameters at given fractions (0..1) of their distributions, intervals or lists.
 /// \pre there is one fraction for each parameter
 PointValues values_at(const Study& study, const std::vector<double>& shares);
 
-/// Study whose points are all known before the first is computed.
+/// Study whose points are all known before the first point is computed.
 class Sweep {
  public:
   /// \param samples number of points for `sobol`, `latin_hypercube` and `monte_carlo`
   /// \throw InputError if the parameters cannot be combined in this manner, or if there are more than most_points
   /// points
   Sweep(Study study, Combine combine, std::uint64_t samples);
-  /// Makes a sweep of the points of a plan.
+  /// Creates a sweep whose points are those of a plan.
   /// \param kind kind of the store, such as "retrace.tolerance/1"
   /// \param plan plan of points for this study
   Sweep(Study study, std::string kind, std::shared_ptr<const PointPlan> plan);
@@ -63,7 +63,7 @@ class Sweep {
  private:
   Study study_;
   std::string kind_ = "retrace.sweep/1";
-  std::shared_ptr<const PointPlan> plan_;  ///< null: points as combined by `combine_`
+  std::shared_ptr<const PointPlan> plan_;  ///< null: the parameters are combined by `combine_`
   Combine combine_ = Combine::grid;
   std::uint64_t size_ = 0;
   std::optional<UnitSamples> samples_;
@@ -73,7 +73,7 @@ class Sweep {
 /// was cancelled.
 /// \param ran_out receives true if the point failed because the budget of memory or beams was exhausted; may be null
 /// \param progress receives the finished fraction of the point; may be null
-/// \throw std::bad_alloc: a later attempt with more free memory may succeed
+/// \throw std::bad_alloc if memory is exhausted; a later attempt with more free memory may succeed
 std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
                                          const Cancellation* cancel, bool* ran_out = nullptr,
                                          Progress* progress = nullptr);
@@ -94,7 +94,8 @@ class SweepCount {
   SweepCount(const Sweep& sweep, const ResultStore& store, SweepObserver* observer);
   ~SweepCount();
   void finished(bool failed);
-  /// Returns the total progress of the unfinished points. It is passed on to SweepObserver::at_share().
+  /// Returns the object that receives the progress of the unfinished points. The progress is passed on to
+  /// SweepObserver::at_share().
   TaskProgress& points();
 
  private:
@@ -108,8 +109,8 @@ class SweepCount {
 /// Returns the numbers of the points of a sweep that are not in the store, in ascending order.
 std::vector<std::uint64_t> unfinished(const Sweep& sweep, const ResultStore& store);
 
-/// Computes the points that the store lacks, several at a time. Other processes may work on the same sweep; points that
-/// they have claimed are awaited.
+/// Computes the points that are not in the store, several at a time. Other processes may work on the same sweep. For
+/// points that they have claimed, the function waits.
 /// \return true if all points are finished, false if the computation was cancelled
 /// \throw OutputError if the store cannot be written
 bool run_sweep(const Sweep& sweep, ResultStore& store, SweepObserver* observer, const Cancellation* cancel);
@@ -123,7 +124,7 @@ struct SweepResult {
   Warnings warnings;
 };
 
-/// Returns the finished points with warnings about the study.
+/// Returns the finished points of a store, with warnings about failed points and other versions.
 SweepResult collect(const Sweep& sweep, const ResultStore& store, bool complete);
 
 }  // namespace retrace::studies

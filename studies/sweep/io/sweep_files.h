@@ -11,7 +11,7 @@ namespace retrace::studies {
 /// Returns the result as a document of the format `retrace.sweep/1`.
 std::string sweep_json(const SweepResult& result);
 
-/// Returns the inputs and quantities of the points as CSV. The text is the same for every run of a sweep.
+/// Returns the inputs and quantities of the points as CSV. The text is the same for every run of the same sweep.
 std::string sweep_csv(const SweepResult& result);
 
 /// Returns the points as a table for the terminal.
