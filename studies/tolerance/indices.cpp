@@ -11,22 +11,22 @@
 namespace retrace::studies {
 namespace {
 
-/// Stream of random numbers that is used only here.
+/// Stream of random numbers that is used only in this file.
 constexpr std::uint32_t kResample = 0x53776510U;
 constexpr std::size_t kResamples = 1000;
-/// Maximum number of groups of rows for resampling. If there are more rows, several rows form a group.
+/// Maximum number of groups of rows for resampling. If there are more rows, neighbouring rows form groups.
 constexpr std::size_t kMostGroups = 500;
 
-/// Sums over rows from which the indices are computed. Values are relative to their overall mean, so that there is no
-/// cancellation.
+/// Sums over rows (SaltelliRow) from which the indices are computed. The values of quantities are taken relative to
+/// their overall mean, which avoids cancellation.
 struct Sums {
   double rows = 0.0;
-  double values = 0.0;   ///< sum of a and b
+  double values = 0.0;   ///< sum of all values a and b
   double squares = 0.0;  ///< sum of the squares of a and b
   double b = 0.0;
-  std::vector<double> changes;          ///< sums of mixed - a, by parameter
-  std::vector<double> products;         ///< sums of b (mixed - a)
-  std::vector<double> squared_changes;  ///< sums of (mixed - a)^2
+  std::vector<double> changes;          ///< for each parameter: sum of mixed - a
+  std::vector<double> products;         ///< for each parameter: sum of b (mixed - a)
+  std::vector<double> squared_changes;  ///< for each parameter: sum of (mixed - a)^2
 
   explicit Sums(std::size_t parameters) : changes(parameters), products(parameters), squared_changes(parameters) {}
 
@@ -69,7 +69,7 @@ double centre_of(const std::vector<SaltelliRow>& rows) {
   return sum / (2.0 * static_cast<double>(rows.size()));
 }
 
-/// Returns the sums of groups of neighbouring rows.
+/// Returns the sums for groups of neighbouring rows.
 std::vector<Sums> grouped(const std::vector<SaltelliRow>& rows, double centre) {
   const std::size_t groups = std::min(rows.size(), kMostGroups);
   std::vector<Sums> sums(groups, Sums(rows.front().mixed.size()));

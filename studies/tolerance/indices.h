@@ -19,17 +19,17 @@ struct SobolIndex {
   Estimate total;        ///< effect including interactions with all other parameters
 };
 
-/// Values of a quantity at one row of the design of Saltelli et al. (2010): at two independent points A and B, and at A
-/// with one coordinate at a time replaced by that of B.
+/// Values of a quantity at the points of one row in the design of Saltelli et al. (2010). The points are two
+/// independent points A and B, and further points that are equal to A except for one coordinate, which is that of B.
 struct SaltelliRow {
   double a = 0.0, b = 0.0;
-  std::vector<double> mixed;  ///< value by replaced parameter
+  std::vector<double> mixed;  ///< for each parameter: value at A with the parameter of B
 };
 
-/// Returns the Sobol indices of the parameters. First-order indices follow Saltelli et al. (2010), total indices Jansen
-/// (1999). The intervals are computed by resampling the rows (Efron's percentile bootstrap). Empty if there are fewer
-/// than two rows, or if the quantity does not vary.
-/// \param confidence fraction of intervals that contain the true value, in 0..1
+/// Returns the Sobol indices of the parameters. Formulas: Saltelli et al. (2010) for first-order indices, Jansen (1999)
+/// for total indices. The intervals are computed by resampling the rows (Efron's percentile bootstrap). The result is
+/// empty if there are fewer than two rows, or if the quantity does not vary.
+/// \param confidence probability that an interval contains the true value, in 0..1
 /// \param seed seed of the resampling
 /// \pre `mixed` has the same number of entries in all rows
 std::vector<SobolIndex> sobol_indices(const std::vector<SaltelliRow>& rows, double confidence, std::uint32_t seed);
@@ -40,10 +40,10 @@ std::vector<SobolIndex> sobol_indices(const std::vector<SaltelliRow>& rows, doub
 /// \pre good <= parts, parts > 0
 Estimate yield_of(std::size_t good, std::size_t parts, double confidence);
 
-/// Spread of values.
+/// Spread (mean, deviation and extremes) of the values of a sample.
 struct Spread {
   double mean = 0.0;
-  Estimate mean_interval;  ///< interval of the mean by Student's t distribution
+  Estimate mean_interval;  ///< confidence interval of the mean, from Student's t distribution
   double deviation = 0.0;  ///< standard deviation; 0 for a single value
   double least = 0.0, most = 0.0;
 };

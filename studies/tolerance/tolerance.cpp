@@ -42,7 +42,8 @@ Sweep tolerance_sweep(Study study, const ToleranceRequest& request) {
 
 namespace {
 
-/// Finished points by number. Null for points that are not finished.
+/// Finished points of the plan (TolerancePlan), indexed by row and place in the row. Null for points that are not
+/// finished.
 class Finished {
  public:
   Finished(const Sweep& sweep, const ToleranceRequest& request, const std::vector<StoredPoint>& points)
@@ -60,7 +61,7 @@ class Finished {
   const StoredPoint* at(std::uint64_t row, std::uint64_t place) const {
     return points_[1 + row * points_of_row_ + place];
   }
-  /// Returns the parts as they are manufactured: points A, and points B if there are any.
+  /// Returns the points that represent manufactured parts: the points A and, with indices, also the points B.
   std::vector<const StoredPoint*> parts() const {
     std::vector<const StoredPoint*> parts;
     for (std::uint64_t place = 0; place < std::min<std::uint64_t>(2, points_of_row_); ++place)

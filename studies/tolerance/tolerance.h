@@ -1,7 +1,7 @@
 #pragma once
 
-// Spread and yield of quantities when parameters vary in manufacture, and the contribution of each parameter. This
-// study is behind `retrace tolerance`.
+// Spread and yield of quantities when parameters vary in manufacture, and the contribution of each parameter to the
+// spread. This study is behind `retrace tolerance`.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,16 +18,18 @@ namespace retrace::studies {
 
 /// Request for a tolerance study.
 struct ToleranceRequest {
-  std::uint64_t samples = 256;  ///< number of rows; with indices, a row has 2 parts and one more point per parameter
+  std::uint64_t samples = 256;  ///< number of rows; with Sobol indices, a row consists of 2 parts and of one more point
+                                ///< for each parameter
   UnitSamples::Kind sampling = UnitSamples::Kind::sobol;
   bool indices = true;
-  double confidence = 0.95;             ///< confidence of all intervals
+  double confidence = 0.95;             ///< confidence level of all intervals
   std::optional<double> least_yield;    ///< minimum yield; below it, the study fails
   std::vector<Constraint> constraints;  ///< limits that a good part must satisfy
 };
 
-/// Points of a tolerance study. The first is the nominal part with all parameters at their medians. Each row follows
-/// with part A. With indices, it also has part B, and A with one parameter at a time replaced by that of B.
+/// Points of a tolerance study. The first is the nominal part with all parameters at their medians. The rows follow. A
+/// row consists of a random part A. If Sobol indices are requested, it also has a random part B, and points that are
+/// equal to A except for one parameter, which is that of B.
 class TolerancePlan final : public PointPlan {
  public:
   /// \pre every parameter has a distribution
@@ -56,8 +58,10 @@ struct QuantityTolerance {
   std::size_t parts = 0;    ///< number of parts with a value
   std::size_t without = 0;  ///< number of parts that could not be computed or have no value
   std::optional<Spread> spread;
-  std::vector<std::pair<double, double>> percentiles;  ///< fraction and value
-  std::vector<SobolIndex> indices;  ///< indexed by parameter; empty if they were not requested or do not exist
+  std::vector<std::pair<double, double>> percentiles;  ///< pairs of a fraction of the parts and the value below which
+                                                       ///< it lies
+  std::vector<SobolIndex> indices;  ///< Sobol indices, in the order of the parameters; empty if they were not requested
+                                    ///< or are not defined
   std::size_t rows = 0;             ///< number of rows from which the indices were computed
   /// Root mean square of the values' standard errors, divided by their standard deviation. It shows how much of the
   /// spread is noise.
@@ -76,7 +80,7 @@ struct ToleranceResult {
   std::optional<Estimate> yield;  ///< fraction of parts that satisfy all limits; none without limits
   std::vector<LimitYield> limits;
   std::size_t parts = 0;   ///< number of manufactured parts
-  std::size_t failed = 0;  ///< number of parts that could not be computed; they count as bad
+  std::size_t failed = 0;  ///< number of parts that could not be computed; they count as violating the limits
   Warnings warnings;
   bool is_enough = true;  ///< false: the yield is below the requested minimum
 };

@@ -60,7 +60,7 @@ std::string percent_text(const Estimate& share, double confidence) {
                      kPercentPerShare * confidence, kPercentPerShare * share.low, kPercentPerShare * share.high);
 }
 
-/// Returns the parameters in descending order of their total index.
+/// Returns the indices of the parameters in descending order of their total Sobol index.
 std::vector<std::size_t> by_contribution(const std::vector<SobolIndex>& indices) {
   std::vector<std::size_t> order(indices.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -16,8 +16,8 @@ void check_parameters(const Study& study) {
                        "a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
 }
 
-/// Checks the number of samples and points. Numbers of samples have 32 bits, and numbers of points must be valid in
-/// SQLite.
+/// Checks that the numbers of samples and points are allowed. Numbers of samples have 32 bits, and numbers of points
+/// must be valid in SQLite.
 void check_size(const Study& study, const ToleranceRequest& request) {
   const std::size_t parameters = study.parameters.size();
   const std::size_t dimensions = (request.indices ? 2 : 1) * parameters;
