@@ -40,7 +40,8 @@ Json tool_json(const TurningResult& r) {
           {"skew_is_least", r.part.skew_is_least}};
 }
 
-/// Adds the results of the checks to a document: contact along the blocks, and the machined surface if it was computed.
+/// Adds the results of the checks to a document: the contact between tool and surface along the blocks of the program,
+/// and the machined surface if it was computed.
 void add_judged(const turning::TurnedPart& part, const turning::TurningCheck& check, Json& json) {
   json["form_tolerance_nm"] = part.form_tolerance_nm;
   json["block_low_nm"] = check.touch.low_nm;
