@@ -33,9 +33,8 @@ PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions);
 /// Returns the frame of directions around the direction back to the source, in the part frame.
 raytrace::ReturnFrame frame_of(const PhotometerSetting& setting);
 
-/// Spectral response of the receiver.
-enum class PhotometricResponse { x_bar, y_bar, z_bar };  ///< CIE 1931 colour matching functions; y_bar is V
-                                                         ///< is V(lambda)
+/// Spectral response of the receiver: one of the three colour matching functions. y_bar is V(lambda).
+enum class PhotometricResponse { x_bar, y_bar, z_bar };  ///< functions of the CIE 1931 observer; y_bar is V
 
 struct PhotometerReading {
   std::vector<double> r_a;  ///< R_A for each observation angle, in cd/(lx m^2)
@@ -214,8 +213,7 @@ class Photometer {
   bool is_first_answer_ = false;
   bool has_mirror_image_ = true;
   bool has_form_ = false;
-  bool keeps_phases_ = false;  ///< true: the exact engine, with diffraction, traces the light that rough facets scatter
-                               ///< as random phases of beams
+  bool keeps_phases_ = false;  ///< true: the exact engine describes roughness by random phases, with diffraction
 };
 
 /// Returns the relative spectral power of a CIE illuminant, per nm.

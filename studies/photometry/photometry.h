@@ -38,25 +38,25 @@ inline constexpr std::uint64_t kUsualRaysOfDirection = std::uint64_t{1} << 20;
 /// Request for the coefficients of retroreflection of a part at the test points of a standard.
 struct PhotometryRequest {
   TestProgramme programme;
-  std::string limits_source;  ///< area of the real part, to which R_I refers, > 0; the design defines only its
-                              ///< structure
-  double area_cm2 = 0.0;      ///< area of the part to which R_I refers, > 0; the design only shows the structure
+  std::string limits_source;  ///< origin of the limits: the name of a standard or a file
+  /// Area of the real part, to which R_I refers; > 0. The design defines only the structure of the part.
+  double area_cm2 = 0.0;
   std::vector<double> rotation_deg = {0.0};  ///< rotations epsilon of the part; the minimum reading over them counts
   raytrace::PhotometricApertures apertures;
   double window_deg = 2.0;  ///< half-angle of the computed far field; 0.05 to 10
   PhotometricLight light = PhotometricLight::illuminant_a;
   std::string dye;                                 ///< name of the dye; empty: no dye
-  materials::SpectralCurve dye_absorption_per_mm;  ///< any engine except stochastic and cell
+  materials::SpectralCurve dye_absorption_per_mm;  ///< absorption of the dye; empty: no dye
   bool diffraction = true;
-  Engine engine = Engine::automatic;  ///< neither stochastic nor cell
+  Engine engine = Engine::automatic;  ///< any engine except stochastic and cell
   /// Minimum power of beams that are traced exactly, as a fraction of the power on one element.
   std::optional<double> cutoff;
   std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays per direction; empty: kUsualRaysOfDirection
   std::uint32_t seed = 1;
-  bool pictures = false;  ///< True: the power inside and outside the window is integrated. This check is slow.
-  /// true: if the design fails, a change with which it passes is searched for
+  bool pictures = false;  ///< true: maps and curves are computed
+  /// True: the power inside and outside the window is integrated. This check is slow.
   bool window_power = false;
-  bool advice = true;   ///< true: if the design fails, a change is searched
+  bool advice = true;   ///< true: if the design fails, a change with which it passes is searched for
   bool colour = false;  ///< true: the chromaticity of the returned light is computed; not for the design's own light
 };
 

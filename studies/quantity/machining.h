@@ -23,13 +23,12 @@ struct MachiningProcess {
   double finishing_feed_mm_per_min = 20.0;
   double traverse_feed_mm_per_min = 200.0;
   double plough_length_um = 100.0;
-  double dwell_s = 0.1;  ///< Cutting strategy: two_step or unidirectional. With unidirectional, there are no finishing
-                         ///< cuts.
-  /// Strategy two_step or unidirectional. With unidirectional, facets are not finished.
+  double dwell_s = 0.1;  ///< dwell time at every root
+  /// Cutting strategy: two_step or unidirectional. With unidirectional, there are no finishing cuts.
   fabrication::Strategy strategy = fabrication::Strategy::two_step;
-  double edge_radius_um = 0.0;  ///< true: the design gets the facet texture and the root radius that result from
-                                ///< cutting
-  bool surface_as_cut = false;  ///< true: facets and roots get the texture and the radius of the cutting process
+  double edge_radius_um = 0.0;  ///< radius of the tool's cutting edge, which becomes the radius of the roots
+  /// True: the design gets the facet texture and the root radius that result from cutting.
+  bool surface_as_cut = false;
 };
 
 /// Returns the areal roughness Sa of the facets after cutting, in nm; see predicted_texture() in studies/closed_loop.

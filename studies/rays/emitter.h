@@ -45,7 +45,7 @@ inline constexpr std::uint64_t kMaxEmitterRays = std::uint64_t{1} << 40;
 struct EmitterRequest {
   EmitterKind kind = EmitterKind::lambertian;
   /// Diameter of the emitting disc. By default, a collimated emitter covers the entrance face, or one period of an
-  /// infinite part. Other emitters are points by default. In mm.
+  /// infinite part. Other emitters are points by default.
   std::optional<double> disc_mm;
   std::optional<double> half_angle_deg;  ///< none: 90 for `lambertian`, otherwise 0
   std::uint64_t rays = 1'000'000;

@@ -22,17 +22,16 @@ struct FacetGroup {
   std::string table;  ///< name of the file
   int line = 0;       ///< line of the first facet
   std::string name;
-  bool is_process = false;  ///< mean Sa of the height components below the cut-off wavelength of the measurement
+  bool is_process = false;  ///< true: a process; false: a single facet
   std::size_t facets = 0;
-  double roughness_sa_nm = 0.0;  ///< mean Sa of the height components above the cut-off wavelength of the measurement
-  double waviness_sa_nm = 0.0;   ///< mean Sa above the cut-off wavelength of the measurement
+  double roughness_sa_nm = 0.0;  ///< mean Sa of the heights with wavelengths below the cut-off of the measurement
+  double waviness_sa_nm = 0.0;   ///< mean Sa of the heights with wavelengths above the cut-off of the measurement
 };
 
 /// Request for the RRE of one design as a function of the roughness of its facets.
 struct RoughnessRequest {
-  std::vector<double> sa_nm;  ///< Correlation lengths, > 0. There is one curve for each value. The first value also
-                              ///< applies to measured facets.
-  /// One curve for each value, > 0; the first also applies to measured facets.
+  std::vector<double> sa_nm;  ///< roughness values of the curves, each >= 0
+  /// Correlation lengths, each > 0. There is one curve for each value. The first value also applies to measured facets.
   std::vector<double> correlation_length_um;
   double waviness_length_um = 200.0;  ///< waviness period of the measured facets, > 0
   std::vector<FacetGroup> measured;
@@ -81,7 +80,7 @@ class RoughnessStudy {
   /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
   RoughnessResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                       const ShareTasks& share = {}) const;
-  /// Traces one point, as a task of a computation that several processes share. `number` is the number of the task.
+  /// Traces the point with this number, as a task of a computation that several processes share.
   /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
   std::optional<std::string> compute_shared(std::uint64_t number, const Cancellation* cancel) const;
 

@@ -41,10 +41,10 @@ class AdaptiveCurve {
   AdaptiveCurve(std::vector<CurveSpan> spans, const std::vector<double>& kinks, const std::vector<double>& fixed,
                 double tolerance);
 
-  /// Adds the value of one more curve at a point.
-  /// \pre the order of the curves is the same at all points
+  /// Returns the next points to compute, in ascending order. Empty if the curves are accurate.
+  /// \pre values for all points of the last call were added
   std::vector<double> next();
-  /// Adds the value of a further curve at a point.
+  /// Adds the value of one more curve at a point.
   /// \pre the order of the curves is the same at all points
   void add(double place, CurveValue value) { values_[place].push_back(value); }
 

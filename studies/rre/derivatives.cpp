@@ -207,8 +207,8 @@ std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDi
   TraceByParameter trace(at, parameter, cancel);
   std::vector<RreDerivative> derivatives;
   try {
-    // The truncated power also varies with the parameter. RRE may lack all of this power, so that its derivative is an
-    // error bound.
+    // The truncated power also varies with the parameter. RRE may lack all of this power. Therefore the
+    // derivative of this power bounds the error of the derivative of RRE.
     const double truncation =
         at.policy.cutoff
             ? std::abs(differentiate([&](double x) { return trace(x).truncated_sample(); }, value, range).value)

@@ -39,7 +39,7 @@ double value_of(const Design& design, RreParameter parameter);
 /// \throw InputError if the design with this value is invalid
 Design with(const Design& design, RreParameter parameter, double value);
 
-/// Derivative of RRE with respect to one parameter, per unit of the parameter's name.
+/// Derivative of RRE with respect to one parameter. The name of the parameter contains its unit.
 struct RreDerivative {
   RreParameter parameter = RreParameter::incidence_deg;
   Derivative derivative;
@@ -52,8 +52,8 @@ struct TracedDirection {
   const OpticalModel& model;
   const raytrace::BeamTracer& tracer;  ///< tracer of model.part
   raytrace::Illumination illumination;
-  raytrace::BeamPolicy policy;         ///< result for the design's acceptance cones
-  const raytrace::BeamResult& traced;  ///< traced with the design's acceptance cones
+  raytrace::BeamPolicy policy;         ///< policy of every evaluation, with a limit of 20 times the point's beams
+  const raytrace::BeamResult& traced;  ///< result for the design's acceptance cones
 };
 
 /// Computes the derivatives of RRE for each acceptance cone, in the order of parameters_of(). Truncated power counts as

@@ -1,4 +1,4 @@
-// Converts the names of RRE requests, as used in command-line options, to and from values, and checks numbers.
+// Names of engines and sampling methods in command-line options, and checks of the values of such options.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -54,7 +54,7 @@ void check(const RreRequest& request) {
 }
 
 /// Refuses derivatives for parts with individual facet planes or a mask. Derivatives rebuild the part with changed
-/// sizes, but facet planes and masks are given only for one size.
+/// sizes, but a table of facet planes or a mask does not change with the size.
 void check_planes(const Design& design, const RreRequest& request) {
   if (request.derivatives && design.facet_planes())
     throw InputError(design.where("part.facets"), "has no derivatives: leave out --derivatives");

@@ -23,8 +23,8 @@ geometry::Rectangle element_box(const geometry::Element& element) {
 
 struct FewElements {
   Design design;
-  std::vector<std::string> remarks;  ///< changes of the design
-  bool is_cut = false;               ///< differences from the design, for the user
+  std::vector<std::string> remarks;  ///< differences from the given design, for the user
+  bool is_cut = false;               ///< true: the elements are part of a larger array
 };
 
 /// Returns a design with a few elements of the given design, without features that are not shown.

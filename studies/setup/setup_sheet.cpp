@@ -221,8 +221,8 @@ SetupSheet setup_sheet(const FabricationResult& result, bool light) {
   try {
     sheet.light = setup_light(result.job, result.job.source, result.machine, sheet.warnings);
   } catch (const Error& error) {
-    // An error in the computation of the light, for example due to a changed design, must not prevent that programs are
-    // written.
+    // An error in the computation of the light, for example due to a changed design, must not prevent the programs
+    // from being written.
     sheet.why_no_light = error.what();
   }
   return sheet;

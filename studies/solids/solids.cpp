@@ -87,8 +87,8 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
   return part;
 }
 
-/// Sets the mesh of a solid from a design that is read from a mesh or consists of zones. Repairs of the mesh are added
-/// to the warnings.
+/// Returns the solid with its mesh, for a design that is read from a mesh file or consists of zones. Repairs of the
+/// mesh are reported in the warnings.
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
     check_taken(solid.design, {.what = fmt::format("--what {}", name_of(solid.what)), .wet_backs = true});

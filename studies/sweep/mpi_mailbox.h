@@ -41,7 +41,7 @@ class MpiMailbox {
   virtual std::optional<Letter> take(std::chrono::microseconds patience) = 0;
   /// Returns the time since the last message or sign of life of a rank.
   virtual std::chrono::duration<double> silence(int rank) const = 0;
-  /// Measures the silence of all ranks from now on. Used after this process itself was suspended.
+  /// Restarts the measurement of the silence of all ranks. Must be called after this process itself was suspended.
   virtual void forgive_silence() = 0;
   /// Stops sending to a rank that was given up. Other functions do not wait for its pending messages.
   virtual void forget(int rank) = 0;

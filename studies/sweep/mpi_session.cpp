@@ -293,7 +293,6 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
   };
   const auto read = [&](const Letter& letter) {
     if (!state.there.contains(letter.rank)) return;  // the rank was given up earlier, but it is alive
-                                                     // messages
     if (letter.tag == Tag::ask) waiting[letter.rank] = std::stoul(letter.bytes);
     if (letter.tag == Tag::result)
       dealer.finish(tasks_of(letter.bytes.substr(0, sizeof(std::uint64_t))).front(),
@@ -352,7 +351,8 @@ void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Canc
     }
     const std::vector<std::uint64_t> tasks = tasks_of(letter->bytes);
     // If tasks are quick, the next batch is requested before this batch is computed, which hides the latency of
-    // messages. Slow tasks are requested only when this rank is idle, so that they can be dealt to the next idle rank.
+    // messages. If tasks are slow, the next batch is requested only when this rank is idle. Until then, rank 0 can
+    // deal these tasks to other idle ranks.
     if (is_quick) ask();
     const auto start = Clock::now();
     for_each_in_parallel(tasks.size(), [&](std::size_t k) {

@@ -13,8 +13,7 @@ namespace retrace::studies {
 class UnitSamples {
  public:
   enum class Kind {
-    sobol,            ///< Sobol points with Owen scrambling by hashes (Laine and Karras 2011); `count` should be a
-                      ///< power of two
+    sobol,            ///< Owen-scrambled by hashes (Laine and Karras 2011); best if `count` is a power of two
     latin_hypercube,  ///< one point in each of `count` equal intervals of every axis (McKay et al. 1979)
     monte_carlo       ///< independent random points
   };

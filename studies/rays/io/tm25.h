@@ -17,7 +17,7 @@
 namespace retrace::studies {
 
 /// Reads a file of rays.
-/// \throw InputError with the file and the position of the byte
+/// \throw InputError with the file and the position of the error in bytes
 class Tm25Source : public RaySource {
  public:
   /// Opens a regular file (not a pipe or a device).
