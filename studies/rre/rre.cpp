@@ -194,9 +194,9 @@ void warn_of_truncation(const RreRequest& request, RreResult& result) {
                        [&](const RrePoint& a, const RrePoint& b) { return truncated(a) < truncated(b); });
   if (worst == result.points.end() || truncated(*worst) <= allowed) return;
   result.warnings.push_back(
-      {"power_truncated", fmt::format("{}: {:.2g} % of the power is cut off at incidence {}, azimuth {}, and RRE up to "
-                                      "that much too low; a smaller "
-                                      "--cutoff follows more",
+      {"power_truncated", fmt::format("{}: {:.2g} % of the power is cut off at incidence {}, azimuth {}, so that RRE "
+                                      "may be too low by up to this amount; a smaller "
+                                      "--cutoff reduces the error",
                                       result.designs[worst->design].source_name(), 100.0 * truncated(*worst),
                                       shortest(worst->incidence_deg), shortest(worst->azimuth_deg))});
 }

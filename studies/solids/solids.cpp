@@ -65,7 +65,7 @@ void add_warnings(Solid& solid) {
   const std::string name = solid.design.source_name();
   if (!solid.is_manifold)
     solid.warnings.push_back(
-        {"touching_edges", name + ": the part touches itself along edges, which some programs take for open"});
+        {"touching_edges", name + ": the part touches itself along edges; some programs treat it as an open surface"});
   if (!solid.design.surface.is_smooth())
     solid.warnings.push_back(
         {"texture_omitted", name + ": the texture of the facets is left out: a solid's facets are plane"});

@@ -319,8 +319,8 @@ SweepResult collect(const Sweep& sweep, const ResultStore& store, bool complete)
                                       result.points.size(), first->point, first->reason)});
   for (const StoredPoint& point : result.points)
     if (point.version != kVersion) {
-      result.warnings.push_back(
-          {"other_version", fmt::format("points were computed by version {} and this is {}", point.version, kVersion)});
+      result.warnings.push_back({"other_version", fmt::format("some points are from version {}, this is version {}",
+                                                              point.version, kVersion)});
       break;
     }
   return result;

@@ -171,7 +171,8 @@ void add_warnings(const ToleranceRequest& request, ToleranceResult& result) {
                "a smaller analysis.target_error helps",
                quantity.quantity, *quantity.noise)});
     if (request.indices && quantity.rows > 1 && quantity.indices.empty())
-      result.warnings.push_back({"no_variation", fmt::format("{}: does not vary: no indices", quantity.quantity)});
+      result.warnings.push_back(
+          {"no_variation", fmt::format("{}: has no Sobol indices because it does not vary", quantity.quantity)});
   }
 }
 

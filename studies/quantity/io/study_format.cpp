@@ -139,7 +139,7 @@ constexpr Row kAnalysisRows[] = {
     {"incidence_deg", Number{kIncidence}, 0.0, "For quantities that do not give their own."},
     {"azimuth_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0, "For quantities that do not give their own."},
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
-     "Turn of the part about its normal, counter-clockwise as seen from the light, for all that is asked about light."},
+     "Rotation of the part about its normal, counter-clockwise as seen from the light, for all optical quantities."},
     {"engine", Word{kEngines}, "auto", "As `retrace rre --engine`."},
     {"target_error", Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}}, Computed{"1e-4"},
      "As for `retrace rre --target-error`. Needs a quantity of RRE."},
