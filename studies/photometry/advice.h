@@ -12,7 +12,7 @@ namespace retrace::studies {
 
 /// Function that measures the readings of a changed design at all test points, with two wavelengths for each of `parts`
 /// spans of the lamp's spectrum. It may stop after the first readings that show that least_ratio() is below `enough`.
-/// It returns nothing if it was cancelled, and it may throw InputError if the design cannot be made.
+/// It returns nothing if the measurement was cancelled, and it may throw InputError if the design cannot be made.
 using TableOfDesign =
     std::function<std::optional<std::vector<PhotometricPoint>>(const Design& design, std::size_t parts, double enough)>;
 

@@ -15,7 +15,7 @@ namespace retrace::studies {
 PhotometryRequest request_of_response(const PhotometryRequest& request, std::size_t response);
 
 /// Measures the colour in the geometry of the standard, or at its first test point. The tristimulus values are measured
-/// separately, each with its own wavelengths. Returns nothing if it was cancelled.
+/// separately, each with its own wavelengths. Returns nothing if the measurement was cancelled.
 /// \param photometer photometer of the design and the request; the colour is measured with its engine
 /// \param v_deg angles V at which the colour is measured; the worst result counts
 /// \pre the light is a CIE illuminant, and the test plan has points

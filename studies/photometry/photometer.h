@@ -55,7 +55,8 @@ class Photometer {
   Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts,
              PhotometricResponse response = PhotometricResponse::y_bar);
 
-  /// Measures all settings. Returns the readings in the order of the settings, or nothing if it was cancelled.
+  /// Measures all settings. Returns the readings in the order of the settings, or nothing if the measurement was
+  /// cancelled.
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
                                                         Progress* progress, const Cancellation* cancel) const;
 

@@ -172,7 +172,8 @@ std::vector<PhotometricPoint> least_of(const std::vector<std::vector<Photometric
   return points;
 }
 
-/// Returns settings for the far-field maps: one for each measured direction of light, up to kMostMaps.
+/// Returns settings for the far-field maps: one for each measured direction of light at the first rotation of the part,
+/// up to kMostMaps.
 std::vector<PhotometerSetting> map_settings(const PhotometryRequest& request, const Plan& plan) {
   std::vector<PhotometerSetting> settings;
   for (const PhotometerSetting& measured : plan.settings)

@@ -227,7 +227,8 @@ class PhotometryStudy {
   PhotometryResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
   /// Computes preliminary readings with fewer wavelengths and either fewer rays or a higher cut-off power of beams. The
-  /// call may run in parallel with run() and does not change the result of run(). Returns nothing if it was cancelled.
+  /// call may run in parallel with run() and does not change the result of run(). Returns nothing if the computation
+  /// was cancelled.
   /// \param ray_share number of rays divided by the number of rays of run(); > 0 and at most 1
   /// \throw BudgetError if the memory is not enough for both computations
   std::optional<PhotometricFirstAnswer> first_answer(double ray_share, const Cancellation* cancel = nullptr) const;

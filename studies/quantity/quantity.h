@@ -36,7 +36,7 @@ class Quantity {
 
   /// Returns the name of the quantity's column in tables. It is unique in a study.
   const std::string& name() const { return name_; }
-  /// Computes the value for a candidate. Returns nothing if it was cancelled.
+  /// Computes the value for a candidate. Returns nothing if the computation was cancelled.
   /// \throw Error if the quantity cannot be computed for this candidate
   virtual std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const = 0;
   /// Returns an identifier of the ray or beam tracing from which the value is computed. Quantities with equal

@@ -42,7 +42,7 @@ class BeamCollector {
 
 /// Results of exact beams for one direction at one wavelength.
 struct BeamAnswer {
-  raytrace::BeamResult traced;  ///< not complete if it was cancelled; the other members are then empty
+  raytrace::BeamResult traced;  ///< not complete if tracing was cancelled; the other members are then empty
   std::optional<Footprint> footprint;
   std::optional<FarField> far_field;
 };
