@@ -1,5 +1,5 @@
-// Time and memory of the complete program for camera pictures of 100 cm2 of prisms (about 49,000 elements) at 1 %
-// noise. Each picture is computed in a separate process, so that its memory is measured separately.
+// Measures time and memory of the complete program for camera pictures of 100 cm2 of prisms (about 49,000 elements) at
+// 1 % noise. Each picture is computed in a separate process, so that its memory is measured separately.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

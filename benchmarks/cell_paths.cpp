@@ -1,4 +1,5 @@
-// Benchmarks of complete paths through infinite arrays: the cell engine, Embree, and a minimal loop as a lower bound.
+// Benchmarks of complete paths through infinite arrays. Compares the cell engine (which traces a path from cell to cell
+// of the array), Embree, and a minimal loop whose time is a lower bound.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -43,8 +44,9 @@ struct Bundle {
   std::vector<double> x, weight;
 };
 
-/// Traces paths in one plane of incidence through one prism: in, reflections at the facets, out. The loop contains only
-/// intersections with planes, tests for total reflection, Fresnel weights of s and p, and the shift back into the cell.
+/// Traces paths in one plane of incidence through one prism. Each path enters the prism, is reflected at the facets and
+/// leaves. The loop contains only intersections with planes, tests for total reflection, Fresnel weights of s and p,
+/// and the shift back into the cell.
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void bare_paths(
     double* __restrict x, double* __restrict weight, std::size_t count, double sine, double index, double thickness) {
   const double cosine = std::sqrt(1.0 - sine * sine);

@@ -1,5 +1,5 @@
-// Measures the time of `auto` per direction on one thread: all designs in examples/ with five indices behind the facets
-// and sixteen directions each, at the default target error.
+// Measures the time that the engine `auto` takes per direction on one thread. All designs in examples/ are traced with
+// five refractive indices of the medium behind the facets and sixteen directions each, at the default target error.
 //   retrace_every_direction_benchmark [PART_OF_NAME]
 // The program prints the slowest direction of each example, and all directions that take more than ten seconds.
 #include <fmt/format.h>

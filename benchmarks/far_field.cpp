@@ -1,5 +1,5 @@
-// Benchmarks of the far field: transform of a polygon, field of an infinite array of cube corners, and intensity at a
-// receiver.
+// Benchmarks of the far field: Fourier transform of a polygon, field of an infinite array of cube corners, and
+// intensity at a receiver.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace retrace::benchmarks::far_field_benchmark {
 namespace {
 
-/// Arg: number of corners.
+/// Arg: number of corners of the polygon.
 void transform_of_a_polygon(benchmark::State& state) {
   geometry::Polygon polygon;
   for (std::int64_t k = 0; k < state.range(0); ++k) {

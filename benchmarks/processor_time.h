@@ -14,7 +14,7 @@
 
 namespace retrace::benchmarks {
 
-/// Cancels a run after an elapsed time.
+/// Cancels a run when a given time has elapsed.
 class Deadline {
  public:
   explicit Deadline(double seconds)

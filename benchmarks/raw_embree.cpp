@@ -14,7 +14,7 @@ struct RawEmbree::Impl {
   RTCScene scene = nullptr;
   std::vector<RTCScene> patches;
 
-  /// Returns the patches as a single mesh, at their placements.
+  /// Returns a single mesh that contains all patches at their placements.
   RTCScene mesh(const geometry::Part& part, const std::vector<geometry::Placement>& placements,
                 const geometry::Vec2& origin) const {
     RTCScene s = rtcNewScene(device);

@@ -7,8 +7,8 @@
 
 namespace retrace::benchmarks {
 
-/// Traces rays with Embree only, on the surface of the other benchmarks. There is no refinement and the source facet is
-/// not excluded, so this is a lower bound of the time.
+/// Traces rays with Embree only, on the same back surface as the other benchmarks. Intersections are not refined in
+/// double precision and the source facet is not excluded, so the time is a lower bound.
 class RawEmbree {
  public:
   /// Structure of the Embree scene: instances of shared patches, or the triangles of a single mesh.

@@ -146,8 +146,8 @@ void raw_embree_flat(benchmark::State& state) {
   report(state, rays.size());
 }
 
-/// The tracer's search for the same rays: Embree, exclusion of the source facet, and intersection with the plane in
-/// double precision.
+/// Measures the tracer's own search with the rays of run_raw(). It consists of Embree, the exclusion of the source
+/// facet, and the intersection with the plane in double precision.
 void surface_search(benchmark::State& state) {
   static const BackSurface small(scene_of(20).part, scene_of(20).centre_mm);
   static const BackSurface large(scene_of(222).part, scene_of(222).centre_mm);
@@ -161,8 +161,8 @@ void surface_search(benchmark::State& state) {
   report(state, rays.size());
 }
 
-/// Complete paths with polarisation, splitting and the energy ledger. Args: elements along a side, incidence in
-/// degrees, threads.
+/// Measures complete paths with polarisation, splitting and the energy ledger. Args: elements along a side, incidence
+/// in degrees, threads.
 void whole_paths(benchmark::State& state) {
   const raytrace::MonteCarlo tracer(scene_of(state.range(0)).part);
   raytrace::Optics optics;

@@ -1,5 +1,5 @@
-// Time and peak memory of tracing rays from a TM-25 file through a part to a file, on one thread. Compared with Monte
-// Carlo of the same number of rays.
+// Measures time and peak memory of tracing rays from a TM-25 file through a part and writing them to a file, on one
+// thread. For comparison, Monte Carlo is run with the same number of rays.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -35,7 +35,7 @@ void write_design(const fs::path& file) {
                       << "\n[body]\nthickness_mm = 0.5\nrefractive_index = 1.4917\n";
 }
 
-/// Writes parallel rays from vertically above that cover the face at random positions.
+/// Writes parallel rays that hit the entrance face vertically at random positions.
 void write_rays(const fs::path& file, std::int64_t count) {
   studies::Tm25Sink sink(file);
   sink.begin({});

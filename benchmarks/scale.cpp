@@ -12,8 +12,9 @@
 namespace retrace::benchmarks::scale_benchmark {
 namespace {
 
-/// Writes a design file of side x side prisms of 0.451 mm; 222 on a side make a lens of 100 cm^2.
-/// \param substrate tables of the substrate and of the plate that covers it; "": the plane z = 0
+/// Writes a design file of side x side prisms of 0.451 mm. With 222 prisms on a side, the lens has 100 cm^2.
+/// \param substrate tables of the design file for the substrate and the plate that covers it; if it is empty, the
+///     prisms are on the plane z = 0
 std::filesystem::path write_design(std::int64_t side, const std::string& substrate) {
   const auto path = std::filesystem::temp_directory_path() / ("retrace_scale_" + std::to_string(::getpid()) + ".toml");
   const double length = 0.451 * static_cast<double>(side);

@@ -10,7 +10,7 @@
 
 namespace retrace::benchmarks {
 
-/// A part, and the point of its plane to which rays are relative.
+/// A part, and the point in its plane that is the origin of ray positions.
 struct Scene {
   std::string name;
   geometry::Part part;

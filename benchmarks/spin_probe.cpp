@@ -9,7 +9,7 @@
 namespace retrace::benchmarks::spin_probe_benchmark {
 namespace {
 
-/// Runs fused multiply-adds in one chain of dependencies. Memory and vector units have no influence.
+/// Runs a single chain of dependent fused multiply-adds. Memory and vector units have no influence on its speed.
 double spin(std::uint64_t steps) {
   double x = 0.5;
   for (std::uint64_t i = 0; i < steps; ++i) x = x * 0.999999 + 1e-7;

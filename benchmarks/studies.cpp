@@ -1,4 +1,5 @@
-// Measures the overhead of a study: rates with the exact engine, the store of results, and MPI.
+// Measures the overhead of a study in three ways: points per second with the exact engine, time for storing results,
+// and distribution of points with MPI.
 //   retrace_benchmarks --benchmark_filter=points|store
 //   mpirun -np 3 retrace_benchmarks     # overhead of distributing points of 10 ms, as a fraction of the ranks' time
 
@@ -43,7 +44,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Returns a study of prisms over incidence with the exact engine.
+/// Returns a study of prisms as a function of incidence, with the exact engine.
 studies::Study study_of(int points) {
   return studies::parse_study("design = \"" RETRACE_SOURCE_DIR
                               "/examples/rtp_single_0p45mm.toml\"\n[[parameter]]\nkey = \"analysis.incidence_deg\"\n"
@@ -59,7 +60,7 @@ studies::Sweep sleeping_sweep(int points) {
   return studies::read_sweep(std::move(study));
 }
 
-/// A store that is deleted at the end.
+/// Store of results that is deleted by the destructor.
 class TemporaryStore {
  public:
   explicit TemporaryStore(const studies::Sweep& sweep)
@@ -91,7 +92,7 @@ void exact_points(benchmark::State& state) {
 }
 BENCHMARK(exact_points)->Arg(1)->Arg(0)->ArgName("threads")->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// Time of a sweep of points of 10 ms on one thread, relative to the time of the points only.
+/// Measures the time of a sweep on one thread, relative to the time of its points only. Each point takes 10 ms.
 void store_overhead(benchmark::State& state) {
   constexpr int points = 200;
   const studies::Sweep sweep = sleeping_sweep(points);
@@ -110,7 +111,7 @@ void store_overhead(benchmark::State& state) {
 }
 BENCHMARK(store_overhead)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// Time of the last tenth of 10^5 points relative to the first tenth.
+/// Measures the time of the last tenth of 10^5 points relative to the time of the first tenth.
 void many_points(benchmark::State& state) {
   constexpr std::uint64_t points = 100'000;
   const studies::Sweep sweep = sleeping_sweep(2);
@@ -132,7 +133,7 @@ void many_points(benchmark::State& state) {
 }
 BENCHMARK(many_points)->Iterations(1)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// Runs as one of several ranks. Each rank computes one point at a time.
+/// Runs the benchmark as one of several MPI ranks. Each rank computes one point at a time.
 int run_under_mpi() {
   constexpr int points = 900;
   const studies::Sweep sweep = sleeping_sweep(points);

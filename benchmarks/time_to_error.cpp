@@ -20,11 +20,12 @@ namespace {
 enum Way : std::int64_t { kStochastic, kCell, kEmbree, kPlain };
 constexpr std::array<const char*, 4> kWays = {"stochastic beams", "cell", "Embree", "Embree, plain"};
 
-/// Sq and correlation length of rough facets, equal for all kinds. Finishing plunges reach Sq of this magnitude.
+/// Rms height Sq and correlation length of rough facets. All element kinds use the same values. Facets finished by
+/// plunge cutting have an Sq of this magnitude.
 constexpr surface_models::Roughness kRoughFacets{10.0, 5.0, 0.0, 0.0};
 
-/// Plain sampling is stopped at 0.05 percentage points. Its time is scaled by the squared ratio of the errors, because
-/// its error is proportional to 1/sqrt(rays).
+/// Target error of plain Monte Carlo sampling: 0.05 percentage points. The time for a smaller error is extrapolated
+/// with the squared ratio of the errors, because the error is proportional to 1/sqrt(rays).
 constexpr double kPlainTargetError = 5e-4;
 
 /// Returns infinite arrays, and a finite array of full cubes of 2.5 mm on 20 x 20 mm.

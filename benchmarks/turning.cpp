@@ -1,4 +1,4 @@
-// Path points per second on one core: a polynomial, and an array of 1,000 tilted lenslets.
+// Measures path points per second on one core, for a polynomial surface and for an array of 1,000 tilted lenslets.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ void polynomial_path(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(points));
 }
 
-/// Returns 32 x 32 aspheres on a sphere, each tilted to its normal, with C2 blends.
+/// Returns 32 x 32 aspheres on a sphere with C2 blends. The axis of each asphere is along the sphere's normal.
 FreeformSurface lenslet_array() {
   Sag base;
   base.asphere.curvature_per_mm = -0.02;
@@ -64,7 +64,8 @@ void lenslet_path(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(points));
 }
 
-/// Time that is spent once per path: the proof that the tool nose touches this array at only one point at a time.
+/// Measures the time of the proof that the tool nose touches this array at only one point at a time. The proof is
+/// computed one time per path.
 void lenslet_proof(benchmark::State& state) {
   const FreeformSurface surface = lenslet_array();
   for (auto _ : state) benchmark::DoNotOptimize(TouchMap(surface, tool(), 4.5).touches_once(0.0, 0.0));

@@ -1,4 +1,5 @@
-// Verification of NC text: time as a function of the number of elements, for the process of the published samples.
+// Measures the verification of NC text: time as a function of the number of elements, with the cuts of the samples in a
+// publication.
 #include <benchmark/benchmark.h>
 
 #include <string>
