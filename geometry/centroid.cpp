@@ -8,10 +8,10 @@
 namespace retrace::geometry {
 namespace {
 
-/// Maximum relative area of a polygon that is treated as having no area. The value is above the rounding error of the
-/// relative area. To compute it, the polygon is divided into a fan of triangles that share its first corner. The
-/// relative area is twice the polygon's area, divided by the sum of |p| |q| over all triangles. Here p and q are the
-/// two sides of a triangle at the shared corner, and |.| is the 1-norm.
+/// Polygons with a relative area up to this value are treated as having no area, because the value is of the order of
+/// rounding errors. The relative area is computed from a fan of triangles that share the polygon's first corner. It is
+/// twice the polygon's area, divided by the sum of |p| |q| over all triangles. Here p and q are the two sides of a
+/// triangle at the shared corner, and |.| is the 1-norm.
 constexpr double kRelativeAreaRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 Eigen::Matrix<double, 1, 1> twice_area(const Vec2& p, const Vec2& q) {
@@ -59,8 +59,8 @@ Vec area_centroid(std::span<const Vec> corners) {
     const Vec p = corners[k - 1] - origin, q = corners[k] - origin;
     moment += twice.dot(twice_area(p, q)) * (p + q);
   }
-  // The area of a very narrow polygon has a large relative rounding error, so the quotient may be far outside. The
-  // result is therefore clamped to the bounding box of the corners.
+  // The area of a very narrow polygon has a large relative rounding error, so the quotient may be far outside the
+  // polygon. The result is therefore clamped to the bounding box of the corners.
   const Vec centroid = origin + moment / (3.0 * twice.squaredNorm());
   return centroid.cwiseMax(lower).cwiseMin(upper);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Centroids of polygons in the plane and in space. A centroid does not change if a vertex is inserted in an edge. The
-// average of the corners would change.
+// Centroids of polygons in the plane and in space. In contrast to the average of the corners, a centroid does not
+// change if a vertex is inserted in an edge.
 
 #include <cstdint>
 #include <span>

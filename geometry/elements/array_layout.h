@@ -2,7 +2,6 @@
 
 // Describes how elements are repeated over a part: arrangement, gaps, offsets, shifted rows, partial elements. Designs
 // and fabrication jobs use the same description.
-// fabrication jobs say alike.
 
 #include <string>
 #include <vector>
@@ -24,9 +23,9 @@ struct ArrayLayout {
   PartialElements partial_elements = PartialElements::cut;
   double x_length_mm = 0.0;  ///< lengths of finite arrays that are not `single`
   double y_length_mm = 0.0;
-  double x_gap_mm = 0.0;  ///< flat land between elements; prisms only
+  double x_gap_mm = 0.0;  ///< width of the flat land (surface without elements) between elements; prisms only
   double y_gap_mm = 0.0;
-  double x_offset_mm = 0.0;  ///< flat margin kept free on both borders
+  double x_offset_mm = 0.0;  ///< width of the flat margin kept free on both borders
   double y_offset_mm = 0.0;
   double overlap_percent = 50.0;  ///< shift of alternate rows of `offset`, in percent of the base
   /// Mask of complete elements: one text per row, beginning with the row of largest y, with x ascending. '#' marks an

@@ -12,14 +12,15 @@
 namespace retrace::geometry {
 namespace {
 
-/// A length counts as a whole number of elements if it differs from it by at most this fraction.
+/// A length counts as a whole number of elements if its relative deviation from that number is at most this value.
 constexpr double kWhole = 1e-9;
-// Size of the sheet of an infinite array, in periods and in multiples of its extent. It is larger than any region that
-// is traced or drawn.
+// kEndlessPeriods is the number of periods of an infinite array's sheet on each side of the origin. kEndlessReaches is
+// the margin by which the block of cube corners on a substrate extends beyond the sheet, in multiples of the sheet's
+// size. Both are larger than any region that is traced or drawn.
 constexpr double kEndlessPeriods = 1e3;
 constexpr double kEndlessReaches = 10.0;
 
-/// Sets a bound of the block to that of the part if the two differ only by rounding errors.
+/// Sets each bound of the part to the same bound of the block if the two differ only by rounding errors.
 void snap(Rectangle& part, const Rectangle& block, const Vec2& length) {
   const auto one = [](double& bound, double to, double scale) {
     if (std::abs(bound - to) <= 2.0 * kWhole * scale) bound = to;
@@ -62,7 +63,8 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Returns the intersection of two convex polygons, or an empty polygon if it is not wider than the tolerance.
+/// Returns the intersection of two convex polygons. Returns an empty polygon if the intersection is not wider than the
+/// tolerance.
 Polygon common(Polygon polygon, const Polygon& other, double tolerance_mm) {
   for (std::size_t k = 0; k < other.size() && !polygon.empty(); ++k) {
     const Vec2 along = (other[(k + 1) % other.size()] - other[k]).normalized();
@@ -113,7 +115,8 @@ void ArraySheet::lay_on_substrate() {
   reach_mm = arcs_of_border();
 }
 
-/// Lays out prisms as in a flat array with the size of the unrolled substrate.
+/// Lays out prisms in the same way as in a flat array. On a substrate, this array has the size of the unrolled
+/// substrate.
 void ArraySheet::lay_out_prisms(const RtpElement& prism) {
   const Rectangle all = is_upright ? part_mm : moved(surface->arc_reach(), middle_mm);
   ArrayLayout array = spec->array;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Lays out the cells of an array on a sheet, from which the back surface is then tiled. The sheet is placed on the
-// plane z = 0 or on a curved substrate.
+// Lays out the cells of an array on a sheet. A sheet is a plane on which the cells form a regular lattice; it is then
+// placed on the plane z = 0 or on a curved substrate. The back surface is built from its cells.
 
 #include <array>
 #include <cstdint>
@@ -23,8 +23,9 @@ struct IndexRange {
 };
 
 /// Plane sheet on which an array is laid out. If the elements are upright (on the plane z = 0, or parallel to z on a
-/// substrate), the sheet is the part in plan. Otherwise it is the substrate unrolled into a plane (SubstrateSurface);
-/// the plan and the sheet then coincide at the centre of the part. Lengths are in mm in the part frame.
+/// substrate), the sheet is the projection of the part onto the xy plane ("plan"). Otherwise it is the substrate
+/// unrolled into a plane (SubstrateSurface), and sheet and plan coincide only at the centre of the part. Lengths are in
+/// mm in the part frame.
 struct ArraySheet {
   /// \pre the array is not `single`; `spec` outlives the sheet
   /// \throw InputError if the array is smaller than one element
@@ -32,7 +33,7 @@ struct ArraySheet {
 
   /// Returns the indices of all cells of the lattice that may overlap the part.
   IndexRange indices() const;
-  /// Returns the position on the sheet of the lattice's origin in period (i, j).
+  /// Returns the position on the sheet of the lattice's origin after a shift by (i, j) periods.
   Vec2 at_mm(std::int64_t i, std::int64_t j) const;
   /// Returns true if periods that differ only along this axis (0: x, 1: y) are equal except for their height.
   bool repeats_along(std::size_t axis) const;
@@ -46,11 +47,13 @@ struct ArraySheet {
   Vec2 middle_mm = Vec2::Zero();  ///< centre of the part, where the substrate has its origin
   Rectangle part_mm;              ///< extent of the part in plan
   Rectangle reach_mm;             ///< area of the sheet that covers the part
-  Rectangle block_mm;             ///< area of the sheet that elements fill; the rest is flat land
-  double top_mm = 0.0;            ///< height of the substrate at the level z = 0
-  double sliver_mm = 0.0;         ///< cells that cross a border of the sheet by at most this length count as inside
-  double tolerance_mm = 0.0;      ///< tolerance for the border of the part in plan
-  std::vector<Vec2> middles_mm;   ///< for each cell of the lattice, the point that is placed on the substrate
+  /// area of the sheet that elements fill; the rest is flat land (surface without elements)
+  Rectangle block_mm;
+  double top_mm = 0.0;  ///< height of the substrate's highest point, which is placed at z = 0 of the part
+  /// cells that extend beyond a border of the sheet by at most this length count as inside
+  double sliver_mm = 0.0;
+  double tolerance_mm = 0.0;     ///< tolerance for the border of the part in plan
+  std::vector<Vec2> middles_mm;  ///< for each cell of the lattice, the point that is placed on the substrate
   /// For each corner of each cell, its height above the substrate. Rims of full cubes are not horizontal.
   std::vector<std::vector<double>> rims_mm;
 
@@ -72,11 +75,11 @@ struct CellPlace {
   SubstrateFrame frame;  ///< frame of the substrate at the cell's reference point
 };
 
-/// Portion of a sheet, relative to the origin of one of the lattice's periods. Equal portions therefore have equal
-/// coordinates.
+/// Portion of a sheet. Its coordinates are relative to the lattice's origin in one period, so equal portions of the
+/// array have equal coordinates.
 class SheetPiece {
  public:
-  /// \param is_alone true if this is the only portion of the sheet; heights are then those of the part
+  /// \param is_alone true if this is the only portion of the sheet; heights are then relative to z = 0 of the part
   SheetPiece(const ArraySheet& sheet, std::int64_t i, std::int64_t j, bool is_alone);
 
   CellPlace place(std::size_t cell, const Vec2& shift_mm) const;

@@ -1,4 +1,5 @@
-// Rounds and chamfers the edges of elements. Edges become rows of plane strips; their corners become small plane faces.
+// Rounds and chamfers the edges of elements. An edge is replaced by a row of plane strips, and a corner at which edges
+// meet is replaced by small plane faces.
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -19,7 +20,8 @@ constexpr double kSliver = 1e-9;
 constexpr double kLeastEdge = 1e-7;
 // Number of times that the spherical triangle at a corner is subdivided: 16 faces.
 constexpr int kSphereHalvings = 2;
-// Minimum angle between two planes (approximately, in radians) for a rim to be rounded.
+// Minimum angle between two planes (approximately, in radians) for a rim to be rounded. A rim is the edge between an
+// element and its neighbour.
 constexpr double kLeastTurn = 1e-3;
 
 double size_of(const Polygon& outline) {
@@ -125,8 +127,8 @@ void add_sphere_faces(std::vector<CellFacet>& planes, const Vec3& centre, double
     add_sphere_faces(planes, centre, radius_mm, quarter, halvings - 1);
 }
 
-/// Adds a ball where three rounded edges meet. It touches the three planes that meet in `corner`. Chamfers have no
-/// ball.
+/// Adds a ball, approximated by plane faces, where three rounded edges meet. It touches the three planes that meet in
+/// `corner`. No ball is added to chamfers.
 void add_sphere(std::vector<CellFacet>& planes, const std::array<Vec3, 3>& normals, const Vec3& corner,
                 const Rounding& how) {
   // minimum volume of the normals' parallelepiped; planes that nearly share a line have no ball
@@ -151,7 +153,7 @@ Vec3 lowest_point(const Cell& cell) {
     slopes.row(1) = a.slope - cell.facets[2].plane.slope;
     heights.y() = cell.facets[2].plane.height_mm - a.height_mm;
   } else {
-    // direction across the roof; any point of the roof edge may be used
+    // direction across the roof; any point of the roof edge may be returned
     slopes.row(1) = Vec2(-slopes(0, 1), slopes(0, 0));
   }
   return lifted(slopes.fullPivLu().solve(heights), a);
@@ -170,7 +172,8 @@ std::vector<CellFacet> planes_with_roots(const Cell& cell, const EdgeShape& edge
   return planes;
 }
 
-/// Assumption about the neighbour beyond a rim.
+/// Assumption about the surface beyond a rim: the element's mirror image, or horizontal land (surface without
+/// elements).
 enum class Beyond { mirror_image, land };
 
 /// Rim of a facet: a point on it and the normal of the plane beyond it.
@@ -202,7 +205,8 @@ std::optional<Rim> rim_over(const Cell& cell, const CellFacet& facet, std::size_
              beyond == Beyond::land ? Vec3(-Vec3::UnitZ()) : Vec3(normal - 2.0 * normal.dot(outward) * outward)};
 }
 
-/// Adds the strips of a rim. Their number is equal whether the rim continues as a mirror image or ends on land.
+/// Adds the strips that round one side of a rim. Their number is the same whether the rim continues as a mirror image
+/// or ends on land.
 void add_rim_arc(std::vector<CellFacet>& planes, const Vec3& normal, const Rim& rim, const EdgeShape& edges,
                  Beyond beyond) {
   Rounding how = rim_rounding(edges);
@@ -267,8 +271,8 @@ Cell land_cell(const Rectangle& rectangle, const PartSpec& spec, Eigen::Index ax
   const Cell element = element_cell(spec.element, spec.angle_errors);
   const EdgeShape edges = without_negligible(spec.edges, size_of(element.outline));
   std::vector<CellFacet> planes;
-  // The second facet of one prism rises towards the land from the lower side, and the first facet of the next prism
-  // from the upper side.
+  // On the lower side of the land, the second facet of a prism rises to it. On the upper side, the first facet of the
+  // next prism rises to it.
   for (const bool from_below : {true, false}) {
     if (!edges.rounds_rims() || !(from_below ? lower : upper)) continue;
     const double steepness = element.facets[from_below ? 1 : 0].plane.slope.norm();

@@ -20,7 +20,7 @@ Cell with_edges(const Cell& cell, const PartSpec& spec);
 Cell land_cell(const Rectangle& rectangle, const PartSpec& spec, Eigen::Index axis = 0, bool lower = false,
                bool upper = false);
 
-/// Returns how far a rounded rim extends over the land next to a prism. Returns 0 if rims are sharp.
+/// Returns the distance by which a rounded rim extends over the land next to a prism. Returns 0 if rims are sharp.
 double rim_reach_over_land_mm(const PartSpec& spec);
 
 /// Returns the fraction of an element's area in plan that its edges and scratches occupy.

@@ -40,7 +40,7 @@ double rtp_depth(const RtpElement& e, const AngleErrors& errors) {
   return 0.5 * e.base_mm / std::tan(half_angles(e, errors).mean_rad);
 }
 
-// Returns how far the outer ends of the dihedral edges are above the apex. A cube with the edge length a has a rim
+// Returns the height of the outer ends of the dihedral edges above the apex. A cube with the edge length a has a rim
 // circle with the radius a sqrt(2/3). The ends of its dihedral edges are a / sqrt(3) above the apex, and the other
 // corners of the full cube are twice as high.
 double rise_of_dihedral_edge(double aperture_mm) {

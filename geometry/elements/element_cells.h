@@ -12,8 +12,8 @@
 
 namespace retrace::geometry {
 
-/// Type of a face of the part. The energy ledger books light that leaves the part by the role of the face through which
-/// the light left.
+/// Type of a face of the part. The energy ledger groups the light that leaves the part by the role of the face through
+/// which it leaves.
 enum class FacetRole : std::uint8_t {
   entrance,     ///< flat face at z = +thickness
   retro_facet,  ///< a facet of an element
@@ -82,8 +82,8 @@ Cant cant_of(const Element& element);
 /// Returns the largest angle between a facet of an element and the xy plane.
 double steepest_facet_deg(const Element& element, const AngleErrors& errors);
 
-/// Returns how far the rim of an element is above z = 0 because of errors or cant. Returns 0 if the rim is not above z
-/// = 0.
+/// Returns the height of the rim of an element above z = 0 that results from errors or cant. Returns 0 if the rim is
+/// not above z = 0.
 double element_top_mm(const Element& element, const AngleErrors& errors);
 
 /// Returns the outline of one element's aperture, shifted such that its bounding box begins at the origin.

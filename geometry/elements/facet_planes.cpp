@@ -65,7 +65,7 @@ void add_flares(std::vector<ElementPlanes>& elements, double radius_mm) {
         ElementPlanes& place = land[key_of(centre_mm)];
         place.planes.clear();
         place.centre_mm = centre_mm;
-        // Plane of the facet across the dihedral edge `other`, with its height converted to the new centre.
+        // Plane of the facet opposite to the dihedral edge `other`, with its height converted to the new centre.
         HeightPlane plane = element.planes[(other + 1) % 3];
         plane.height_mm += plane.slope.dot(centre_mm - element.centre_mm);
         if (!place.flares[other]) place.flares[other] = plane;

@@ -66,8 +66,8 @@ class FacetPlanes {
 /// Returns the position that ElementPlanes::centre_mm has for a cell. For land, returns its centre.
 Vec2 place_of(const PartSpec& spec, const Cell& cell);
 
-/// Returns the element at the position of `cell`, with individual facet planes. The facets end where their planes
-/// intersect.
+/// Returns the element at the position of `cell`, with individual facet planes. Each facet ends where its plane
+/// intersects the planes of the other facets.
 /// \param centre_mm the cell's place_of() in the coordinates of the cell
 Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm);
 

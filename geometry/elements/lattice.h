@@ -1,6 +1,6 @@
 #pragma once
 
-// Periodic tiling of the plane that an arrangement of elements repeats.
+// Periodic tiling of the plane from which an arrangement of elements is built.
 
 #include <vector>
 

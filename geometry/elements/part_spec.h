@@ -22,8 +22,8 @@ struct RtpElement {
   double apex_angle_deg = 90.0;  ///< included angle of the two facets; 60..120
 };
 
-/// Cant: inclination of a cube corner's axis, from its apex into the part, against +z. The three facets are rotated
-/// together about the apex. The outline in plan is not changed.
+/// Cant: angle between +z and a cube corner's axis, which points from its apex into the part. The three facets are
+/// rotated together about the apex. The outline in plan is not changed.
 struct Cant {
   double deg = 0.0;  ///< 0..30
   /// azimuth of the inclination, from +x towards +y; for a rotated cell it is rotated with the cell
@@ -45,7 +45,8 @@ struct TriangularCube {
 using Element = std::variant<RtpElement, HexagonalCube, TriangularCube>;
 
 /// Errors of the facets' angles, in arc minutes. Facets are rotated about the root or apex, which does not move. The
-/// element's outline in plan stays nominal, so its rims end above or below z = 0. Both kinds of error are added.
+/// element's outline in plan stays nominal, so its rims end above or below z = 0. If both kinds of error are given,
+/// their rotations are added.
 struct AngleErrors {
   /// Error of the angle between two neighbouring facets; each facet is rotated by half of it. A positive value opens
   /// the angle. Prism: only the first value is used, which is equivalent to a larger apex angle. Cube corner: values
@@ -99,8 +100,8 @@ struct PartSpec {
   EdgeShape edges;
   std::vector<Scratch> scratches;  ///< scratches of each prism; scratches on one facet do not overlap
   ArrayLayout array;
-  /// Surface on which the elements are placed. For finite arrays that are not `single` and have no offsets. If it is
-  /// not set, the elements are on the plane z = 0.
+  /// Surface on which the elements are placed. If it is not set, the elements are on the plane z = 0. A substrate
+  /// requires a finite array without offsets that is not `single`.
   std::optional<Substrate> substrate;
   bool is_pin_bundle = false;  ///< true for a honeycomb whose cubes are the ends of pins
   double thickness_mm = 0.0;   ///< thickness of the plate between the entrance face and z = 0; > element_top_mm()

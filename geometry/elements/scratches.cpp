@@ -10,7 +10,7 @@
 namespace retrace::geometry {
 namespace {
 
-// Width below which facets result from rounding errors, relative to an element's size.
+// Width, relative to an element's size, below which facets are attributed to rounding errors and omitted.
 constexpr double kSliver = 1e-9;
 
 /// Interval along the roof edge in which the height of the surface above the facet's plane is linear.
@@ -23,7 +23,8 @@ struct Stretch {
   bool is_scratch() const { return from_height_mm != 0.0 || to_height_mm != 0.0; }
 };
 
-/// Returns the profile of a facet along the roof edge, from one gable to the other. The origin is the centre.
+/// Returns the profile of a facet along the roof edge, from one end of the prism to the other. The origin is the centre
+/// of the roof edge.
 /// \param height_per_depth change of height when a plane is moved by a unit along its normal
 std::vector<Stretch> profile_of(const std::vector<Scratch>& scratches, std::size_t facet, double half_length_mm,
                                 double height_per_depth) {
@@ -53,7 +54,7 @@ struct RoofEdge {
   double middle_mm = 0.0;
   double half_length_mm = 0.0;
 
-  /// Returns the strip of the plane that an interval occupies.
+  /// Returns the strip of the xy plane in which the coordinate along the roof edge is within an interval.
   Rectangle band(const Stretch& stretch) const {
     constexpr double far = 1e9;
     Rectangle band{Vec2::Constant(-far), Vec2::Constant(far)};

@@ -64,7 +64,7 @@ class Walk {
     visit(PlacedElement{element, standing, frame});
   }
 
-  /// Returns the apex as a multiple of half a period, so that symmetric positions are exactly symmetric.
+  /// Returns the apex, rounded to a multiple of half a period. Symmetric positions are then exactly symmetric.
   Vec2 apex_mm(std::size_t cell, const Vec2& shift) const {
     const Vec2 half = 0.5 * sheet_.lattice.period_mm;
     const Vec2 aside(sheet_.lattice.cells[cell].rotated ? 0.5 * width_across_mm(sheet_.spec->element) : 0.0, 0.0);
@@ -87,7 +87,7 @@ double whole_count(double length_mm, double offset_mm, double gap_mm, double pit
 }
 
 bool PrismBlock::is_shifted(std::int64_t row) const {
-  // Where the parity of rows is specified, rows are counted from 1.
+  // In RowParity, rows are counted from 1; `row` is counted from 0.
   return shift_mm > 0.0 && (row % 2 == 0) == (shifted_rows == RowParity::odd);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 // Counts and places the elements of a finite array, on the plane z = 0 or on a substrate. Drawings, masks, tables of
-// facets and fabrication jobs use these functions. Parts are built from the same sheet (array_sheet.h), so their cells
-// are equal.
+// facets and fabrication jobs use these functions. The elements agree with the cells of a part, because parts are built
+// from the same sheet (array_sheet.h).
 
 #include <cstdint>
 #include <vector>
@@ -30,7 +30,7 @@ struct PrismBlock {
   CellCounts counts;
   Vec2 pitch_mm = Vec2::Zero();
   Rectangle filled;       ///< from the first element to the last, in the part frame
-  double shift_mm = 0.0;  ///< shift of alternate rows; 0: no row is shifted
+  double shift_mm = 0.0;  ///< shift of alternate rows; 0 if no row is shifted
   RowParity shifted_rows = RowParity::even;
   bool is_checker = false;
 
@@ -67,7 +67,8 @@ enum class Standing { whole, cut, beyond };
 struct PlacedElement {
   WholeElement on_sheet;  ///< position on the sheet: the plane, or the substrate unrolled into a plane
   Standing standing = Standing::whole;
-  /// frame below its centre or apex, relative to the centre of the part; z = 0 is the highest point of the substrate
+  /// frame on the substrate below the element's centre or apex, relative to the centre of the part; z = 0 is the
+  /// highest point of the substrate
   SubstrateFrame frame;
 };
 
@@ -77,14 +78,14 @@ struct PlacedElement {
 /// \throw InputError if the array is smaller than one element
 std::vector<PlacedElement> place(const PartSpec& spec);
 
-/// Returns the complete elements of a flat array, in the order of place(). Prisms fill a centred block. For cube
-/// corners, the apex of an element that is not rotated is at the centre of the extent. For `single`, the centre of the
-/// aperture's bounding box is there (CONVENTIONS.md, section 3).
+/// Returns the complete elements of a flat array, in the order of place(). Prisms fill a block in the centre of the
+/// extent. For cube corners, the apex of an element that is not rotated is at the centre of the extent. For `single`,
+/// the centre of the aperture's bounding box is at the centre of the extent (CONVENTIONS.md, section 3).
 /// \pre the array is finite; the pattern has the array's numbers of rows and cells
 std::vector<WholeElement> whole_elements(const ArrayLayout& array, const Element& element);
 
-/// Returns the number of complete elements in each row, beginning with the smallest y. These are the lengths of the
-/// rows of a pattern.
+/// Returns the number of complete elements in each row, beginning with the smallest y. These are the required lengths
+/// of the rows of ArrayLayout::pattern.
 std::vector<std::int64_t> row_lengths(const ArrayLayout& array, const Element& element);
 
 /// Returns the approximate number of cells of the array, without visiting them.

@@ -18,7 +18,7 @@ constexpr int kCellsPerFeature = 8;
 constexpr int kFewestCells = 64;
 // Maximum ratio of the mean curvatures of two grids that resolve the same features.
 constexpr double kSameBend = 1.3;
-// Changes of slope below this value are rounding errors of a plane.
+// Changes of slope below this value are rounding errors; the surface is then treated as a plane.
 constexpr double kFlat = 1e-9;
 // Distance from a corner at which the local curvature is measured, relative to the cell.
 constexpr double kSmall = 1e-3;

@@ -10,7 +10,8 @@
 
 namespace retrace::geometry {
 
-/// Returns the keys of `[base]` in designs and jobs, as rows for an object of the type Base. The last row is for pins.
+/// Returns the keys of `[base]` in designs and jobs, as rows for an object of the type Base. The last row is used only
+/// for pins (cube corners at the ends of pins).
 std::span<const schema::Row> substrate_rows();
 
 /// Returns the key that determines the shape of a substrate, for error messages about the shape.

@@ -229,7 +229,7 @@ std::optional<Extrapolation> read_extrapolation(const Document& file) {
   return Extrapolation{read_boundary(file), static_cast<int>(file.number("extrapolation.order"))};
 }
 
-/// Describes a table whose keys are not read here.
+/// Describes a table of the file whose keys are read by other functions.
 constexpr schema::Table left_to_others(std::string_view name) {
   return {.name = name, .meaning = "How it is made.", .presence = schema::Presence::optional, .is_open = true};
 }

@@ -85,7 +85,8 @@ ChosenElements::ChosenElements(const Part& part, const ElementChoice& choice)
       if (chosen) ++count_;
     }
   }
-  // A region of choice is convex. If all corners of the outline are chosen, the walls between them are chosen, too.
+  // The regions by which elements can be chosen are convex. If all corners of the outline are chosen, the walls between
+  // them are therefore chosen, too.
   const auto wall_is_chosen = [&](const Vec2& corner) { return is_chosen({}, corner); };
   const auto* const by_chance = std::get_if<RandomShare>(&choice_);
   is_everything_ = all && (by_chance ? by_chance->share >= 1.0 : std::ranges::all_of(part.outline, wall_is_chosen));

@@ -54,8 +54,8 @@ bool is_nominal(const PartSpec& spec, const FacetPlanes* planes) {
          spec.scratches.empty();
 }
 
-/// Returns the lowest and highest height of a patch. On a substrate, its vertices include points of z = 0 where borders
-/// end on that plane.
+/// Returns the lowest and highest height of a patch. On a substrate, the heights of the cells are used instead of the
+/// vertices, because some vertices are on z = 0, where the border walls end.
 std::array<double, 2> heights_of(const SurfacePatch& patch, bool on_substrate) {
   std::array<double, 2> range{INFINITY, -INFINITY};
   const auto add = [&](double z) { range = {std::min(range[0], z), std::max(range[1], z)}; };

@@ -36,9 +36,9 @@ struct LatticeRegion {
 };
 
 /// Solid part in the part frame. It is a plate 0 <= z <= thickness with the flat entrance face z = thickness and the
-/// elements below the plate. The rims of the elements are on z = 0, except for errors of angle and cant.
-/// A finite part is the prism over a convex outline; only the back surface bounds it at the bottom. An infinite part
-/// repeats with a rectangular period.
+/// elements below the plate. The rims of the elements are on z = 0 unless errors of angle or cant move them.
+/// The sides of a finite part are vertical walls over a convex outline, and the back surface bounds it at the bottom.
+/// An infinite part repeats with a rectangular period.
 ///
 /// The back surface is stored as few distinct patches and many placements. A large array then needs only the memory of
 /// its distinct patches (interior, borders, corners).

@@ -13,8 +13,8 @@ namespace retrace::geometry {
 SubstrateSurface substrate_surface_of(const PartSpec& spec);
 
 /// Measures the substrate and checks that it can carry the elements. The substrate must be finite, must rise by at most
-/// 60 degrees, and must not have a radius of curvature below the width of an element. It must not make a facet vertical
-/// or separate pins from each other.
+/// 60 degrees, and must not have a radius of curvature below the width of an element. On it, no facet may be vertical,
+/// and neighbouring pins must touch each other.
 /// \pre spec.substrate is set; the array is finite
 /// \throw InputError if a check fails; its text begins with "must" or "is not"
 SubstrateMeasures check_substrate(const PartSpec& spec);

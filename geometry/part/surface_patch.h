@@ -45,7 +45,7 @@ struct PatchCell {
   std::optional<std::uint32_t> first_of_element = {};
 };
 
-/// Connected patch of the part's back surface, in local coordinates. It contains everything below the plate except the
+/// Connected patch of the part's back surface, in local coordinates. It contains all faces below the plate except the
 /// outer walls. Triangles of neighbouring facets share complete edges (no T-junctions).
 struct SurfacePatch {
   std::vector<Vec3> vertices;

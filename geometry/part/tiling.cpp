@@ -20,14 +20,15 @@
 namespace retrace::geometry {
 namespace {
 
-// If a sheet repeats along only one axis, patches are short along the other axis.
+// Maximum number of elements in a patch if the sheet repeats along only one axis. Patches are then short along the
+// other axis.
 constexpr double kElementsPerColumnPatch = 256.0;
 // Approximate number of facets, including rounded edges, in a shared patch, and minimum number of periods. A patch
 // should not be smaller, because the neighbours on all sides are laid out together with each patch.
 constexpr double kFacetsPerPatch = 16384.0;
 constexpr double kFewestPeriods = 4.0;
-// An infinite array is a patch with this number of periods on each side of the central period. Rays then rarely have to
-// be moved back to the central period.
+// Number of periods on each side of the central period. An infinite array is stored as one patch with all these
+// periods, so that rays rarely have to be moved back to the central period.
 constexpr int kPeriodsBeyond = 2;
 constexpr std::uint32_t kNoPatch = UINT32_MAX;
 
@@ -47,7 +48,7 @@ AngleErrors errors_of(const PartSpec& spec, std::int64_t i, std::int64_t j, std:
   return errors;
 }
 
-/// Returns the four strips between the extent and the block. Strips may be empty.
+/// Returns the four strips between the extent of the array and its block of elements. Strips may be empty.
 std::array<Rectangle, 4> margins(const Rectangle& extent, const Rectangle& block) {
   return {Rectangle{extent.lower, {block.lower.x(), extent.upper.y()}},
           Rectangle{{block.upper.x(), extent.lower.y()}, extent.upper},
@@ -138,9 +139,9 @@ class Tiler {
   }
 
  private:
-  /// A patch and the numbers of its elements. Equal portions of the array share it.
+  /// A patch and the numbers of its elements. Equal portions of the array share one patch.
   struct Piece {
-    std::uint32_t patch = kNoPatch;  ///< kNoPatch if nothing of it is within the part
+    std::uint32_t patch = kNoPatch;  ///< kNoPatch if no portion of the patch is within the part
     std::int64_t full = 0;
     std::int64_t partial = 0;
     double area_mm2 = 0.0;  ///< area of all tiles in plan
@@ -252,7 +253,7 @@ class Tiler {
     });
   }
 
-  /// Begins the single portion that is the whole array.
+  /// Begins a single portion that contains the whole array.
   IndexRange begin_whole() {
     const IndexRange all = sheet_.indices();
     here_.emplace(sheet_, all.lower[0], all.lower[1], true);

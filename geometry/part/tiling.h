@@ -28,13 +28,13 @@ struct ArrayTiles {
   std::int64_t partial = 0;
 };
 /// Returns the tiles of an array.
-/// \pre a finite array on the plane z = 0, not `single`
+/// \pre the array is finite, on the plane z = 0 and not `single`
 /// \throw InputError if the array is smaller than one element
 ArrayTiles array_tiles(const PartSpec& spec);
 
 /// Returns the tiles of some cells of an array. Cells are complete, even if they cross the border.
 /// \param cells numbers of the cells (ArrayCell), ascending
-/// \pre a finite array on the plane z = 0, not `single`
+/// \pre the array is finite, on the plane z = 0 and not `single`
 std::vector<Tile> uncut_tiles(const PartSpec& spec, const std::vector<std::uint32_t>& cells);
 
 /// Adds some periods of an infinite array.

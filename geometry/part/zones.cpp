@@ -419,7 +419,8 @@ std::vector<std::vector<StandingElement>> whole_elements(const ZonedSpec& spec) 
 
 void add_zones(Part& part, const ZonedSpec& spec) {
   part.size_mm = size_of(spec);
-  // As wide as the steps that light is followed in.
+  // BeamWalk limits the size of its beam fragments to the size of this prism. A zoned part may have several kinds of
+  // elements, so the size of the smallest element is used.
   part.spec.element = RtpElement{part.size_mm, part.size_mm, 90.0};
   part.spec.thickness_mm = spec.thickness_mm;
   const Rectangle plate{Vec2::Zero(), spec.size_mm};

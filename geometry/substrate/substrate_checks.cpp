@@ -19,7 +19,7 @@ namespace {
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kMostIncline = 60.0;
 constexpr double kSteepestFacet = 88.0;
-constexpr int kGridSteps = 64;  // of the grids at which facets and pins are checked
+constexpr int kGridSteps = 64;  // intervals per side of the grids at which facets and pins are checked
 
 template <class Visit>
 void visit_grid(const Vec2& half_mm, const Visit& visit) {
@@ -28,7 +28,8 @@ void visit_grid(const Vec2& half_mm, const Visit& visit) {
       visit(Vec2(half_mm.cwiseProduct(Vec2(2.0 * i / kGridSteps - 1.0, 2.0 * j / kGridSteps - 1.0))));
 }
 
-/// Limits the number of elements on spheres and formulas. There all elements differ, and each needs some kilobytes.
+/// Limits the number of elements on spheres and formulas. On such substrates, all elements differ, and each needs some
+/// kilobytes.
 void check_count(const PartSpec& spec) {
   constexpr double kMostUnlike = 2e6;
   const bool repeats = std::holds_alternative<PlaneSubstrate>(spec.substrate->shape) ||

@@ -80,7 +80,7 @@ double chord_of_arc(double radius, double s) {
   return r * std::sin(std::clamp(s / r, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
 }
 
-/// Return the slope along the line x = 0, and the slope along the line of constant y.
+/// The next two functions return the slope along the line x = 0, and the slope along a line of constant y.
 auto middle_slope(const SubstrateSurface& surface) {
   return [&surface](double y) { return surface.at({0.0, y}).y; };
 }
@@ -88,14 +88,14 @@ auto row_slope(const SubstrateSurface& surface, double y) {
   return [&surface, y](double x) { return surface.at({x, y}).x; };
 }
 
-/// Table of the arc length along a curve z(t), measured from t = 0 and computed from the slope of the curve. The table
-/// is also inverted.
+/// Table of the arc length along a curve z(t), measured from t = 0 and computed from the slope of the curve. It also
+/// returns t for a given arc length.
 class ArcTable {
  public:
   template <class Slope>
   ArcTable(double half_mm, double beyond_mm, double step_mm, const Slope& slope) {
-    // The border is a node of the table. A formula may have a kink there, because it is continued along its tangent
-    // outside. No interval of integration contains this kink.
+    // The border is a node of the table, so that no interval of integration contains a kink at the border. A formula
+    // may have a kink there, because it is continued along its tangent outside the border.
     const double within = std::ceil(half_mm / step_mm);
     step_ = half_mm / within;
     const double count = within + std::ceil(beyond_mm / step_);

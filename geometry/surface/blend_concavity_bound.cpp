@@ -10,10 +10,10 @@
 #include "core/math/jets.h"
 #include "geometry/surface/concavity_bound.h"
 
-// Between its two boundaries, a blend is a polynomial in the relative position v. In Bernstein form, its values are
-// between the smallest and largest coefficient. Values of its derivatives are between those of the differences of
-// coefficients (G. Farin, Curves and Surfaces for CAGD, 5th ed., sections 5.3 and 6.3). These are enclosed over
-// intervals of the azimuth.
+// Between its two boundaries, a blend is a polynomial in the relative position v. Its values are between the smallest
+// and the largest coefficient of its Bernstein form. Its derivatives are bounded in the same way by differences of the
+// coefficients (G. Farin, Curves and Surfaces for CAGD, 5th ed., sections 5.3 and 6.3). Interval arithmetic encloses
+// the coefficients over intervals of the azimuth.
 
 namespace retrace::geometry {
 namespace {
@@ -43,8 +43,8 @@ Piece piece_of(const PeriodicSpline& spline, double angle_rad) {
   return {knots[index] + turns * kTurn, spline.piece(index), spline.degree() + 1};
 }
 
-/// Blend along a radial line, and its dependence on the azimuth. C is double or Interval; the series are in the
-/// azimuth.
+/// Blend along a radial line, and its dependence on the azimuth. C is double or Interval. The members are Taylor series
+/// in the azimuth.
 template <class C>
 struct Ray {
   Series<C, 2> inner;
@@ -52,7 +52,8 @@ struct Ray {
   std::array<Series<C, 2>, kMostDegree + 1> node;  ///< Bernstein coefficients of z
 };
 
-/// Returns the height on the lenslet along a line, in doubles. It always exists, because nothing is enclosed.
+/// Returns the height on the lenslet along a line, in doubles. In contrast to the enclosures below, this always
+/// succeeds.
 template <int N>
 std::optional<Series<Jet2, N>> on_lenslet(const Lenslet& lenslet, const Series<Jet2, N>& x, const Series<Jet2, N>& y) {
   return lenslet.evaluate(x, y);
@@ -90,8 +91,8 @@ std::optional<Enclosed> enclosed_height(const Lenslet& lenslet, const Interval& 
   return std::nullopt;
 }
 
-/// Derivatives are computed order by order. All derivatives of the residual vanish, and each is linear in the
-/// derivative of its own order.
+/// Returns enclosures of the height on the lenslet and of its derivatives. Derivatives are computed order by order. All
+/// derivatives of the residual vanish, and each is linear in the derivative of its own order.
 template <int N>
 std::optional<Series<Enclosure, N>> on_lenslet(const Lenslet& lenslet, const Series<Enclosure, N>& x,
                                                const Series<Enclosure, N>& y) {
@@ -261,7 +262,7 @@ bool is_proved_in_parts(const Lenslet& lenslet, const Sag& base, double limit_pe
 }  // namespace
 
 bool is_blend_concavity_bounded(const Lenslet& lenslet, const Sag& base, double limit_per_mm) {
-  // Without a common slope, the surface has a sharp edge there.
+  // If the blend and the base have no common slope, the surface has a sharp edge at their boundary.
   if (lenslet.blend_order < 1 || !lenslet.ends_on_base || lenslet.sag.formula || base.formula) return false;
   const std::vector<double> breaks = breaks_of(lenslet);
   constexpr double kNone = 1e-12;  // smaller intervals are between knots that both boundaries share

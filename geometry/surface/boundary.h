@@ -18,7 +18,8 @@ namespace retrace::geometry {
 struct Boundary {
   Vec2 centre_mm = Vec2::Zero();
   PeriodicSpline radius_mm = PeriodicSpline::constant(1.0);
-  /// Minimum radius, estimated from samples of each spline segment. It allows contains() to answer quickly.
+  /// Minimum and maximum radius, estimated from samples of each spline segment. They allow contains() to answer
+  /// quickly.
   double least_mm = 1.0;
   double most_mm = 1.0;
 
@@ -50,7 +51,7 @@ Boundary boundary_from_radii(const Vec2& centre_mm, const std::vector<double>& a
 /// Returns a boundary through points in plan.
 /// \param points_mm points in order along the curve, in either direction
 /// \param centre_mm centre of the boundary; if it has no value, the centroid of the enclosed area is the centre
-/// true if the points are in no particular order; they are then sorted by their angle about the centre
+/// \param scattered true if the points are in no particular order; they are then sorted by their angle about the centre
 /// \throw InputError if the curve crosses itself or has several radii at one angle about the centre
 Boundary boundary_from_points(std::vector<Vec2> points_mm, std::optional<Vec2> centre_mm, bool scattered, int degree,
                               const InputLocation& where);

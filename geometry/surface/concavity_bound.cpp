@@ -51,7 +51,8 @@ Interval along_y(const PlanBox& box) {
 
 /// Returns half the side of a square in the lenslet's frame over which the surface covers the disc of radius `reach_mm`
 /// about the origin in plan. A disc with the radius rho in the lenslet's frame is sufficient if cos(tilt) rho -
-/// sin(tilt) |w| > reach on its rim. Returns nothing if no tried value is sufficient.
+/// sin(tilt) |w| > reach_mm, where w is the sag over that disc. Returns nothing if none of several trial values of rho
+/// is sufficient.
 std::optional<double> covering(const Lenslet& lenslet, double reach_mm) {
   const double cosine = lenslet.part_from_lenslet(2, 2);
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
@@ -102,13 +103,13 @@ bool is_concavity_bounded(const Lenslet& lenslet, double limit_per_mm) {
   if (!rho) return false;
   const auto holds = [&](const PlanBox& box) {
     const Bend bend = bend_over(lenslet.sag, along_x(box), along_y(box));
-    // z component, in the part frame, of n = (-h_u, -h_v, 1). This is the derivative of w - h with respect to the
-    // part's z.
+    // `upright` is the z component, in the part frame, of the normal n = (-h_u, -h_v, 1). It is the derivative of w - h
+    // with respect to the part's z, where h(u, v) is the sag.
     const Interval upright = r(2, 2) - bend.x * r(2, 0) - bend.y * r(2, 1);
     if (!(upright.lower() > 0.0) || !std::isfinite(bend.largest)) return false;
     const double square = 1.0 + std::pow(norm(bend.x), 2) + std::pow(norm(bend.y), 2);
-    // Along a curve above the part's plan, z'' = h'' / upright. The direction (u', v') has at most the length |n| /
-    // upright.
+    // For a straight line in plan, the height above it has z'' = h'' / upright. The direction (u', v') of this line in
+    // the lenslet's frame has at most the length |n| / upright.
     return std::max(0.0, bend.largest) * square / std::pow(upright.lower(), 3) < limit_per_mm;
   };
   bool is_proved = true;

@@ -19,7 +19,7 @@ struct Extrapolation {
   int order = 2;  ///< degree n of the polynomials along radial lines; the surface is C^n
 };
 
-/// Part of the definition that determines the surface at a point.
+/// Component of the surface that determines the height at a point.
 enum class Zone { base, extrapolation, lenslet, blend };
 
 /// Explicit surface z(x, y) of a part: a base with its extrapolation and lenslets. The material is below the surface.

@@ -76,7 +76,8 @@ Jet2 height_over(const Lenslet& lenslet, const Jet2& x, const Jet2& y) {
   return corrected(lenslet, x, y, 2);
 }
 
-/// Computes the term t = 0 with all derivatives of T, then the orders of t one after the other.
+/// Returns the height as a series along a line. The constant term is computed first, with all derivatives of T. Each
+/// following term is then computed from the previous terms.
 template <class T, int N>
 Series<T, N> height_over(const Lenslet& lenslet, const Series<T, N>& x, const Series<T, N>& y) {
   Series<T, N> z = constant_like(x, 0.0);

@@ -14,8 +14,9 @@ namespace retrace::geometry {
 inline constexpr int kMostSplineDegree = jets::kMostOrder;
 
 /// Interpolating spline of period 2 pi and degree p. It is C^(p - 1) everywhere, including the point where the period
-/// closes (C. de Boor, A Practical Guide to Splines, Springer 1978, ch. IX and XIII). Knots are the sites for odd
-/// degrees. For even degrees they are midway between the sites, which keeps the periodic problem regular.
+/// closes (C. de Boor, A Practical Guide to Splines, Springer 1978, ch. IX and XIII). The sites are the angles at which
+/// values are given. For odd degrees, the knots are the sites. For even degrees, the knots are midway between the
+/// sites, which keeps the periodic problem regular.
 class PeriodicSpline {
  public:
   /// \param sites_rad strictly ascending, within one period
