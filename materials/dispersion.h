@@ -19,7 +19,7 @@ struct ConstantIndex {
   double n = 1.0;
 };
 
-/// n^2 = sum over the terms of coefficient * w^exponent, w the wavelength in um.
+/// n^2 is the sum of coefficient * w^exponent over all terms, where w is the wavelength in um.
 struct PowerSeries {
   struct Term {
     double coefficient = 0.0;
@@ -107,8 +107,9 @@ struct ThermoOptic {
   double d2_per_k3 = 0.0;
   double e0_um2_per_k = 0.0;
   double e1_um2_per_k2 = 0.0;
-  double resonance_um = 0.0;                                       ///< w_TK
-  double valid_from_c = -std::numeric_limits<double>::infinity();  ///< range of the data, if the source contains it
+  double resonance_um = 0.0;  ///< w_TK
+  /// temperature range of the data, if the source contains it
+  double valid_from_c = -std::numeric_limits<double>::infinity();
   double valid_to_c = std::numeric_limits<double>::infinity();
   std::string source;
 };
@@ -119,7 +120,7 @@ struct Material {
   std::string description;
   Dispersion dispersion;
   bool relative_to_vacuum = false;
-  double valid_from_nm = 0.0;  ///< range of the data from which the formula was fitted
+  double valid_from_nm = 0.0;  ///< range of the measured wavelengths to which the formula was fitted
   double valid_to_nm = 0.0;
   double temperature_c = 20.0;  ///< temperature of these data
   std::optional<ThermoOptic> thermo_optic;

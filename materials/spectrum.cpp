@@ -10,8 +10,8 @@
 namespace retrace::materials {
 namespace {
 
-/// Smaller fractions of the flux are ignored. They have no visible effect on a mean, but would make the recurrence
-/// ill-conditioned.
+/// Fractions of the flux below this value are ignored. They have no visible effect on a mean, but would make the
+/// recurrence ill-conditioned.
 constexpr double kLeastShare = 1e-15;
 
 /// Returns the fluxes divided by their sum.

@@ -34,19 +34,20 @@ struct Spectrum {
 /// Returns the spectrum of light with a single wavelength.
 Spectrum monochromatic(double wavelength_nm);
 
-/// Returns the flux of a lamp with the spectral power `power` (per nm, in any unit). The trapezium rule is used at the
-/// wavelengths of `power` and at all multiples of 5 nm between them.
+/// Returns the flux of a lamp as a spectrum with many wavelengths. The lamp has the spectral power `power` (per nm, in
+/// any unit). The trapezium rule is used at the wavelengths of `power` and at all multiples of 5 nm between them.
 /// \param efficiency V for luminous flux; null for radiant flux
 /// \throw InputError if the flux is 0
 Spectrum resolved_spectrum(const SpectralCurve& power, const SpectralCurve* efficiency);
 
-/// Returns the flux of a lamp with separate spectral lines. Lines without flux are omitted.
+/// Returns the flux of a lamp with separate spectral lines as a spectrum. Lines without flux are omitted.
 /// \pre wavelengths are in ascending order
 /// \throw InputError if the flux is 0
 Spectrum line_spectrum(const std::vector<SpectralLine>& lines, const SpectralCurve* efficiency);
 
-/// Returns the Gauss rule with `nodes` wavelengths for means over `spectrum`. It is exact for polynomials in the
-/// wavelength up to the degree 2 nodes - 1. Returns the spectrum itself if it has at most `nodes` wavelengths.
+/// Returns a Gauss rule: a spectrum with only `nodes` wavelengths that gives the same means as `spectrum` for
+/// polynomials in the wavelength up to the degree 2 nodes - 1. Returns the spectrum itself if it has at most `nodes`
+/// wavelengths.
 /// The recurrence coefficients are computed by the procedure of Stieltjes. Nodes and weights follow from the
 /// eigenvalues of the Jacobi matrix (Golub and Welsch, Math. Comp. 23, 221 (1969); Gautschi, Orthogonal Polynomials
 /// (2004), 2.2.3.1).

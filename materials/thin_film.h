@@ -32,11 +32,11 @@ struct LayerStack {
 enum class StackSide { body, outside };
 
 /// Returns the coefficients of a face with layers (Abeles, Ann. Phys. (Paris) 5, 596 (1950)). Without layers, these are
-/// the coefficients of the bare face. If light reaches an opaque layer first, these are the coefficients of that metal.
-/// Phases are those of the field at the outermost faces of the stack. The thickness of the stack is neglected: all its
-/// faces are treated as located in the plane of the face. r^2 + t^2 <= 1 for each component; the remaining power is
-/// absorbed. total_reflection is set if nothing is transmitted, because of total reflection at the last medium or
-/// because of an opaque layer.
+/// the coefficients of the bare face. If the first layer that the light reaches is opaque, these are the coefficients
+/// of a thick metal with the index of this layer. Phases are those of the field at the outermost faces of the stack.
+/// The thickness of the stack is neglected: all its faces are treated as located in the plane of the face. r^2 + t^2 <=
+/// 1 for each component; the remaining power is absorbed. total_reflection is set if nothing is transmitted, because of
+/// total reflection at the last medium or because of an opaque layer.
 /// \param from_index n of the medium of the incident light, > 0
 /// \param to_index n of the medium on the other side of the stack, > 0
 /// \param cos_incidence 0..1; values outside because of rounding are clamped

@@ -19,7 +19,7 @@ Json part_json(const OpenedDesign& opened);
 /// Returns binary STL of one element on its plate.
 Json stl_json(const OpenedDesign& opened);
 
-// Of a request. \throw InputError for what it lacks
+// The functions with the parameter `request` throw InputError if a value of the request is missing or invalid.
 
 /// Traces the light from one direction.
 Json direction_json(const OpenedDesign& opened, const Json& request, const TimeLimit& limit);

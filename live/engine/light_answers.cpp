@@ -19,7 +19,7 @@ constexpr double kMovingError = 1e-4;
 /// Result for one wavelength, or the mean over all wavelengths. There is one point per acceptance cone.
 struct Found {
   std::vector<RrePoint> points;
-  RrePoint at_middle;  ///< widest cone, at the wavelength of the footprint and the far field
+  RrePoint at_middle;  ///< result for the widest cone, at the wavelength of the footprint and the far field
   std::optional<studies::Footprint> footprint;
   std::optional<studies::FarField> far_field;
 };
@@ -32,7 +32,7 @@ RrePoint point_at(const OpenedDesign& opened, const studies::SceneLight& light) 
   return at;
 }
 
-/// Returns the index of the wavelength for which the model's own optics are valid.
+/// Returns the index of the wavelength for which `model.optics` is computed.
 std::size_t middle_of(const studies::OpticalModel& model) {
   std::size_t middle = 0;
   for (std::size_t k = 0; k < model.spectral.size(); ++k)
@@ -105,8 +105,8 @@ class Tracing {
   raytrace::Sampling sampling_;
 };
 
-/// Traces a direction at all wavelengths. The footprint and the far field are those of the middle wavelength. Returns
-/// nothing if the time limit is reached.
+/// Traces a direction at all wavelengths. The footprint and the far field are computed only at the wavelength
+/// middle_of(). Returns nothing if the time limit is reached.
 std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLight& light, const Way& way,
                             const TimeLimit* limit) {
   const studies::OpticalModel& model = opened.require_model();

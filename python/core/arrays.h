@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers of the library as arrays of numpy that hold them, without a copy, and that nobody can change.
+// Converts vectors of the library to read-only numpy arrays without copying. Each array owns its data.
 
 #include <pybind11/numpy.h>
 
@@ -11,7 +11,7 @@
 namespace retrace::python {
 namespace py = pybind11;
 
-/// \param shape as many numbers as there are
+/// \param shape shape of the array; its product is the number of values in `items`
 template <class Number, class Item>
 py::array_t<Number> array_of(std::vector<Item>&& items, const std::vector<py::ssize_t>& shape) {
   static_assert(sizeof(Item) % sizeof(Number) == 0 && alignof(Item) == alignof(Number));

@@ -22,7 +22,8 @@
 namespace retrace::python {
 namespace py = pybind11;
 
-/// Error in a forked process: the threads that its parent used for computations do not exist there.
+/// Error of a computation in a forked process. The threads that its parent process used for computations do not exist
+/// in the forked process.
 class Forked : public std::runtime_error {
  public:
   Forked()
@@ -31,8 +32,8 @@ class Forked : public std::runtime_error {
             "use multiprocessing.get_context(\"forkserver\") or \"spawn\", or fork before") {}
 };
 
-/// Stores the process that computes.
-/// \throw Forked in a forked child of this process
+/// Records the first process that runs a computation.
+/// \throw Forked if the current process is a forked child of the recorded process
 inline void refuse_after_fork() {
   static std::atomic<pid_t> computing{0};
   pid_t expected = 0;

@@ -86,8 +86,8 @@ class Fabrication(Result):
 
 #: A job, or the name of its file.
 AnyJob = Union[Job, PathLike]
-#: Result of fabricate(), texts by name, or names of files in the order of execution. FILE@LINE: the
-#: program was stopped after this line.
+#: Result of fabricate(), texts by name, or names of files in the order of execution. A name can have
+#: the form FILE@LINE, which means that the program was stopped after this line.
 AnyPrograms = Union[Fabrication, Mapping[str, str], PathLike, Sequence[PathLike]]
 
 
@@ -136,7 +136,7 @@ class Verification(Result):
         if self._core is None:
             self._core = _core.verify(give(_core.VerificationRequest(), **self._asked), None, 0)
         _core.write_as_machined(self._core, file)
-        # The table of its facets may be in a separate file of the folder.
+        # The design may refer to a table of facets in a separate file of this folder.
         return Design._of(_core.Design.load(file, []), keeps=folder)
 
     def __getstate__(self) -> dict[str, Any]:

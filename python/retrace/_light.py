@@ -106,7 +106,7 @@ class Footprint(Result):
         self.drawings = {
             name: drawing for name, drawing in rre.drawings.items() if name == "footprint"
         }
-        #: The efficiency for the same directions of light.
+        #: Efficiency (RRE) for the directions of light of this footprint.
         self.rre = rre
 
     @property

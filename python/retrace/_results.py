@@ -111,7 +111,7 @@ class Columns(Mapping[str, Any]):
 
     def __init__(self, rows: Sequence[Mapping[str, Any]], names: Sequence[str] = ()) -> None:
         """names: columns that exist even if there are no rows."""
-        #: Rows as in the document.
+        #: Rows of the list, as in the JSON document.
         self.rows = rows
         self._names = list(dict.fromkeys([*names, *(name for row in rows for name in row)]))
         self._columns: dict[str, Any] = {}
@@ -335,7 +335,7 @@ class Result:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         made_by = str(state.pop("_version", "an unknown version"))
-        # Before version 1.0, minor versions may be incompatible, as for the library.
+        # Before version 1.0, results of different minor versions may be incompatible.
         if made_by.split(".")[:2] != version().split(".")[:2]:
             raise InputError(
                 f"was pickled by retrace {made_by}, must be of {version()}; "

@@ -5,7 +5,7 @@ import { AT_ONCE, MOVING } from "./session.js";
 
 const PIECE_S = 0.012;
 const PATIENCE_MS = 700; // time after which an incomplete coarse curve is shown
-const QUICK_MS = 60; // engine time; a curve that takes longer begins with larger steps
+const QUICK_MS = 60; // engine time in ms; if a curve takes longer, the next curve begins with larger steps
 export const CURVE_STEPS_DEG = [10, 5, 2.5, 1];
 
 /**
@@ -34,7 +34,7 @@ export class CurvePass {
     this.target_error = AT_ONCE;
     this.begun = performance.now();
     this.queue = []; // names of directions
-    this.ms = 0; // engine time at AT_ONCE
+    this.ms = 0; // engine time in ms at the target error AT_ONCE
     this.advance();
   }
 
@@ -100,8 +100,8 @@ export class Curve {
     this.session = session;
     this.half_range_deg = 60;
     this.pass = null;
-    this.level = 1; // level at which the next pass begins
-    this.shown = null; // the last pass that was complete at one level
+    this.level = 1; // index in CURVE_STEPS_DEG of the first step size of the next curve
+    this.shown = null; // displayed curve: its first step size is complete, or PATIENCE_MS have passed
     this.lane = session.engine.lane({ next: () => this.next(), done: (job, data) => this.take(job, data) });
     for (const event of ["moving", "design"]) session.on(event, () => this.review());
   }

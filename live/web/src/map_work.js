@@ -5,15 +5,15 @@ import { AT_ONCE } from "./session.js";
 
 const PIECE_S = 0.004;
 const RING_STEPS_DEG = [20, 10, 5, 2.5];
-const WHILE_MOVING = 1; // level that must be complete before another design is started,
-const PATIENCE_MS = 700; // unless it takes longer than this time
+const WHILE_MOVING = 1; // the map of an old design is completed up to this index in RING_STEPS_DEG
+const PATIENCE_MS = 700; // after this time, any complete ring step of the old design is sufficient
 const PLACES = 6; // number of points of the first ring; ring k has k times this number
 
 export class MapPass {
   constructor(design, most_deg, stamp) {
     Object.assign(this, { design, most_deg, stamp });
     this.key = `${design.source}\n${design.toml}\n${most_deg}`;
-    this.values = new Map(); // RRE by direction
+    this.values = new Map(); // RRE of each traced direction, by the name of the direction
     this.level = -1;
     this.begun = performance.now();
     this.rings = null; // rings of the finest complete level: [{incidence_deg, values}]

@@ -12,10 +12,10 @@ export const AT_ONCE = 1e-3; // first accuracy for the many directions of curves
 const REST_MS = 260; // time without changes before the picture is computed at full accuracy
 const MOST_S = 1.5; // maximum time for one direction during changes
 const PACE_MS = 66; // minimum time between two directions during changes, so that the page has time to draw
-const SOON_MS = 30; // age of a change above which no further change of the drag is expected immediately
-const FRESH_MS = 3; // maximum age of a change that counts as new
-const QUICK_MS = 45; // maximum time of a direction during changes; slower designs are first traced to AT_ONCE,
-const RATIO = 4; // which is faster by this factor
+const SOON_MS = 30; // time to wait after a change, because a drag often causes another change within this time
+const FRESH_MS = 3; // a change younger than this time is traced immediately
+const QUICK_MS = 45; // if a direction takes longer during changes, the next one is traced only to AT_ONCE
+const RATIO = 4; // estimated ratio of the times for tracing to MOVING and to AT_ONCE
 
 export class Session {
   constructor(engine) {
@@ -35,7 +35,7 @@ export class Session {
     this.sent = -Infinity; // time of the last request for a direction
     this.touched = -Infinity; // time of the last change
     this.isSlow = false; // true if tracing a direction to MOVING is too slow to follow the pointer
-    this.target_error = MOVING; // for the next direction
+    this.target_error = MOVING; // target error of the next direction
     this.revision = 0;
     this.measure = new Measure();
     this.point = engine.lane({ next: () => this.nextPoint(), done: (job, data) => this.takePoint(job, data) });
@@ -114,7 +114,7 @@ export class Session {
     this.engine.pump();
   }
 
-  // --- the lane of the direction that is pointed at
+  // --- jobs that trace the current direction
 
   /**
    * Returns the time in ms before the next direction is requested; 0 or less means immediately. At least PACE_MS must

@@ -5,7 +5,7 @@ import { edited } from "./toml_edit.js";
 
 const MOST_OPEN = 40;
 let call = null;
-const opened = new Map(); // by source and text, most recent last
+const opened = new Map(); // open designs by source and text; the most recently used design is the last
 
 function ask(request) {
   const begin = performance.now();
