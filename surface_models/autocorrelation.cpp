@@ -25,8 +25,8 @@ std::size_t lags(std::size_t points, double pixel_um, double most_um) {
   return std::min(wanted, points / 2 + 1);
 }
 
-/// Replaces a field by its autocorrelation, with the Wiener-Khinchin theorem: the sum of products at each distance is
-/// the transform of the power.
+/// Replaces a field by its autocorrelation. By the Wiener-Khinchin theorem, the sum of products at each distance is the
+/// inverse transform of the power spectrum.
 void correlate(RealFft& fft) {
   fft.forward();
   for (auto& value : fft.spectrum()) value = std::norm(value);

@@ -29,7 +29,8 @@ double median(std::vector<double> values);
 struct Summary {
   std::size_t count = 0;
   double mean = 0.0;
-  double standard_deviation = 0.0;  ///< of a single measurement (n - 1); 0 if there is only one
+  /// standard deviation of a single measurement, with the divisor n - 1; 0 if there is only one
+  double standard_deviation = 0.0;
   double median = 0.0;
 };
 

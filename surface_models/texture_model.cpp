@@ -177,7 +177,9 @@ MeanSquares windowed_squares(const HeightMap& map) {
   return squares;
 }
 
-/// The map without its borders, where the filter passes other shares; all of it where it is too small for that.
+/// Returns the map without a margin of half a cut-off at its borders, where the filter transmits different fractions of
+/// waves. Along an axis that is shorter than three cut-offs, no margin is removed. If the result would have fewer than
+/// two measured points, the whole map is returned.
 HeightMap inner(const HeightMap& map, double cutoff_um) {
   const auto margin = [&](std::size_t points, double pixel_um) {
     return static_cast<double>(points) * pixel_um >= 3.0 * cutoff_um ? 0.5 * cutoff_um : 0.0;
@@ -186,7 +188,9 @@ HeightMap inner(const HeightMap& map, double cutoff_um) {
   return measured_points(result) > 1 ? result : map;
 }
 
-/// Twice the standard error that the variance of a Gaussian texture of that length has over the map, as a share of it.
+/// Returns twice the standard error of the variance of a Gaussian texture that is measured on this map, relative to the
+/// variance.
+/// \param length_um correlation length of the texture
 double doubt(const HeightMap& map, double length_um) {
   const double x = static_cast<double>(map.columns) * map.x_pixel_um;
   const double y = static_cast<double>(map.rows) * map.y_pixel_um;
@@ -195,7 +199,8 @@ double doubt(const HeightMap& map, double length_um) {
   return 2.0 * std::sqrt(2.0 / independent);
 }
 
-/// Puts the waviness into the model, less the roughness that passed the filter.
+/// Sets the waviness of the model to that of the waviness map, minus the roughness that passed the filter.
+/// \param fit fit of the roughness; without it, no roughness is subtracted
 void set_waviness(TextureModel& model, const HeightMap& waviness, const std::optional<Fit>& fit, double cutoff_um) {
   model.waviness_sq_nm = 0.0;
   model.waviness_length_um.reset();
@@ -209,7 +214,8 @@ void set_waviness(TextureModel& model, const HeightMap& waviness, const std::opt
     if (variance <= doubt(waviness, passed.waviness_length_um()) * passed_nm2) return;
   }
   if (variance <= kRoundingNm * kRoundingNm) return;
-  // Longer than the map cannot be told from form, shorter than the cut-off is roughness.
+  // The period is limited to the range from the cut-off to twice the size of the map. Longer waves cannot be
+  // distinguished from form, and shorter waves are roughness.
   const double extent = std::max(static_cast<double>(waviness.columns) * waviness.x_pixel_um,
                                  static_cast<double>(waviness.rows) * waviness.y_pixel_um);
   const double frequency = std::clamp(std::sqrt(std::max(0.0, gradient) / variance) / (2.0 * std::numbers::pi),
@@ -218,14 +224,15 @@ void set_waviness(TextureModel& model, const HeightMap& waviness, const std::opt
   model.waviness_length_um = 1.0 / frequency;
 }
 
-/// Variance that the filter leaves of the model's waviness in the roughness.
+/// Returns the variance that the model's waviness has in the roughness map, because the filter does not remove it
+/// completely.
 double waviness_left_nm2(const TextureModel& model, double cutoff_um) {
   if (!model.waviness_length_um) return 0.0;
   const double left = model.waviness_sq_nm * (1.0 - gaussian_transmission(1.0 / *model.waviness_length_um, cutoff_um));
   return left * left;
 }
 
-/// The autocorrelation of the roughness less that of the waviness that is left in it.
+/// Returns the autocorrelation of the roughness map minus that of the remaining waviness.
 Autocorrelation without_waviness(Autocorrelation roughness, const Autocorrelation& waviness, double left_nm2) {
   if (left_nm2 > 0.0)
     for (std::size_t i = 0; i < roughness.values_nm2.size(); ++i)
@@ -243,7 +250,8 @@ TextureModel texture_model(const Split& split, double cutoff_um) {
   const double variance = of_roughness.variance_nm2();
   const int dimensions = roughness.dimensions();
 
-  // First as if all that passed the filter were waviness, and all of it in one wave.
+  // First estimate: all waviness in the waviness map is assumed to have a single period, and no roughness is assumed to
+  // have passed the filter.
   TextureModel model;
   set_waviness(model, waviness, std::nullopt, cutoff_um);
   const double left = waviness_left_nm2(model, cutoff_um);
@@ -252,10 +260,12 @@ TextureModel texture_model(const Split& split, double cutoff_um) {
   const std::optional<double> first = rough_length_um(without_waviness(of_roughness, of_waviness, left), dimensions);
   if (!first) return model;
 
-  // Then by the fit, once about the first estimate of the length and once about what it gave.
+  // Refined estimate: the roughness is fitted twice, starting with the first estimate of the correlation length and
+  // then with the length of the first fit.
   Fit fit = fit_roughness(of_roughness, of_waviness, *first, cutoff_um, dimensions);
   fit = fit_roughness(of_roughness, of_waviness, fit.length_um, cutoff_um, dimensions);
-  // The measured variance, not the fitted one: it is right for autocorrelations of other shapes as well.
+  // The measured variance is used instead of the fitted one, because it is also correct for autocorrelations of other
+  // shapes.
   const FilteredGaussian filtered(fit.length_um, cutoff_um, dimensions);
   model.roughness_sq_nm = std::sqrt(std::max(0.0, variance - fit.waviness_nm2) / filtered.roughness(0.0));
   model.correlation_length_um = fit.length_um;

@@ -44,7 +44,7 @@ class ByteReader {
       source_->fail(0, fmt::format("the file is cut short: a text at byte {} has no end", at_));
     return take(end + 1).substr(0, end);
   }
-  /// Returns a reader of the next `count` bytes. This reader skips them.
+  /// Skips the next `count` bytes and returns a separate reader of these bytes.
   ByteReader part(std::uint64_t count) {
     const std::size_t start = at_;
     return {*source_, take(count), start};

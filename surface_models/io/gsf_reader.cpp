@@ -68,7 +68,7 @@ class GsfReader {
     return *nm;
   }
 
-  /// Returns the spacing if the file contains a size and a unit.
+  /// Returns the distance between neighbouring points if the file contains a size and a unit.
   std::optional<double> pixel_um(const std::string& key, double points) const {
     const std::optional<double> size = number(key);
     if (!size || !keys_.contains("XYUnits")) return std::nullopt;

@@ -40,8 +40,8 @@ struct RawMap {
   Warnings warnings;
 };
 
-/// Returns the number of nanometres in a unit: m, mm, um (also with the Greek letter), nm, pm. Returns nothing for
-/// another word.
+/// Returns the number of nanometres in a unit: m, mm, um (also with the Greek letter), nm, pm. Returns nothing if
+/// `unit` is not one of these units.
 std::optional<double> nm_per(std::string_view unit);
 /// Names of the units for messages.
 inline constexpr std::string_view kUnits = "m, mm, um, nm or pm";

@@ -19,17 +19,17 @@ namespace retrace::surface_models {
 /// are 1, and energy is conserved exactly. The model is reciprocal in reflection.
 class Abg {
  public:
-  /// \param a > 0, per sr. The total scattered fraction must be at most 1. It is pi * 2 * integral of r A / (B + r^g)
-  ///     over r = |dbeta| from 0 to 2
-  /// \param b > 0
-  /// \param g > 0
+  /// \param a parameter A, > 0, per sr. The total scattered fraction must be at most 1. This fraction is 2 pi times the
+  ///     integral of r A / (B + r^g) over r = |dbeta| from 0 to 2
+  /// \param b parameter B, > 0
+  /// \param g parameter g, > 0
   /// \throw InputError if a parameter is out of range
   Abg(double a, double b, double g);
 
   Facet sample_facet(const ScatterEvent&, RandomStream&) const { return {}; }
-  /// Computed by quadrature. For tests and tables, but too slow for each ray.
+  /// Returns the specular fraction, computed by quadrature. This is for tests and tables; it is too slow for each ray.
   double specular_share(const ScatterEvent& event, const Facet&, Lobe lobe) const;
-  /// Returns the minimum over all directions of incidence.
+  /// Returns the minimum of specular_share() over all directions of incidence.
   double least_specular_share() const { return 1.0 - total_; }
   /// Draws the direction of scattered light. Returns nothing if the light is specular.
   std::optional<Vec2> sample_scattered(const ScatterEvent& event, const Facet&, Lobe lobe, RandomStream& random) const;

@@ -19,8 +19,9 @@ void require(bool holds, const char* key, const char* allowed, double given) {
   if (!holds) throw InputError({"", 0, key}, std::string(allowed) + ", got " + shortest(given));
 }
 
-// Correlation length in um below which there is a warning for roughness with a lay. The phase model is used there; it
-// overestimates scatter by 9 % at 45 degrees (docs/theory/scatter.md).
+// Correlation length in um below which there is a warning for roughness with a lay (different correlation lengths along
+// x and y). The phase model is used for a lay; below this length it overestimates scatter by 9 % at 45 degrees
+// (docs/theory/scatter.md).
 constexpr double kLongOfLay = 2.0;
 
 /// Returns the correlation length of Gaussian waves that have the same slope as waves with the period `length_um`.
@@ -38,9 +39,10 @@ Vec2 correlation_lengths_um(const Roughness& r) {
   return {r.correlation_length_um, r.is_isotropic() ? r.correlation_length_um : r.y_correlation_length_um};
 }
 
-/// Returns the mean of f(t, u) over the directions of an ellipse of frequencies. t is half of the square of the
-/// frequency n / w, divided by the variance of the frequencies in this direction. u is the variance of the slopes in
-/// this direction, in units of 2 Sq^2 / um^2. The integrand is smooth and periodic, so equal steps are accurate.
+/// Returns the mean of f(t, u) over the directions of spatial frequency vectors, where the spectrum is an ellipse with
+/// the two correlation lengths. t is half of the square of the frequency n / w, divided by the variance of the
+/// frequencies in this direction. u is the variance of the slopes in this direction, in units of 2 Sq^2 / um^2. The
+/// integrand is smooth and periodic, so equal steps are accurate.
 template <class F>
 double mean_over_directions(const Vec2& lengths_um, double index, double wavelength_nm, const F& f) {
   constexpr int kSteps = 64;

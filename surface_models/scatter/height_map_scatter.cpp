@@ -70,7 +70,7 @@ std::vector<double> variance_shares(const HeightMap& levelled) {
   return shares;
 }
 
-/// Gradients of a levelled map from central differences over at least `base_um`.
+/// Returns the gradients of a levelled map, computed from central differences over a distance of at least `base_um`.
 std::vector<Vec2> gradients(const HeightMap& map, double base_um) {
   const auto half_base = [&](double pixel_um, std::size_t points) {
     const auto steps = static_cast<std::size_t>(std::ceil(0.5 * base_um / pixel_um));
@@ -248,8 +248,8 @@ Facet HeightMapScatter::sample_facet(const ScatterEvent& event, RandomStream& ra
   const auto count = static_cast<double>(gradients.size());
   for (int tries = 0; tries < kMaxTries; ++tries) {
     const Vec2& gradient = gradients[static_cast<std::size_t>(random.next() * count)];
-    // From the inside, the frame is rotated by 180 degrees about x, which reverses height and y. Only the slope along x
-    // then changes its sign.
+    // For light from inside the material, the event's frame is rotated by 180 degrees about x, which reverses height
+    // and y. Only the slope along x then changes its sign.
     const Vec3 normal =
         event.inside_material ? Vec3(gradient.x(), -gradient.y(), 1.0) : Vec3(-gradient.x(), -gradient.y(), 1.0);
     if (random.next() * bound < light.dot(normal)) return {normal.normalized(), true};

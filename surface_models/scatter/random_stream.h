@@ -8,8 +8,8 @@
 
 namespace retrace::surface_models {
 
-/// Stream of uniform random numbers for one event, which is identified by counters. Sampling by rejection needs a
-/// variable number of them. In return, most samples have the weight 1. Streams with different (a, b, c) are
+/// Stream of uniform random numbers for one event, which is identified by counters. Rejection sampling needs a variable
+/// number of random numbers; its advantage is that most samples have the weight 1. Streams with different (a, b, c) are
 /// independent.
 class RandomStream {
  public:

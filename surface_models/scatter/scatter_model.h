@@ -99,14 +99,14 @@ double evaluate(const ScatterModel& model, const ScatterEvent& event, const Face
 /// Returns the density with which sample() draws `direction` as scattered light, per sr.
 double pdf(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& direction);
 
-/// Checks that a model applies to a texture. Most models check this in their constructor. harvey_shack depends on the
-/// index and wavelength, because they determine which part of the roughness scatters.
-/// \param index of the denser side
+/// Checks that a model applies to a texture. Most models check this in their constructor. For harvey_shack, the result
+/// depends on the index and wavelength, because they determine which part of the roughness scatters.
+/// \param index index of the denser side
 /// \throw InputError if no model applies
 void require_in_range(const ScatterModel& model, double index, double wavelength_nm);
 
 /// Returns one sentence for each condition of the model that is violated. Allocates memory.
-/// \param index of the denser side
+/// \param index index of the denser side
 Warnings warnings(const ScatterModel& model, double index, double wavelength_nm);
 
 }  // namespace retrace::surface_models
