@@ -180,10 +180,11 @@ RawMap parse_gwy(const Source& source) {
     raw.heights.push_back(std::isfinite(z) ? z : kMissing);
   }
   if (channels.fields.size() > 1 && !source.options.channel)
-    raw.warnings.push_back({"channel_chosen", fmt::format("channel {} of {} is measured; --channel chooses another",
+    raw.warnings.push_back({"channel_chosen", fmt::format("channel {} of {} is used; choose another one with --channel",
                                                           wanted, names_of(channels))});
   if (channels.has_mask)
-    raw.warnings.push_back({"masks_ignored", "masks of the file are not used: what they cover counts as measured"});
+    raw.warnings.push_back(
+        {"masks_ignored", "masks in the file are ignored: the points that they cover count as measured"});
   return raw;
 }
 

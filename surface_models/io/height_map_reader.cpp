@@ -45,7 +45,7 @@ double pixel_um(const Source& source, const std::optional<double>& option, const
                                source.options.can_be_given ? ", or --pixel-um" : ""));
   if (option && in_file && std::abs(*option - *in_file) > 1e-6 * *option)
     warnings.push_back(
-        {"spacing_of_file_ignored", fmt::format("--pixel-um {} goes before the file's spacing along {} of {} um",
+        {"spacing_of_file_ignored", fmt::format("--pixel-um {} is used instead of the file's spacing along {} of {} um",
                                                 shortest(*option), axis, shortest(*in_file))});
   const double pixel = option ? *option : *in_file;
   if (!(pixel >= kLeastPixelUm && pixel <= kMostPixelUm))
@@ -67,7 +67,7 @@ double nm_per_unit(const Source& source, RawMap& raw) {
   if (raw.nm_per_unit && *raw.nm_per_unit != *given)
     raw.warnings.push_back(
         {"unit_of_file_ignored",
-         fmt::format("--height-unit {} goes before the file's unit of heights", *source.options.height_unit)});
+         fmt::format("--height-unit {} is used instead of the file's unit of heights", *source.options.height_unit)});
   return *given;
 }
 

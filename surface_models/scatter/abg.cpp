@@ -90,10 +90,11 @@ double Abg::specular_share(const ScatterEvent& event, const Facet& facet, Lobe l
 
 Warnings Abg::warnings(double, double) const {
   if (total_ <= kMostScatterOfSmooth) return {};
-  return {{"strong_scatter", "up to " + shortest(std::round(1e3 * total_) / 10.0) +
-                                 " % of the light scatters by abg, which holds for smooth surfaces (up to " +
-                                 shortest(100.0 * kMostScatterOfSmooth) +
-                                 " %): rougher ones change their scatter with the angle"}};
+  return {{"strong_scatter",
+           "up to " + shortest(std::round(1e3 * total_) / 10.0) +
+               " % of the light scatters by abg, but this model is valid only for smooth surfaces (up to " +
+               shortest(100.0 * kMostScatterOfSmooth) +
+               " %): the scatter of rougher surfaces depends on the angle of incidence"}};
 }
 
 }  // namespace retrace::surface_models

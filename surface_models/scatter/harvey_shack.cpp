@@ -390,8 +390,8 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
     if (shortest_um < wave_um && (media_ == nullptr || phase * phase > kMostPhase2OfFirstOrder))
       found.push_back({"correlation_below_wavelength",
                        "correlation length " + shortest(shortest_um) +
-                           " um is below the wavelength in the material: the phase model of roughness does not hold" +
-                           (media_ == nullptr ? "" : ", and heights are too large for first order alone")});
+                           " um is below the wavelength in the material: the phase model of roughness is not valid" +
+                           (media_ == nullptr ? "" : ", and the heights are too large for first-order theory")});
     const double slope = roughness_rms_slope(r, index, wavelength_nm);
     if (slope > kLargestSlope)
       found.push_back(
@@ -399,9 +399,9 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
                                   shortest(kLargestSlope) +
                                   ": light that is reflected several times on the surface is not modelled"});
     if (reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm) > 2.0 * pi)
-      found.push_back({"roughness_beyond_model",
-                       "roughness " + shortest(std::round(100.0 * r.sq_nm) / 100.0) +
-                           " nm is above half a wavelength in the material: microfacet is the model for it"});
+      found.push_back(
+          {"roughness_beyond_model", "roughness " + shortest(std::round(100.0 * r.sq_nm) / 100.0) +
+                                         " nm is above half a wavelength in the material: use the model microfacet"});
   }
   if (slopes_.rms_slope() > kLargestSlope)
     found.push_back({"steep_waviness", "rms slope of the waviness " +
@@ -409,8 +409,9 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
                                            shortest(kLargestSlope) +
                                            ": light that is reflected several times on the surface is not modelled"});
   if (r.waviness_sq_nm > 0.0 && r.waviness_length_um < 5.0 * wave_um)
-    found.push_back({"short_waviness", "waviness of period " + shortest(r.waviness_length_um) +
-                                           " um is shorter than five wavelengths in the material: it is roughness"});
+    found.push_back(
+        {"short_waviness", "waviness of period " + shortest(r.waviness_length_um) +
+                               " um is shorter than five wavelengths in the material: specify it as roughness"});
   return found;
 }
 

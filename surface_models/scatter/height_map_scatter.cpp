@@ -315,7 +315,7 @@ Warnings HeightMapScatter::warnings(double index, double wavelength_nm) const {
   if (const double pixel = t.pixel_um.maxCoeff(); pixel > 0.5 * wave_um)
     found.push_back({"coarse_height_map",
                      "points of the height map are " + shortest(pixel) +
-                         " um apart, more than half a wavelength in the material: finer roughness is not in it"});
+                         " um apart, more than half a wavelength in the material: finer roughness is missing"});
   if (t.rms_slope > kLargestSlope)
     found.push_back({"steep_height_map",
                      "rms slope of the height map " + fixed_apart(t.rms_slope, kLargestSlope, 3) + " is above " +
@@ -324,7 +324,7 @@ Warnings HeightMapScatter::warnings(double index, double wavelength_nm) const {
   if (t.sq_nm > 0.0 && std::abs(t.kurtosis - 3.0) > 1.0)
     found.push_back(
         {"heights_not_gaussian", "kurtosis of the heights is " + fixed(t.kurtosis, 2) +
-                                     ", not the 3 of Gaussian heights: the specular share is off where it is small"});
+                                     ", not the 3 of Gaussian heights: small specular fractions are inaccurate"});
   return found;
 }
 

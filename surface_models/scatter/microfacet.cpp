@@ -72,7 +72,7 @@ Warnings Microfacet::warnings(double index, double wavelength_nm) const {
   if (waviness_sq_nm_ > 0.0 && phase * phase < kSlopePhase2)
     found.push_back(
         {"low_waviness", "waviness of " + shortest(waviness_sq_nm_) +
-                             " nm is too low for facets: it diffracts, and harvey_shack is the model for it"});
+                             " nm is too low for facets, because it diffracts light: use the model harvey_shack"});
   return found;
 }
 
