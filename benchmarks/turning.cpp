@@ -65,7 +65,7 @@ void lenslet_path(benchmark::State& state) {
 }
 
 /// Measures the time of the proof that the tool nose touches this array at only one point at a time. The proof is
-/// computed one time per path.
+/// computed once per path.
 void lenslet_proof(benchmark::State& state) {
   const FreeformSurface surface = lenslet_array();
   for (auto _ : state) benchmark::DoNotOptimize(TouchMap(surface, tool(), 4.5).touches_once(0.0, 0.0));

@@ -37,7 +37,7 @@ Polygon clip(const Polygon& polygon, const Rectangle& rectangle, double toleranc
 /// Returns the intersection of two convex polygons, with the tolerance of the function above.
 Polygon clip(const Polygon& polygon, const Polygon& region, double tolerance_mm);
 
-/// Returns true if a counter-clockwise polygon is convex and winds around one time. At each vertex it must turn left,
+/// Returns true if a counter-clockwise polygon is convex and winds around once. At each vertex it must turn left,
 /// or be straight within the tolerance.
 bool is_convex(const Polygon& polygon, double tolerance_mm);
 

@@ -17,7 +17,7 @@ enum class MeshSide {
 
 /// Returns the entrance surface of a part from a mesh, as triangles that face +z.
 /// \param move_mm translation from the frame of the mesh to that of the part
-/// \throw InputError unless the triangles cover the outline exactly one time and neighbours share complete sides.
+/// \throw InputError unless the triangles cover the outline exactly once and neighbours share complete sides.
 ///     Holes, overlaps, steps, corners on sides, and vertical or overhanging triangles are reported with their position
 ///     in the frame of the mesh
 SurfacePatch entrance_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Checks that triangles cover a convex outline exactly one time. Reports the first position where they do not.
+// Checks that triangles cover a convex outline exactly once. Reports the first position where they do not.
 
 #include <array>
 #include <cstdint>

@@ -31,7 +31,7 @@ double volume_mm3(const BoundaryMesh& mesh);
 /// Returns the total area of all triangles.
 double area_mm2(const BoundaryMesh& mesh);
 
-/// Returns true if every edge is traversed exactly one time in each direction. The mesh is then closed, and no edge is
+/// Returns true if every edge is traversed exactly once in each direction. The mesh is then closed, and no edge is
 /// shared by more than two triangles.
 bool is_closed_manifold(const BoundaryMesh& mesh);
 

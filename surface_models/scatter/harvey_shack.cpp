@@ -12,7 +12,7 @@ namespace {
 using std::numbers::pi;
 
 // Maximum squared phase at normal incidence for first-order theory. At this value, 5 % of the scattered light is
-// diffracted more than one time.
+// diffracted more than once.
 constexpr double kMostPhase2OfFirstOrder = 0.1;
 
 void require(bool holds, const char* key, const char* allowed, double given) {
@@ -379,7 +379,7 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
   const Roughness& r = roughness_;
   const double wave_um = 1e-3 * wavelength_nm / index;
   if (r.sq_nm > 0.0) {
-    // Between dielectrics, light that is diffracted one time is accurate for any correlation length. The fraction of
+    // Between dielectrics, light that is diffracted once is accurate for any correlation length. The fraction of
     // the scattered light that is diffracted two times is about half of the phase variance.
     const double phase = reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm);
     const double shortest_um = correlation_lengths_um(r).minCoeff();

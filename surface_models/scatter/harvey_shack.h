@@ -44,7 +44,7 @@ struct DiffractionMeans {
   std::array<double, 2> transmitted{};
 };
 
-/// Light that was diffracted one time, to either side of the facet.
+/// Light that was diffracted once, to either side of the facet.
 struct DiffractedOnce {
   Vec3 direction;                ///< in the frame of the event
   Vec3 s_axis;                   ///< axis of s, normal to the direction, in the same frame
@@ -54,7 +54,7 @@ struct DiffractedOnce {
 
 /// Generalized Harvey-Shack scatter (PhaseLobe) from a Gaussian PSD (power spectral density).
 ///
-/// Between dielectrics, light that is diffracted one time follows first-order perturbation theory (first_order.h). That
+/// Between dielectrics, light that is diffracted once follows first-order perturbation theory (first_order.h). That
 /// theory includes polarisation, total reflection and both sides of the facet. The phase model below applies to light
 /// that is diffracted several times, to roughness with a lay, and to mirrors and metal-coated facets.
 ///
@@ -85,13 +85,13 @@ class HarveyShack {
   /// \pre is_between_dielectrics(); the event is in the media of the model
   DiffractionMeans diffraction_means(const ScatterEvent& event, const Facet& facet,
                                      const materials::FresnelCoefficients& fresnel) const;
-  /// Draws light that is diffracted one time, to both sides of the facet. Returns nothing if no direction is found.
+  /// Draws light that is diffracted once, to both sides of the facet. Returns nothing if no direction is found.
   /// \param s_axis unit vector normal to event.direction_in and to the facet's normal
   /// \param coherency coherency of the incident light along s_axis and p, with the trace 1
   /// \pre is_between_dielectrics(); the event is in the media of the model
   std::optional<DiffractedOnce> draw_diffracted_once(const ScatterEvent& event, const Facet& facet, const Vec3& s_axis,
                                                      const Polarisation2& coherency, RandomStream& random) const;
-  /// Returns the light that is diffracted one time into a direction. The trace of its coherency is the density over
+  /// Returns the light that is diffracted once into a direction. The trace of its coherency is the density over
   /// direction cosines with which draw_diffracted_once() draws.
   /// \param direction unit vector in the frame of the event, on the side of the lobe
   DiffractedOnce diffracted_once_into(const ScatterEvent& event, const Facet& facet, const Vec3& s_axis,

@@ -293,7 +293,7 @@ double HeightMapScatter::scattered_density(const ScatterEvent& event, const Face
   const Band band(*texture_, event, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, band.sq_nm);
   if (facet.is_tilted || !phase_lobe || band.cells == 0) return 0.0;
-  // Light that is diffracted one time follows the cells. The density of all other light is smooth.
+  // Light that is diffracted once follows the cells. The density of all other light is smooth.
   const Vec2 specular = phase_lobe->specular_beta();
   double sum = 0.0;
   for (std::size_t k = 0; k < band.cells; ++k) {

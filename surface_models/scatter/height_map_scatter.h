@@ -22,7 +22,7 @@ inline constexpr std::size_t kMostScatterPoints = std::size_t{1} << 22;
 /// - The specular fraction is that of Gaussian heights with the map's Sq, exp(-(4 pi n s cos t / w)^2) in reflection.
 /// There is a warning if the heights are not Gaussian.
 /// - If the squared phase is below kSlopePhase2, the rest of the light is diffracted (PhaseLobe). Light that is
-/// diffracted one time follows the map's own PSD (power spectral density). Light that is diffracted several times
+/// diffracted once follows the map's own PSD (power spectral density). Light that is diffracted several times
 /// follows a Gaussian with the same covariance (central limit theorem).
 /// - Otherwise, each point of the map acts as a facet. A facet that faces the light is drawn with a probability
 /// proportional to its projected area.

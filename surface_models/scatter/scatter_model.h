@@ -50,7 +50,7 @@ std::optional<ScatterSplit> sample_split(const ScatterModel& model, const Scatte
                                          Lobe lobe, double least_share, RandomStream& random);
 
 /// Returns the model if it is a texture between dielectrics that uses first-order theory; there, light that is
-/// diffracted one time belongs to both lobes. Returns null for other models.
+/// diffracted once belongs to both lobes. Returns null for other models.
 const HarveyShack* first_order_model(const ScatterModel& model);
 
 /// Returns the DiffractionMeans of an event.
@@ -58,7 +58,7 @@ const HarveyShack* first_order_model(const ScatterModel& model);
 DiffractionMeans diffraction_means(const HarveyShack& model, const ScatterEvent& event, const Facet& facet,
                                    const materials::FresnelCoefficients& fresnel);
 
-/// Draws light that is diffracted one time. Returns nothing if it is on the wrong side of the mean surface.
+/// Draws light that is diffracted once. Returns nothing if it is on the wrong side of the mean surface.
 /// \param s_axis normal to the light and to the facet's normal
 /// \param coherency coherency of the incident light along s_axis and p, with the trace 1
 /// \param unmasked set to the fraction of light that waviness does not mask
@@ -67,7 +67,7 @@ std::optional<DiffractedOnce> sample_diffracted_once(const HarveyShack& model, c
                                                      const Polarisation2& coherency, RandomStream& random,
                                                      double& unmasked);
 
-/// Draws light of a lobe that is diffracted more than one time, as sample().
+/// Draws light of a lobe that is diffracted more than once, as sample().
 std::optional<ScatterSample> sample_diffracted_again(const HarveyShack& model, const ScatterEvent& event,
                                                      const Facet& facet, Lobe lobe, RandomStream& random);
 

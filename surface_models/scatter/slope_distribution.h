@@ -13,11 +13,11 @@ enum class SlopeShape {
   ggx        ///< longer tails: Trowbridge and Reitz 1975, Walter et al. 2007
 };
 
-/// Maximum rms slope without a warning. Light that hits the surface more than one time is neglected. Its fraction
+/// Maximum rms slope without a warning. Light that hits the surface more than once is neglected. Its fraction
 /// increases with the square of the slope and is about a tenth at this value.
 inline constexpr double kLargestSlope = 0.3;
 /// Maximum areal rms slope, 45 degrees, for which there is a model. On steeper surfaces, most light hits the surface
-/// more than one time.
+/// more than once.
 inline constexpr double kSlopeOfNoModel = 1.0;
 
 /// Isotropic distribution of the slopes of a surface, with Smith's masking. It assumes that heights and slopes of
