@@ -39,12 +39,12 @@ std::optional<studies::RrePoint> answer(const studies::Design& design, studies::
 struct Trial {
   /// Monte Carlo RRE minus the expected RRE, in standard errors of the Monte Carlo RRE.
   double difference = 0.0;
-  /// True if the two engines agree, as defined at the top of this file.
+  /// True if the two engines agree. The criterion is described at the top of this file.
   bool agrees = false;
 };
 
 /// Runs both engines on the random design that `seed` generates. Returns nothing if the design is invalid or has rough
-/// facets. Returns nothing, too, if an engine exceeds kMaxTime_s or its own limit on time, memory or accuracy.
+/// facets. It also returns nothing if an engine exceeds kMaxTime_s or its own limit on time, memory or accuracy.
 std::optional<Trial> trial(unsigned seed, double target_error) {
   RandomDesigns random(seed);
   const std::string text = random.next();

@@ -16,7 +16,7 @@ struct LorentzDrude {
   struct Term {
     double strength = 0.0;
     double damping_ev = 0.0;
-    double resonance_ev = 0.0;  ///< 0 for the free electrons
+    double resonance_ev = 0.0;  ///< resonance energy; 0 for the term of the free electrons
   };
   double plasma_ev = 0.0;
   std::vector<Term> terms;

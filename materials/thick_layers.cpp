@@ -53,8 +53,8 @@ struct Met {
   Powers behind;  ///< for light in the opposite direction
 };
 
-/// Adds another face behind `met`. Between the two is a medium that transmits the fraction `kept` of the power. All
-/// multiple reflections between `met` and the new face are included.
+/// Adds the next face to `met`, which contains the faces in front of it. The medium between them transmits the fraction
+/// `kept` of the power. All multiple reflections between `met` and the new face are included.
 void add(Met& met, double kept, const Met& face) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Complex between = kept * kept * met.behind.reflected[k] * face.ahead.reflected[k];

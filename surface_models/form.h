@@ -18,7 +18,7 @@ HeightMap without_form(const HeightMap& map, int degree);
 
 /// Returns the polynomial that without_form() subtracts. The origin is the centre of the map, x is along its rows and y
 /// along its columns.
-/// \pre as without_form(); the map is areal
+/// \pre the conditions of without_form(); the map is areal
 FacetForm fitted_form(const HeightMap& map, int degree);
 
 }  // namespace retrace::surface_models

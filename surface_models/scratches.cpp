@@ -112,7 +112,7 @@ std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, doub
     std::size_t low = deepest;
     std::size_t high = deepest;
     while (low > 0 && within(low - 1)) --low;
-    while (high + 1 < count && within(high + 1)) ++high;  // ends at NaN, too, where there is no reference height
+    while (high + 1 < count && within(high + 1)) ++high;  // also ends at NaN, where there is no reference height
     scratches.push_back({along, static_cast<double>(deepest) * pixel_um, depth(deepest),
                          static_cast<double>(high - low + 1) * pixel_um});
     i = std::max(end, high + 1);

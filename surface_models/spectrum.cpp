@@ -57,7 +57,8 @@ double put_windowed(std::span<double> field, const std::vector<double>& window, 
   return squares;
 }
 
-/// Densities around a bin without its own lobe, relative to the line through the medians of both sides.
+/// Densities around a bin, compared with the line through the medians of the densities on both sides. The bins that the
+/// main lobe of the bin's own peak occupies are excluded.
 struct Surroundings {
   double middle = 0.0;     ///< value of the line at the bin
   double deviation = 0.0;  ///< median deviation from the line
@@ -125,8 +126,8 @@ Spectrum line_spectrum(const HeightMap& map, Axis axis) {
   if (used == 0) return spectrum;
   for (std::size_t k = 1; k < sum.size(); ++k) {
     spectrum.frequency_per_mm.push_back(static_cast<double>(k) / (static_cast<double>(points) * pixel_mm));
-    // Positive and negative frequencies are combined. The highest frequency of an even number of points occurs only one
-    // time.
+    // Positive and negative frequencies are combined. If the number of points is even, the highest frequency occurs
+    // only once.
     const double sides = 2 * k == points ? 1.0 : 2.0;
     spectrum.density.push_back(sides * sum[k] / static_cast<double>(used));
   }

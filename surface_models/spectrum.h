@@ -18,8 +18,8 @@ struct Spectrum {
 
 /// Returns the mean of the spectra of all lines along `axis`. A Hann window is applied, after the weighted mean of each
 /// line was subtracted (ISO 21920-2; Elson and Bennett, Applied Optics 34, 201, 1995). Missing points are replaced by
-/// the mean, and the density is scaled by the remaining window. Lines with less than half of their points are omitted.
-/// The result is empty if no line has 8 points.
+/// the mean, and the density is divided by the sum of the squared window at the measured points. Lines with less than
+/// half of their points are omitted. The result is empty if no line has 8 points.
 Spectrum line_spectrum(const HeightMap& map, Axis axis);
 
 /// Returns the spectrum of an areal map, averaged over directions, with a Hann window along both axes. The rings are as

@@ -22,9 +22,10 @@ struct TextureModel {
   std::optional<double> waviness_length_um;  ///< period: 2 pi Sq over the rms slope; not set without waviness
 };
 
-/// Returns the model of a levelled map that was split at `cutoff_um`. The filter leaves long roughness in the waviness
-/// and some waviness in the roughness. For this model, both fractions are known in closed form and are corrected. The
-/// result therefore does not depend on the cut-off, in contrast to Sq of the two maps (docs/theory/metrology.md).
+/// Returns the model of a map that was levelled (its form was subtracted) and split at `cutoff_um`. The filter leaves
+/// long roughness in the waviness and some waviness in the roughness. For this model, both fractions are known in
+/// closed form and are corrected. The result therefore does not depend on the cut-off, in contrast to Sq of the two
+/// maps (docs/theory/metrology.md).
 TextureModel texture_model(const Split& split, double cutoff_um);
 
 }  // namespace retrace::surface_models

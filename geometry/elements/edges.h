@@ -1,6 +1,7 @@
 #pragma once
 
-// Rounds and chamfers the roots and rims of elements. The rounded or chamfered edges consist of strips of plane facets.
+// Rounds and chamfers the roots and rims of elements. At a root, facets of one element meet; at a rim, an element meets
+// its neighbour or flat land. The rounded or chamfered edges consist of strips of plane facets.
 
 #include "geometry/elements/element_cells.h"
 

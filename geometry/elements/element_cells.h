@@ -17,7 +17,7 @@ namespace retrace::geometry {
 enum class FacetRole : std::uint8_t {
   entrance,     ///< flat face at z = +thickness
   retro_facet,  ///< a facet of an element
-  flat_back,    ///< flat land, margin or omitted element on z = 0
+  flat_back,    ///< flat surface on z = 0: land between elements, margin, or omitted element
   inner_wall,   ///< vertical wall between cells of different depth
   border_wall,  ///< vertical wall that closes the cut where the border of the array cuts elements
   side          ///< side of the plate
@@ -41,7 +41,7 @@ struct CellFacet {
   std::optional<Vec2> middle_mm = {};
 };
 
-/// An element, or a piece of flat land on z = 0. The order of an element's facets is the order of
+/// An element, or a flat area on z = 0 without elements (land). The order of an element's facets is the order of
 /// ElementPlanes::planes.
 struct Cell {
   bool is_element = true;

@@ -22,7 +22,7 @@ struct ElementPlanes {
   /// Prism: facets towards -x and +x (rotated element: -y and +y). Cube corner: facet k is between the dihedral edges
   /// at 120 k and 120 (k + 1) degrees. Empty: the element is missing, and only `flares` are used.
   std::vector<HeightPlane> planes = std::vector<HeightPlane>(2);
-  /// Cuts in the land that replaces a missing hexagonal cube corner. The machined cavities of its neighbours are
+  /// Cuts in the flat land that replaces a missing hexagonal cube corner. The machined cavities of its neighbours are
   /// triangular and extend into the corners of the hexagon. Cut k removes the corner at 120 k degrees, up to the line
   /// between the two adjacent corners.
   std::array<std::optional<HeightPlane>, 3> flares;
@@ -78,7 +78,7 @@ Cell flared_land(const Cell& cell, const ElementPlanes& element, const Vec2& cen
 /// Builds a finite part as build_part(spec) does, but with individual facets for each element. Elements that are not
 /// given are replaced by flat land. Outlines are nominal, and vertical walls connect neighbours of different height.
 /// \pre spec.array.extent is finite; the facets slope in the same directions as nominal facets
-/// \throw InputError as build_part(spec), and if planes belong to no complete element of the array
+/// \throw InputError in the same cases as build_part(spec), and if planes belong to no complete element of the array
 Part build_part(const PartSpec& spec, const FacetPlanes& planes);
 
 }  // namespace retrace::geometry

@@ -15,10 +15,10 @@
 
 namespace retrace::geometry {
 
-/// Right triangular prism: two facets that meet at a roof edge along y, open towards +z.
+/// Right triangular prism: two facets that meet at a roof edge along y. The prism is open towards +z.
 struct RtpElement {
-  double base_mm = 0.0;          ///< across the roof edge, along x; > 0
-  double width_mm = 0.0;         ///< along the roof edge, along y; > 0
+  double base_mm = 0.0;          ///< size across the roof edge, along x; > 0
+  double width_mm = 0.0;         ///< size along the roof edge, which is along y; > 0
   double apex_angle_deg = 90.0;  ///< included angle of the two facets; 60..120
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Cuts V-shaped grooves and ridges into the facets of prisms, as a chipped tool leaves them.
+// Cuts V-shaped grooves and ridges into the facets of prisms. A chipped tool leaves such scratches.
 
 #include "geometry/elements/element_cells.h"
 

@@ -22,7 +22,8 @@ enum class MeshSide {
 ///     in the frame of the mesh
 SurfacePatch entrance_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline);
 
-/// Returns the range of heights and slopes of an entrance surface from a mesh, as entrance_range().
+/// Returns the range of heights and slopes of an entrance surface from a mesh. Corresponds to entrance_range() for
+/// exact surfaces.
 EntranceRange range_of_entrance_mesh(const SurfacePatch& patch, const Polygon& outline);
 
 }  // namespace retrace::geometry

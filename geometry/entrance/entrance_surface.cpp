@@ -57,8 +57,8 @@ std::vector<Vec2> sample_points(const Polygon& outline, int cells) {
 ///     corner
 double mean_bend(const EntranceSurface& surface, const Rectangle& box, int cells, double reach) {
   const Vec2 cell_mm = box.size() / cells;
-  // Two displacements are used. If a surface repeats with the period of one displacement, it does not repeat with that
-  // of the other.
+  // Two displacements are used, because a surface could repeat with the period of one of them. It then does not repeat
+  // with the period of the other displacement.
   const std::array<Vec2, 2> ways = {reach * Vec2(kWithinEntranceCell[0], kWithinEntranceCell[1]).cwiseProduct(cell_mm),
                                     reach * Vec2(0.7548776662, 0.5698402910).cwiseProduct(cell_mm)};
   double sum = 0.0;
@@ -147,8 +147,8 @@ EntranceSurface::Place EntranceSurface::at(const Vec2& point_mm) const {
   return {origin_mm_.z() + surface_.height_mm(place.x(), place.y()), slope_across(place)};
 }
 
-/// Returns the slope from central differences. At r = 0, a formula of r has no derivative although its surface may be
-/// smooth.
+/// Returns the slope from central differences. It is used where the gradient is not finite, such as at r = 0: there, a
+/// formula of the radius r has no derivative although its surface may be smooth.
 Vec2 EntranceSurface::slope_across(const Vec2& p) const {
   constexpr double kStep = 1e-5;
   return Vec2(surface_.height_mm(p.x() + kStep, p.y()) - surface_.height_mm(p.x() - kStep, p.y()),

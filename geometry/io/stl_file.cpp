@@ -18,7 +18,7 @@
 #include "core/message_text.h"
 #include "core/text.h"
 
-// STL is read by code of our own, because no suitable library reports the line of an error. A binary file is a header
+// STL is read without a library, because no suitable library reports the line of an error. A binary file is a header
 // and an array. An ASCII file has a grammar of seven keywords.
 
 namespace retrace::geometry {

@@ -31,7 +31,7 @@ TriangleMesh parse_stl(std::string_view text, const std::string& name, double sc
 
 /// Reads an STL file as parse_stl() does. A binary file may be refused before its triangles are read. This happens if
 /// the stored number of triangles is above kMostStlTriangles or does not match the length of the file.
-/// \throw InputError as parse_stl(), or if the file cannot be read
+/// \throw InputError in the same cases as parse_stl(), and if the file cannot be read
 TriangleMesh read_stl(const std::filesystem::path& file, double scale = 1.0);
 
 }  // namespace retrace::geometry

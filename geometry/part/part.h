@@ -32,7 +32,7 @@ struct ZoneElements {
 /// Region of the plate in which the elements form a periodic lattice.
 struct LatticeRegion {
   Polygon outline;                 ///< convex, counter-clockwise
-  std::array<Vec2, 2> periods_mm;  ///< two lattice vectors at right angles
+  std::array<Vec2, 2> periods_mm;  ///< two lattice vectors at right angles to each other
 };
 
 /// Solid part in the part frame. It is a plate 0 <= z <= thickness with the flat entrance face z = thickness and the

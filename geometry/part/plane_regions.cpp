@@ -66,11 +66,13 @@ class PlaneFit {
   }
   FacetPlane plane() const { return {axes_.col(0), axes_.col(0).dot(origin_ + middle_)}; }
 
-  /// Returns the standard error of the normal's direction, divided by that of a vertex position, in rad/mm.
+  /// Returns the standard error of the normal's direction, divided by the standard error of a vertex position, in
+  /// rad/mm.
   /// \pre the last call of fit() had PlaneKind::any
   double tilt() const { return 1.0 / std::sqrt(std::max(spread_[1], 1e-300)); }
 
-  /// Returns the standard error of the plane's height at a point `p`, divided by that of a vertex position.
+  /// Returns the standard error of the plane's height at a point `p`, divided by the standard error of a vertex
+  /// position.
   /// \pre the last call of fit() had PlaneKind::any
   double uncertainty(const Vec3& p) const {
     const Vec3 along = axes_.transpose() * (p - origin_ - middle_);
@@ -202,7 +204,7 @@ class RegionGrower {
 /// List of (key, value) pairs. sorted() orders the pairs and removes duplicates.
 using Incidence = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Calls visit(key, first, last) one time for each key. The pairs with this key are at the indices first ... last - 1.
+/// Calls visit(key, first, last) for each different key. The pairs with this key are at the indices first ... last - 1.
 /// \pre the pairs are sorted
 template <class Visit>
 void for_each_key(const Incidence& incidence, const Visit& visit) {

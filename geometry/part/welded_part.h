@@ -6,10 +6,10 @@
 
 namespace retrace::geometry {
 
-/// Builds a part whose complete back surface is a single patch, for any number of elements, as closed_boundary()
-/// requires. The memory is proportional to the number of elements.
+/// Builds a part with any number of elements whose complete back surface is a single patch. closed_boundary() requires
+/// such a part. The memory is proportional to the number of elements.
 /// \pre the part is finite
-/// \throw InputError as build_part()
+/// \throw InputError in the same cases as build_part()
 Part build_welded_part(const PartSpec& spec);
 
 }  // namespace retrace::geometry

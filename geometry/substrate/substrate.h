@@ -1,6 +1,6 @@
 #pragma once
 
-// Describes the surface on which elements are placed instead of a plane.
+// Describes the substrate: the surface on which elements are placed instead of the plane z = 0.
 
 #include <memory>
 #include <string_view>

@@ -236,7 +236,7 @@ void check_surface(const FreeformSurface& surface, double radius_mm, const Input
       const double y = r * std::sin(angle);
       if (!std::isfinite(surface.height_mm(x, y)))
         throw InputError(where, "must be finite all over the part, is not at " + place(x, y));
-      // At the centre, a formula of r may have no slope, such as that of a cone.
+      // At the centre, a formula of the radius r may have no slope. An example is a cone.
       if (i == 0) continue;
       const Gradient z = surface.gradient(x, y);
       const double slope = std::hypot(z.x, z.y);

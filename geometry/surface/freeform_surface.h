@@ -13,7 +13,7 @@
 
 namespace retrace::geometry {
 
-/// Continuation of the base outside the region in which it is defined.
+/// Continuation of the base surface outside the region in which it is defined.
 struct Extrapolation {
   Boundary boundary;
   int order = 2;  ///< degree n of the polynomials along radial lines; the surface is C^n

@@ -11,7 +11,7 @@ namespace retrace::live {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns all tables and their keys, as `groups` of the answer `form`.
+/// Returns all tables and their keys. This is the member `groups` of the answer `form`.
 Json form_json();
 
 /// Returns the keys that have an effect in a design, in the order of the form, with their current values.

@@ -24,7 +24,7 @@ class MaterialLibrary {
   /// \throw InputError with file, line and key
   static MaterialLibrary read(const std::filesystem::path& file);
   /// Returns the library in the data folder.
-  /// \throw InputError as read()
+  /// \throw InputError in the same cases as read()
   static MaterialLibrary shipped();
 
   const std::vector<Material>& all() const { return materials_; }
@@ -34,10 +34,10 @@ class MaterialLibrary {
   const Material& air() const { return find("air"); }
   const std::vector<Metal>& metals() const { return metals_; }
   /// Returns the metal with a name.
-  /// \throw InputError as find()
+  /// \throw InputError in the same cases as find()
   const Metal& find_metal(std::string_view name, const InputLocation& where = {}) const;
   /// Returns the material or metal with a name.
-  /// \throw InputError as find()
+  /// \throw InputError in the same cases as find()
   std::variant<const Material*, const Metal*> find_any(std::string_view name, const InputLocation& where = {}) const;
 
  private:

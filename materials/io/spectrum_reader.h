@@ -44,8 +44,9 @@ SpectralCurve read_spectral_power(const std::filesystem::path& file);
 /// \param name name of the file, for messages
 SpectralCurve parse_spectral_power(std::string_view text, const std::string& name);
 
-/// Reads the absorption of a dyed material from a CSV file with the header wavelength_nm,absorption_per_mm. Otherwise
-/// the format is that of read_spectral_power(). The coefficient is Napierian, for power, and >= 0.
+/// Reads the absorption of a dyed material from a CSV file with the header wavelength_nm,absorption_per_mm. All other
+/// rules are the same as for read_spectral_power(). The absorption coefficient is Napierian (base e), for power, and
+/// not negative.
 /// \throw InputError with file, line and column
 SpectralCurve read_spectral_absorption(const std::filesystem::path& file);
 

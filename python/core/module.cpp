@@ -307,7 +307,7 @@ void bind_studies(py::module_& module) {
     });
 }
 
-/// Returns the channels of a picture by name, as (rows, columns) arrays.
+/// Returns the channels of a picture by name. Each channel is an array of the shape (rows, columns).
 py::dict channels_of(Picture& picture) {
   py::dict channels;
   for (auto& [name, values] : picture.channels)

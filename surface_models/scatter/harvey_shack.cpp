@@ -156,8 +156,8 @@ std::array<double, 2> HarveyShack::first_order_shares(const ScatterEvent& event,
 DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const Facet& facet,
                                                 const materials::FresnelCoefficients& fresnel) const {
   const std::array<double, 2> scattered = first_order_shares(event, facet);
-  // The power is taken from both specular fields in proportion to their power and phase variance, as for long
-  // correlation lengths.
+  // The scattered power is removed from both specular fields. Each field loses power in proportion to its power times
+  // its phase variance, in the same way as for long correlation lengths.
   const double reflected_path = 2.0 * event.index_from * event.cos_in();
   const double transmitted_path = event.index_from * event.cos_in() - event.index_to * fresnel.cos_refracted;
   const double a_r = reflected_path * reflected_path, a_t = transmitted_path * transmitted_path;
@@ -379,8 +379,8 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
   const Roughness& r = roughness_;
   const double wave_um = 1e-3 * wavelength_nm / index;
   if (r.sq_nm > 0.0) {
-    // Between dielectrics, light that is diffracted once is accurate for any correlation length. The fraction of
-    // the scattered light that is diffracted two times is about half of the phase variance.
+    // Between dielectrics, light that is diffracted once is computed accurately for any correlation length. The
+    // fraction of the scattered light that is diffracted two times is about half of the phase variance.
     const double phase = reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm);
     const double shortest_um = correlation_lengths_um(r).minCoeff();
     if (!r.is_isotropic() && shortest_um >= wave_um && shortest_um < kLongOfLay)

@@ -44,7 +44,7 @@ struct DiffractionMeans {
   std::array<double, 2> transmitted{};
 };
 
-/// Light that was diffracted once, to either side of the facet.
+/// Light that was diffracted once. It leaves to either side of the facet.
 struct DiffractedOnce {
   Vec3 direction;                ///< in the frame of the event
   Vec3 s_axis;                   ///< axis of s, normal to the direction, in the same frame
@@ -56,7 +56,8 @@ struct DiffractedOnce {
 ///
 /// Between dielectrics, light that is diffracted once follows first-order perturbation theory (first_order.h). That
 /// theory includes polarisation, total reflection and both sides of the facet. The phase model below applies to light
-/// that is diffracted several times, to roughness with a lay, and to mirrors and metal-coated facets.
+/// that is diffracted several times, to roughness with a lay (different correlation lengths along x and y), and to
+/// mirrors and metal-coated facets.
 ///
 /// - The specular fraction is exp(-(4 pi n s cos t / w)^2) in reflection and exp(-(2 pi s (n1 cos t1 - n2 cos t2) /
 /// w)^2) in transmission. s is the relevant roughness. It includes only spatial frequencies below n / w, because higher

@@ -19,16 +19,16 @@ inline constexpr std::size_t kMostScatterPoints = std::size_t{1} << 22;
 /// Scatter from a measured surface. The map is a sample of a larger surface: only its statistics are used, not its
 /// position on the part.
 ///
-/// - The specular fraction is that of Gaussian heights with the map's Sq, exp(-(4 pi n s cos t / w)^2) in reflection.
-/// There is a warning if the heights are not Gaussian.
+/// - The specular fraction is computed as for Gaussian heights with the map's Sq, exp(-(4 pi n s cos t / w)^2) in
+/// reflection. There is a warning if the heights are not Gaussian.
 /// - If the squared phase is below kSlopePhase2, the rest of the light is diffracted (PhaseLobe). Light that is
-/// diffracted once follows the map's own PSD (power spectral density). Light that is diffracted several times
-/// follows a Gaussian with the same covariance (central limit theorem).
+/// diffracted once follows the map's own PSD (power spectral density). Light that is diffracted several times follows a
+/// Gaussian with the same covariance (central limit theorem).
 /// - Otherwise, each point of the map acts as a facet. A facet that faces the light is drawn with a probability
 /// proportional to its projected area.
 ///
-/// The map is levelled first. Its x and y axes are those of the event. Weights are 1 if light leaves to the correct
-/// side.
+/// The mean plane of the map is subtracted first. The x and y axes of the map are the axes of the texture
+/// (ScatterEvent). Weights are 1 if light leaves to the correct side.
 class HeightMapScatter {
  public:
   /// \param map areal map with at least 8 x 8 and at most kMostScatterPoints points, and an rms slope of at most

@@ -19,7 +19,7 @@ namespace retrace::surface_models {
 /// n^2 in transmission.
 class Microfacet {
  public:
-  /// \param rms_slope areal rms slope, as waviness_rms_slope() returns it; >= 0
+  /// \param rms_slope areal rms slope, for example from waviness_rms_slope(); >= 0
   /// \throw InputError if the slope is out of range
   Microfacet(SlopeShape shape, double rms_slope);
   /// Returns a model for waves with this rms height and period.
@@ -41,7 +41,7 @@ class Microfacet {
   double pdf_per_sr(const ScatterEvent& event, Lobe lobe, const Vec3& direction) const;
 
  private:
-  /// Returns the ratio of the solid angle of normals to that of directions.
+  /// Returns the solid angle of normals divided by the solid angle of directions.
   double jacobian(const ScatterEvent& event, Lobe lobe, const Vec3& direction, const Vec3& normal) const;
 
   SlopeDistribution slopes_;

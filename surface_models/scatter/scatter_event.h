@@ -15,7 +15,8 @@ namespace retrace::surface_models {
 
 using geometry::Vec2, geometry::Vec3;
 
-/// Light at an interface is either reflected to its own side or transmitted to the other side.
+/// Lobe: the light from an interface to one side. It is either reflected to the side of the incident light or
+/// transmitted to the other side.
 enum class Lobe { reflection, transmission };
 
 /// Light that is incident on a textured interface.
@@ -63,7 +64,7 @@ struct PhaseTexture {
 struct ScatterSample {
   Vec3 direction;            ///< in the local frame
   Vec3 specular_direction;   ///< specular direction of the facet's mean plane, in the same frame
-  double weight = 1.0;       ///< factor on the Fresnel power of the lobe at the facet: BSDF * cosine / pdf; <= 1
+  double weight = 1.0;       ///< factor by which the Fresnel power of the lobe is multiplied: BSDF * cosine / pdf; <= 1
   bool is_specular = false;  ///< true if the direction is exactly specular
 };
 

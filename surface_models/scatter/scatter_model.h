@@ -32,7 +32,7 @@ using ScatterModel = std::variant<Smooth, HarveyShack, Abg, Microfacet, HeightMa
 Facet sample_facet(const ScatterModel& model, const ScatterEvent& event, RandomStream& random);
 
 /// Draws the direction in which a facet sends the light of a lobe. Returns nothing in transmission under total
-/// reflection. Returns nothing, too, if the direction is on the wrong side of the mean surface: that light is lost.
+/// reflection, and if the direction is on the wrong side of the mean surface: that light is lost.
 std::optional<ScatterSample> sample(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                     RandomStream& random);
 
@@ -44,13 +44,13 @@ struct ScatterSplit {
 };
 
 /// Draws both the specular and the scattered light. This replaces sample() with equal expectation and lower variance.
-/// Returns nothing if one of the fractions is below `least_share`. Returns nothing, too, for the models abg and
-/// microfacet, because they cannot compute the fractions of an event quickly.
+/// Returns nothing if one of the fractions is below `least_share`, and for the models abg and microfacet, because they
+/// cannot compute the fractions of an event quickly.
 std::optional<ScatterSplit> sample_split(const ScatterModel& model, const ScatterEvent& event, const Facet& facet,
                                          Lobe lobe, double least_share, RandomStream& random);
 
-/// Returns the model if it is a texture between dielectrics that uses first-order theory; there, light that is
-/// diffracted once belongs to both lobes. Returns null for other models.
+/// Returns the model if it is a texture between dielectrics that uses first-order theory. For such a model, light that
+/// is diffracted once belongs to both lobes. Returns null for other models.
 const HarveyShack* first_order_model(const ScatterModel& model);
 
 /// Returns the DiffractionMeans of an event.
@@ -67,7 +67,7 @@ std::optional<DiffractedOnce> sample_diffracted_once(const HarveyShack& model, c
                                                      const Polarisation2& coherency, RandomStream& random,
                                                      double& unmasked);
 
-/// Draws light of a lobe that is diffracted more than once, as sample().
+/// Draws light of a lobe that is diffracted more than once. Otherwise works like sample().
 std::optional<ScatterSample> sample_diffracted_again(const HarveyShack& model, const ScatterEvent& event,
                                                      const Facet& facet, Lobe lobe, RandomStream& random);
 
