@@ -1,5 +1,5 @@
-"""Milliseconds of what the live page asks of its engine: in the bundle under Node.js, and in the native program, which
-tells how much of it is the browser's.
+"""Measures the time in ms that the live page's engine takes for its requests. The bundle under Node.js is compared with
+the native program. The difference is the cost of running the engine in a browser.
 
     python3 benchmarks/live_engine.py build/release/bin/retrace_live
 """

@@ -1,5 +1,6 @@
-"""Processor seconds of a million rays through a part, on one thread: `retrace.trace` with arrays in and out, beside
-`retrace rays` with an emitter of the same light that writes what leaves to a TM-25 file. In pairs, one after the other.
+"""Measures the processor time of a million rays through a part on one thread. `retrace.trace`, with arrays as input and
+output, is compared with `retrace rays`, which uses an emitter of the same light and writes the rays that leave to a
+TM-25 file. The two are run in pairs, one after the other.
 
     PYTHONPATH=build/release/python python3 benchmarks/python_trace.py build/release/bin/retrace
 """

@@ -1,10 +1,9 @@
-"""Writes what the package holds of keys and options, as the program prints it.
+"""Writes the generated files of the Python package, from the program's JSON Schemas and help texts.
 
     python3 print_package.py PROGRAM FOLDER
 
-FOLDER/files.py: a TypedDict for each table of designs, jobs, studies and so on, of their JSON
-Schemas.
-FOLDER/_options.py: the help of each option of the commands that the package has.
+FOLDER/files.py contains a TypedDict for each table of designs, jobs, studies and so on.
+FOLDER/_options.py contains the help of each option of the commands that the package supports.
 """
 
 import json
@@ -46,7 +45,7 @@ def said(program: str, *arguments: str) -> str:
 
 
 def options_of(help_text: str) -> dict[str, tuple[str, str]]:
-    """By name: the help of an option, and its default as text, empty if it has none."""
+    """Returns the help of each option and its default as text, by name. No default is an empty text."""
     options: dict[str, tuple[str, str]] = {}
     name = ""
     for line in help_text.splitlines():
@@ -70,7 +69,7 @@ def options_of(help_text: str) -> dict[str, tuple[str, str]]:
 
 
 def schemas_in(schema, path: tuple[str, ...] = ()):
-    """Every (path, schema) of a key, those that only hold under conditions too."""
+    """Yields (path, schema) for each key, including keys that exist only under conditions."""
     if isinstance(schema, list):
         for one in schema:
             yield from schemas_in(one, path)
@@ -87,7 +86,7 @@ def schemas_in(schema, path: tuple[str, ...] = ()):
 
 
 def types_of(schema: dict) -> set[str]:
-    """What a value may be in Python, as far as one schema tells."""
+    """Returns the Python types that a schema allows for a value."""
     if "enum" in schema:
         return {f"Literal[{', '.join(map(repr, schema['enum']))}]"}
     if "const" in schema:
@@ -114,7 +113,7 @@ def class_name(path: tuple[str, ...]) -> str:
 
 
 def tables_of(name: str, schema: dict):
-    """(class, its keys: type and description) of a format, the inner tables first."""
+    """Returns (class, {key: (type, description)}) for each table of a format, inner tables first."""
     keys: dict[tuple[str, ...], list[dict]] = {}
     for path, inner in schemas_in(schema):
         keys.setdefault(path, []).append(inner)

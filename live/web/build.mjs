@@ -17,7 +17,7 @@ function filesOf(folder) {
   );
 }
 
-/** What the bundle is made of, in an order of its own: a test computes the same. */
+/** Returns a hash of the bundle's source files, sorted by name. A test computes the same hash. */
 function sourceHash() {
   const shared = ["package.json", "package-lock.json"].map((name) => join(report, name));
   const files = [...filesOf(join(here, "src")), join(here, "build.mjs"), ...shared, ...filesOf(join(report, "src"))];
@@ -29,14 +29,14 @@ function sourceHash() {
 
 const common = { nodePaths: [join(report, "node_modules")], bundle: true, minify: true, legalComments: "none", write: false, target: ["es2020"], charset: "ascii" };
 const textOf = async (options) => (await build({ ...common, ...options })).outputFiles[0].text;
-// The worker's script is a text within the page's.
+// The script of the worker is stored as a text in the script of the page.
 const worker = await textOf({ entryPoints: [join(here, "src/worker.js")], format: "iife" });
 const script = await textOf({ entryPoints: [join(here, "src/main.js")], format: "iife", define: { WORKER_SCRIPT: JSON.stringify(worker) } });
 const style = await textOf({ entryPoints: [join(here, "src/live.css")] });
 
 mkdirSync(out, { recursive: true });
 const head = `/* sources ${sourceHash()} - made by tools/live_page; licences: LICENCES.txt */\n`;
-// "</script" in a text of the bundle would end the element it stands in.
+// "</script" in a text of the bundle would end the HTML element that contains the bundle.
 writeFileSync(join(out, "page.js"), head + script.replaceAll("</script", "<\\/script"));
 writeFileSync(join(out, "page.css"), head + style);
 writeFileSync(join(out, "page.html"), readFileSync(join(here, "src/page.html"), "utf8"));

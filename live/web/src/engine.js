@@ -1,9 +1,9 @@
-// The engine's workers, and the order in which what the page wants is asked of them.
+// Manages the engine's workers and the order of their jobs.
 //
-// A lane has at most one job under way; it goes to the worker that has the fewest. When it is done the lane is asked what it
-// wants by then. A worker does jobs of many directions by turns, in pieces of some 10 ms, and goes on with them while the
-// page draws; the direction that is pointed at comes before all of them. What takes seconds has a worker of its own, which
-// is ended when its answer is no longer wanted.
+// A lane is a source of jobs, such as the curve or the map. A lane has at most one running job, which is sent to the worker
+// with the fewest jobs. When the job is done, the lane is asked for its next job. A worker alternates between jobs with many
+// directions, in steps of about 10 ms, and continues with them while the page draws. The job for the current direction runs
+// before all others. Jobs that take seconds have a separate worker, which is terminated when its answer is not needed.
 
 function bytesOf(base64) {
   return Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
@@ -22,21 +22,21 @@ function startWorker(engineScript) {
   return worker;
 }
 
-/** How many workers for quick jobs the machine has room for beside the page itself. */
+/** Returns the number of workers for quick jobs. One processor core is left for the page itself. */
 function countOfWorkers() {
   return Math.max(1, Math.min(3, (navigator.hardwareConcurrency || 2) - 1));
 }
 
 export class Engine {
   constructor() {
-    this.workers = { quick: [], slow: [] }; // each with the number of its jobs: {worker, jobs}
+    this.workers = { quick: [], slow: [] }; // workers with their numbers of jobs: {worker, jobs}
     this.lanes = { quick: [], slow: [] };
-    this.waiting = new Map(); // what is being worked on, by the job's number
+    this.waiting = new Map(); // running jobs by the number of the job
     this.count = 0;
     this.failed = () => {};
   }
 
-  /** Starts the workers; done when the first can be asked. */
+  /** Starts the workers. Returns when the first worker is ready. */
   async start() {
     const text = (id) => document.getElementById(id).textContent;
     this.script = text("engine-js");
@@ -45,7 +45,7 @@ export class Engine {
     for (let k = 1; k < countOfWorkers(); ++k) this.add("quick").catch(this.failed);
   }
 
-  /** A worker for slow jobs, if there is none yet: it is not to delay the first picture. */
+  /** Starts the worker for slow jobs unless it exists. It is started late, so that it does not delay the first picture. */
   prepareSlow() {
     if (!this.hasSlow) this.add("slow").catch(this.failed);
     this.hasSlow = true;
@@ -68,14 +68,18 @@ export class Engine {
     });
   }
 
-  /** \param next gives the job that the lane wants now, or nothing \param done takes a job and its answer, or a piece of it */
+  /**
+   * Adds a lane.
+   * \param next function that returns the lane's next job, or nothing
+   * \param done function that is called with a job and its answer, or with the answer to a part of the job
+   */
   lane({ next, done, speed = "quick" }) {
     const lane = { next, done, speed, running: 0 };
     this.lanes[speed].push(lane);
     return lane;
   }
 
-  /** One question that belongs to no lane. */
+  /** Runs a single job that belongs to no lane, and returns its answer. */
   ask(job) {
     return new Promise((resolve) => {
       let wanted = job;
@@ -109,7 +113,7 @@ export class Engine {
     at.jobs -= 1;
   }
 
-  /** Gives workers what the lanes want; slow ones one thing at a time. */
+  /** Sends the next jobs of the lanes to the workers. A worker for slow jobs gets only one job at a time. */
   pump() {
     for (const speed of ["quick", "slow"])
       for (const lane of this.lanes[speed]) {
@@ -130,7 +134,7 @@ export class Engine {
     at.worker.postMessage({ id, toml, source, changes, adapt, asks, long, urgent });
   }
 
-  /** What is under way for a lane is of no use any more. */
+  /** Cancels the running job of a lane, because its answer is not needed. */
   withdraw(lane) {
     for (const [id, found] of this.waiting) {
       if (found.lane !== lane) continue;
@@ -139,7 +143,7 @@ export class Engine {
     }
   }
 
-  /** Slow work that is under way is of no use any more: its worker is ended, and another started. */
+  /** Cancels all slow jobs. Their workers are terminated, and new workers are started. */
   drop() {
     for (const [id, { lane, at }] of this.waiting) {
       if (lane.speed !== "slow") continue;
