@@ -45,7 +45,7 @@ def said(program: str, *arguments: str) -> str:
 
 
 def options_of(help_text: str) -> dict[str, tuple[str, str]]:
-    """Returns the help of each option and its default as text, by name. No default is an empty text."""
+    """Returns the help and the default of each option as texts, by name. No default is ""."""
     options: dict[str, tuple[str, str]] = {}
     name = ""
     for line in help_text.splitlines():
@@ -113,7 +113,7 @@ def class_name(path: tuple[str, ...]) -> str:
 
 
 def tables_of(name: str, schema: dict):
-    """Returns (class, {key: (type, description)}) for each table of a format, inner tables first."""
+    """Yields (class, path, {key: (type, description)}) for each table, inner tables first."""
     keys: dict[tuple[str, ...], list[dict]] = {}
     for path, inner in schemas_in(schema):
         keys.setdefault(path, []).append(inner)
