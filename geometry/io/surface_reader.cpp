@@ -101,7 +101,7 @@ Sag read_sag(const Document& file, const std::string& table) {
   return sag;
 }
 
-/// Reads a key with rows [x, y].
+/// Reads the points of a key whose value is a list of rows [x, y].
 std::vector<Vec2> read_points(const Document& file, std::string_view key) {
   std::vector<Vec2> points;
   for (const auto& row : file.rows(key)) points.emplace_back(row[0], row[1]);

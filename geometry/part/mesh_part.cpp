@@ -16,8 +16,8 @@
 namespace retrace::geometry {
 namespace {
 
-// Vertices within this distance of the entrance plane are moved onto that plane. The distance is relative to the size
-// of the mesh; twice this distance applies to the sides. Rounding to single precision causes smaller deviations.
+// Maximum distance from the entrance plane at which a vertex is moved onto that plane, relative to the size of the
+// mesh. For the sides, twice this distance is used. Rounding to single precision causes smaller deviations.
 constexpr double kSinglePrecision = 1e-6;
 // Maximum sine of the angle between a facet and the horizontal at which the facet is classified as horizontal. The same
 // limit applies to the angle between a facet and the vertical.

@@ -50,20 +50,21 @@ struct Part {
   double size_mm = 0.0;           ///< size of an element in plan; scale for tolerances
   std::vector<SurfacePatch> patches;
   std::vector<Placement> placements;
-  Polygon outline;  ///< finite parts; counter-clockwise
-  /// infinite parts; the surface covers [-periods_beyond, 1 + periods_beyond] periods in x and y
+  Polygon outline;  ///< outline of a finite part, counter-clockwise; empty for an infinite part
+  /// period of an infinite part; its surface covers [-periods_beyond, 1 + periods_beyond] periods in x and y
   std::optional<Vec2> period_mm;
-  int periods_beyond = 0;  ///< infinite parts: number of additional periods on each side
-  /// Finite arrays of equal elements: region in which the surface equals that of the infinite lattice. A period of the
-  /// lattice begins at `lattice_anchor_mm`.
+  int periods_beyond = 0;  ///< number of additional periods of an infinite part on each side
+  /// Region of a finite array of equal elements in which the surface equals the surface of the infinite lattice. A
+  /// period of the lattice begins at `lattice_anchor_mm`.
   std::optional<Rectangle> lattice_region_mm;
   Vec2 lattice_anchor_mm = Vec2::Zero();
-  std::int64_t elements_full = 0;  ///< finite parts: complete elements; infinite parts: elements per period
+  std::int64_t elements_full = 0;  ///< number of complete elements; for an infinite part, per period
   std::int64_t elements_partial = 0;
-  std::vector<ZoneElements> zones;             ///< parts with zones only
-  std::vector<LatticeRegion> lattice_regions;  ///< parts with zones: regions that together cover the plate
-  double entrance_area_mm2 = 0.0;              ///< infinite parts: area of one period
-  double retro_facet_area_mm2 = 0.0;           ///< infinite parts: area in one period
+  std::vector<ZoneElements> zones;  ///< set only if the part has zones
+  /// regions that together cover the plate; set only if the part has zones
+  std::vector<LatticeRegion> lattice_regions;
+  double entrance_area_mm2 = 0.0;     ///< area of the entrance face; for an infinite part, of one period
+  double retro_facet_area_mm2 = 0.0;  ///< area of the retro facets; for an infinite part, in one period
 
   /// Returns a number that identifies the element to which a cell belongs. Cells of one element have the same number,
   /// and cells of different elements have different numbers.

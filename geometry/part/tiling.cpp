@@ -270,7 +270,7 @@ class Tiler {
     return std::move(tiles_);
   }
 
-  /// Appends the remainder of a cell after the borders have cut it.
+  /// Appends the part of a cell that is inside the borders.
   /// \param piece counts the cell; null if the cell belongs to a neighbour
   void add_cell(Piece* piece, const Index& index, const Vec2& shift_mm) {
     const CellPlace place = here_->place(index.number, shift_mm);

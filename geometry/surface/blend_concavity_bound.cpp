@@ -28,7 +28,7 @@ using jets::Series;
 constexpr int kMostDegree = 2 * kMostBlendOrder + 1;
 constexpr int kHalvings = 4;
 
-/// Coefficients of a spline on one piece.
+/// One polynomial piece of a spline, with its coefficients.
 struct Piece {
   double start_rad = 0.0;
   const double* coefficients = nullptr;

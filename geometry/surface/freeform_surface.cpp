@@ -52,7 +52,7 @@ FreeformSurface::FreeformSurface(Sag base, std::optional<Extrapolation> extrapol
 
 namespace {
 
-/// Radial line through a point at a given radius, outward, as series in the distance along the line.
+/// Radial line that passes outward through a point. Its coordinates are series in the distance along the line.
 template <class T, int N = kAnyOrder>
 struct RadialLine {
   Series<T, N> x;

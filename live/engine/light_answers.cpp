@@ -156,7 +156,8 @@ Json footprint_json(const studies::Footprint& footprint) {
       {"active_share", footprint.active_share()}, {"shown", footprint.rre_shown()}, {"regions", std::move(regions)}};
 }
 
-/// \param point result for the same direction, which also includes weak beams
+/// Returns the spots of the far field, the power outside these spots, and the total power.
+/// \param point result for the same direction; in contrast to the spots, its ledger includes weak beams
 Json far_field_json(const studies::FarField& far_field, const RrePoint& point) {
   using raytrace::Account;
   Json spots = Json::array();

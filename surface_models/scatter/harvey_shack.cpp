@@ -29,7 +29,7 @@ double equivalent_correlation_um(double length_um) {
   return length_um / pi;
 }
 
-/// Returns pi l n / w: the correlation length relative to the wavelength.
+/// Returns pi l n / w: the correlation length l in wavelengths w / n, times pi.
 double length_in_waves(double correlation_um, double index, double wavelength_nm) {
   return pi * correlation_um * 1e3 * index / wavelength_nm;
 }

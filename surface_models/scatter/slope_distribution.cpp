@@ -16,8 +16,8 @@ double tangent(const Vec3& direction) {
 }
 
 /// Draws the slope, towards the light, of a visible facet of a surface with Gaussian slopes of standard deviation 1.
-/// The density is proportional to N(p) max(0, cos + sin p). Proposals are drawn from N(p) (cos + sin max(0, p)), which
-/// is an upper bound, and accepted with the ratio.
+/// The density of the slope p is proportional to N(p) max(0, cos + sin p), where N is the normal density. Proposals are
+/// drawn from N(p) (cos + sin max(0, p)), which is an upper bound, and accepted with the ratio.
 double visible_gaussian_slope(double cos_light, double sin_light, RandomStream& random) {
   const double rising = sin_light / std::sqrt(2.0 * pi);  // integral of sin p N(p) over p > 0
   for (;;) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Reports features that the live page does not have. Files in this folder define functions of other folders. They
-// replace sources whose libraries are not available in a browser.
+// Reports features that the live page does not have. The files in this folder define functions that are declared in
+// other folders. They replace sources whose libraries are not available in a browser.
 
 #include <string_view>
 

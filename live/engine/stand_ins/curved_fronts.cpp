@@ -1,4 +1,4 @@
-// Replaces turned parts and meshes as entrance surfaces, because they are read from files.
+// Replaces turned parts and meshes as entrance surfaces. They are read from files, which the live page does not have.
 #include "live/engine/stand_ins/absent.h"
 #include "studies/design/entrance_of_design.h"
 
