@@ -17,8 +17,8 @@ constexpr std::uint8_t kZBit = 0b100;
 constexpr std::uint8_t kLinearBits = 0b111;
 /// Allowance for the rounding errors of floating-point sums, in mm or degrees.
 constexpr double kSlack = 1e-9;
-/// Maximum tolerance, in mm or degrees, for the rounding of a position in a program. A position may exceed a limit by
-/// half of its last decimal, but at most by this value. Example: half of 1e-4 inch is 1.3e-3 mm.
+/// Maximum tolerance, in mm or degrees, for the rounding of a position in a program. The tolerance is half of the last
+/// decimal of the position, but at most this value. Example: half of 1e-4 inch is 1.3e-3 mm.
 constexpr double kMaxRounding = 2e-3;
 /// Maximum tolerance, relative to the limit, for the rounding of a feed or an inverse time in a program.
 constexpr double kMaxRelativeRounding = 1e-3;
@@ -128,8 +128,8 @@ void ControlCheck::state(const NcSettings& settings, const NcPlace& place, bool 
   if (settings.spindle && rule_.spindle.turns == NcSpindle::stopped) spindle(settings, place);
 }
 
-/// Adds a finding if the program uses a code of an option that the control does not have. Such a code stops the control
-/// with an alarm.
+/// Adds a finding if the program uses a code of an option that the control does not have, because such a code stops the
+/// control with an alarm.
 void ControlCheck::refuse_option(const NcSettings& settings, const NcPlace& place, bool is_there,
                                  const NcNeed& option) {
   const bool holds = dialect_ != NcDialect::fanuc || is_there || (settings.said & option.said) == 0;

@@ -23,7 +23,8 @@ double rounding_slack(const NcMotion& motion, char axis);
 /// State of the spindle that is required while the tool cuts.
 struct SpindleRule {
   NcSpindle turns = NcSpindle::stopped;
-  double rpm = 0.0;  ///< required speed; not used if a text of the machine file starts the spindle
+  /// Required speed; not checked if the spindle is started by a program line that the machine file defines.
+  double rpm = 0.0;
 
   bool is_by_text() const { return turns == NcSpindle::started_by_text; }
 };
@@ -35,14 +36,15 @@ struct ControlRule {
   bool may_blend = false;   ///< true: blocks need no exact stop
   /// Maximum total time, in s, of consecutive dwells at one position in the material.
   double most_rest_s = std::numeric_limits<double>::infinity();
-  std::uint8_t axes = 0b111;  ///< bit i: the position of axis i of kNcAxisLetters must be known before the tool is low
-  /// Minimum Z of the first move, which must move only Z. Z must not be lower until the positions of all `axes` are
-  /// known.
+  /// Bit i: the position of axis i of kNcAxisLetters must be known before Z goes below `safe_z_mm`.
+  std::uint8_t axes = 0b111;
+  /// Minimum Z, in mm, of the first move, which must move only Z. Z must stay above this value until the positions of
+  /// all `axes` are known.
   double safe_z_mm = -std::numeric_limits<double>::infinity();
 };
 
-/// Checks the moves and settings of programs and adds findings to a list. A wrong modal setting gives one finding. It
-/// gives another finding only if the setting was corrected in between.
+/// Checks the moves and settings of programs and adds findings to a list. A modal setting that stays wrong gives only
+/// one finding. It gives another one only if it was correct in between.
 class ControlCheck {
  public:
   ControlCheck(FindingList& findings, const ControlRule& rule, const Control& control = {})
@@ -58,13 +60,13 @@ class ControlCheck {
   /// Checks the settings after a block without motion.
   /// \param is_in_material true if the tool is in the material
   void state(const NcSettings& settings, const NcPlace& place, bool is_in_material);
-  /// Checks a dwell in the material.
+  /// Checks that a dwell in the material is not too long.
   /// \param seconds duration; infinite if the program waits for the operator
   void rest(double seconds, const NcPlace& place);
   /// Checks a stop at which the program waits for the operator. The tool must be at the safe height, the rotary axes
   /// must be at 0, and mist and spindle must be off. The rest of the program is then checked like a new program.
   void stop(const NcSettings& settings, const AxisPositions& at, const NcPlace& place);
-  /// Returns the axes whose position the program has given since it began or stopped, as a bit for each axis.
+  /// Returns the axes whose position was given since the start of the program or the last stop; bit i: axis i.
   std::uint8_t known() const { return known_; }
   void spindle_at_end(const NcEnd& end);
   /// Checks that the machine has the axes that move, and that the axes stay within their limits, have a feed and do not
@@ -91,8 +93,9 @@ class ControlCheck {
   ControlRule rule_;
   Control control_;
   NcDialect dialect_ = NcDialect::rs274ngc;
-  bool has_moved_ = false;       ///< true if an axis has moved since the program began or stopped
-  std::uint8_t known_ = 0;       ///< axes whose position was given since the program began or stopped, bit by bit
+  bool has_moved_ = false;  ///< true if an axis has moved since the start of the program or the last stop
+  /// Axes whose position was given since the start of the program or the last stop; bit i: axis i.
+  std::uint8_t known_ = 0;
   double rested_s_ = 0.0;        ///< total dwell time in the material since the last move
   double z_slack_mm_ = 0.0;      ///< tolerance for the rounding of the last Z word
   std::set<std::string> wrong_;  ///< modal settings that are wrong at present

@@ -25,8 +25,8 @@ struct Finding {
 /// Returns a finding as "program: line 7: message". Unknown parts are omitted.
 std::string text_of(const Finding& finding);
 
-/// Collects findings. Findings of the same kind and line are merged to one finding with the worst value and the number
-/// of occurrences.
+/// Collects findings. Findings of the same kind and line are merged into one finding, which contains the worst value
+/// and the number of occurrences.
 class FindingList {
  public:
   /// Sets the program to which the following findings belong.

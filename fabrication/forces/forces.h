@@ -32,15 +32,16 @@ struct MeasuredForce {
 enum class Configuration { isolated, orthogonal };
 inline constexpr std::string_view kConfigurationWords[] = {"isolated", "orthogonal"};
 
-/// Linear function of the depth of cut: a constant (edge force) plus a part proportional to the depth (shear force).
+/// Linear function of the depth of cut: the sum of a constant (edge force) and a part proportional to the depth (shear
+/// force).
 struct LinearInDepth {
   double at_zero = 0.0;
   double per_um = 0.0;
   double at(double depth_um) const { return at_zero + per_um * depth_um; }
 };
 
-/// Mechanistic model of one plunge (docs/theory/forces.md). All values are positive. The measured forces push the tool
-/// towards -X, -Y and -Z during plunging and ploughing.
+/// Mechanistic model of the cutting forces in one plunge (docs/theory/forces.md). All values are positive. The measured
+/// forces push the tool towards -X, -Y and -Z during plunging and ploughing.
 struct ForceModel {
   LinearInDepth chip_fz_n_per_mm;    ///< F_z at full chip load, per mm of edge
   LinearInDepth chip_fy_n_per_mm;    ///< F_y at full chip load, per mm of edge

@@ -40,7 +40,8 @@ struct Workpiece {
   double shrinkage_percent = 0.0;  ///< excess of the mould's size over the size of the part, 0..10
 };
 
-/// Chip (notch) in the cutting edge. Every facet that the edge cuts last keeps a ridge at this position.
+/// Chip (notch) in the cutting edge. If the last cut of a facet is made with this edge, a ridge remains on the facet at
+/// this position.
 struct EdgeChip {
   double position_um =
       0.0;                ///< position of the chip's center along the edge, from the edge's center towards machine +X
@@ -91,13 +92,15 @@ struct Process {
   double retract_feed_mm_per_min = 200.0;  ///< feed of retracts and of moves to the next cut of an element
   bool shortest_plough = false;  ///< true: a plough ends when the chip is free, not at plough_length_mm (thesis 4.4)
   double plough_lift_um = 0.0;   ///< lift of the tool off the facet after the chip has separated; 0: no lift
-  double slow_retract_um = 0.0;  ///< bidirectional cuts: first part of the retract, at cutting feed (thesis 4.4)
-  bool mist = true;              ///< true: mist during cuts, which removes chips and cools the edge
+  /// Bidirectional cuts: length of the first part of the retract, which is made at the cutting feed (thesis 4.4).
+  double slow_retract_um = 0.0;
+  bool mist = true;                      ///< true: mist during cuts, which removes chips and cools the edge
   double rotary_clearance_mm = 5.0;      ///< clearance above the rotating blank during rotary moves
   std::optional<double> least_chip_um;   ///< minimum chip thickness, below which the edge rubs; empty: no limit
   std::optional<double> stop_every_min;  ///< maximum run time of a program without a stop; empty: no limit
   bool stop_before_finishing = false;    ///< true: every element is inspected between roughing and finishing
-  /// Measured areal roughness Sa of facets after each kind of motion. Source: Milliken 2017 and Hamilton et al. 2017.
+  /// Areal roughness Sa of facets that was measured after each kind of motion. Source: Milliken 2017 and Hamilton et
+  /// al. 2017.
   double plough_sa_nm = 468.0;
   double roughing_plunge_sa_nm = 115.0;
   double finishing_plunge_sa_nm = 48.9;
@@ -121,7 +124,8 @@ struct Job {
   Workpiece workpiece;
   geometry::Element element;           ///< element of the part, without cant
   geometry::AngleErrors angle_errors;  ///< intended angle errors of the elements; cube corners only
-  geometry::ArrayLayout array;         ///< finite array; a `single` element has the lengths of its aperture
+  /// Finite array; for a `single` element, the array has the size of the element's aperture.
+  geometry::ArrayLayout array;
   /// Zones that are cut instead of the array. If there are zones, only the x and y lengths of `array` are used.
   std::vector<CutZone> zones;
   /// Curved or inclined surface on which the elements are placed, and shape of the blank's face. Its highest point over
@@ -131,7 +135,8 @@ struct Job {
   std::string machine = "ideal";  ///< name of a shipped machine, or a file
   Strategy strategy = Strategy::two_step;
   Process process;
-  std::vector<std::string> notes;  ///< remarks from the making of the job, for example about omitted elements
+  /// Remarks that were added when the job was made, for example about omitted elements.
+  std::vector<std::string> notes;
   std::shared_ptr<const schema::Document> document;  ///< content of the job file; null if there is no file
 
   /// Returns the location of a key in the job file, or the location where it is missing.

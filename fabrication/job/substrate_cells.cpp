@@ -125,8 +125,8 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
   double stock = 0.0;
   for (const CutElement& cut : elements) {
     const Opening& opening = openings[cut.rotated ? 1 : 0];
-    // A higher face gives a wider opening, over whose border the blank may be even higher. Iterate until the height is
-    // constant.
+    // A higher face gives a wider opening. At the border of the wider opening, the blank may be even higher. Iterate
+    // until the height is constant.
     for (int round = 0; round < kMostRounds; ++round) {
       double highest = stock;
       for (std::size_t k = 0; k < opening.grows.size(); ++k) {

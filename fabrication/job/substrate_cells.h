@@ -12,7 +12,7 @@
 
 namespace retrace::fabrication {
 
-/// Returns the specification of the part that a design with the job's elements and substrate would have.
+/// Returns the specification of the part that consists of the job's elements on the job's substrate.
 /// \pre the job has a substrate
 geometry::PartSpec part_on_substrate(const Job& job);
 
@@ -25,7 +25,7 @@ std::vector<CutElement> elements_on_substrate(const Job& job);
 /// the element's cut. It is 0 on a flat blank, on an inclined blank with elements along its normal, and on a convex
 /// blank.
 /// \param clearance_mm additional distance from the blank that the tool must keep at the start of a cut. If it is above
-///        0, the result applies to this start
+///        0, the result is the height above the rims from which this distance is measured
 /// \throw InputError, whose text begins with "must", if the substrate is too steep for the tool to leave the cut
 double stock_mm(const Job& job, const std::vector<CutElement>& elements, double clearance_mm = 0.0);
 

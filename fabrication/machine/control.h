@@ -23,15 +23,16 @@ inline constexpr std::string_view kIncrementSystemWords[] = {"B", "C", "D", "E"}
 /// Control of a machine. Each dialect uses only some of these properties.
 struct Control {
   IncrementSystem increment_system = IncrementSystem::e;  ///< Fanuc only
-  bool has_rotation = false;         ///< Fanuc: the control can rotate coordinates (G68 on, G69 off)
-  bool has_mirror = false;           ///< Fanuc: the control can mirror coordinates (G51.1 on, G50.1 off)
-  std::string modulo_axes = "C";     ///< Sinumerik: letters of the modulo axes, whose positions are 0 to 360 degrees
-  int coordinate_system = 1;         ///< Power PMAC: number of the coordinate system
-  std::string mist_on;               ///< Power PMAC or Aerotech: program line that switches the mist on; empty: no mist
-  std::string mist_off;              ///< program line that switches the mist off
-  std::string optional_stop;         ///< program line of an optional stop
-  std::string stop;                  ///< program line of a stop
-  bool has_unchecked_lines = false;  ///< true: these four lines are not checked
+  bool has_rotation = false;      ///< Fanuc: the control can rotate coordinates (G68 on, G69 off)
+  bool has_mirror = false;        ///< Fanuc: the control can mirror coordinates (G51.1 on, G50.1 off)
+  std::string modulo_axes = "C";  ///< Sinumerik: letters of the modulo axes, whose positions are 0 to 360 degrees
+  int coordinate_system = 1;      ///< Power PMAC: number of the coordinate system
+  std::string mist_on;            ///< Power PMAC or Aerotech: program line that switches the mist on; empty: no mist
+  std::string mist_off;           ///< program line that switches the mist off
+  std::string optional_stop;      ///< program line of an optional stop
+  std::string stop;               ///< program line of a stop
+  /// True: the four program lines above may contain any text, even text that moves axes.
+  bool has_unchecked_lines = false;
   bool rapids_are_straight = false;  ///< true: axes of a rapid move arrive together; false: each has its own speed
 };
 

@@ -25,7 +25,7 @@ Eigen::Matrix3d turn(const RotaryAxis& axis, double word_deg) {
   return rotation_about(axis.direction.value, Angle::from_deg(axis.sign.value * word_deg));
 }
 
-/// Returns the rotation of a rotary axis about its line in space.
+/// Returns the rotation about the line of a rotary axis, for a position of this axis.
 RigidMotion turn_about_line(const RotaryAxis& axis, double word_deg) {
   const Eigen::Matrix3d rotation = turn(axis, word_deg);
   return {rotation, axis.point_mm.value - rotation * axis.point_mm.value};
@@ -124,7 +124,7 @@ PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, c
                              const RotaryPose& near) {
   const Vec3 target = plunged_normal(machine);
   const Vec3& a_axis = machine.a.direction.value;
-  // Relative to the tool, a head at angle B is equivalent to a table at angle -B.
+  // For positions relative to the tool, a head at angle B is equivalent to a table at angle -B.
   const double a_sign = machine.tilt == Tilt::table ? machine.a.sign.value : -machine.a.sign.value;
   const Vec3& c_axis = machine.c.direction.value;
   // A rotation about A does not change the component of the normal along A. Therefore C must give this component its

@@ -38,7 +38,7 @@ struct Interval {
   bool contains(double value) const { return value >= low && value <= high; }
 };
 
-/// Default jerk limit of an axis: none, so that the acceleration changes instantaneously.
+/// Default jerk limit of an axis: no limit, so that the acceleration may change instantaneously.
 inline const Sourced<double> kNoJerkLimit = {std::numeric_limits<double>::infinity(), Basis::assumed,
                                              "acceleration begins at once, as for every axis that names no jerk"};
 
@@ -69,8 +69,10 @@ struct RotaryAxis {
 /// Part of the machine with which a body moves.
 enum class Carrier {
   workpiece,  ///< moves with the table (A and C); points are in the workpiece frame
-  cradle,     ///< moves with A but not with C; points are in the workpiece frame at A = 0. Tilting head: does not move
-  tool        ///< moves with the spindle; points are relative to the tool reference point
+  /// Moves with A but not with C; points are in the workpiece frame at A = 0. On a machine with a tilting head, it does
+  /// not move.
+  cradle,
+  tool  ///< moves with the spindle; points are relative to the tool reference point
 };
 
 /// Convex body of a machine, for collision checks. It is the convex hull of its points.
@@ -80,7 +82,7 @@ struct MachineBody {
   Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least 4, not in one plane
 };
 
-/// Deviation of the mounted tool from its nominal position and orientation, from a set-up or a calibration.
+/// Deviation of the mounted tool from its nominal position and orientation, as determined by a set-up or a calibration.
 struct ToolMount {
   /// Displacement of the tool reference point from its assumed position, along the axes of the machine. For a tilting
   /// head, it applies at B = 0.

@@ -71,8 +71,8 @@ bool is_direction(SetupPart part) {
          part == SetupPart::z_direction;
 }
 
-/// Returns the derivative of a unit direction with respect to its component `axis`, if the direction is normalized
-/// again.
+/// Returns the derivative of a unit direction with respect to its component `axis`. The direction remains a unit
+/// vector.
 Vec3 gain(const Vec3& direction, int axis) {
   return Vec3::Unit(axis) - direction * direction[axis];
 }

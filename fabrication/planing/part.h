@@ -20,12 +20,12 @@ struct ZoneLens {
   double half_width_mm = 0.0;
 };
 
-/// Milling machine used for planing, without rotation of its spindle. It allows this only in fast feed. Every move is
-/// therefore along one axis, and has at least the minimum length of fast feed. X is across the zones, Y along them, Z
-/// up.
+/// Milling machine used for planing, with a spindle that does not rotate. The machine permits this only in fast feed.
+/// Every move is therefore along one axis, and has at least the minimum length of fast feed. X is across the zones, Y
+/// is along them, and Z is up.
 struct PlaningMill {
   double fast_feed_mm_per_min = 0.0;
-  double frame_s = 0.0;  ///< additional time of each move (frame)
+  double frame_s = 0.0;  ///< frame time: additional time that each move takes
   double grid_mm = 0.01;
   double least_x_mm = 13.0;
   double least_y_mm = 13.0;
@@ -52,7 +52,8 @@ struct PlaningLathe {
   double nose_radius_mm = 0.0;  ///< nose radius of the tool
   std::int32_t spindle_rpm = 0;
   SpindleDirection spindle_direction = SpindleDirection::clockwise;
-  /// Program line that starts the spindle, for dialects without spindle words; empty: none.
+  /// Program line that starts the spindle, for dialects without codes for the spindle. It is empty if the part file
+  /// does not define the line.
   std::string spindle_start;
   /// Program line that stops the spindle; given if and only if spindle_start is given.
   std::string spindle_stop;

@@ -50,7 +50,8 @@ struct DialectWords {
   std::string_view mist_off = "M9\n";
   std::string_view optional_stop = "M1\n";
   std::string_view stop = "M0\n";
-  std::string_view shortest = {};   ///< position of a modulo axis. Arguments: letter; degrees, 0 to 360
+  /// Position of a modulo axis that moves along the shortest path. Arguments: letter; degrees, 0 to 360.
+  std::string_view shortest = {};
   std::string_view increment = {};  ///< increment of a modulo axis in a path. Arguments: letter; degrees
   bool has_own_texts = false;       ///< true: the machine file defines the lines for mist and stops
   bool has_increment_systems = false;

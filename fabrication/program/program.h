@@ -134,8 +134,9 @@ using Item = std::variant<Comment, Message, OptionalStop, Stop, Move, Visit, Pat
 struct Spindle {
   std::int32_t rpm = 0;
   bool is_clockwise = true;  ///< M3 of ISO 6983-1, otherwise M4
-  std::string start_text;    ///< program line that starts the spindle in a dialect without spindle words; empty: none
-  std::string stop_text;     ///< program line that stops the spindle
+  /// Program line that starts the spindle in a dialect without codes for the spindle; empty if there is no such line.
+  std::string start_text;
+  std::string stop_text;             ///< program line that stops the spindle
   bool has_unchecked_lines = false;  ///< true: start_text and stop_text are not checked
 };
 

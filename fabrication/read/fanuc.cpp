@@ -50,7 +50,7 @@ std::string with_marked_comments(std::string_view line, const NcLines& lines) {
   return without_blanks(result);
 }
 
-/// Line of words: a block, and its call or return.
+/// Line of words. It contains a block, and may contain the call of a subprogram or a return.
 struct Line {
   NcBlock block;
   bool has_call = false;

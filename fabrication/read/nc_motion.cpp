@@ -328,8 +328,8 @@ class Runner {
     return feed > 0.0 ? 60.0 * way / feed : 0.0;
   }
 
-  /// Returns the maximum relative error of the length of a move with a given time, due to the rounded end positions of
-  /// each axis. Returns 0 for a move with a feed, because the feed does not depend on the length.
+  /// Returns the maximum relative error of the length of a move whose time is given, due to the rounded end positions
+  /// of each axis. Returns 0 for a move with a feed, because the feed does not depend on the length.
   static double length_rounding(const NcMotion& motion) {
     const double length = motion.path_length();
     if (motion.duration_s == 0.0 || length == 0.0) return 0.0;

@@ -31,7 +31,7 @@ struct NcMotion {
   /// Time of a linear move if the program gives the time, or a feed of all axes together (Aerotech). Otherwise 0.
   double duration_s = 0.0;
   bool is_exact_stop = true;  ///< true: the axes stop at the end point
-  bool goes_on = false;       ///< true: segment of a cubic move that is not its last segment
+  bool goes_on = false;       ///< true for each segment of a cubic move except its last one
   std::uint8_t shortest = 0;  ///< bit i: axis i takes the shortest path to an angle of 0 to 360 degrees
   std::uint8_t absolute = 0;  ///< bit i: axis i has an absolute position in the program
   std::uint8_t decimals = 0;  ///< NcBlock::decimals
@@ -91,9 +91,9 @@ inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
 /// Executes a program: calls, modal settings, absolute and incremental positions. A cubic move has positions,
 /// velocities and a time. Each of its axes follows a cubic polynomial, which the sink receives as straight segments.
 /// \throw InputError naming file and line for a linear move in inverse time mode without F > 0, for axes that move
-///         before
-///        G0 or G1, for an incremental word of an axis with unknown position, or for subroutines with endless calls. It
-///        is also thrown for a cubic move that takes no time, omits a moving axis, or does not end at rest
+///        before G0 or G1, for an incremental word of an axis with unknown position, or for subroutines that call each
+///        other endlessly. It is also thrown for a cubic move that takes no time, omits a moving axis, or does not end
+///        at rest
 NcEnd run_nc(const NcProgram& program, NcSink& sink);
 
 }  // namespace retrace::fabrication

@@ -55,7 +55,7 @@ struct NcTexts {
   std::string stop = {};
 };
 
-/// Stop of a block: none, optional (depends on a switch of the control), or unconditional.
+/// Kind of stop that a block makes: none, optional (depends on a switch of the control), or unconditional.
 enum class NcStop : std::uint8_t { none, optional, always };
 
 /// Bits for the settings that a program has made.
@@ -148,7 +148,8 @@ struct NcProgram {
   std::size_t main_last = 0;  ///< index after the last block of the main program
   std::int32_t lines = 0;     ///< number of lines of the file
   int coordinate_system = 0;  ///< number of the coordinate system of a Power PMAC; 0: not given
-  /// Line after which the operator stopped the program, at its first execution; 0: the program ran to its end.
+  /// Line after which the operator stopped the program when it was executed for the first time; 0: the program ran to
+  /// its end.
   std::int32_t stop_line = 0;
   /// Description of what is missing if the file is incomplete; empty if it is complete.
   std::optional<std::string> truncated;

@@ -129,8 +129,8 @@ class PmacReader {
       lines_.fail_word(whole);
   }
 
-  /// Reads a line PVT: its time in ms, then positions and velocities. The control would also accept lines without PVT
-  /// or without velocities, but this reader requires complete lines.
+  /// Reads a PVT line: a time in ms, then positions and velocities. The control would also accept lines without PVT or
+  /// without velocities, but this reader requires complete lines.
   void read_cubic(std::string_view text, IsoBlock& iso, NcBlock& block) {
     NcCubic cubic;
     cubic.time_s = number_behind(text) / 1000.0;

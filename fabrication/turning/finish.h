@@ -26,7 +26,8 @@ struct FinishFigures {
 /// \pre feed_mm > 0; r k < 1, so that the nose fits into the valley
 FinishFigures finish_figures(double effective_radius_mm, double feed_mm, double curvature_per_mm = 0.0);
 
-/// Computes the surface finish of the ellipse on a flat by integration, without expansion in the feed.
+/// Computes the surface finish on a flat surface by integration over the ellipse of effective_radius_mm(), without
+/// expansion in the feed.
 /// \pre feed < 2 b
 FinishFigures exact_finish(const TurningTool& tool, double feed_mm);
 

@@ -17,7 +17,8 @@ namespace retrace::fabrication {
 /// \throw InputError for an unknown name, or if the dialect cannot be recognised
 NcDialect dialect_of(const std::string& word, std::string_view text, const std::string& file);
 
-/// Returns the program lines that a machine file defines for dialects without own words for mist and stops.
+/// Returns the program lines that a machine file defines. They are used in dialects that have no codes of their own for
+/// mist and stops.
 NcTexts texts_of(const Control& control);
 
 /// Name of a program: "part.ngc", or "part.ngc@120" for a program that was stopped after line 120.

@@ -24,9 +24,9 @@ struct ChipFigures {
   double thickest_share = 0.0;          ///< maximum of chip thickness divided by its limit
 };
 
-/// Checks the cuts of one element in their order. Adds a finding for a chip that is thicker than its limit, and for a
-/// facet whose last layers are removed by fewer finishing cuts than the process requires. The checks depend only on the
-/// removed material, not on the names in the program.
+/// Checks the cuts of one element in their order. Adds a finding for a chip that is thicker than its limit. Also adds a
+/// finding for a facet whose last layers are removed by fewer finishing cuts than the process requires. The checks
+/// depend only on the removed material, and not on the titles of cuts in the program.
 class ChipCheck {
  public:
   /// \param material material before the first cut; each cut removes a part of it

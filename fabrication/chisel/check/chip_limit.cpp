@@ -28,7 +28,7 @@ BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spi
     if (away <= 0.0) continue;
     const double slope = spine.dot(normal) / away;
     // Cosine of the angle between the facet and the material on the neighbouring facet. The chip is evaluated in two
-    // sections: normal to the edge, and in the plane of the two other edges. The larger cosine is used.
+    // sections: normal to the edge, and in the plane of the two other edges. The larger of the two cosines is used.
     const Vec3& third = cavity.edges[(facet + 2) % 3];
     const double cosine =
         std::max(-normal.dot(cavity.facets[is_second ? next : (facet + 2) % 3].normal), other.dot(third));
@@ -66,7 +66,7 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
   rake_slope_ = std::tan(rake.rad());
   const double sine = std::sin(apex_.rad());
   const double cosine = std::cos(apex_.rad());
-  // Add the height of the burr that plunges with a tilted edge leave above the strip at the root.
+  // Plunges with a tilted edge leave a burr above the uncut strip at the root. Add the height of this burr.
   const double across = rake_slope_ * sine + cosine;
   if (across > 0.0)
     slack_mm_ += workpiece.prediction(element).root_mm *
@@ -77,8 +77,8 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
     share_ = std::max(0.0, std::tan(half - rake.rad())) / std::sin(half);
   } else if (cut->is_by_clearance) {
     kind_ = Kind::plunge;
-    // The limit has a kink where the last surface of the other facet crosses the layer that this plunge removes, and
-    // another kink where that surface crosses the rake face.
+    // The limit has two kinks. One is where the surface that the last cut left on the other facet crosses the layer
+    // that this plunge removes. The other one is where that surface crosses the rake face.
     bends_mm_ = {depth_mm * (1.0 + cosine) / sine, depth_mm / std::max(1e-9, sine - rake_slope_ * cosine)};
   } else {
     kind_ = Kind::plough;
@@ -105,7 +105,8 @@ double ChipLimit::plunge_at(double from_tip_mm) const {
   const double cosine = std::cos(apex_.rad());
   const double rake_mm = from_tip_mm * rake_slope_;
   constexpr double kRight = 1e-9;
-  // Height of the line's end on the plunged facet above the last surface of the other facet.
+  // A measuring line starts on the plunged facet. Compute the height of this start point above the surface that the
+  // last cut left on the other facet.
   const double over_mm = from_tip_mm * sine - depth_mm;
   if (cosine < -kRight) return std::max(depth_mm, std::min(rake_mm, over_mm / cosine));
   if (cosine > kRight) return depth_mm + std::max(0.0, rake_mm - std::max(depth_mm, over_mm / cosine));

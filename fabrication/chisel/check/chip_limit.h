@@ -15,7 +15,7 @@ namespace retrace::fabrication {
 class ChipLimit {
  public:
   /// Computes the limit for a move in one pose of the rotary axes.
-  /// \param cut facet along which the move cuts; empty: none
+  /// \param cut facet along which the move cuts; empty if the move cuts along no facet
   /// \param back transformation from the machine frame to the workpiece frame
   ChipLimit(const Workpiece3d& workpiece, std::size_t element, const std::optional<FacetCut>& cut,
             const ToolWedge& wedge, const RigidMotion& back);
@@ -36,10 +36,10 @@ class ChipLimit {
 
   Kind kind_ = Kind::between;
   double depth_mm_ = 0.0;    ///< depth of cut of the process
-  double slack_mm_ = 0.0;    ///< tolerance plus the unavoidable residual material due to a tilted edge
+  double slack_mm_ = 0.0;    ///< tolerance, plus the residual material that a tilted edge unavoidably leaves
   double rake_slope_ = 0.0;  ///< tangent of the angle between the rake face and the plunged facet
   Angle apex_;
-  double share_ = 0.0;     ///< limit divided by depth of cut, for kinds with a constant ratio
+  double share_ = 0.0;     ///< limit divided by depth of cut, for kinds of cuts that have a constant ratio
   double reach_mm_ = 0.0;  ///< V-shaped tool: distance from the neighbouring dihedral edge up to which `share_` applies
   std::array<double, 2> bends_mm_{};
 };

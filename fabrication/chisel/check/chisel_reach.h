@@ -21,8 +21,9 @@ struct ChiselCap {
 /// Part of a cube corner that can be cut by plunging along its facets with a horizontal edge and infinitely close
 /// passes (docs/theory/micro_chiseling.md). Facet k is between the dihedral edges at 120 k and 120 (k + 1) degrees.
 struct ChiselReach {
-  double facet_area_mm2 = 0.0;    ///< area of one facet
-  double share = 0.0;             ///< cut fraction of a facet: all except a triangle at the apex, half an edge high
+  double facet_area_mm2 = 0.0;  ///< area of one facet
+  /// Fraction of a facet that is cut: all except a triangle at the apex, as high as half the width of the tool.
+  double share = 0.0;
   double core_mm = 0.0;           ///< height of the remaining core above the apex
   std::array<ChiselCap, 3> caps;  ///< planes in the part frame; the remaining material is below all three planes
   double cut_share = 0.0;         ///< same as `share`, computed by simulating 1201 plunges on each facet

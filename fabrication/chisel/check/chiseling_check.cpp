@@ -19,7 +19,8 @@ ChiselingCheck::ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& we
     : CutCheck(workpiece, wedge, control, findings) {
   for (const Groove& cavity : workpiece.grooves) {
     State state;
-    // Before the first cut, all material remains. This is equivalent to a layer with its apex in the face of the blank.
+    // Before the first cut, the whole cavity is filled with material. This is equivalent to a layer with its apex in
+    // the face of the blank.
     state.left_mm.fill((cavity.face_mm - cavity.axis.dot(cavity.root_mm)) / cavity.layer_rise);
     states_.push_back(state);
   }

@@ -89,7 +89,7 @@ Groove cavity_of(const CutElement& element, const geometry::Element& size, const
                  double stock_mm = 0.0);
 /// Returns the groove or cavity of one element of a job.
 Groove groove_of(const CutElement& element, const Job& job, double stock_mm = 0.0);
-/// Returns all elements of a job, in the order of cut_elements(), for blanks without stock above the rims.
+/// Returns all elements of a job, in the order of cut_elements(), for a blank whose face is at the height of the rims.
 std::vector<Groove> designed_grooves(const Job& job);
 
 /// Finds the element whose aperture contains a point of the blank's face. Among cube corners, it finds the nearest one
@@ -97,7 +97,8 @@ std::vector<Groove> designed_grooves(const Job& job);
 class GrooveMap {
  public:
   explicit GrooveMap(const std::vector<Groove>& grooves);
-  /// Returns the element at a point of the blank's face, or nothing on flat land and outside of the array.
+  /// Returns the element at a point of the blank's face. Returns nothing outside of the array, and in flat areas
+  /// between the elements.
   std::optional<std::size_t> at(double x_mm, double y_mm) const { return at(geometry::Vec3(x_mm, y_mm, 0.0)); }
   /// Returns the element whose aperture contains a point that is projected along the element's axis.
   std::optional<std::size_t> at(const geometry::Vec3& p) const;

@@ -28,7 +28,7 @@ class PlungeCheck : public CutCheck {
       std::int32_t line = 0;
     };
     std::array<std::optional<Plunge>, 2> last;   ///< last plunge along each facet
-    std::array<double, 2> surface_mm{1e9, 1e9};  ///< height of the machined surface above each facet
+    std::array<double, 2> surface_mm{1e9, 1e9};  ///< height of the machined surface above each designed facet
     std::vector<std::array<double, 4>> tips;     ///< end point and facet of each plunge, to detect repeated plunges
   };
   /// Plunge whose chip separation has not been checked yet.

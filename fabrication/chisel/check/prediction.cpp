@@ -38,8 +38,8 @@ Prediction predict_cube(const Machine& machine, const Groove& cavity, const Tool
   return prediction;
 }
 
-/// Returns the maximum distance by which an end of the edge, or the tool above it, cuts into a wall
-/// (docs/theory/verification.md).
+/// Returns the maximum distance by which an end of the edge, or the tool above it, cuts into the wall at an end of the
+/// element (docs/theory/verification.md).
 /// \param motion rigid motion of the workpiece while the facet is plunged
 /// \param length_mm length of the facet from the root to the face of the blank
 double wall_overcut_mm(const Groove& groove, const ToolWedge& wedge, const Vec3& pass_normal, const RigidMotion& motion,

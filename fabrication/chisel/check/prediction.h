@@ -18,7 +18,8 @@ struct PloughedFloor {
   double slope = 0.0;          ///< rise of the surface along the root, in mm per mm
   double half_width_mm = 0.0;  ///< half of the width of the pass, along the root
   double drift = 0.0;          ///< displacement of the pass along the root, in mm per mm of distance from the root
-  /// Distance, along the root, between the tool's plane of motion where it meets the facet and the center of the edge.
+  /// Distance, along the root, from the plane in which the center of the edge moves to the center of the ploughed
+  /// surface at the root. It is not 0 because the center of a tilted edge is above the facet.
   double shift_mm = 0.0;
 };
 
@@ -33,7 +34,8 @@ struct Prediction {
   /// tool moves along the dihedral edges of a cube corner and leaves no strip.
   double root_mm = 0.0;
   std::array<double, 2> root_of_mm{};  ///< width of this strip on facet 1 and on facet 2
-  double wall_mm = 0.0;  ///< maximum depth by which an end of the edge, or the tool above it, cuts into a wall
+  /// Maximum depth by which an end of the edge, or the tool above it, cuts into the wall at an end of the element.
+  double wall_mm = 0.0;
   double fin_mm =
       0.0;  ///< cube corners: maximum height of the fin that rounded positions leave between the cuts of two facets
   double step_mm = 0.0;  ///< least increment of the control

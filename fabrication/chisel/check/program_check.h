@@ -62,7 +62,8 @@ class ProgramCheck : public NcSink {
   const Machine& machine_;
   FindingList& findings_;
   GrooveMap map_;
-  std::vector<std::optional<std::size_t>> visits_;  ///< element of each run; only for jobs with a substrate
+  /// Element of each run of cutting moves (see CutRuns); only for jobs with a substrate.
+  std::vector<std::optional<std::size_t>> visits_;
   CutRuns runs_;
   ToolWedge wedge_;
   ControlCheck control_;

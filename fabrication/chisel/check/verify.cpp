@@ -156,8 +156,8 @@ class Judge {
   Verification& result_;
 };
 
-/// Returns the volume of one element of a zone below the blank's face. For hexagonal elements, it is the volume inside
-/// of the hexagon, without the corners of the triangular cavity outside.
+/// Returns the volume, below the blank's face, of one element of a zone. For a hexagonal element, it is the volume
+/// inside of the hexagon. It does not include the corners of the triangular cavity, which are outside of the hexagon.
 double design_volume_mm3(const Job& job, std::size_t zone) {
   const geometry::Cell cell = geometry::element_cell(blank_element(job, zone), angle_errors_of(job, zone));
   double volume_mm3 = 0.0;
@@ -214,8 +214,8 @@ bool has_errors(const Job& job) {
   return false;
 }
 
-/// Finds the element that each run of a subroutine cuts. Returns an empty list for jobs without a substrate, where it
-/// is not needed.
+/// Finds the element to which each run of cutting moves belongs (see VisitFinder). Returns an empty list for jobs
+/// without a substrate, where the runs are not needed.
 std::vector<std::optional<std::size_t>> visits_of(const Workpiece3d& workpiece,
                                                   const std::vector<NcProgram>& programs) {
   if (!workpiece.job->substrate) return {};

@@ -27,7 +27,8 @@ double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& 
 
 struct VerifyOptions {
   std::optional<double> tolerance_nm;  ///< tolerance for facet planes, > 0; empty: usual_tolerance_nm()
-  std::size_t standing = 0;            ///< number of programs at the beginning that are simulated but not checked
+  /// Number of programs, at the beginning of the list, that are simulated but not checked.
+  std::size_t standing = 0;
 };
 
 /// Result for one element.
@@ -70,7 +71,7 @@ struct Verification {
   double zone_overcut_um_max = 0.0;
   std::int64_t elements_overcut = 0;
   double removed_volume_mm3 = 0.0;
-  /// Minimum distance between edge and holder that keeps the holder clear of the blank.
+  /// Minimum free length of the tool between edge and holder with which the holder keeps clear of the blank.
   double free_tool_length_mm = 0.0;
   ProgramTime time;
   std::int64_t elements_cut = 0;

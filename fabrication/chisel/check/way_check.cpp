@@ -90,8 +90,8 @@ void WayCheck::turn_from_anywhere(const NcMotion& motion) {
         motion.from.z_mm, safe_mm);
 }
 
-/// Returns sampled positions of a rotary move. If two axes move, each axis may move at its own speed. All combinations
-/// of their angles are then sampled, unless the rapid moves of the machine are straight.
+/// Returns sampled positions of a rotary move. Each of two moving axes may move at its own speed. All combinations of
+/// their angles are then sampled, unless the rapid moves of the machine are straight.
 std::vector<AxisPositions> WayCheck::places_of_turn(const NcMotion& motion) const {
   const AxisPositions& from = motion.from;
   const AxisPositions& to = motion.to;
@@ -126,8 +126,8 @@ bool WayCheck::is_box_move(const NcMotion& motion) const {
   return motion.move == NcMove::rapid && !machine_.control.rapids_are_straight;
 }
 
-/// Returns the edge vectors of the region that a move may pass through. It is a line for a straight move, and a box
-/// with one edge per axis otherwise.
+/// Returns the edge vectors of the region that a move may pass through. The region of a straight move is a line.
+/// Otherwise, the region is a box with one edge per axis.
 std::vector<Vec3> WayCheck::edges_of_way(const NcMotion& motion) const {
   const Vec3 from = machine_point(machine_, motion.from);
   if (!is_box_move(motion)) return {machine_point(machine_, motion.to) - from};

@@ -109,7 +109,7 @@ class Overcutter {
   }
 
   /// Adds the material that cavity i removes at a point outside of its hexagon. If several cavities contain this point,
-  /// only the deepest cavity is counted.
+  /// only the deepest one removes material there.
   /// \param area_mm2 area that the point represents
   void take(std::size_t i, const Vec2& p, double area_mm2) {
     const double own_mm = depth_mm(i, p);

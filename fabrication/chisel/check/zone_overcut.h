@@ -1,7 +1,7 @@
 #pragma once
 
-// Computes the overcut of hexagonal cube corners in zones. Their cavities are triangular and remove material outside of
-// the hexagons, also at the border to another zone.
+// Computes the overcut of hexagonal cube corners in jobs with zones. Their cavities are triangular and remove material
+// outside of the hexagons, also at the border to another zone.
 
 #include <cstdint>
 #include <vector>

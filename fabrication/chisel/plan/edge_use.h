@@ -15,8 +15,9 @@
 
 namespace retrace::fabrication {
 
-/// Returns the length of cut of a visit. It is the path length of the tip below the blank's face, along plunges and
-/// ploughs. For a V-shaped tool, it is the path down and up the dihedral edges.
+/// Returns the length of cut of a visit, which is one call of a subroutine at an element. It is the path length of the
+/// tip below the blank's face, along plunges and ploughs. For a V-shaped tool, it is the path down and up the dihedral
+/// edges.
 /// \param stock_mm height of the blank's face above the rims
 double length_of_cut_mm(const Job& job, const Machine& machine, const CutElement& element, const CuttingPose& pose,
                         const Visit& visit, const Subroutine& routine, double stock_mm);
@@ -26,7 +27,7 @@ enum class StopReason : std::uint8_t { edge, time, finishing };
 /// Names of the reasons in documents, in the order of the enumerators.
 inline constexpr std::string_view kStopReasonWords[] = {"edge", "time", "finishing"};
 
-/// Length of cut and run time of an edge, or between two stops.
+/// Use of a cutting edge, by one visit or since the last stop: length of cut and run time.
 struct EdgeUse {
   double cut_mm = 0.0;
   double seconds = 0.0;
@@ -47,8 +48,8 @@ class EdgeAccount {
   std::optional<StopReason> stop_before(const EdgeUse& visit) const;
   /// Returns true if the visit needs a new edge and therefore a new program.
   bool needs_program(const EdgeUse& visit) const;
-  /// Checks that a visit can be made directly after a stop.
-  /// \param fresh_s run time since this stop
+  /// Checks that a visit can be made as the first one after a stop.
+  /// \param fresh_s run time from this stop to the visit
   /// \throw InputError naming the key if the visit exceeds the tool life or the maximum run time
   void check(const EdgeUse& visit, double fresh_s, std::int32_t element) const;
 

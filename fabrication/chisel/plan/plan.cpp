@@ -260,8 +260,8 @@ class ProgramMaker {
     program_.items.emplace_back(Message{fmt::format("{} {} of {} C-axis at {}", what, stage.cut, stage.cuts, c_deg)});
   }
 
-  /// Moves X and Y back and forth in turn over most of their travel until the machine is warm. Then moves to the center
-  /// of the array.
+  /// Warms up the machine: X and Y move back and forth, one after the other, over most of their travel. Then moves to
+  /// the center of the array.
   void warm_up() {
     if (machine_.warm_up_s.value <= 0.0) return;
     constexpr double kOfTravel = 0.9;
@@ -539,12 +539,13 @@ class ProgramMaker {
   Nanometres safe_z_nm_ = 0;
   Nanometres first_z_nm_ = 0;  ///< Z position of the first move
   bool just_turned_ = true;
-  bool is_cold_ = true;       ///< true if the machine has not moved since the program began or stopped
-  bool is_fresh_ = true;      ///< true if nothing was cut since the program began or stopped
-  bool has_visits_ = false;   ///< true if the present program contains visits
-  bool has_roughed_ = false;  ///< true if the previous visit was roughing, since the program began or stopped
-  int stops_ = 0;             ///< number of stops in the present program
-  bool has_kinds_ = false;    ///< true for elements on a substrate or in zones, which have separate poses
+  bool is_cold_ = true;      ///< true if the machine has not moved since the start of the program or the last stop
+  bool is_fresh_ = true;     ///< true if nothing was cut since the start of the program or the last stop
+  bool has_visits_ = false;  ///< true if the present program contains visits
+  /// True if a roughing visit was the last visit since the start of the program or the last stop.
+  bool has_roughed_ = false;
+  int stops_ = 0;           ///< number of stops in the present program
+  bool has_kinds_ = false;  ///< true if elements are on a substrate or in zones, and therefore need separate poses
   ClearWay way_;
   EdgeAccount account_;
   std::set<std::uint32_t> used_;  ///< subroutines that the program calls

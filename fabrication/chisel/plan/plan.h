@@ -25,7 +25,7 @@ struct PlanOptions {
   std::optional<std::int64_t> from_pass;     ///< number, from 1, of the pass of this visit at which the program starts
   std::optional<std::int64_t> stop_every;    ///< number of visits between optional stops
   std::optional<double> split_hours;         ///< maximum run time of a program, unless a single visit takes longer
-  std::string before;  ///< plan only the stages before this stage or group of stages; empty: no restriction
+  std::string before;  ///< only the stages before this stage or group of stages are planned; empty: no restriction
 };
 
 /// Machining time in seconds, divided by kind of motion.
@@ -59,7 +59,7 @@ struct PlannedStop {
   std::size_t stage = 0;     ///< index in Plan::stages
   std::int32_t element = 0;  ///< element with which the program continues
   double at_s = 0.0;         ///< run time since the start of the program
-  EdgeUse used;              ///< use since the previous stop, or since the edge was new
+  EdgeUse used;              ///< use since the previous stop, or since the edge was new if there was no stop
 };
 
 /// Number of a program's first subroutine.

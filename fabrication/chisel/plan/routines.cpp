@@ -59,8 +59,8 @@ Vec2 on_clearance_plane(const Section& section, const Vec2& point, const Vec2& d
   return point + to_go / section.face_normal.dot(direction) * direction;
 }
 
-/// Returns the maximum chip thickness of the first slice, along the wall's normal, divided by its width at the floor.
-/// The chip is the part of the triangle between rake face and blank's face.
+/// Returns the maximum chip thickness of the first slice, divided by the width of the slice at the floor. The thickness
+/// is measured along the wall's normal. The chip is the part of the triangle between rake face and blank's face.
 double share_of_first_slice(const Section& section) {
   const double rake_slope = std::tan(section.rake.rad());
   const double face_slope = 1.0 / std::tan(0.5 * section.apex.rad());

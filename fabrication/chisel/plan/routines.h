@@ -25,16 +25,16 @@ int cuts_per_facet(const Job& job, double stock_mm = 0.0);
 /// \throw InputError naming the key if nothing remains for roughing
 double roughing_across_mm(const Job& job, double stock_mm);
 
-/// Returns the maximum difference, in mm, between the actual and the planned thickness of a first cut. The two ends of
-/// a tilted edge differ in height by two lifts. The same applies to the plunge along the other facet. The Y and Z
-/// positions of both cuts are rounded to whole increments.
+/// Returns the maximum difference, in mm, between the actual and the planned thickness of a first cut. The heights of
+/// the two ends of a tilted edge differ by twice `lift_mm`. The plunge along the other facet has the same difference.
+/// The Y and Z positions of both cuts are also rounded to whole increments.
 inline double edge_dip_mm(const Section& section) {
   return 4.0 * section.lift_mm + 2.0 * static_cast<double>(section.step_nm) / kNanometresPerMm;
 }
 
-/// Returns the thickness, along the facet's normal, that remains above the last cut after cut `cut` of `cuts`. All cuts
-/// have the full depth except the first one. If the first chip would be thinner than the minimum chip, the first two
-/// cuts share their thickness equally.
+/// Returns the thickness, along the facet's normal, that remains above the facet of the last cut after cut `cut` of
+/// `cuts`. All cuts have the full depth except the first one. If the first chip would be thinner than the minimum chip,
+/// the thickness of the first two cuts is divided equally between them.
 /// \param across_mm total thickness that all cuts remove
 /// \param share maximum chip thickness of the first cut, divided by its depth
 /// \param dip_mm edge_dip_mm()
@@ -58,9 +58,9 @@ double finishing_allowance_mm(const Job& job);
 /// radius of the edge.
 double shortest_plough_mm(const Job& job, const Section& section);
 
-/// Returns the subroutine with all cuts of an element by plunging and ploughing. Cut i of N ends at (N - i) depths of
-/// cut in front of the last wall. The root of every cut is on the floor. The finishing allowance remains on wall and
-/// floor.
+/// Returns the subroutine with all cuts of an element by plunging and ploughing. The distance of cut i of N from the
+/// last wall is (N - i) times the depth of cut. The root of every cut is on the floor. The finishing allowance remains
+/// on wall and floor.
 Routine unidirectional_routine(const Job& job, const Section& section);
 
 /// Returns the subroutine with one plunge along the wall and a retract along the bisector.

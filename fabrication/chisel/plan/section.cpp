@@ -23,7 +23,8 @@ double half_apex_rad(const geometry::RtpElement& element) {
   return 0.5 * Angle::from_deg(element.apex_angle_deg).rad();
 }
 
-/// Rotates a direction by -90 degrees about Z: from an element that is not rotated to a rotated one.
+/// Rotates a direction by -90 degrees about Z. This converts a direction in an element that is not rotated to the
+/// corresponding direction in a rotated element.
 Vec3 turned_back(const Vec3& v) {
   return {v.y(), -v.x(), v.z()};
 }
@@ -119,7 +120,7 @@ double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg
   for (const int turns : {0, 1, -1, 2, -2}) {
     const double candidate = c_deg + 360.0 * turns;
     if (!limits.contains(candidate)) continue;
-    constexpr double kAsFarDeg = 1.0;  // computed angles differ from nominal angles by less than this
+    constexpr double kAsFarDeg = 1.0;  // maximum difference between computed and nominal angles
     if (!best || std::abs(candidate - previous_c_deg) < std::abs(*best - previous_c_deg) - kAsFarDeg) best = candidate;
   }
   if (!best)

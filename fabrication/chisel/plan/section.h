@@ -33,9 +33,10 @@ struct Section {
   geometry::Vec2 face_normal;      ///< normal of the face; face_normal . (y, z) = depth_mm + height above the rims
   double depth_mm = 0.0;           ///< depth of the root below the element's rims
   double stock_mm = 0.0;           ///< height of the blank's face above the rims
-  double start_mm = 0.0;           ///< height above the rims from which the clearance is measured at the start
-  double lift_mm = 0.0;            ///< lift of the tool with which the deeper end of a tilted edge touches the floor
-  double edge_mm = 0.0;            ///< distance of the reference point from the floor due to the edge radius
+  double start_mm = 0.0;           ///< height above the rims from which the clearance is measured at the start of a cut
+  /// Distance by which the tool is raised so that only the deeper end of a tilted edge touches the floor.
+  double lift_mm = 0.0;
+  double edge_mm = 0.0;  ///< distance of the reference point from the floor due to the edge radius
   Angle apex;
   Angle rake;              ///< angle between the wall and the rake face
   Nanometres step_nm = 1;  ///< increment of the positions
@@ -91,7 +92,7 @@ struct Stance {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< CutElement::turn of the elements
   std::size_t zone = 0;
   double stock_mm = 0.0;      ///< height of the blank's face above the rims
-  double start_mm = 0.0;      ///< height above the rims from which the clearance is measured at the start
+  double start_mm = 0.0;      ///< height above the rims from which the clearance is measured at the start of a cut
   std::int64_t element = -1;  ///< one of the elements, for error messages; -1 on a flat blank
 
   /// Returns the beginning of an error message about the pose. It is empty on a flat blank.

@@ -69,8 +69,8 @@ class StageMaker {
     }
   }
 
-  /// Adds the stages of micro chiseling. In each layer, one facet of all elements is cut, then the next facet. The chip
-  /// of a layer separates with the third facet.
+  /// Adds the stages of micro chiseling. In each layer, the first facet of all elements is cut, then the second and the
+  /// third one. The chip of a layer separates with the cut of the third facet.
   void chisel() {
     if (!job_.zones.empty())
       add_poses_by_turn();
@@ -218,7 +218,7 @@ class StageMaker {
     add(std::move(stage), pose, std::move(routine));
   }
 
-  /// Adds plunges: each cut in all poses, then the next cut.
+  /// Adds the stages of plunging. Each cut is made in all poses before the next cut begins.
   /// \param rough_first true: adds the roughing stage before the first cut of facet 1
   void add_plunges(std::string_view what, int cuts, double feed_mm_per_min, bool rough_first) {
     for (int cut = 1; cut <= cuts; ++cut)

@@ -51,8 +51,9 @@ constexpr std::size_t kMostZoneElements = 2'000'000;
 /// Tolerance, in mm, for a tool that is wider than the element.
 constexpr double kFitToleranceMm = 1e-6;
 constexpr std::size_t kMostChips = 100;
-/// Minimum angle, in degrees, between the rake face and the other facet, through which the chip leaves. The value is an
-/// assumption: half of the 25 degrees that remain of a right angle with wedge 50 and clearance 15.
+/// Minimum angle, in degrees, between the rake face and the other facet. The chip leaves through the gap between them.
+/// The value is an assumption. It is half of the 25 degrees that remain of a right angle with a wedge angle of 50
+/// degrees and a clearance angle of 15 degrees.
 constexpr double kChipRoomDeg = 12.5;
 
 // Conversions between members of Job and values in files.
@@ -345,7 +346,8 @@ void check_chisel(const Job& job, const Refuse& refuse) {
                        "stays between the plunges of both facets, got {}",
                        shortest(0.5 * apex_deg), fixed_visible(apex_deg - 2.0 * taken_deg, 3),
                        fixed_apart(taken_deg, 0.5 * apex_deg, 3)));
-  // The diamond becomes narrower towards its shank. Its width must be positive where it leaves the element.
+  // The diamond becomes narrower towards its shank. Its width must still be positive at the height of the element's
+  // rims.
   const double half_apex_rad = 0.5 * Angle::from_deg(apex_deg).rad();
   const double facet_mm = 0.5 * blank_prism(job).base_mm / std::sin(half_apex_rad);
   const double side_limit_deg = Angle::from_rad(std::atan(0.5 * job.tool.width_mm / facet_mm)).deg();
@@ -434,7 +436,7 @@ void check_array_on_substrate(const Job& job, const Refuse& refuse) {
   if (!array.pattern.empty()) refuse(key, "not allowed together with array.pattern");
 }
 
-/// Checks that the elements fit on the substrate, and that the tool can leave their cuts.
+/// Checks that the elements fit on the substrate, and that the tool can move out of the cuts.
 void check_substrate(const Job& job, const Refuse& refuse) {
   if (!job.substrate) return;
   try {

@@ -30,8 +30,8 @@ constexpr NumberRange kPositive{.low = 0.0, .low_included = false, .high = 1e6};
 constexpr NumberRange kLength{.low = -1e4, .high = 1e4};
 constexpr NumberRange kComponent{.low = -1e6, .high = 1e6};
 constexpr NumberRange kDegrees{.low = -3600.0, .high = 3600.0};
-/// Minimum determinant of the directions of the axes. Smaller values mean that directions are too close to each other
-/// (about 30 degrees).
+/// Minimum determinant of the directions of the axes. If it is smaller, two directions are closer to each other than
+/// about 30 degrees.
 constexpr double kLeastDeterminant = 0.5;
 
 /// Minimum length of a vector that is accepted as a direction.

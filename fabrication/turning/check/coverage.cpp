@@ -77,7 +77,8 @@ class CoverageCheck {
     return radius(pass, k - 1) + share * (radius(pass, k) - radius(pass, k - 1));
   }
 
-  /// Returns the radius of the previous turn at an angle of C. It is in an earlier pass, or at the rim of the part.
+  /// Returns the radius of the previous turn at an angle of C, if that turn is in an earlier pass. If no earlier pass
+  /// contains the angle, returns the radius of the part.
   double radius_before(std::size_t pass, double c_rad) const {
     for (std::size_t j = pass; j-- > 0;) {
       const CutPass& before = cuts_.passes[j];
@@ -117,8 +118,8 @@ class CoverageCheck {
     return {pass.x_mm[i] * cosine + pass.y_mm[i] * sine, pass.y_mm[i] * cosine - pass.x_mm[i] * sine};
   }
 
-  /// Returns the coordinate of a line across the lines, at a coordinate along them. Returns nothing beyond the ends of
-  /// the line.
+  /// Returns the position of a line, measured across the lines, at a position along the lines. Returns nothing beyond
+  /// the ends of the line.
   static std::optional<double> across_at(const std::vector<geometry::Vec2>& line, double along) {
     if (line.empty() || along > line.front().y() + kPlacesMm || along < line.back().y() - kPlacesMm)
       return std::nullopt;

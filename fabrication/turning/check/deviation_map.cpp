@@ -23,7 +23,7 @@ constexpr double kResolved = 0.25;
 
 /// Deviations in one pixel, in nm. They are NaN outside of the region, and infinite where there is no cut.
 struct Pixel {
-  double any = kNone;       ///< deviation at the random point
+  double any = kNone;       ///< deviation at one random point of the pixel
   double greatest = kNone;  ///< deviation with the largest absolute value
   double lowest = 0.0;
 };
@@ -62,7 +62,7 @@ class PixelProbe {
   }
 
  private:
-  /// Evaluates a short profile across the cuts, and finds the largest deviation between its samples.
+  /// Evaluates a short profile across the cuts, and then searches between its samples for a larger deviation.
   void take_feed_through(const Vec2& at) {
     const Vec2 outward = region_.is_round && at.norm() > 0.0 ? Vec2(at.normalized()) : Vec2(Vec2::UnitX());
     const double step = region_.feed_mm / kMostSamples;

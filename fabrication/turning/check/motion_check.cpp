@@ -24,12 +24,12 @@ double half_word_deg(NcDialect dialect) {
   return dialect == NcDialect::fanuc ? 0.5e-6 : 0.5e-7;
 }
 
-/// Measured value and the maximum error due to rounding.
+/// Measured value, and its maximum error due to rounding.
 struct Figure {
   double value = 0.0;
   double doubt = 0.0;
 
-  /// Returns the minimum absolute value that rounding cannot explain.
+  /// Returns the part of the absolute value that cannot be caused by rounding.
   double sure() const { return std::max(0.0, std::abs(value) - doubt); }
 };
 
@@ -107,9 +107,9 @@ class Quotients {
       const double dt = pass.duration_s[i];
       if (!(dt > 0.0)) continue;
       const double v = (position(i) - position(i - 1)) / dt;
-      // Rounded end points change the velocity of a straight move by their difference divided by its duration. In the
-      // middle of a cubic move, the change is 1.5 times as large. Its acceleration changes by 6 times the difference
-      // divided by the squared duration.
+      // Rounding of the end points changes the velocity of a straight move by the difference of their rounding errors
+      // divided by the duration. At half the duration of a cubic move, the change is 1.5 times as large. The
+      // acceleration of the cubic move changes by 6 times the difference divided by the squared duration.
       const double most = dt < block_s_[i] ? 3.0 : 1.0;
       velocity_[i] = {v, (most * 2.0 * half_word + std::abs(v) * kHalfWordS) / block_s_[i]};
       noise_[i] = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(position(i)) / dt;

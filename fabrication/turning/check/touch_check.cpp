@@ -250,7 +250,8 @@ class Stretch {
     ++now_.count;
   }
 
-  /// Ends the current finding, unless kMostStretches is reached. In this case, it also includes all further blocks.
+  /// Ends the current finding. If kMostStretches is reached, the finding stays open, and it also includes all further
+  /// blocks.
   void end() {
     if (told_ < kMostStretches) close();
   }

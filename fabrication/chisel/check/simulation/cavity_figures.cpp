@@ -89,10 +89,10 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
 }
 
 /// Returns the height above a facet, along its normal, up to which material is attributed to this facet. The height is
-/// limited by the blank's face, and by another facet if the angle between both facets is less than 90 degrees. Close to
-/// a dihedral edge, it is limited by the strip along this edge. Close to both other facets, the normal is nearly
-/// parallel to their common dihedral edge. A fin may remain at that edge due to rounded positions, and limits the
-/// height.
+/// limited by the blank's face. It is also limited by another facet if the angle between both facets is less than 90
+/// degrees, and by the strip along a dihedral edge if the point is close to this edge. Close to both other facets, the
+/// normal is nearly parallel to their common dihedral edge. A fin may remain at that edge due to rounded positions, and
+/// then limits the height.
 double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge, double fin_mm) {
   constexpr double kParallel = 1e-9;
   const Vec3& normal = cavity.facets[facet].normal;
@@ -115,8 +115,8 @@ double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool 
 }
 
 /// Width of the margins that are excluded from the fit of a facet's plane, relative to the edge length. There are
-/// margins along the dihedral edges and below the blank's face. A facet above its design position leaves the blank near
-/// the face.
+/// margins along the dihedral edges and below the blank's face. The margin below the face is needed because a facet
+/// that was cut too high ends before its designed rim.
 constexpr double kPlaneMargin = 0.02;
 
 void take(FacetFigures& figures, const Vec2& place, const LineSurface& surface) {

@@ -19,7 +19,8 @@ struct ErrorField {
   geometry::Vec2 size_mm = geometry::Vec2::Zero();
   std::size_t columns = 0;  ///< number of columns along x_w
   std::size_t rows = 0;     ///< number of rows; the first row is at the largest y_w
-  /// Height of the machined surface above the nearest designed facet, along its normal, row by row. NaN on flat land.
+  /// Height of the machined surface above the nearest designed facet, along its normal, row by row. NaN in flat areas
+  /// between the elements.
   std::vector<double> height_nm;
 };
 

@@ -30,10 +30,11 @@ constexpr int kEvenLines = 12;
 constexpr double kSamePassMm = 3e-6;
 /// Fraction of the width that is used to fit the plane of a facet. The ends of the facet are excluded.
 constexpr double kPlaneShare = 0.8;
-/// Distance from the root, in lengths of a facet, up to which a sweep beside a station is known to miss its lines.
+/// Maximum distance of a measured point from the root, in lengths of a facet, for which is_beside() is reliable.
 constexpr double kReachShare = 4.0;
 
-/// Positions, along the root, of the measured sections and of the passes of the tool.
+/// Positions along the root: of the stations, which are the cross-sections where facets are measured, and of the passes
+/// of the tool.
 struct Stations {
   std::vector<double> along_mm;         ///< positions of the sections
   std::vector<double> pass_middles_mm;  ///< center of each pass
@@ -53,8 +54,8 @@ class Measurer {
     find_burr();
   }
 
-  /// Returns the facet that the first cut plunges. In the pose of that cut, its normal is the one that is more nearly
-  /// opposite to the normal of the clearance face.
+  /// Returns the facet that the first cut plunges. In the pose of that cut, the normal of the plunged facet is more
+  /// nearly opposite to the normal of the clearance face than the normal of the other facet.
   std::size_t plunged_facet() const {
     const Vec3 n = poses_[sweeps_.front().pose].direction(groove_.facets[0].normal);
     const Vec3 up = wedge_.sides[0].outward;
@@ -210,15 +211,15 @@ class Measurer {
     return slants;
   }
 
-  /// Selects the sweeps that can meet the lines of a station.
+  /// Selects the sweeps that can meet the measuring lines of a station.
   void select_sweeps(double along) {
     near_.clear();
     for (const SweptVolume* sweep : by_pose_)
       if (!is_beside(*sweep, along)) near_.push_back(sweep);
   }
 
-  /// Returns whether a sweep misses all lines of a station because the tool, which is as wide as its edge, moves beside
-  /// them. This is known for points up to kReachShare facet lengths from the root.
+  /// Returns whether a sweep misses all measuring lines of a station because the tool, which is as wide as its edge,
+  /// moves past one side of them. The result is reliable for points up to kReachShare facet lengths from the root.
   bool is_beside(const SweptVolume& sweep, double along) const {
     const RigidMotion& pose = poses_[sweep.pose];
     const Vec3 root = pose.direction(groove_.root_direction);
@@ -348,7 +349,8 @@ class Measurer {
   std::vector<const SweptVolume*> near_;     ///< the sweeps of select_sweeps(), ordered by pose
   Stations stations_;
   double strip_mm_ = 0.0;
-  double layer_end_mm_ = 0.0;  ///< distance from the root up to which the tolerance of the other facet matters
+  /// Distance from the root up to which the tolerance of the other facet affects the measurement.
+  double layer_end_mm_ = 0.0;
   double plane_end_mm_ = 0.0;
   double burr_end_mm_ = 0.0;     ///< distance of the end of the burr from the root
   double burr_height_mm_ = 0.0;  ///< height of the burr above a facet

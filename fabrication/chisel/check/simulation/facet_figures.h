@@ -50,11 +50,11 @@ ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume
                                std::span<const RigidMotion> poses, const ToolWedge& wedge, const Prediction& prediction,
                                bool is_one_facet_ploughed, double tolerance_mm);
 
-/// Measures the facets of a cube corner. The measuring lines are normal to each facet. They cover the whole facet, the
-/// strips along the dihedral edges, and both sides of the leading edge while the tip is in the apex.
+/// Measures the facets of a cube corner. The measuring lines are normal to each facet. They cover the whole facet and
+/// the strips along the dihedral edges. Additional lines are on both sides of the tool's leading edge, in its position
+/// when the tip is in the apex.
 /// \param is_hexagonal true: the facets are squares with half the length of the cavity's edges. False: they are
-///         triangles
-///        up to the blank's face
+///        triangles up to the blank's face
 /// \param nose_angle_deg nose angle of the tool
 /// \param prediction predicted errors and poses of this element
 ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const SweptVolume> sweeps,
