@@ -6,7 +6,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Carries programs out one after another.
+/// Executes programs, one after the other, and passes their moves to `check`.
 template <class Check, class Begin, class End>
 void follow(const std::vector<NcProgram>& programs, FindingList& findings, PlaningCheck& result, Check& check,
             const Begin& begin, const End& end) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Judges programs of flat lenses by their text, for planing mills and lathes.
+// Checks the programs of flat lenses, for planing mills and lathes. The checks use only the text of the programs.
 
 #include <cstdint>
 #include <string>
@@ -12,47 +12,52 @@
 
 namespace retrace::fabrication {
 
-/// A sample of the profile: the design's depth and that which programs leave, in mm below the face.
+/// Sample of the profile: depth of the design and depth of the machined surface, in mm below the face.
 struct ProfileSample {
   double x_mm = 0.0;
   double design_mm = 0.0;
   double left_mm = 0.0;
 };
 
-/// What the text of programs does, found without the planner: from the part, the tool and the NC text alone.
+/// Result of a check. It is computed from the part, the tool and the NC text, without the planner.
 struct PlaningCheck {
-  std::vector<Finding> findings;     ///< values in mm
-  std::vector<double> time_s;        ///< by program
-  std::vector<std::int64_t> frames;  ///< moves, by program
-  double standing_mm_max = 0.0;      ///< left above the design
-  double gouge_mm_max = 0.0;         ///< cut below it
-  double off_grid_nm_max = 0.0;      ///< of positions, from the machine's grid
-  double shortest_x_mm = 0.0;        ///< moves of single axes; 0: none
+  std::vector<Finding> findings;     ///< findings, with values in mm
+  std::vector<double> time_s;        ///< run time of each program
+  std::vector<std::int64_t> frames;  ///< number of moves (frames) in each program
+  double standing_mm_max = 0.0;      ///< maximum height of remaining material above the design
+  double gouge_mm_max = 0.0;         ///< maximum depth of cuts below the design
+  double off_grid_nm_max = 0.0;      ///< maximum distance of a position from the machine's grid
+  double shortest_x_mm = 0.0;        ///< shortest move of X; 0 if X does not move
   double shortest_y_mm = 0.0;
   double shortest_z_mm = 0.0;
   std::vector<ProfileSample> profile;  ///< mill
-  double path_distance_mm_max = 0.0;   ///< lathe: of what the last pass leaves from what its nose can leave
-  double flank_slope = 0.0;            ///< mill: of the tool that the profile asks for, depth over distance
-  double chip_mm_max = 0.0;            ///< lathe: most that a pass takes along Z
-  double unreached_mm_max = 0.0;       ///< lathe: what a perfect pass leaves below the walls, as the nose is round
+  /// Lathe: maximum distance between the surface after the last pass and the surface that its nose can produce.
+  double path_distance_mm_max = 0.0;
+  /// Mill: slope of the flank of the tool that the profile requires, as depth divided by distance.
+  double flank_slope = 0.0;
+  double chip_mm_max = 0.0;  ///< lathe: maximum thickness, along Z, of the material that a pass removes
+  /// Lathe: maximum distance from the design of the surface that a perfect pass produces, because the nose is round.
+  double unreached_mm_max = 0.0;
 
   bool passes() const { return findings.empty(); }
 };
 
-/// One program as text.
+/// Program as text.
 struct PlaningText {
   std::string name;
   std::string text;
 };
 
-/// The lines of a part's file that start and stop the spindle, for dialects that have no words of their own for it.
+/// Returns the program lines of a part file that start and stop the spindle. They are used in dialects that have no
+/// codes of their own for the spindle.
 NcTexts spindle_texts_of(const PlanedPart& part);
 
-/// Judges programs, in the order in which they run, as they were read.
-/// \throw InputError for programs that no control can carry out
+/// Checks programs in the order of their execution.
+/// \throw InputError for programs that no control can execute
 PlaningCheck check_planing(const PlanedPart& part, const std::vector<NcProgram>& programs);
 
-/// The same of text. \throw InputError for text that cannot be read
+/// Reads the text of programs and checks them.
+/// \throw InputError for text that cannot be read
 PlaningCheck check_planing(const PlanedPart& part, const std::vector<PlaningText>& programs, NcDialect dialect);
 
 }  // namespace retrace::fabrication

@@ -9,7 +9,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Evenly spaced, the last one included.
+/// Returns evenly spaced positions from 0 to `end_mm`, including both ends.
 std::vector<double> places_to(double end_mm, double spacing_mm) {
   const auto pieces = static_cast<std::size_t>(std::ceil(end_mm / spacing_mm));
   std::vector<double> places;
@@ -18,7 +18,7 @@ std::vector<double> places_to(double end_mm, double spacing_mm) {
   return places;
 }
 
-/// The part's section, walls with both ends.
+/// Returns the cross-section of the part. It contains both end points of each wall.
 SectionLine section_of(const PhaseProfile& profile, const std::vector<double>& places_mm) {
   SectionLine section;
   auto wall = profile.walls().begin();
@@ -32,7 +32,7 @@ SectionLine section_of(const PhaseProfile& profile, const std::vector<double>& p
   return section;
 }
 
-/// Places along a line, no farther apart.
+/// Returns points along a line with distances of at most `spacing_mm`.
 SectionLine along(const SectionLine& line, double spacing_mm) {
   SectionLine places;
   for (std::size_t i = 1; i < line.size(); ++i) {
@@ -47,9 +47,10 @@ SectionLine along(const SectionLine& line, double spacing_mm) {
 }
 
 constexpr std::uint8_t kAxesXz = 0b101;
-constexpr double kWordsMm = 2e-6;  // of positions that words of a nanometre give
+constexpr double kWordsMm = 2e-6;  // tolerance for positions that are rounded to whole nanometres
 
-/// Some dialects are told by lines of the part's file, which say nothing of sense and speed that could be read.
+/// Returns the requirements on the programs. In some dialects, a line of the part file starts the spindle. Its
+/// direction and speed cannot be determined from this line, so they are not checked.
 ControlRule rule_of(const PlaningLathe& lathe, NcDialect dialect) {
   ControlRule rule;
   rule.axes = kAxesXz;
@@ -67,7 +68,8 @@ bool goes_outwards(const std::vector<SectionPoint>& path) {
   return path.size() > 1 && std::adjacent_find(path.begin(), path.end(), falls) == path.end();
 }
 
-/// Finer than the planner's points: what lies between them counts too.
+/// Returns the spacing of the positions at which the surface is evaluated. It is smaller than the spacing of the
+/// planner's points, so that the surface between these points is checked too.
 double spacing_of(const PlanedPart& part) {
   const double nose = part.lathe->nose_radius_mm;
   const double end = part.lens.half_width_mm;
@@ -127,7 +129,7 @@ void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
     result_.time_s.back() += std::hypot(to.x_mm - from.x_mm, to.z_mm - from.z_mm) / feed * 60.0;
 }
 
-/// Rapid moves need not be straight: the nose may be anywhere within the box of their ends.
+/// Checks a rapid move. It may be not straight, so that the nose may be anywhere in the box between both end points.
 void LatheCheck::follow_rapid(const NcMotion& motion) {
   const double clear_mm = part_.lathe->clear_mm;
   const double from_z = is_known(motion, 'Z') ? motion.from.z_mm : motion.to.z_mm;
@@ -143,7 +145,8 @@ void LatheCheck::follow_rapid(const NcMotion& motion) {
   before_run_ = standing_.heights_mm();
 }
 
-/// What a pass takes is at most the depth of cut. It may be formed anew within the tolerance.
+/// Ends a run of feed moves and checks that its chip is at most as thick as the depth of cut. The tolerance is added to
+/// this limit, because the path of each pass may deviate from the profile by the tolerance.
 void LatheCheck::end_run() {
   if (run_.empty()) return;
   runs_.push_back(std::move(run_));
@@ -173,8 +176,9 @@ void LatheCheck::end(const NcEnd& end) {
   control_->spindle_at_end(end);
 }
 
-/// Without the way down to the profile. What the last run does not reach inwards, the one before it has left; where
-/// that does not reach it either, the tool was above the blank.
+/// Returns the path of the last pass, without the move down to the profile. If the last run of feed moves does not
+/// extend to the axis, the inner part of the path is taken from the runs before it. Gaps between the runs are closed at
+/// the clearance height, because the tool was above the blank there.
 std::vector<SectionPoint> LatheCheck::last_pass() const {
   std::vector<SectionPoint> path;
   for (auto run = runs_.rbegin(); run != runs_.rend() && (path.empty() || path.front().x_mm > 0.0); ++run) {
@@ -203,7 +207,7 @@ std::vector<SectionPoint> LatheCheck::last_pass() const {
   return path;
 }
 
-/// Where moves before the last pass went below what it leaves, and below what is allowed.
+/// Finds moves before the last pass that went below the surface of the last pass by more than the tolerance.
 void LatheCheck::find_gouges(const std::vector<SectionPoint>& path, const SectionLine& reachable, double limit_mm) {
   StandingSection last(part_.lens.half_width_mm, spacing_mm_, part_.lathe->nose_radius_mm);
   for (std::size_t i = 1; i < path.size(); ++i) last.cut(path[i - 1], path[i], 0);
@@ -227,13 +231,13 @@ void LatheCheck::measure() {
   SectionLine reachable = design;
   SectionLine left;
   for (const SectionPoint& p : path) left.push_back({p.x_mm, p.z_mm + nose});
-  double limit = part_.tolerance_mm * (1.0 + 1e-3);  // rounding of the words is far below
+  double limit = part_.tolerance_mm * (1.0 + 1e-3);  // much larger than the effect of rounded positions
   if (nose > 0.0) {
-    // The rim is touched from beyond it.
+    // The nose touches the rim from positions beyond the rim.
     reachable = left_by_nose(lowest_centres(design, nose, places_to(end + nose, spacing_mm_)), nose, places);
     if (goes_outwards(path)) left = left_by_nose(left, nose, places);
     result_.unreached_mm_max = largest_distance(design, reachable, 2.0 * nose);
-    limit += spacing_mm_ * spacing_mm_ / (8.0 * nose);  // by which chords of a fillet stand off from it
+    limit += spacing_mm_ * spacing_mm_ / (8.0 * nose);  // maximum distance between a chord of a fillet and the fillet
   }
   const double reach = 2.0 * part_.tolerance_mm + 2.0 * spacing_mm_;
   result_.path_distance_mm_max = std::numeric_limits<double>::max();

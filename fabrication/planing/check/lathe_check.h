@@ -1,7 +1,7 @@
 #pragma once
 
-// Judges the lathe programs of a flat lens: spindle, feeds and rapid moves, what every pass takes, and the profile that
-// the nose leaves.
+// Checks the lathe programs of a flat lens: spindle, feeds, rapid moves, chip thickness of every pass, and the profile
+// that the nose produces.
 
 #include <optional>
 #include <string>
@@ -15,12 +15,13 @@
 
 namespace retrace::fabrication {
 
-/// Follows the programs of a lathe and cuts the blank. Words are those of the nose's lowest point.
+/// Receives the moves of a lathe's programs and cuts a model of the blank. Positions are those of the lowest point of
+/// the nose.
 class LatheCheck : public NcSink {
  public:
   LatheCheck(const PlanedPart& part, FindingList& findings, PlaningCheck& result);
 
-  /// A program begins.
+  /// Starts the checks of a program.
   void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace& place, const AxisPositions&) override;
@@ -29,11 +30,11 @@ class LatheCheck : public NcSink {
   }
   void stop(NcStop, const NcSettings&, const NcPlace& place) override;
   void end(const NcEnd& end);
-  /// What all passes left.
+  /// Compares the surface after all passes with the design.
   void measure();
 
  private:
-  /// Where a move stands.
+  /// Program and line of a move.
   struct Source {
     std::size_t program = 0;
     std::int32_t line = 0;
@@ -56,7 +57,7 @@ class LatheCheck : public NcSink {
   std::vector<Source> sources_;
   StandingSection standing_;
   std::vector<double> before_run_;               ///< heights
-  std::vector<std::vector<SectionPoint>> runs_;  ///< feed moves without a rapid one between
+  std::vector<std::vector<SectionPoint>> runs_;  ///< feed moves between two rapid moves
   std::vector<SectionPoint> run_;
 };
 

@@ -16,7 +16,7 @@ constexpr double kRoundingMm = 1e-7;
 constexpr const char* kLetters = "XYZ";
 constexpr std::uint8_t kAxes = 0b111;
 
-/// It planes in rapid moves, so that each of them may be a cut.
+/// Returns the requirements on the programs. The mill planes in rapid moves, so each rapid move may be a cut.
 ControlRule rule_of(const PlaningMill& mill) {
   ControlRule rule;
   rule.axes = kAxes;
@@ -64,7 +64,7 @@ void MillCheck::check_grid(const NcMotion& motion, std::size_t axis, double plac
                   fmt::format("{} stands between two steps of the machine", kLetters[axis]), off_mm, 0.0);
 }
 
-/// The tool must not move across or down while its stroke is in the part.
+/// Checks that the tool does not move across or down while it is in the part, and stores the strokes.
 void MillCheck::check_place(const NcMotion& motion, std::size_t axis) {
   const double lowest = std::min(motion.from.z_mm, motion.to.z_mm);
   const bool is_beside = motion.to.y_mm < 0.0 || motion.to.y_mm > part_.length_mm;
@@ -132,13 +132,13 @@ void MillCheck::end(const NcEnd& end) {
 void MillCheck::measure_at(double x_mm, double left_mm, const Stroke* stroke) {
   const double place_mm = std::abs(x_mm);
   const double design_mm = profile_.depth_mm(place_mm);
-  // Within a step of the grid of an upright wall either side of it may be meant.
+  // Close to a wall, a point may belong to either side. Points within one step of the grid are therefore not evaluated.
   const double near_mm = part_.mill->grid_mm;
   double standing = std::max(0.0, design_mm - left_mm);
   double gouge = std::max(0.0, left_mm - design_mm);
   for (const Wall& wall : profile_.walls())
     if (std::abs(place_mm - wall.x_mm) <= near_mm) standing = gouge = 0.0;
-  // The other half is made when the part has been turned.
+  // The other half of the lens is planed after the part has been rotated.
   if (x_mm < 0.0 || x_mm > part_.lens.half_width_mm - near_mm) standing = 0.0;
   result_.standing_mm_max = std::max(result_.standing_mm_max, standing);
   result_.gouge_mm_max = std::max(result_.gouge_mm_max, gouge);
@@ -150,8 +150,11 @@ void MillCheck::measure_at(double x_mm, double left_mm, const Stroke* stroke) {
 
 void MillCheck::measure() {
   std::sort(strokes_.begin(), strokes_.end(), [](const Stroke& a, const Stroke& b) { return a.x_mm < b.x_mm; });
-  // From the outside in: the deepest flank over a place is that of the greatest depth - slope x of strokes beyond it.
-  constexpr double kBeside = 1e-9;  // of the strokes, which stand on the grid: most stands just outside of one
+  // Proceed from the largest to the smallest x. At a position, the deepest flank belongs to the stroke with the
+  // greatest value of depth - slope * x among the strokes farther outside.
+  // Distance of evaluated points from the grid, on which the strokes are: most material remains just outside of a
+  // stroke.
+  constexpr double kBeside = 1e-9;
   const double grid = part_.mill->grid_mm;
   const double slope = result_.flank_slope;
   double deepest = -1e300;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Judges the planing-mill programs of a flat lens: single-axis moves on the machine's grid, and the profile that the
-// strokes leave.
+// Checks the programs of a flat lens for a planing mill: moves of single axes on the machine's grid, and the profile
+// that the strokes produce.
 
 #include "fabrication/check/control_check.h"
 #include "fabrication/check/known_axes.h"
@@ -11,18 +11,18 @@
 
 namespace retrace::fabrication {
 
-/// Follows the programs of a planing mill. Strokes of all programs make one surface.
+/// Receives the moves of a planing mill's programs. The strokes of all programs produce one surface.
 class MillCheck : public NcSink {
  public:
   MillCheck(const PlanedPart& part, FindingList& findings, PlaningCheck& result);
 
-  /// A program begins.
+  /// Starts the checks of a program.
   void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcPlace&, const AxisPositions&) override { result_.time_s.back() += seconds; }
   void state(const NcSettings& settings, const NcPlace& place) override { control_.state(settings, place, false); }
   void end(const NcEnd& end);
-  /// What all strokes left.
+  /// Compares the surface after all strokes with the design.
   void measure();
 
  private:
@@ -36,7 +36,8 @@ class MillCheck : public NcSink {
   void check_length(const NcMotion& motion, std::size_t axis, double length_mm);
   void check_grid(const NcMotion& motion, std::size_t axis, double place_mm);
   void check_place(const NcMotion& motion, std::size_t axis);
-  /// \param stroke the one that left it; null: none
+  /// Compares one point of the surface with the design.
+  /// \param stroke stroke that produced this point; null if no stroke did
   void measure_at(double x_mm, double left_mm, const Stroke* stroke);
 
   const PlanedPart& part_;

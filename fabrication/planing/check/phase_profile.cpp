@@ -9,7 +9,8 @@
 namespace retrace::fabrication {
 namespace {
 
-/// The root of a function that has both signs at the ends (G. E. Alefeld, F. A. Potra, Y. Shi, ACM TOMS 21, 327, 1995).
+/// Returns the root of a function that has opposite signs at the two ends (G. E. Alefeld, F. A. Potra, Y. Shi, ACM TOMS
+/// 21, 327, 1995).
 template <class F>
 double root_between(const F& f, double low, double high) {
   const double at_low = f(low);
@@ -26,8 +27,8 @@ double root_between(const F& f, double low, double high) {
 
 PhaseProfile::PhaseProfile(const ZoneLens& lens)
     : lens_(lens), deepest_mm_(lens.wavelength_mm / (lens.refractive_index - 1.0)) {
-  // At the greatest depth the way grows with the distance from the middle: a wall stands where it passes a whole
-  // number.
+  // At the maximum depth, the optical path increases with the distance from the center. There is a wall wherever the
+  // path difference is a whole number of wavelengths.
   const auto at_the_deepest = [&](double x) { return waves(x, deepest_mm_); };
   const double last = at_the_deepest(lens.half_width_mm);
   double from = 0.0;
@@ -49,12 +50,14 @@ double PhaseProfile::depth_of_order_mm(double x_mm, double order) const {
 }
 
 double PhaseProfile::depth_mm(double x_mm) const {
-  // The way gets shorter with the depth: the lowest order that is reached at the greatest depth or before.
+  // The optical path decreases with the depth. Use the lowest order that is reached at the maximum depth or at a
+  // smaller depth.
   return depth_of_order_mm(x_mm, std::max(0.0, std::ceil(waves(x_mm, deepest_mm_))));
 }
 
 double PhaseProfile::slope(double x_mm, double depth_mm) const {
-  // Along the profile the way stays the same: its derivatives by place and by depth.
+  // The optical path is constant along the profile. The slope follows from the derivatives of the path with respect to
+  // position and depth.
   const double to_lens = lens_.focal_length_mm + depth_mm;
   const double way = std::hypot(x_mm, to_lens);
   return (x_mm / way) / (lens_.refractive_index - to_lens / way);

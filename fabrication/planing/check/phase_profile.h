@@ -1,7 +1,7 @@
 #pragma once
 
-// The profile that a zone lens should have, from its optical path condition alone: the reference of the checks,
-// independent of the planner's formulas.
+// Computes the required profile of a zone lens directly from its optical path condition. The checks use it as a
+// reference that is independent of the planner's formulas.
 
 #include <vector>
 
@@ -9,30 +9,33 @@
 
 namespace retrace::fabrication {
 
-/// An upright wall between two zones: the deep side is towards the middle.
+/// Vertical wall between two zones. Its deep side is towards the center of the lens.
 struct Wall {
   double x_mm = 0.0;
   double inner_depth_mm = 0.0;
   double outer_depth_mm = 0.0;
 };
 
-/// The depth that a lens of zones asks for, from the condition that makes it a lens: the way of light from the focus
-/// through the profile, parallel to the axis behind it, is that through the middle and whole wavelengths more, at a
-/// depth of at most wavelength / (index - 1). Every depth is the root of that condition; no formula is shared with the
-/// planner.
+/// Required depth of a zone lens. The depth follows from the condition that light from the focus becomes parallel to
+/// the axis: the optical path through the profile exceeds the path through the center by a whole number of wavelengths.
+/// The depth is at most wavelength / (index - 1). Every depth is computed as the root of this condition. The planner's
+/// formulas are not used.
 class PhaseProfile {
  public:
-  /// \pre the lens has zones as a planned one
+  /// \pre the lens has zones for which ZoneProfile can be constructed
   explicit PhaseProfile(const ZoneLens& lens);
 
+  /// Returns the depth at a distance from the center.
   /// \pre 0 <= x <= half width
   double depth_mm(double x_mm) const;
-  /// How fast the depth grows there within its zone. \param x_mm, depth_mm on the profile
+  /// Returns the slope of the depth within a zone.
+  /// \param x_mm position of a point of the profile
+  /// \param depth_mm depth of this point
   double slope(double x_mm, double depth_mm) const;
   const std::vector<Wall>& walls() const { return walls_; }
 
  private:
-  /// How many wavelengths the way through a depth is longer than that through the middle.
+  /// Returns the difference between the optical path through a point and the path through the center, in wavelengths.
   double waves(double x_mm, double depth_mm) const;
   double depth_of_order_mm(double x_mm, double order) const;
 
@@ -41,8 +44,8 @@ class PhaseProfile {
   std::vector<Wall> walls_;
 };
 
-/// Of the tool of a planing mill, depth over distance: as the steepest place of the profile, rounded up to half a
-/// degree.
+/// Returns the slope of the flank of a planing mill's tool, as depth divided by distance. It is the maximum slope of
+/// the profile, rounded up to half a degree.
 double flank_slope_of(const PhaseProfile& profile, double half_width_mm);
 
 }  // namespace retrace::fabrication

@@ -6,7 +6,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Lines less wide than this are upright.
+/// Maximum width, in mm, of lines that are considered vertical.
 constexpr double kUprightMm = 1e-9;
 
 }  // namespace
@@ -60,7 +60,7 @@ double StandingSection::cut_side(const SectionPoint& from, const SectionPoint& t
                       return end.z_mm + nose_ - std::sqrt(std::max(0.0, nose_ * nose_ - aside * aside));
                     }));
   if (dx < kUprightMm) return most;
-  // Between the discs at its ends a line leaves the one that touches both from below.
+  // Between the discs at its ends, a move produces the line that touches both discs from below.
   const double length = std::hypot(dx, dz);
   const double start = a.x_mm + nose_ * dz / length;
   const double z = a.z_mm + nose_ * (1.0 - dx / length);

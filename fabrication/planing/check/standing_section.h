@@ -1,6 +1,7 @@
 #pragma once
 
-// What stands of a round blank while a turning tool goes along its section: heights at places of the radius.
+// Represents the remaining stock of a round blank while a turning tool moves in its cross-section: heights at positions
+// along the radius.
 
 #include <cstdint>
 #include <vector>
@@ -9,19 +10,22 @@
 
 namespace retrace::fabrication {
 
-/// The blank's section from the axis to the rim, its face at z = 0, at places of equal distance. What a move takes at a
-/// place is that of the nose about its straight line; upright lines of a pointed tool count for the places beside them.
+/// Cross-section of the blank from the axis to the rim, with its face at z = 0, at equally spaced positions. A straight
+/// move removes the material above the surface that the nose sweeps. For a pointed tool, a vertical move also removes
+/// material up to half a spacing away on both sides.
 class StandingSection {
  public:
   StandingSection(double end_mm, double spacing_mm, double nose_mm);
 
-  /// A straight move of the nose's lowest point. The part turns: beyond the axis it cuts on the other side.
-  /// \param who is remembered where it took something \return the most that it took along Z
+  /// Removes the material of a straight move of the nose's lowest point. Because the part rotates, a tool beyond the
+  /// axis cuts on the other side.
+  /// \param who number of the move, which is stored at all positions where it removes material
+  /// \return the maximum thickness, along Z, of the removed material
   double cut(const SectionPoint& from, const SectionPoint& to, std::int32_t who);
 
   const std::vector<double>& heights_mm() const { return heights_; }
   double place_mm(std::size_t index) const { return spacing_ * static_cast<double>(index); }
-  /// Who took the last of a place; -1: nobody.
+  /// Returns the number of the move that cut last at a position; -1 if no move cut there.
   std::int32_t who(std::size_t index) const { return who_[index]; }
 
  private:

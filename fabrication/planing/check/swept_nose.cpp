@@ -8,11 +8,12 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Pieces steeper than this are walls.
+/// Minimum slope of line segments that are considered walls.
 constexpr double kSteep = 2.0;
 constexpr double kBeside = 1e-9;
 
-/// Where the nose ends beside a wall what it leaves changes at once, below it as a fillet: those places too.
+/// Adds positions at the walls that the nose produces. The surface has a jump there, with a fillet below it, which the
+/// other positions would not resolve.
 std::vector<double> with_fillets(std::vector<double> places, const SectionLine& centres, double nose_mm) {
   constexpr int kFillet = 64;
   const double low = places.front();
@@ -24,7 +25,7 @@ std::vector<double> with_fillets(std::vector<double> places, const SectionLine& 
     const double middle = dz > 0.0 ? centres[i - 1].x_mm : centres[i].x_mm;
     const double side = dz > 0.0 ? nose_mm : -nose_mm;
     for (int k = 1; k < kFillet; ++k) places.push_back(middle + side * std::sin(0.5 * std::numbers::pi * k / kFillet));
-    // The ends of what the piece itself leaves, and of the discs there.
+    // Add the ends of the surface that the segment itself produces, and the ends of the discs at its end points.
     const double from = centres[i - 1].x_mm + nose_mm * dz / std::hypot(dx, dz);
     for (const double end : {from, from + dx, centres[i - 1].x_mm + side, centres[i].x_mm + side}) {
       places.push_back(end - kBeside);
@@ -68,7 +69,7 @@ SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::
     lower(c.x_mm - nose_mm, c.x_mm + nose_mm,
           [&](double x) { return c.z_mm - std::sqrt(std::max(0.0, nose_mm * nose_mm - (x - c.x_mm) * (x - c.x_mm))); });
     if (i == 0 || !(c.x_mm > centres[i - 1].x_mm)) continue;
-    // Between the discs at its ends a piece leaves the line that touches both from below.
+    // Between the discs at its ends, a segment produces the line that touches both discs from below.
     const SectionPoint& before = centres[i - 1];
     const double dx = c.x_mm - before.x_mm;
     const double dz = c.z_mm - before.z_mm;
@@ -81,7 +82,8 @@ SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::
 }
 
 SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& places_mm) {
-  // Where the nose may go is what a nose that is moved along the section from above leaves free.
+  // Centers that do not cut into the section are above the upper envelope of circles about the points of the section.
+  // It is the lower envelope for the negated section, negated.
   return negated(left_by_nose(negated(section), nose_mm, places_mm));
 }
 

@@ -1,28 +1,33 @@
 #pragma once
 
-// What a round tool nose leaves in a section: envelopes of circles along a line, and distances between sections.
+// Computes the surface that a round tool nose produces in a cross-section: envelopes of circles along a line, and
+// distances between sections.
 
 #include <vector>
 
 namespace retrace::fabrication {
 
-/// A place of a section: radius and height, mm.
+/// Point of a cross-section: radius and height, in mm.
 struct SectionPoint {
   double x_mm = 0.0;
   double z_mm = 0.0;
 };
-/// A line of places whose x does not fall; upright pieces have both ends.
+/// Line of points whose x does not decrease. A vertical segment is given by both of its ends.
 using SectionLine = std::vector<SectionPoint>;
 
-/// What a round nose leaves whose centre goes along a line. \param places where, rising; upright walls that the nose
-/// leaves are added \param centres x does not fall \pre nose > 0
+/// Returns the surface that a round nose produces while its center moves along a line.
+/// \param centres path of the center; x does not decrease
+/// \param places_mm positions of the points of the result, ascending. Positions at vertical walls that the nose
+///        produces are added
+/// \pre nose_mm > 0
 SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::vector<double>& places_mm);
 
-/// The lowest places of the nose's centre over a section that it does not cut. \pre as above
+/// Returns the lowest positions of the nose's center at which the nose does not cut into a section.
+/// \pre as for left_by_nose()
 SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& places_mm);
 
-/// Largest distance of places from a line. Pieces farther than `reach` along x are not looked at: where none is near
-/// the distance is the largest number.
+/// Returns the largest distance of points from a line. Segments that are farther than `reach_mm` along x are ignored.
+/// If no segment is near a point, the result is the largest number of its type.
 double largest_distance(const SectionLine& places, const SectionLine& line, double reach_mm);
 
 }  // namespace retrace::fabrication

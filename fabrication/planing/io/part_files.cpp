@@ -20,10 +20,11 @@ using namespace schema;
 
 constexpr Kind kLength = Number{{.low = 0.1, .high = 1e4}};
 constexpr Kind kFeed = Number{{.low = 1.0, .high = 1e6}};
-/// Quanta are tried from the tolerance down, step by step of the grid, and places are counted in such steps.
+/// Maximum tolerance in steps of the grid, and maximum half width in these steps. The grid is that of the mill, or a
+/// tenth of the tolerance for a lathe. All depth increments from the tolerance down to one step are tried.
 constexpr double kMostQuanta = 200.0;
 constexpr double kMostSteps = 1e6;
-/// Zones that are narrower than this many steps have no profile.
+/// Minimum width of a zone in steps of the grid. Narrower zones have no profile.
 constexpr double kLeastStepsOfZone = 4.0;
 
 constexpr Words kLenses = {"zone_lens", "round_zone_lens"};
@@ -66,7 +67,7 @@ constexpr Row kLatheRows[] = {
     {"clear_mm", kLength, 2.0, "Height of moves over the blank."},
     {"nose_radius_mm", Number{{.low = 0.0, .high = 100.0}}, 0.0,
      "Of the tool, round on both sides; at most what reaches the bottom of every zone beside its wall."},
-    // A word S has up to five digits.
+    // An S word has up to five digits.
     {"spindle_rpm", Whole{{.low = 1.0, .high = 99999.0}}, kRequired, "Speed of the spindle."},
     {"spindle_direction", Word{kSpindleDirectionWords}, kRequired, "`M3` and `M4`."},
     {"spindle_start", Text{}, kNone, kSpindleText, kWithStop},
@@ -124,7 +125,7 @@ PlanedPart part_of(const Document& file) {
   return part;
 }
 
-// What keys must be together.
+// Checks that involve several keys.
 
 constexpr std::string_view kStart = "lathe.spindle_start";
 constexpr std::string_view kStop = "lathe.spindle_stop";
@@ -159,7 +160,7 @@ ZoneProfile profile_of(const Document& file, const ZoneLens& lens) {
   }
 }
 
-/// What would take beyond measure, or has no profile on the machine's grid.
+/// Checks that the part is not too large to be computed, and that its zones can be represented on the machine's grid.
 void check_sizes(const Document& file) {
   const PlanedPart part = part_of(file);
   const double grid = part.mill ? part.mill->grid_mm : 0.1 * part.tolerance_mm;

@@ -11,11 +11,11 @@
 
 namespace retrace::fabrication {
 
-/// The format of parts to be planed or turned (retrace.planed_part/1).
+/// Returns the format of part files (retrace.planed_part/1), which describes parts that are planed or turned.
 const schema::Format& planed_part_format();
 
-/// Reads a part to be planed or turned (`retrace.planed_part/1`, docs/planing_file.md). \throw InputError naming file,
-/// line and key
+/// Reads a part that is planed or turned (`retrace.planed_part/1`, docs/planing_file.md).
+/// \throw InputError naming file, line and key
 PlanedPart parse_planed_part(std::string_view text, const std::string& source_name);
 PlanedPart read_planed_part(const std::filesystem::path& file);
 

@@ -18,17 +18,18 @@ double distance_to_piece(const ProfilePoint& p, const ProfilePoint& a, const Pro
   return std::hypot(p.x_mm - a.x_mm - t * dx, p.z_mm - a.z_mm - t * dz);
 }
 
-/// Calls visit(j) for every point that a chord from `start` may reach. The directions that keep within the tolerance of
-/// the points so far are an interval, which each point narrows; none of it left, no later point can be reached.
+/// Calls visit(j) for every point that a chord from `start` may end at. The chord directions that keep within the
+/// tolerance of all points so far are an interval. Each point makes this interval narrower. If it becomes empty, no
+/// later point can be reached.
 template <class Visit>
 void for_each_reached(const std::vector<ProfilePoint>& profile, std::size_t start, double tolerance_mm, Visit visit) {
   const ProfilePoint& from = profile[start];
   double reference = 0.0;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  // Rounding must not shut out a chord that ends exactly on the edge of the tube.
+  // Tolerance, so that rounding errors do not exclude a chord that ends exactly at the border of the tube.
   constexpr double kRounding = 1e-12;
-  double farthest = 0.0;  // of the points so far, from the start
+  double farthest = 0.0;  // maximum distance of the points so far from the start
   const auto all_beside = [&](std::size_t j) {
     for (std::size_t k = start + 1; k < j; ++k)
       if (distance_to_piece(profile[k], from, profile[j]) > tolerance_mm + kRounding) return false;
@@ -40,7 +41,8 @@ void for_each_reached(const std::vector<ProfilePoint>& profile, std::size_t star
     const double distance = std::hypot(dx, dz);
     if (j == start + 1) reference = std::atan2(dz, dx);
     const double turn = std::remainder(std::atan2(dz, dx) - reference, 2.0 * std::numbers::pi);
-    // Where the profile turns back, as at a step, points may lie beyond the chord's end.
+    // If the profile turns back, as at a step, points may be beyond the end of the chord. They are then checked one by
+    // one.
     if (turn >= low - kRounding && turn <= high + kRounding && (distance >= farthest || all_beside(j))) visit(j);
     farthest = std::max(farthest, distance);
     if (distance <= tolerance_mm) continue;
@@ -65,7 +67,7 @@ Chords longest_chords(const std::vector<ProfilePoint>& profile, double tolerance
 
 Chords fewest_chords(const std::vector<ProfilePoint>& profile, double tolerance_mm) {
   const std::size_t last = profile.size() - 1;
-  // Chords from a point to the end, found from the end.
+  // Minimum number of chords from each point to the end. It is computed from the end backwards.
   std::vector<std::size_t> count(profile.size(), 0);
   std::vector<std::size_t> next(profile.size(), last);
   for (std::size_t i = last; i-- > 0;) {

@@ -1,32 +1,35 @@
 #pragma once
 
-// Replaces a profile by few straight chords within a tolerance, for lathes that move in straight lines.
+// Approximates a profile by few straight chords within a tolerance, for lathes that move in straight lines.
 
 #include <cstddef>
 #include <vector>
 
 namespace retrace::fabrication {
 
-/// A point of a profile: across and down, in mm.
+/// Point of a profile: position across the profile and height, in mm.
 struct ProfilePoint {
   double x_mm = 0.0;
   double z_mm = 0.0;
 };
 
-/// Chords that stand for a profile: indices of the points that they join, first and last included. A chord may join two
-/// points if all points between lie within the tolerance of it: the tube of docs/theory/planing.md.
+/// Chords that approximate a profile, as indices of the points that they connect, including the first and the last
+/// point. A chord may connect two points if all points between them are within the tolerance of the chord (the tube of
+/// docs/theory/planing.md).
 using Chords = std::vector<std::size_t>;
 
-/// From every point to the farthest that a chord reaches, as E. D. Bulatov et al. do it. The fewest for convex
-/// profiles; for others not always. \pre two points or more, neighbours apart; tolerance >= 0
+/// Returns the chords that result if each chord ends at the farthest point that it can reach (E. D. Bulatov et al.).
+/// Their number is the minimum for convex profiles, but not always for other profiles.
+/// \pre two points or more, neighbouring points differ; tolerance >= 0
 Chords longest_chords(const std::vector<ProfilePoint>& profile, double tolerance_mm);
 
-/// The fewest chords that there are; of equally many, those of the longest first ones. \pre as longest_chords()
+/// Returns the minimum number of chords. Among solutions with equal numbers, the first chords are as long as possible.
+/// \pre as for longest_chords()
 Chords fewest_chords(const std::vector<ProfilePoint>& profile, double tolerance_mm);
 
 class ZoneProfile;
-/// The points of a flat lens of zones, steps included as upright lines. \param spacing_mm of points within a zone, at
-/// most
+/// Returns points of the profile of a zone lens. Steps are included as vertical lines.
+/// \param spacing_mm maximum distance of the points within a zone
 std::vector<ProfilePoint> points_of(const ZoneProfile& profile, double spacing_mm);
 
 }  // namespace retrace::fabrication

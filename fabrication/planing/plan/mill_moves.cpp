@@ -36,7 +36,7 @@ void MillMoves::begin() {
   const double nm = kNanometresPerMm * part_.mill->grid_mm;
   state_.at.program.header = {"one half of the lens: turn the part by 180 degrees and run it again",
                               "begins where the axes stand at its first three words"};
-  // These words tell the positions that the machine was zeroed at: nothing moves.
+  // The first moves only state the positions at which the machine was set to zero, so the axes do not move.
   state_.at.program.has_mist = false;
   for (const Axis axis : {kZ, kX, kY}) {
     Move here;
@@ -69,7 +69,7 @@ double MillMoves::time_of(std::int64_t steps) const {
 }
 
 bool MillMoves::ends_in_time() const {
-  // With the way home: twice the least of two axes, and the height.
+  // The time includes the moves back to the center: Z, and X with a detour of twice its minimum move.
   const double home_s = time_of(state_.place[kZ] - home_[kZ]) + time_of(state_.place[kX]) + time_of(2 * least_[kX]);
   return state_.at.time_s + home_s <= 3600.0 * part_.mill->most_hours;
 }
@@ -93,7 +93,8 @@ void MillMoves::move(Axis axis, std::int64_t to) {
   const std::int64_t way = to - state_.place[axis];
   if (way == 0) return;
   if (std::abs(way) < least_[axis]) {
-    // Up first for Z, so that nothing is cut; for X away from the lens's edge, so that the travel is that of the lens.
+    // The detour of Z is upwards, so that nothing is cut. The detour of X is away from the edge of the lens, so that
+    // the travel is not larger than the lens.
     const bool positive_first = axis == kZ || state_.place[axis] < 2 * least_[axis];
     const std::int64_t detour = positive_first ? std::max(state_.place[axis], to) + least_[axis]
                                                : std::min(state_.place[axis], to) - least_[axis];

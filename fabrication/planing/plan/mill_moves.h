@@ -1,7 +1,7 @@
 #pragma once
 
-// Moves of a planing mill that can only move one axis at a time, never less than a least distance, split into programs
-// of limited time.
+// Writes the moves of a planing mill that can move only one axis at a time and only by at least a minimum distance. The
+// moves are divided into programs of limited duration.
 
 #include <array>
 #include <cstdint>
@@ -13,22 +13,24 @@
 
 namespace retrace::fabrication {
 
-/// Writes the moves of a planing mill: one axis at a time, on the grid, none shorter than the least. A shorter way is
-/// made by a move back and another forth. Cuts programs so that none runs longer than the machine may.
+/// Writes the moves of a planing mill. Each move is of one axis, on the grid, and at least as long as the minimum move.
+/// A shorter distance is covered by two longer moves in opposite directions. A new program starts if the present one
+/// would take longer than the machine allows.
 class MillMoves {
  public:
-  /// \throw InputError if strokes or heights do not fit the machine's travel
+  /// \pre `part` has a mill and outlives this object
   MillMoves(const PlanedPart& part, std::string set);
 
-  /// Lowers the tool to a depth, beside the part. Grid steps below the face.
+  /// Lowers the tool to a depth, outside of the part.
+  /// \param depth depth below the face, in steps of the grid
   void lower_to(std::int64_t depth);
   void across_to(std::int64_t x);
-  /// Along the zones and back.
+  /// Moves along the zones and back.
   void stroke();
-  /// Up, and back to the middle of the lens.
+  /// Moves up, and then back to the center of the lens.
   void go_home();
-  /// Moves that belong together: the next program begins before them if they would not end in time.
-  /// \throw InputError if they alone take too long
+  /// Makes moves that must be in one program. If they would not end in time, they begin the next program.
+  /// \throw InputError if these moves alone take too long
   template <class Moves>
   void together(const Moves& moves) {
     const Mark before = mark();
@@ -42,13 +44,13 @@ class MillMoves {
   std::vector<PlannedProgram> finish();
 
  private:
-  /// What one program is so far.
+  /// Present program, and position of the tool.
   struct State {
     PlannedProgram at;
     std::array<std::int64_t, 3> place{};
   };
 
-  /// Where a program was, to go back to.
+  /// State of a program, to which go_back_to() can return.
   struct Mark {
     std::size_t items = 0;
     std::int64_t frames = 0;

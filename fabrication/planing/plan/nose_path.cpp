@@ -7,7 +7,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Middle of the nose that touches a zone's surface there.
+/// Returns the center of the nose that touches the surface of a zone at a point.
 ProfilePoint middle_over(const ZoneProfile& profile, std::size_t zone, double x_mm, double nose_mm) {
   const double slope = profile.slope_in_zone(zone, x_mm);
   const double length = std::sqrt(1.0 + slope * slope);
@@ -18,7 +18,7 @@ bool has_wall(const ZoneProfile& profile, std::size_t zone) {
   return zone + 1 < profile.zones().size();
 }
 
-/// Where the nose touches a zone when it also touches the wall at its end.
+/// Returns the position at which the nose touches a zone while it also touches the wall at the end of the zone.
 double last_touch_mm(const ZoneProfile& profile, std::size_t zone, double nose_mm) {
   const Zone& range = profile.zones()[zone];
   if (!has_wall(profile, zone)) return range.to_mm;
@@ -32,7 +32,7 @@ double last_touch_mm(const ZoneProfile& profile, std::size_t zone, double nose_m
   return low;
 }
 
-/// Up beside the wall at a zone's beginning and round its upper end.
+/// Adds the path up along the wall at the beginning of a zone, and around the upper end of the wall.
 void add_wall(const ZoneProfile& profile, std::size_t zone, double nose_mm, double step_rad,
               std::vector<ProfilePoint>& middles) {
   const double x = profile.zones()[zone].from_mm;
@@ -70,7 +70,8 @@ double largest_nose_mm(const ZoneProfile& profile) {
 
 double path_tolerance_mm(const ZoneProfile& profile, double nose_mm, double tolerance_mm) {
   if (nose_mm == 0.0) return tolerance_mm;
-  // An edge of the angle 90 degrees - a, both flanks off by t, is off by t over the sine of half its angle.
+  // If both flanks of an edge with the angle 90 degrees - a are displaced by t, the edge is displaced by t divided by
+  // the sine of half of this angle.
   return tolerance_mm * std::sin(0.25 * std::numbers::pi - 0.5 * std::atan(profile.steepest_slope()));
 }
 

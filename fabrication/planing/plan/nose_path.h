@@ -1,6 +1,7 @@
 #pragma once
 
-// The path of a round tool nose that touches a zone profile, and the largest nose that fits between its walls.
+// Computes the path of a round tool nose that touches a zone profile, and the largest nose that fits between the walls
+// of the profile.
 
 #include <vector>
 
@@ -9,20 +10,24 @@
 
 namespace retrace::fabrication {
 
-/// Whether a round nose reaches the bottom of every zone beside its outer wall, and clears the wall's upper end on its
-/// way up. \param nose_mm radius, >= 0
+/// Returns true if a round nose reaches the bottom of every zone next to its outer wall, and stays clear of the wall's
+/// upper end while it moves up.
+/// \param nose_mm radius, >= 0
 bool nose_fits(const ZoneProfile& profile, double nose_mm);
 
-/// The largest nose that fits, to a thousandth. \pre some nose does
+/// Returns the radius of the largest nose that fits, with a relative error of at most 1e-4.
+/// \pre at least one nose fits
 double largest_nose_mm(const ZoneProfile& profile);
 
-/// How far the nose may leave its path for what it leaves to keep a tolerance: the edges at the upper ends of walls
-/// stand between two flanks, and move by more than either does. Without a nose the tolerance itself.
+/// Returns the maximum deviation of the nose from its path with which the machined surface keeps a tolerance. It is
+/// smaller than this tolerance: the edges at the upper ends of walls are between two flanks, and are displaced by more
+/// than each flank. For a pointed tool, it is the tolerance itself.
 double path_tolerance_mm(const ZoneProfile& profile, double nose_mm, double tolerance_mm);
 
-/// Where the lowest point of a round nose goes that touches the profile everywhere it can: along it at the radius'
-/// distance, up beside every wall, round its upper end. Of a nose without radius points_of().
-/// \param spacing_mm of points, at most \param tolerance_mm the arcs between points keep to a thousandth of it
+/// Returns the path of a round nose's lowest point if the nose touches the profile wherever it can. The nose moves
+/// along the profile, up next to every wall and around the wall's upper end. For a pointed tool, returns points_of().
+/// \param spacing_mm maximum distance of points
+/// \param tolerance_mm tolerance of the path. The deviation of arcs between the points is at most a thousandth of it
 /// \pre the nose fits
 std::vector<ProfilePoint> nose_points(const ZoneProfile& profile, double nose_mm, double spacing_mm,
                                       double tolerance_mm);

@@ -17,7 +17,7 @@
 namespace retrace::fabrication {
 namespace {
 
-// Points of a lathe's profile, per length over which a chord of the least radius at hand would leave the tube.
+// Distance of the points of a lathe's profile, divided by the tolerance of the path.
 constexpr double kPointsPerTolerance = 1.0;
 constexpr std::size_t kMostPoints = 40000;
 
@@ -25,7 +25,8 @@ void append(std::vector<PlannedProgram>& programs, std::vector<PlannedProgram> m
   for (PlannedProgram& program : more) programs.push_back(std::move(program));
 }
 
-/// Depth by depth, from the face down; at every depth from the inner zones to the outer ones.
+/// Returns the programs of the first method: depth by depth, from the face downwards. At every depth, the inner zones
+/// are cut before the outer ones.
 std::vector<PlannedProgram> moves_by_depth(const PlanedPart& part, const std::vector<ZoneCut>& cuts,
                                            const std::string& set) {
   std::map<std::int64_t, std::vector<ZoneCut>> by_depth;
@@ -54,7 +55,8 @@ std::vector<PlannedProgram> moves_one_after_another(const PlanedPart& part, cons
   return moves.finish();
 }
 
-/// Of all zones with one quantum. Zones that one cut a depth does not do justice to are left to the second method.
+/// Plans all zones with one depth increment (quantum). The second method is used for zones in which one cut at each
+/// depth would leave more than the tolerance.
 PlaningPlan plan_with(const PlanedPart& part, const ZoneProfile& profile, const ZoneCutter& cutter,
                       std::int64_t quantum) {
   PlaningPlan plan;
@@ -65,7 +67,7 @@ PlaningPlan plan_with(const PlanedPart& part, const ZoneProfile& profile, const 
     const auto by_depths = cutter.by_depths(zone, quantum);
     const std::vector<ZoneCut> cuts = by_depths ? *by_depths : cutter.one_after_another(zone);
     plan.by_depths.push_back(by_depths.has_value());
-    // Zones are counted from 1, as people do.
+    // Zone numbers start at 1 for users, so that zone 0 belongs to the odd zones.
     std::vector<ZoneCut>& set = !by_depths ? inner : (zone % 2 == 0 ? odd : even);
     set.insert(set.end(), cuts.begin(), cuts.end());
     plan.cuts.insert(plan.cuts.end(), cuts.begin(), cuts.end());
@@ -88,7 +90,7 @@ void name_programs(PlaningPlan& plan) {
   }
 }
 
-/// Positions of all programs, axis by axis.
+/// Checks that the positions of all programs are within the travel of each axis.
 void check_travel(const PlanedPart& part, const PlaningPlan& plan) {
   constexpr double kLargest = std::numeric_limits<double>::infinity();
   std::array<double, 3> low = {kLargest, kLargest, kLargest};
@@ -116,7 +118,8 @@ PlaningPlan plan_mill(const PlanedPart& part) {
   const ZoneProfile profile(part.lens);
   const double grid = part.mill->grid_mm;
   const ZoneCutter cutter(profile, grid, part.tolerance_mm);
-  // The quantum is below the tolerance; the one that takes fewest frames, of equal ones the coarsest.
+  // Try all depth increments that are smaller than the tolerance. Use the one with the fewest moves, or the largest one
+  // among those with equal numbers of moves.
   std::optional<PlaningPlan> best;
   const auto most = static_cast<std::int64_t>(std::ceil(part.tolerance_mm / grid - 1e-9)) - 1;
   for (std::int64_t quantum = std::max<std::int64_t>(1, most); quantum >= 1; --quantum) {
@@ -128,7 +131,7 @@ PlaningPlan plan_mill(const PlanedPart& part) {
   return std::move(*best);
 }
 
-/// One pass: along the chords, raised by what the passes below it will take.
+/// Adds one pass: along the chords, raised by the thickness that the following passes will remove.
 void add_pass(const PlanedPart& part, const PlaningPlan& plan, double raised_mm, PlannedProgram& planned) {
   const PlaningLathe& lathe = *part.lathe;
   Move out, in;

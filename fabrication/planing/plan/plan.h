@@ -1,6 +1,6 @@
 #pragma once
 
-// Plans the programs of a flat lens, for a planing mill by strokes along the zones, for a lathe by chords.
+// Plans the programs of a flat lens: strokes along the zones for a planing mill, and chords for a lathe.
 
 #include <cstdint>
 #include <string>
@@ -13,34 +13,36 @@
 
 namespace retrace::fabrication {
 
-/// A program that a machine runs without a break.
+/// Program that a machine executes without interruption.
 struct PlannedProgram {
   Program program;
   std::string set;          ///< "odd zones", "even zones", "inner zones"; "passes" of a lathe
   std::int64_t frames = 0;  ///< moves
-  std::int64_t cuts = 0;    ///< strokes, or chords
+  std::int64_t cuts = 0;    ///< number of strokes (mill) or chords (lathe)
   double time_s = 0.0;
 };
 
-/// How a flat element is made. Of a milled lens the programs make one half: the part is turned by 180 degrees about Z,
-/// and they run once more.
+/// Plan of a flat element. The programs of a mill produce one half of a lens. The part is then rotated by 180 degrees
+/// about Z, and the programs run a second time. docs/theory/planing.md describes the two methods of milling.
 struct PlaningPlan {
-  double flank_slope = 0.0;          ///< of the mill's tool, depth over distance
-  double quantum_mm = 0.0;           ///< by which cuts of the first method deepen
-  std::vector<ZoneCut> cuts;         ///< mill; by zone, outwards
-  std::vector<bool> by_depths;       ///< by zone: first method
+  double flank_slope = 0.0;          ///< slope of the flank of the mill's tool, as depth divided by distance
+  double quantum_mm = 0.0;           ///< depth increment of the cuts of the first method
+  std::vector<ZoneCut> cuts;         ///< mill: cuts, sorted by zone and outwards
+  std::vector<bool> by_depths;       ///< for each zone: true if the first method is used
   Chords chords;                     ///< lathe
-  Chords longest;                    ///< lathe: what the longest chords one after another would be
-  std::vector<ProfilePoint> points;  ///< lathe: what the chords join
+  Chords longest;                    ///< lathe: result of longest_chords(), for comparison
+  std::vector<ProfilePoint> points;  ///< lathe: points that the chords connect
   std::int64_t passes = 0;           ///< lathe
   std::vector<PlannedProgram> programs;
-  int runs = 1;  ///< of every program: 2 for the halves of a milled lens
+  int runs = 1;  ///< number of runs of every program: 2 for a milled lens, which is made in two halves
 
-  std::int64_t frames() const;  ///< of all programs, once
-  double time_s() const;        ///< of all programs, once
+  std::int64_t frames() const;  ///< total of all programs, for one run
+  double time_s() const;        ///< total of all programs, for one run
 };
 
-/// \throw InputError for a tolerance, travel, time limit or number of programs that cannot be kept
+/// Plans the programs of a part.
+/// \throw InputError if the zones do not fit between lens and focus, or if the tolerance, the travel or the time limit
+///        cannot be kept
 PlaningPlan plan_planing(const PlanedPart& part);
 
 }  // namespace retrace::fabrication

@@ -38,8 +38,8 @@ double ZoneCutter::left_standing_mm(std::size_t zone, const ZoneCut* before, con
   const double x = static_cast<double>(cut.x) * grid_mm_;
   const double depth = static_cast<double>(cut.depth) * grid_mm_;
   const double from = before != nullptr ? static_cast<double>(before->x) * grid_mm_ : profile_.zones()[zone].from_mm;
-  // The flank is steeper than the profile: most stands where it begins, just outside of the cut before, or where the
-  // flank leaves the blank.
+  // The flank is steeper than the profile. Most material therefore remains just outside of the previous cut, or where
+  // the flank leaves the blank.
   const double worst = std::min(x, std::max(from, x - depth / flank_slope_));
   return profile_.depth_in_zone_mm(zone, worst) - std::max(0.0, depth - flank_slope_ * (x - worst));
 }
@@ -54,9 +54,9 @@ std::optional<ZoneCut> ZoneCutter::at_depth(std::size_t zone, std::int64_t depth
   const std::int64_t low =
       std::max(first_place(zone), static_cast<std::int64_t>(std::ceil(place(middle - 0.5 * grid_mm_))));
   const std::int64_t high = std::min(last, static_cast<std::int64_t>(std::floor(place(middle + 0.5 * grid_mm_))));
-  if (low == high) return ZoneCut{zone, low, depth};  // one point lies at the depth: cut
+  if (low == high) return ZoneCut{zone, low, depth};  // exactly one grid point is at this depth
   if (low < high) {
-    // Several do: that which leaves most standing within the tolerance.
+    // Several grid points are at this depth. Use the one that leaves most material within the tolerance.
     std::int64_t fits = low;
     std::int64_t beyond = high + 1;
     while (beyond - fits > 1) {
@@ -65,7 +65,8 @@ std::optional<ZoneCut> ZoneCutter::at_depth(std::size_t zone, std::int64_t depth
     }
     return ZoneCut{zone, fits, depth};
   }
-  // None does: cut at the nearest only if the next depth would come too late.
+  // No grid point is at this depth. Cut at the nearest one only if a cut at the next depth would leave more than the
+  // tolerance.
   const std::int64_t nearest = std::clamp<std::int64_t>(std::llround(place(middle)), first_place(zone), last);
   const auto next =
       std::min(last, static_cast<std::int64_t>(std::llround(place(static_cast<double>(next_depth) * grid_mm_))));

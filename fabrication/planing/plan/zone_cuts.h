@@ -1,6 +1,7 @@
 #pragma once
 
-// Strokes along the zones of a milled lens, so placed that no more than the tolerance is left between them.
+// Places strokes along the zones of a milled lens so that the material that remains between them is within the
+// tolerance.
 
 #include <cstdint>
 #include <optional>
@@ -10,34 +11,38 @@
 
 namespace retrace::fabrication {
 
-/// One stroke along the zones: where the tool's tip is, on the machine's grid.
+/// Position of the tool's tip in one stroke along the zones, on the machine's grid.
 struct ZoneCut {
   std::size_t zone = 0;
-  std::int64_t x = 0;      ///< in steps of the grid, from the middle of the lens
-  std::int64_t depth = 0;  ///< likewise, below the face; >= 0
+  std::int64_t x = 0;      ///< position in steps of the grid, from the center of the lens
+  std::int64_t depth = 0;  ///< depth in steps of the grid, below the face; >= 0
 };
 
-/// The tool: a pointed edge, upright towards the outside, and rising towards the middle as steeply as the profile ever
-/// does (rounded up to half a degree), so that it never cuts into what it has left.
+/// Returns the slope of the flank of the tool. The tool has a pointed edge. It is vertical towards the outside of the
+/// lens. Towards the center, its flank is as steep as the maximum slope of the profile, rounded up to half a degree. It
+/// therefore never cuts below the profile.
 double flank_slope_of(const ZoneProfile& profile);
 
-/// Where the tool has to go in a zone so that no more than the tolerance is left standing. Depths are positive
-/// downwards.
+/// Computes the strokes in a zone that leave no more material than the tolerance. Depths are positive downwards.
 class ZoneCutter {
  public:
-  /// \throw InputError if the tolerance is too fine for the grid
+  /// \pre `profile` outlives this object
   ZoneCutter(const ZoneProfile& profile, double grid_mm, double tolerance_mm);
 
   double flank_slope() const { return flank_slope_; }
   double grid_mm() const { return grid_mm_; }
 
-  /// First method: at every depth of whole quanta at most one cut, by the three cases of the theory. Nothing if that
-  /// leaves more than the tolerance. \param quantum in steps of the grid, >= 1
+  /// First method: at most one cut at every depth that is a multiple of the depth increment (quantum), by the three
+  /// cases of docs/theory/planing.md. Returns nothing if these cuts leave more than the tolerance.
+  /// \param quantum depth increment in steps of the grid, >= 1
   std::optional<std::vector<ZoneCut>> by_depths(std::size_t zone, std::int64_t quantum) const;
-  /// Second method: outwards, each cut as far from the last as the tolerance lets. \throw InputError as the constructor
+  /// Second method: cuts from the inside to the outside. Each cut is as far from the previous one as the tolerance
+  /// allows.
+  /// \throw InputError if the tolerance is too small for the grid
   std::vector<ZoneCut> one_after_another(std::size_t zone) const;
 
-  /// Most that stands between two neighbouring cuts of a zone. \param before none: from the zone's inner step
+  /// Returns the maximum height of the material that remains between two neighbouring cuts of a zone.
+  /// \param before previous cut; null: the material between the inner step of the zone and the first cut
   double left_standing_mm(std::size_t zone, const ZoneCut* before, const ZoneCut& cut) const;
 
  private:

@@ -44,7 +44,7 @@ std::size_t ZoneProfile::zone_of(double x_mm) const {
 double ZoneProfile::depth_in_zone_mm(std::size_t zone, double x_mm) const {
   const double n = lens_.refractive_index;
   const double near = (n - 1.0) * vertex_distance_mm(zone);
-  // z' of x^2 = 2 (n - 1) F z' + (n^2 - 1) z'^2, without cancellation.
+  // Solve x^2 = 2 (n - 1) F z' + (n^2 - 1) z'^2 for z' without cancellation.
   const double beyond_vertex = x_mm * x_mm / (near + std::sqrt(near * near + (n * n - 1.0) * x_mm * x_mm));
   return beyond_vertex - static_cast<double>(zone) * step_mm_;
 }
