@@ -79,7 +79,7 @@ struct CutConditions {
   double retract_feed_mm_per_min = 200.0;
 };
 
-/// Forces at the events of a cut, in N, signed.
+/// Forces at the events of a cut, in N, with their signs.
 struct ForceEvents {
   double full_chip_fz_n = 0.0;
   double full_chip_fy_n = 0.0;

@@ -27,7 +27,8 @@ enum class Strategy {
   unidirectional,  ///< plunge along facet 1, plough along facet 2
   bidirectional,   ///< plunges along both facets, layer by layer
   two_step,        ///< unidirectional roughing, bidirectional finishing
-  dmc              ///< diamond micro chiseling of cube corners: a V-shaped tool down one dihedral edge, up the other
+  /// Diamond micro chiseling of cube corners: V-shaped tool moves down one dihedral edge and up another.
+  dmc
 };
 
 /// Names of the enumerators in files and commands, in the order of the enumerators.

@@ -207,9 +207,9 @@ Eigen::Matrix3d tool_turn(const Machine& machine);
 /// tool.
 geometry::Vec3 edge_direction(const Machine& machine);
 
-/// The normal, in the machine frame, that a facet has when the tool can cut it. Where the table tilts: of the plane
-/// that the tool's edge sweeps when Z moves, on the side of -Y. Where the head tilts: of the plane of Y and Z of the
-/// tool, on the side of -X.
+/// Returns the normal, in the machine frame, that a facet must have when the tool plunges it. On a machine with a
+/// tilting table, it is the normal of the plane that the tool's edge sweeps when Z moves, and points to the side of -Y.
+/// On a machine with a tilting head, it is the normal of the tool's plane of Y and Z, and points to the side of -X.
 geometry::Vec3 plunged_normal(const Machine& machine);
 /// Returns the direction, in the machine frame, that the horizontal line of a facet should have during a plunge. It is
 /// the direction of the edge, or Y of the tool on a machine with a tilting head.

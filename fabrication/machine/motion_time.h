@@ -1,6 +1,6 @@
 #pragma once
 
-// How long the axes of a machine take from a standstill to a standstill.
+// Computes the time of moves that start and end at rest.
 
 #include <limits>
 

@@ -5,7 +5,8 @@
 namespace retrace::fabrication {
 namespace {
 
-/// RS274/NGC as LinuxCNC's interpreter reads it (T. Kramer et al., NISTIR 6556, 2000; LinuxCNC's o-word subroutines).
+/// RS274/NGC as the interpreter of LinuxCNC reads it (T. Kramer et al., NISTIR 6556, 2000; o-word subroutines of
+/// LinuxCNC).
 constexpr DialectWords kRs274ngc = {
     .dialect = {"rs274ngc", ".ngc", "RS274/NGC as LinuxCNC reads it: the reference"},
     .subroutines_first = true,

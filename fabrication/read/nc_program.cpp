@@ -9,7 +9,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// In the order of the enumerators.
+/// Readers of the dialects, in the order of the enumerators.
 constexpr std::array kReaders = {parse_rs274ngc, parse_sinumerik, parse_fanuc,
                                  parse_pmac,     parse_a3200,     parse_automation1};
 

@@ -31,7 +31,8 @@ FinishFigures exact_finish(const TurningTool& tool, double feed_mm) {
   const auto height = [&](double u) { return a * u * u / (1.0 + std::sqrt(1.0 - u * u)); };
   using Gauss = boost::math::quadrature::gauss<double, 30>;
   const double mean = Gauss::integrate(height, 0.0, end) / end;
-  // Where the profile crosses its mean the deviation has a kink: integrate on both sides of it.
+  // The absolute deviation from the mean has a kink where the profile crosses the mean. Integrate on both sides of this
+  // kink.
   const double level = 1.0 - mean / a;
   const double crossing = std::sqrt(1.0 - level * level);
   const auto deviation = [&](double u) { return std::abs(height(u) - mean); };

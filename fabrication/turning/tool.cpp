@@ -59,7 +59,8 @@ ToolFrame tool_frame(const TurningTool& tool) {
 
 Contact contact_of(const ToolFrame& frame, const Vec3& normal) {
   const double along = std::clamp(normal.dot(frame.rake_normal), -1.0, 1.0);
-  // The nose touches with the point whose direction from its middle is opposite to the normal within the rake face.
+  // At the point of contact, the direction from the center of the nose is opposite to the component of the normal in
+  // the rake face.
   const double angle = std::atan2(-normal.dot(frame.across), normal.dot(frame.up));
   return {std::asin(along) / kDegree, angle / kDegree};
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Planning of diamond micro chiseling of cube corners (docs/theory/micro_chiseling.md): a V-shaped tool, tilted by B
-// until its leading edge lies in the facet, goes down one dihedral edge to the apex and up the other one.
+// Plans diamond micro chiseling of cube corners (docs/theory/micro_chiseling.md). A V-shaped tool is tilted by B until
+// its leading edge is in the facet. It moves down one dihedral edge to the apex and up the other one.
 
 #include <array>
 #include <string>

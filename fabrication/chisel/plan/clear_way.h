@@ -1,6 +1,6 @@
 #pragma once
 
-// Decides whether rapid moves between elements keep clear of a curved or inclined blank.
+// Checks whether rapid moves between elements keep clear of a curved or inclined blank.
 
 #include "fabrication/chisel/plan/section.h"
 #include "fabrication/job/substrate_cells.h"

@@ -13,8 +13,8 @@ namespace {
 
 using geometry::Vec3;
 
-/// Where the edge's tangents in the two facets cross, from the reference point where its vertical and its horizontal
-/// one do (docs/theory/verification.md).
+/// Returns the intersection of the edge circle's tangents in the two facets, relative to the tool reference point. This
+/// point is the intersection of the circle's vertical and horizontal tangents (docs/theory/verification.md).
 Vec3 tip_of(const Job& job, const Section& section) {
   if (job.strategy == Strategy::dmc) return Vec3::Zero();
   return -Vec3::UnitZ() * section.edge_mm / std::sin(section.apex.rad());
@@ -24,7 +24,7 @@ Angle edge_rise(const Job& job) {
   return Angle::from_deg(job.strategy == Strategy::dmc ? 90.0 - 0.5 * job.tool.nose_angle_deg : 0.0);
 }
 
-/// Collects the cuts of visits.
+/// Collects the cuts of all visits.
 class Collector {
  public:
   Collector(const Job& job, const Plan& plan, const std::vector<std::size_t>& elements)
@@ -51,8 +51,8 @@ class Collector {
   void add(const Subroutine& routine, const Visit& visit) {
     const std::size_t stage = stages_.at(routine.title);
     const CuttingPose& pose = plan_.poses[plan_.stages[stage].pose];
-    // The deepest plunge makes its facet, and what ploughs behind it the other one: of a plough that then leaves the
-    // facet the first part. A V goes down and up.
+    // The last plunge produces the plunged facet, and the plough after it produces the other facet. If the plough is
+    // divided into two moves, only the first one is along the facet. A V-shaped tool makes one cut down and one cut up.
     std::array<std::optional<FacetEdgeCut>, 2> last;
     Place at = visit.start;
     for (const Step& step : routine.steps) {
@@ -94,7 +94,8 @@ class Collector {
   const Job& job_;
   const Plan& plan_;
   const std::vector<std::size_t>& elements_;
-  std::map<std::string, std::size_t> stages_;  ///< by the titles of their routines: programs number them anew
+  /// Index of each stage, by the title of its subroutine: numbers of subroutines differ between programs.
+  std::map<std::string, std::size_t> stages_;
   std::vector<FacetEdgeCut> cuts_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the table of measured cutting forces that the force model is calibrated on.
+// Reads the table of measured cutting forces with which the force model is calibrated.
 
 #include <string>
 #include <string_view>
@@ -10,10 +10,12 @@
 
 namespace retrace::fabrication {
 
-/// The shipped measurements (data/cutting_forces.csv). \throw InputError
+/// Returns the shipped measurements (data/cutting_forces.csv).
+/// \throw InputError if the table is invalid
 std::vector<MeasuredForce> shipped_forces();
 
-/// Reads a table of that form; lines that are empty or begin with # are skipped. \throw InputError naming file and line
+/// Reads a table of measured forces. Empty lines and lines that begin with # are skipped.
+/// \throw InputError naming file and line
 std::vector<MeasuredForce> parse_forces(std::string_view text, const std::string& source_name);
 
 }  // namespace retrace::fabrication

@@ -140,7 +140,7 @@ std::string aligned_rotary_axes(const Machine& m) {
   return across > kLeastDeterminant ? "" : std::string("C must lie across ") + m.tilt_letter();
 }
 
-// Tables { value = ..., measured = "by whom" } or { value = ..., assumed = "why" }.
+// Tables with a value and its origin: { value = ..., measured = "source" } or { value = ..., assumed = "reason" }.
 
 constexpr std::string_view kSourceKeys[] = {"measured", "assumed"};
 constexpr std::string_view kValueKeys[] = {"value"};

@@ -88,7 +88,7 @@ Envelope::Index Envelope::index_of(const CutPass& pass) const {
     index.turn.back().x_low = std::min(index.turn.back().x_low, pass.x_mm[i]);
     index.turn.back().x_high = std::max(index.turn.back().x_high, pass.x_mm[i]);
   }
-  // What moves between the last point of a turn and the first of the next belongs to both.
+  // The move between the last point of a turn and the first point of the next turn belongs to both turns.
   for (std::size_t t = 0; t + 1 < index.turn.size(); ++t) {
     const double x = pass.x_mm[index.turn[t + 1].first];
     index.turn[t].x_low = std::min(index.turn[t].x_low, x);
@@ -107,7 +107,8 @@ void Envelope::cross_turning(const CutPass& pass, const Index& index, double x_m
   const double start = pass.c_rad.front();
   for (std::size_t t = 0; t < index.turn.size(); ++t) {
     const Turn& turn = index.turn[t];
-    // The edge can pass over the place on the tool's side of the spindle or, near the centre, beyond it.
+    // The edge can pass over the point on the tool's side of the spindle. Near the center, it can also pass over it on
+    // the opposite side.
     for (const bool beyond : {false, true}) {
       const double y = pass.y_mm[turn.first];
       if (std::abs(y) >= r) continue;
@@ -118,7 +119,7 @@ void Envelope::cross_turning(const CutPass& pass, const Index& index, double x_m
       const double within = phase - kTurn * std::floor(phase / kTurn);
       const double c = start + kTurn * static_cast<double>(t) + within;
       cross_at(pass, r, theta, c, lowest);
-      // Where a turn begins, its place may have been taken for the end of another.
+      // Near the beginning or the end of a turn, the crossing may belong to the neighbouring turn.
       constexpr double kNear = 0.5;
       if (within < kNear) cross_at(pass, r, theta, c + kTurn, lowest);
       if (within > kTurn - kNear) cross_at(pass, r, theta, c - kTurn, lowest);
@@ -152,7 +153,8 @@ void Envelope::cross_line(const CutPass& pass, double x_mm, double y_mm, double&
   const double c = pass.c_rad.front();
   const double x = x_mm * std::cos(c) - y_mm * std::sin(c);
   const double y = x_mm * std::sin(c) + y_mm * std::cos(c);
-  // X may change along the line, so that the sideways distance is found with the place: by Newton's rule.
+  // X may change along the line. The lateral distance and the position along the line are therefore found together by
+  // Newton's method.
   double at = y;
   constexpr int kMostSteps = 20;
   for (int step = 0; step < kMostSteps; ++step) {

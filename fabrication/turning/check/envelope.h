@@ -65,7 +65,7 @@ class Envelope {
 
  private:
   struct Turn {
-    std::size_t first = 0;  ///< block end
+    std::size_t first = 0;  ///< index of the first point of the turn
     double x_low = 0.0;
     double x_high = 0.0;
   };

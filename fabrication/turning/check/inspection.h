@@ -35,25 +35,30 @@ struct CuspSample {
 /// Result of an inspection. Deviations are along the surface normal and positive if material is left.
 struct Inspection {
   std::vector<CuspSample> cusps;
-  std::size_t compared = 0;      ///< of them, with a closed form
-  double form_error_nm = 0.0;    ///< largest |valley|
-  double interference_nm = 0.0;  ///< deepest cut below the design
-  double scallop_nm = 0.0;       ///< mean of the cusps
+  std::size_t compared = 0;      ///< number of cusps that have a predicted height
+  double form_error_nm = 0.0;    ///< largest absolute value of CuspSample::valley_nm
+  double interference_nm = 0.0;  ///< depth of the deepest cut below the design
+  double scallop_nm = 0.0;       ///< mean height of all cusps
   double scallop_most_nm = 0.0;
-  double scallop_ratio_low = 0.0;  ///< of simulated by predicted heights, over those
+  double scallop_ratio_low = 0.0;  ///< minimum of simulated height divided by predicted height, over the compared cusps
   double scallop_ratio_high = 0.0;
-  double rms_nm = 0.0;      ///< about the design, at a place drawn in each pixel of the map
-  std::size_t columns = 0;  ///< of the map, a square round the region; x rises along a row
+  double rms_nm = 0.0;  ///< rms deviation from the design, at one random point in each pixel of the map
+  /// Number of columns of the map, which is a square around the region; x increases along a row.
+  std::size_t columns = 0;
   double map_width_mm = 0.0;
-  std::vector<double> map_nm;  ///< greatest by size in each pixel; not a number outside; rows from the largest y down
+  /// Deviation with the largest absolute value in each pixel; NaN outside of the region; the first row is at the
+  /// largest y.
+  std::vector<double> map_nm;
 };
 
-/// \param pixels of the map on a side \throw InputError if the programs leave a place of the region uncut
+/// Inspects the machined surface.
+/// \param pixels number of pixels along each side of the map
+/// \throw InputError if the programs leave a part of the region uncut
 Inspection inspect(const Envelope& envelope, const geometry::FreeformSurface& design, const TurningTool& tool,
                    const InspectedRegion& region, std::size_t pixels);
 
-/// One profile across the cuts from a place outwards (raster: along x), three feeds long. Nothing where the design
-/// changes from one zone to another along it, or a cut is missing.
+/// Evaluates one profile across the cuts. It starts at a point and is three feeds long, outwards or along x for a
+/// raster. Returns nothing if the profile crosses a border between zones of the design, or if a cut is missing.
 std::optional<CuspSample> cusps_at(const Envelope& envelope, const geometry::FreeformSurface& design,
                                    const TurningTool& tool, const geometry::Vec2& at_mm, const geometry::Vec2& outward,
                                    double feed_mm, bool is_spiral);

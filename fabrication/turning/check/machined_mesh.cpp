@@ -15,12 +15,13 @@ using geometry::FreeformSurface;
 
 using geometry::Vec3;
 
-/// Rays: about as far apart at half the radius as circles are.
+/// Returns the number of rays. At half the radius, the distance between rays is about the distance between circles.
 std::uint32_t rays_of(int rings) {
   return static_cast<std::uint32_t>(std::max(12L, std::lround(std::numbers::pi * rings)));
 }
 
-/// The centre and the crossings, ring by ring, at the heights that are left.
+/// Returns the center and the intersections of circles and rays, circle by circle, with the heights of the machined
+/// surface.
 std::vector<Vec3> back_of(const Envelope& envelope, const FreeformSurface& design, const InspectedRegion& region,
                           int rings) {
   const std::uint32_t rays = rays_of(rings);
@@ -52,7 +53,7 @@ geometry::BoundaryMesh machined_mesh(const Envelope& envelope, const FreeformSur
   double highest = mesh.vertices.front().z();
   for (const Vec3& v : mesh.vertices) highest = std::max(highest, v.z());
   const auto at = [rays](std::uint32_t ring, std::uint32_t ray) { return 1 + (ring - 1) * rays + ray % rays; };
-  // The back looks down.
+  // The normals of the back point down.
   for (std::uint32_t ray = 0; ray < rays; ++ray) {
     mesh.triangles.push_back({0, at(1, ray + 1), at(1, ray)});
     for (std::uint32_t ring = 1; ring < static_cast<std::uint32_t>(rings); ++ring) {

@@ -8,11 +8,14 @@
 
 namespace retrace::fabrication::turning {
 
-/// What is moulded in the turned surface: its back is what the programs leave, at the crossings of circles and rays
-/// about the spindle's axis, its entrance face a level plane above. The design's height stands for the places within 4
-/// feeds of the centre, where the edge turns on the spot. A closed mesh that looks outward.
-/// \param rings circles, 2 or more, out to 4 feeds inside of the rim \param thickness_mm from the highest place of the
-/// back to the entrance face; > 0 \pre a round region \throw InputError if the programs leave one of the places uncut
+/// Returns a closed mesh of the part that is moulded in the turned surface, with outward normals. The back of the part
+/// is the machined surface, at the intersections of circles and rays about the spindle's axis. The entrance face is a
+/// horizontal plane above it. Within 4 feeds of the center, the height of the design is used, because the edge hardly
+/// moves over the part there.
+/// \param rings number of circles, at least 2; the largest one is 4 feeds inside of the rim
+/// \param thickness_mm distance from the highest point of the back to the entrance face; > 0
+/// \pre the region is round
+/// \throw InputError if the programs leave one of the points uncut
 geometry::BoundaryMesh machined_mesh(const Envelope& envelope, const geometry::FreeformSurface& design,
                                      const InspectedRegion& region, int rings, double thickness_mm);
 

@@ -130,6 +130,7 @@ class Quotients {
     return {2.0 * (after.value - before.value) / s, 2.0 * (after.doubt + before.doubt) / blocks_s + 2.0 * noise / s};
   }
 
+  /// Returns the jerk at node i, from the accelerations at the neighbouring nodes.
   /// \pre 2 <= i < size - 2
   Figure jerk(std::size_t i) const {
     const Figure before = acceleration(i - 1);

@@ -20,7 +20,8 @@ TurningTool read_tool(const Document& file) {
           file.number("tool.rake_deg"), file.number_if("tool.skew_deg").value_or(0.0)};
 }
 
-/// A tenth of the form tolerance, in which it counts; programs say it in whole nanometres.
+/// Returns the tolerance of blending: a tenth of the form tolerance, in whole nanometres as in programs. The check adds
+/// it to the form error.
 double blend_mm(double form_tolerance_nm) {
   return 1e-6 * std::max(1.0, std::floor(0.1 * form_tolerance_nm));
 }
@@ -86,7 +87,7 @@ TurningMachine read_machine(const Document& file) {
           read_limits(file, "machine.servo")};
 }
 
-/// How far the tool reaches: the path and the nose beyond it.
+/// Returns the maximum distance of the tool from the spindle's axis: the radius of the path plus the nose radius.
 double reach_mm(const PathOptions& path, const TurningTool& tool) {
   const double radius = path.strategy == Strategy::spiral ? path.radius_mm + path.overrun_mm
                                                           : 0.5 * std::hypot(path.width_mm, path.height_mm);

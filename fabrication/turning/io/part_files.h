@@ -11,11 +11,12 @@
 
 namespace retrace::fabrication::turning {
 
-/// The format of part files (retrace.turned_part/1).
+/// Returns the format of part files (retrace.turned_part/1).
 const schema::Format& turned_part_format();
 
-/// Reads the text of a part file, with all checks that need no path: a surface that is finite and has no vertical
-/// slope, boundaries that are closed and do not cross, a tool that clears. \throw InputError with file, line and key
+/// Reads the text of a part file and makes all checks that do not need the path. The surface must be finite without
+/// vertical slopes. Boundaries must be closed and must not cross. The tool must clear the surface.
+/// \throw InputError with file, line and key
 TurnedPart parse_turned_part(std::string_view text, const std::string& source_name);
 
 }  // namespace retrace::fabrication::turning

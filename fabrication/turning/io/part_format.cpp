@@ -110,7 +110,7 @@ constexpr Table kTables[] = {{.name = "tool", .meaning = "The diamond.", .rows =
                               .rows = kInspectRows,
                               .presence = Presence::implied}};
 
-/// Those of the surface, then those of how it is made.
+/// Returns the tables of the surface, followed by the tables of its manufacture.
 std::vector<Table> all_tables() {
   const std::span<const Table> of_surface = geometry::surface_tables();
   std::vector<Table> tables(of_surface.begin(), of_surface.end());

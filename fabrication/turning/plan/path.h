@@ -1,6 +1,7 @@
 #pragma once
 
-// The tool path of freeform turning with compensation of the nose radius, and speed, acceleration and jerk of its axes.
+// Computes the tool path of freeform turning with compensation of the nose radius, and speed, acceleration and jerk of
+// its axes.
 
 #include <cstddef>
 #include <vector>

@@ -14,8 +14,8 @@ using geometry::kMostPolynomialDegree;
 using geometry::Sag;
 using geometry::XyPolynomial;
 
-/// The surface along the radial line at one angle: coefficients by the distance from the centre, and the angle on the
-/// nose at which the turn before touched there, as sideways distance.
+/// Surface along the radial line at one angle: coefficients of the powers of the distance from the center. Also the
+/// lateral position, on the nose, of the point of contact in the previous turn.
 struct RadialPolynomial {
   std::array<double, kMostPolynomialDegree + 1> c{};
   double aside_mm = 0.0;
@@ -37,7 +37,7 @@ RadialPolynomial radial_polynomial(const Sag& sag, double angle, int degree) {
   return line;
 }
 
-/// A bound of the second derivative within that distance of the centre.
+/// Returns an upper bound of the absolute second derivative within a distance of the center.
 double steepest_bend(const RadialPolynomial& line, int degree, double reach_mm) {
   double sum = 0.0;
   for (int k = 2; k <= degree; ++k)
@@ -45,8 +45,8 @@ double steepest_bend(const RadialPolynomial& line, int degree, double reach_mm) 
   return sum;
 }
 
-/// Height of the nose's lowest point at radius r: the maximum over the sideways distance w of p(r + w) less the nose's
-/// own height at w. The sum is concave, so that Newton's rule finds the only one.
+/// Returns the height of the nose's lowest point at radius r. It is the maximum, over the lateral distance w, of p(r +
+/// w) minus the height of the nose at w. This function is concave, so that Newton's method finds its only maximum.
 double touching_height(RadialPolynomial& line, int degree, double r, double nose_mm, double most_aside) {
   double w = line.aside_mm;
   for (int step = 0; step < 12; ++step) {
@@ -66,7 +66,7 @@ double touching_height(RadialPolynomial& line, int degree, double r, double nose
     const double next = std::clamp(w - g1 / g2, -most_aside, most_aside);
     const double change = next - w;
     w = next;
-    // The rest of the expansion is of the third order in the change.
+    // The remaining terms of the expansion are of third order in the change.
     if (std::abs(change) < 1e-6 * nose_mm) {
       line.aside_mm = w;
       return z - (nose_mm - root) + change * (g1 + 0.5 * change * g2);
@@ -90,7 +90,7 @@ std::optional<Pass> polynomial_spiral(const FreeformSurface& surface, const Turn
   const double start = o.radius_mm + o.overrun_mm;
   std::vector<RadialPolynomial> lines;
   for (int i = 0; i < o.points_per_turn; ++i) {
-    // C rises, the tool's angle in the part falls.
+    // C increases, and the angle of the tool in the part decreases.
     lines.push_back(radial_polynomial(surface.base(), -kTurn * i / o.points_per_turn, degree));
     if (steepest_bend(lines.back(), degree, start + tool.nose_radius_mm) * tool.nose_radius_mm > 0.99)
       return std::nullopt;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Spirals as functions: where the tool is by the turns of the spindle, and how far that has turned by the time.
+// Spirals as functions: position of the tool as a function of the spindle's turns, and turns as a function of time.
 
 #include "fabrication/turning/plan/path.h"
 

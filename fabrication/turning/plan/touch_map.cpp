@@ -17,7 +17,7 @@ using geometry::Vec2;
 
 constexpr int kBoundaryHalvings = 7;
 
-/// Least and largest distance of a box from a place.
+/// Returns the minimum and the maximum distance between a box and a point.
 std::pair<double, double> distances(const PlanBox& box, const Vec2& from) {
   const Vec2 low = box.low_mm - from;
   const Vec2 high = box.high_mm - from;
@@ -29,7 +29,7 @@ std::pair<double, double> distances(const PlanBox& box, const Vec2& from) {
 }  // namespace
 
 TouchMap::TouchMap(const FreeformSurface& surface, const TurningTool& tool, double reach_mm) {
-  // A rake adds the slope to the condition, which is not enclosed here.
+  // A rake adds the slope of the surface to the condition. This case is not covered by the proof.
   if (tool.rake_deg != 0.0) return;
   const double nose_mm = tool.nose_radius_mm;
   constexpr double kMargin = 0.99;
@@ -41,7 +41,7 @@ TouchMap::TouchMap(const FreeformSurface& surface, const TurningTool& tool, doub
   const PlanBox all{Vec2::Constant(-half_mm_), Vec2::Constant(half_mm_)};
   const auto is_reached = [&](const PlanBox& box) { return distances(box, Vec2::Zero()).first <= half_mm_; };
   if (const auto& outside = surface.extrapolation()) {
-    // Beyond the boundary nothing is proved; where it runs, neither.
+    // Nothing is proved beyond the boundary and in boxes that the boundary crosses.
     const Boundary& boundary = outside->boundary;
     prove_by_quarters(
         all, kBoundaryHalvings,

@@ -11,7 +11,8 @@ Words words_of(const PathPoint& p) {
   return {nanometres(p.x_mm), nanometres(p.y_mm), nanometres(p.z_mm), std::nullopt, rotary_units(p.c_deg)};
 }
 
-/// All points but the first, where the tool is. Y and C have words where they change.
+/// Returns the moves to all points except the first one, where the tool already is. Y and C have positions only if they
+/// change.
 Path path_of(const Pass& pass, Words at, double blend_mm) {
   Path path;
   path.blend_mm = blend_mm;
@@ -26,7 +27,7 @@ Path path_of(const Pass& pass, Words at, double blend_mm) {
   return path;
 }
 
-/// The same by cubics. All axes have words but Y where it stands.
+/// Returns the cubic moves to all points except the first one. All axes have positions, except Y if it does not move.
 Path path_of(const CubicPath& cubics, bool has_y) {
   Path path;
   for (auto point = cubics.points.begin() + 1; point != cubics.points.end(); ++point) {
@@ -37,7 +38,7 @@ Path path_of(const CubicPath& cubics, bool has_y) {
   return path;
 }
 
-/// Programs of cuts: each is reached high above the part, then from above.
+/// Builds programs of cuts. Before each cut, the tool moves above its start at the clearance height, and then down.
 class ProgramMaker {
  public:
   ProgramMaker(const PathOptions& options, double highest_mm) : options_(options) {

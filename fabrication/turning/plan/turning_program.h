@@ -1,6 +1,6 @@
 #pragma once
 
-// Writes a turning path as a neutral program of machine words.
+// Converts a turning path to a program that is independent of dialects.
 
 #include <string>
 #include <vector>
@@ -11,13 +11,14 @@
 
 namespace retrace::fabrication::turning {
 
-/// The path as a program that runs alone, positions rounded to whole nanometres and 1e-7 degrees. Of a fast tool servo
-/// the program has the slide's share of Z.
-/// \param name of the file, without its ending \param header lines for people, ASCII without brackets
+/// Returns a self-contained program for a path, with positions rounded to whole nanometres and 1e-7 degrees. If there
+/// is a fast tool servo, Z contains only the motion of the slide.
+/// \param name file name without extension
+/// \param header lines of text for the operator, ASCII without brackets
 Program turning_program(const std::vector<Pass>& passes, const PathOptions& options, const std::string& name,
                         const std::vector<std::string>& header);
 
-/// The same of a spiral by cubics.
+/// Returns a self-contained program for a spiral of cubic moves.
 Program turning_program(const CubicPath& cubics, const PathOptions& options, const std::string& name,
                         const std::vector<std::string>& header);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Least-squares plane through the measured heights of a facet: its mean offset and tilts.
+// Fits a least-squares plane to the measured heights of a facet. The result is the mean offset and the tilts.
 
 #include <vector>
 
