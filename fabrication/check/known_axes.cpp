@@ -21,7 +21,7 @@ void KnownAxes::motion(const NcMotion& motion) {
   const bool only_says_where = (motion.moved & known) == 0 && motion.move == NcMove::rapid;
   if (missing != 0 && !only_says_where)
     findings_.add("unknown_position", motion.place.line,
-                  fmt::format("the tool moves before the program says where {} is", letter_of(missing)));
+                  fmt::format("the tool moves before the program gives a position of {}", letter_of(missing)));
 }
 
 }  // namespace retrace::fabrication

@@ -181,9 +181,9 @@ Warnings force_warnings(const ForceModel& model, const CutConditions& cut) {
         {"depth_beyond_calibration", fmt::format("a depth of cut of {} um lies beyond the {} um that were measured",
                                                  shortest(cut.depth_of_cut_um), shortest(model.calibrated_to_um))});
   if (cut.strategy == Strategy::bidirectional)
-    warnings.push_back(
-        {"peaks_of_another_tool",
-         "root and retract peaks of bidirectional cuts come from another tool than the rest, at one depth of cut"});
+    warnings.push_back({"peaks_of_another_tool",
+                        "root and retract peaks of bidirectional cuts were measured with another tool than the other "
+                        "forces, at one depth of cut"});
   warnings.push_back({"forces_of_one_material",
                       "forces are those of aluminium 6061, a wedge of 50 degrees and a clearance of 3 degrees"});
   return warnings;

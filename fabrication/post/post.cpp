@@ -134,7 +134,7 @@ class FileWriter {
   void cubics(const Path& path) {
     if (dialect_.cubic_move.empty())
       throw InputError({"", 0, "--dialect"},
-                       fmt::format("{} has no moves that say places, velocities and times", dialect_.dialect.name));
+                       fmt::format("{} has no moves with positions, velocities and times", dialect_.dialect.name));
     add_for_control(dialect_.cubic_begin);
     double since_begin_s = 0.0;
     for (std::size_t i = 0; i < path.moves.size(); ++i) {

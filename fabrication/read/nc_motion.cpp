@@ -50,7 +50,7 @@ class Runner {
       if (block.cubic < 0) expect_standstill(block);
       if (stops_before(block)) return stopped();
       if (++carried_out_ > kMostNcBlocks)
-        fail(block, fmt::format("the program carries out more than {} lines", kMostNcBlocks));
+        fail(block, fmt::format("the program executes more than {} lines", kMostNcBlocks));
       carry_out(block);
       if (block.call >= 0 && !call(block)) return missing_subroutine(block);
       if (block.returns && !calls_.empty()) go_back();
@@ -79,7 +79,7 @@ class Runner {
   [[noreturn]] void fail_to_stop() const {
     throw InputError(
         {program_.file, program_.stop_line, ""},
-        "the program cannot be stopped there: nothing is carried out in that line, or nothing moved before");
+        "the program cannot be stopped there: nothing is executed in that line, or no axis moved before it");
   }
   /// Returns true if the execution must stop before a block. The subroutine that the last line calls is still executed.
   bool stops_before(const NcBlock& block) const {
@@ -222,7 +222,8 @@ class Runner {
   void expect_standstill(const NcBlock& block) const {
     for (std::size_t axis = 0; axis < kNcAxes; ++axis)
       if (velocities_[axis] != 0.0)
-        fail(block, fmt::format("{} still moves at the end of the move by velocities before", kNcAxisLetters[axis]));
+        fail(block,
+             fmt::format("{} still moves at the end of the preceding move with velocities", kNcAxisLetters[axis]));
   }
 
   /// Converts velocities from the units of the program to mm/s and degrees/s.
@@ -244,7 +245,7 @@ class Runner {
       if (!cubics_s_) fail(block, "PVT INIT TIME ABS must say since when times count");
       time_s -= std::exchange(*cubics_s_, cubic.time_s);
     }
-    if (!(time_s > 0.0)) fail(block, fmt::format("a move by velocities must take time, takes {} s", time_s));
+    if (!(time_s > 0.0)) fail(block, fmt::format("a move with velocities must have a duration > 0, got {} s", time_s));
     return time_s;
   }
 

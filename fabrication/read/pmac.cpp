@@ -188,7 +188,7 @@ class PmacReader {
     text.remove_prefix(6);
     const std::string number = whole_number(text);
     if (coordinate_system_.empty()) coordinate_system_ = number;
-    if (number != coordinate_system_) lines_.fail("speaks of a second coordinate system");
+    if (number != coordinate_system_) lines_.fail("uses a second coordinate system");
     std::from_chars(number.data(), number.data() + number.size(), program_.coordinate_system);
     if (!text.starts_with("].")) lines_.fail("Coord must be followed by [number] and a point");
     text.remove_prefix(2);

@@ -152,7 +152,7 @@ void check_chisel_reach(const geometry::Element& element, const Tool& tool, cons
   const double least_deg = Angle::from_rad(std::atan(std::sqrt(0.5))).deg();
   const double rake_deg = tool.clearance_deg + tool.wedge_deg;
   if (rake_deg <= least_deg)
-    throw InputError(wedge, fmt::format("with clearance_deg must be > {}, or fins stay along dihedral edges, got {}",
+    throw InputError(wedge, fmt::format("with clearance_deg must be > {}, or fins remain along dihedral edges, got {}",
                                         fixed_apart(least_deg, rake_deg, 3), shortest(rake_deg)));
   const double rake = Angle::from_deg(rake_deg).rad();
   // Height of the core above the apex, per mm of edge length.

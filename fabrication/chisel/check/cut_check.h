@@ -61,7 +61,7 @@ class CutCheck {
     const auto along = facet_cut(workpiece_.grooves[cut.element], wedge_, cut.sweep, cut.back);
     if (!along)
       find("off_facet", cut.motion.place, cut.element,
-           "the edge cuts along none of the facets: the axes stand in no pose of this element");
+           "the edge does not cut along any facet: the rotary axes are not in a pose of this element");
     const bool finishes = along && is_finishing(workpiece_, *along);
     control_.feed(cut.motion, finishes ? process_.finishing_feed_mm_per_min : process_.roughing_feed_mm_per_min);
   }
@@ -81,8 +81,8 @@ class CutCheck {
 
 /// Returns the message for a cut that is too thin for the edge.
 inline std::string rubbing_text(double takes_um, double least_um) {
-  return fmt::format("the cut takes {} um at most, all along it, and the edge rubs below {} um", fixed(takes_um, 4),
-                     shortest(least_um));
+  return fmt::format("the cut removes at most {} um along its whole length, but the edge rubs below {} um",
+                     fixed(takes_um, 4), shortest(least_um));
 }
 
 /// Maximum component of a cutting direction towards the facet. It allows for rounded end points of the move.

@@ -36,9 +36,9 @@ WayCheck::WayCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, Finding
 
 void WayCheck::turn(const NcMotion& motion) {
   if ((motion.moved & kLinearBits) != 0)
-    findings_.add("combined_move", motion.place.line, "rotary and linear axes move at once");
+    findings_.add("combined_move", motion.place.line, "rotary and linear axes move at the same time");
   if ((motion.known & 0b00100) == 0) {
-    findings_.add("turn_too_low", motion.place.line, "the table turns before Z is known");
+    findings_.add("turn_too_low", motion.place.line, "the table rotates before the position of Z is known");
     return;
   }
   const auto rotary = static_cast<std::uint8_t>(motion.moved & ~kLinearBits);

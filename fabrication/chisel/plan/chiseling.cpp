@@ -150,7 +150,7 @@ void check_v_in_poses(const Job& job, const Machine& machine, const std::array<C
     if (covered_deg < 90.0 + error_deg)
       throw InputError(where,
                        fmt::format("{}the cuts along facets {} and {} would leave a fin of {} degrees between them, "
-                                   "0 are allowed: tool.wedge_deg must be larger, or the base less inclined",
+                                   "but no fin is allowed: increase tool.wedge_deg, or incline the base less",
                                    stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 + error_deg - covered_deg, 3)));
   }
   check_fins_in_poses();

@@ -130,7 +130,7 @@ void check_allowance(const Job& job, double left_mm) {
   if (left_mm > 0.0) return;
   throw InputError(
       job.where("process.finishing_depth_um"),
-      fmt::format("must leave something to roughing: {} finishing cuts of {} um are {} um more than a facet is "
+      fmt::format("must leave material for roughing: {} finishing cuts of {} um are {} um more than a facet is "
                   "deep",
                   job.process.finishing_cuts, shortest(job.process.finishing_depth_um), fixed(-1e3 * left_mm, 3)));
 }

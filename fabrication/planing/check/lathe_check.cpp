@@ -141,7 +141,7 @@ void LatheCheck::follow_rapid(const NcMotion& motion) {
   if (only_rises || lowest >= 0.0) return;
   const double taken = standing_.cut({from_x, lowest}, {motion.to.x_mm, lowest}, add_source(motion));
   if (taken > kWordsMm)
-    findings_.add("rapid_in_material", motion.place.line, "a rapid move goes through standing material", taken, 0.0);
+    findings_.add("rapid_in_material", motion.place.line, "a rapid move goes through remaining material", taken, 0.0);
   before_run_ = standing_.heights_mm();
 }
 
@@ -246,8 +246,8 @@ void LatheCheck::measure() {
         std::max(largest_distance(reachable, left, reach),
                  largest_distance(nose > 0.0 ? left : along(left, spacing_mm_), reachable, reach));
   if (result_.path_distance_mm_max > limit)
-    findings_.add("path", 0, "the last pass leaves the tube of tolerance", result_.path_distance_mm_max,
-                  part_.tolerance_mm);
+    findings_.add("path", 0, "the last pass leaves a surface that is outside of the tolerance",
+                  result_.path_distance_mm_max, part_.tolerance_mm);
   find_gouges(path, reachable, limit);
 }
 

@@ -52,8 +52,9 @@ void MillCheck::check_length(const NcMotion& motion, std::size_t axis, double le
   double& shortest_mm = axis == 0 ? result_.shortest_x_mm : axis == 1 ? result_.shortest_y_mm : result_.shortest_z_mm;
   if (shortest_mm == 0.0 || length_mm < shortest_mm) shortest_mm = length_mm;
   if (length_mm < least[axis] - kRoundingMm)
-    findings_.add("short_move", motion.place.line, fmt::format("{} moves by less than fast feed can", kLetters[axis]),
-                  length_mm, least[axis]);
+    findings_.add("short_move", motion.place.line,
+                  fmt::format("{} moves by less than the minimum move of fast feed", kLetters[axis]), length_mm,
+                  least[axis]);
 }
 
 void MillCheck::check_grid(const NcMotion& motion, std::size_t axis, double place_mm) {
@@ -61,7 +62,7 @@ void MillCheck::check_grid(const NcMotion& motion, std::size_t axis, double plac
   result_.off_grid_nm_max = std::max(result_.off_grid_nm_max, 1e6 * off_mm);
   if (off_mm > kRoundingMm)
     findings_.add("off_grid", motion.place.line,
-                  fmt::format("{} stands between two steps of the machine", kLetters[axis]), off_mm, 0.0);
+                  fmt::format("{} is at a position that is not on the machine's grid", kLetters[axis]), off_mm, 0.0);
 }
 
 /// Checks that the tool does not move across or down while it is in the part, and stores the strokes.
@@ -109,7 +110,8 @@ void MillCheck::motion(const NcMotion& motion, const NcSettings& settings) {
     findings_.add("several_axes", motion.place.line, "more than one axis moves at a time", static_cast<double>(moved),
                   1.0);
   if (motion.move != NcMove::rapid)
-    findings_.add("not_fast", motion.place.line, "the tool planes in fast feed alone", motion.feed_mm_per_min, 0.0);
+    findings_.add("not_fast", motion.place.line, "the tool must plane in fast feed (rapid moves) only",
+                  motion.feed_mm_per_min, 0.0);
   ++result_.frames.back();
   result_.time_s.back() += length_mm / part_.mill->fast_feed_mm_per_min * 60.0 + part_.mill->frame_s;
 }
@@ -119,7 +121,7 @@ void MillCheck::end(const NcEnd& end) {
   const std::array travel = {part_.mill->travel_x_mm, part_.mill->travel_y_mm, part_.mill->travel_z_mm};
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (high_mm_[axis] - low_mm_[axis] > travel[axis] + kRoundingMm)
-      findings_.add("travel", 0, fmt::format("{} goes farther than the machine", kLetters[axis]),
+      findings_.add("travel", 0, fmt::format("{} travels farther than the machine allows", kLetters[axis]),
                     high_mm_[axis] - low_mm_[axis], travel[axis]);
   if (height_mm_ < part_.mill->clear_mm - kRoundingMm)
     findings_.add("ends_low", 0, "the program ends with the tool below clear_mm", height_mm_, part_.mill->clear_mm);

@@ -105,7 +105,7 @@ std::vector<ZoneCut> ZoneCutter::one_after_another(std::size_t zone) const {
       (left_standing_mm(zone, before, cut_at(zone, probe)) <= tolerance_mm_ ? fits : beyond) = probe;
     }
     if (fits == at)
-      throw InputError(fmt::format("neighbouring cuts on a grid of {} mm leave more standing than {} mm",
+      throw InputError(fmt::format("neighbouring cuts on a grid of {} mm leave more material than {} mm",
                                    shortest(grid_mm_), shortest(tolerance_mm_)));
     cuts.push_back(cut_at(zone, fits));
     at = fits;

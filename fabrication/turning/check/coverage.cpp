@@ -100,13 +100,14 @@ class CoverageCheck {
         check_step(pass, i, before - radius(pass, i));
         const double off = std::abs(pass.x_mm[i] * sine + pass.y_mm[i] * cosine);
         if (off > kOffSkewMm)
-          add("skew", pass, i, fmt::format("the tool stands {} mm off its skew", fixed(off, 6)), off, kOffSkewMm);
+          add("skew", pass, i, fmt::format("the tool is {} mm away from the line of its skew", fixed(off, 6)), off,
+              kOffSkewMm);
       }
     }
     const CutPass& last = cuts_.passes.back();
     const double end = radius(last, last.size() - 1);
     if (end > path_.feed_mm + kPlacesMm)
-      add_uncut(last.program, last.line.back(), "the cuts end before the centre", end, path_.feed_mm);
+      add_uncut(last.program, last.line.back(), "the cuts end before they reach the centre", end, path_.feed_mm);
   }
 
   // Lines of a raster.

@@ -102,7 +102,8 @@ class CutReader : public NcSink {
     const bool is_free = cuts_.dialects.back() == NcDialect::rs274ngc && motion.duration_s > 0.0 &&
                          !motion.is_exact_stop && !settings.blend_mm;
     if (is_free && !std::exchange(has_free_path_, true))
-      findings_.add("blending", motion.place.line, "without P the path may be left by any distance where blocks meet");
+      findings_.add("blending", motion.place.line,
+                    "without P, the tool may leave the path by any distance between blocks");
   }
 
   void check_cut(const NcMotion& motion, bool is_approach) {
@@ -112,7 +113,7 @@ class CutReader : public NcSink {
     if (motion.duration_s == 0.0 || motion.path_speed_per_min() > 0.0)
       control_.feed(motion, part_.path.approach_mm_per_min);
     if (!motion.is_exact_stop && !std::exchange(has_soft_start_, true))
-      findings_.add("setup", motion.place.line, "the tool comes down without stopping where the cut begins");
+      findings_.add("setup", motion.place.line, "the tool moves down to the start of the cut without an exact stop");
   }
 
   void follow_travel(const NcMotion& motion) {

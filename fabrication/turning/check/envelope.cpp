@@ -79,7 +79,7 @@ Envelope::Index Envelope::index_of(const CutPass& pass) const {
     y_falls = y_falls && pass.y_mm[i] > pass.y_mm[i + 1];
   }
   if (!rises && !(stands && y_falls))
-    throw InputError("a cut must have C rise throughout, or stand with Y falling throughout");
+    throw InputError("in a cut, C must increase throughout, or stay constant while Y decreases throughout");
   index.turns = rises;
   if (!rises) return index;
   for (std::size_t i = 0; i < n; ++i) {

@@ -51,7 +51,7 @@ PathOptions read_path(const Document& file, const TurningTool& tool) {
     path.cubic_error_nm = file.number_if("path.cubic_error_nm");
     if (path.cubic_error_nm && !path.spin_deg_per_s2)
       file.fail("path.cubic_error_nm",
-                "needs machine.c_acceleration_deg_per_s2: moves by velocities begin and end at a standstill");
+                "needs machine.c_acceleration_deg_per_s2, because moves with velocities begin and end at rest");
     if (path.cubic_error_nm && path.servo == Servo::fast)
       file.fail("path.cubic_error_nm",
                 "must not be given with a fast tool servo, whose strokes belong to straight moves");
