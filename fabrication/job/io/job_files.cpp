@@ -183,12 +183,14 @@ constexpr Row kElementRows[] = {
      "Additional intended tilts of the three facets, as in a [design](design_file.md).",
      access_by<get_errors<&AngleErrors::facet_tilt_arcmin>, set_errors<&AngleErrors::facet_tilt_arcmin>>, kOfCubes}};
 constexpr Row kZoneRows[] = {
-    {"aperture_mm", kSize, kNone, "Aperture of the elements of this zone. Without it: that of `[element]`.",
+    {"aperture_mm", kSize, kNone,
+     "Aperture of the elements of this zone. If this key is missing, the value of `[element]` is used.",
      access_given<&CutZone::aperture_mm>},
     {"dihedral_error_arcmin", kThreeErrors, kNone,
-     "Errors of the dihedral angles in this zone. Without them: those of `[element]`.",
+     "Errors of the dihedral angles in this zone. If this key is missing, the values of `[element]` are used.",
      access_by<get_own_errors<&CutZone::dihedral_error_arcmin>, set_own_errors<&CutZone::dihedral_error_arcmin>>},
-    {"facet_tilt_arcmin", kThreeErrors, kNone, "Tilts of the facets in this zone. Without them: those of `[element]`.",
+    {"facet_tilt_arcmin", kThreeErrors, kNone,
+     "Tilts of the facets in this zone. If this key is missing, the values of `[element]` are used.",
      access_by<get_own_errors<&CutZone::facet_tilt_arcmin>, set_own_errors<&CutZone::facet_tilt_arcmin>>},
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
      "Rotation of each element about its axis, counter-clockwise seen from the light.", access<&CutZone::rotation_deg>},

@@ -303,7 +303,9 @@ constexpr auto kMountTurnRows = sourced<Vec3>(Numbers{3, kMountDegrees}, access_
 constexpr ValueTable kMountTurn = {kMountTurnRows, kPointRules};
 constexpr Table kMountTables[] = {
     value("offset_mm", kMountOffset, child<&ToolMount::offset_mm>,
-          "The tool reference point from where programs would take it, along X, Y and Z; of a head at B = 0.", "0"),
+          "Displacement of the tool reference point from the position that programs assume, along X, Y and Z; of a "
+          "head at B = 0.",
+          "0"),
     value("turn_deg", kMountTurn, child<&ToolMount::turn_deg>,
           "Orientation of the mounted tool: a rotation vector by the right-hand rule. The tool is touched off after "
           "mounting, so the rotation does not move its reference point. A rotation about X changes the clearance, one "
