@@ -60,12 +60,12 @@ enum class NextEdge {
 /// corners, it is a V-shaped tool with two edges that meet in the tip (diamond micro chiseling, thesis 1.4.2). The
 /// clearance face is next to the facet that is cut. The clearance angle is set by the mounting of the tool.
 struct Tool {
-  double width_mm = 0.0;    ///< chisel: length of the edge, 0.1..2; V: distance between the ends of its edges, 0.01..10
-  double wedge_deg = 50.0;  ///< angle between clearance face and rake face; for a V, 65 by default
+  double width_mm = 0.0;    ///< chisel: length of the edge, 0.1..2; V-shaped: distance between ends of edges, 0.01..10
+  double wedge_deg = 50.0;  ///< angle between clearance face and rake face; 65 by default for a V-shaped tool
   double clearance_deg = 3.0;        ///< angle between clearance face and cut facet, 2..15
-  double edge_radius_um = 0.0;       ///< radius of a chisel's edge or of a V's nose; 0: sharp
+  double edge_radius_um = 0.0;       ///< radius of a chisel's edge, or of the nose of a V-shaped tool; 0: sharp
   double side_clearance_deg = 2.0;   ///< clearance angle of a chisel's side walls behind the ends of the edge; > 0
-  double nose_angle_deg = 50.0;      ///< angle between the two edges of a V
+  double nose_angle_deg = 50.0;      ///< angle between the two edges of a V-shaped tool
   std::vector<EdgeChip> edge_chips;  ///< chips in the edge of a chisel; they do not overlap
   /// Tool life of an edge: path length of the tip below the blank's face in cutting moves. Empty: no limit.
   std::optional<double> edge_life_mm;
@@ -140,7 +140,7 @@ struct Job {
   std::vector<std::string> notes;
   std::shared_ptr<const schema::Document> document;  ///< content of the job file; null if there is no file
 
-  /// Returns the location of a key in the job file, or the location where it is missing.
+  /// Returns the location of a key in the job file. If the key is missing, returns the location of its table.
   InputLocation where(std::string_view key) const;
 };
 

@@ -35,9 +35,9 @@ Warnings tool_warnings(const TurningTool& tool);
 
 /// Directions of the tool, in cylindrical components of the part: outward, along the cut, up.
 struct ToolFrame {
-  geometry::Vec3 rake_normal;  ///< t, normal out of the rake face, in the direction of the cut
-  geometry::Vec3 across;       ///< s, direction along the edge at its lowest point
-  geometry::Vec3 up;           ///< u, direction from the lowest point to the center of the nose, in the rake face
+  geometry::Vec3 rake_normal;  ///< vector t: normal out of the rake face, in the direction of the cut
+  geometry::Vec3 across;       ///< vector s: direction along the edge at its lowest point
+  geometry::Vec3 up;           ///< vector u: direction from the lowest point to the nose's center, in the rake face
 };
 ToolFrame tool_frame(const TurningTool& tool);
 

@@ -22,7 +22,7 @@ struct PlanOptions {
   /// followed by "+" selects this stage and all later stages.
   std::string phase = "all";
   std::optional<std::int64_t> from_element;  ///< number of the element at whose first visit the program starts
-  std::optional<std::int64_t> from_pass;     ///< number, from 1, of the pass of this visit at which the program starts
+  std::optional<std::int64_t> from_pass;     ///< number, from 1, of the pass of that visit at which the program starts
   std::optional<std::int64_t> stop_every;    ///< number of visits between optional stops
   std::optional<double> split_hours;         ///< maximum run time of a program, unless a single visit takes longer
   std::string before;  ///< only the stages before this stage or group of stages are planned; empty: no restriction

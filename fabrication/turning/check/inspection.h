@@ -28,19 +28,20 @@ struct InspectedRegion {
 struct CuspSample {
   geometry::Vec2 at_mm = geometry::Vec2::Zero();
   double scallop_nm = 0.0;    ///< mean height of the cusps above the neighbouring valleys, along the surface normal
-  double predicted_nm = 0.0;  ///< height by the closed form; 0 if the curvature changes too much for it
-  double valley_nm = 0.0;     ///< form error: deviation of the deepest or highest valley from the design
+  double predicted_nm = 0.0;  ///< height by the closed form; 0 if the curvature changes too much for this form
+  double valley_nm = 0.0;     ///< form error: largest deviation of a valley from the design, with its sign
 };
 
 /// Result of an inspection. Deviations are along the surface normal and positive if material is left.
 struct Inspection {
   std::vector<CuspSample> cusps;
-  std::size_t compared = 0;      ///< number of cusps that have a predicted height
+  std::size_t compared = 0;      ///< number of profiles that have a predicted height
   double form_error_nm = 0.0;    ///< largest absolute value of CuspSample::valley_nm
   double interference_nm = 0.0;  ///< depth of the deepest cut below the design
   double scallop_nm = 0.0;       ///< mean height of all cusps
   double scallop_most_nm = 0.0;
-  double scallop_ratio_low = 0.0;  ///< minimum of simulated height divided by predicted height, over the compared cusps
+  double scallop_ratio_low =
+      0.0;  ///< minimum of simulated height divided by predicted height, over the compared profiles
   double scallop_ratio_high = 0.0;
   double rms_nm = 0.0;  ///< rms deviation from the design, at one random point in each pixel of the map
   /// Number of columns of the map, which is a square around the region; x increases along a row.

@@ -131,7 +131,7 @@ void share_with_servo(Pass& pass, int points_per_turn) {
   const auto mean_from = [&](std::size_t first) {
     return (sums[first + turn] - sums[first]) / static_cast<double>(turn);
   };
-  const std::size_t last = count - turn;  // first point of the last window
+  const std::size_t last = count - turn;  // first point of the last window of one turn
   for (std::size_t i = 0; i < count; ++i) {
     const double window = static_cast<double>(i) - static_cast<double>(half);
     double mean = 0.0;

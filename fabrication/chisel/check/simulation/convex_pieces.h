@@ -30,7 +30,7 @@ ConvexPiece clipped(const ConvexPiece& piece, const HalfPlane& to);
 /// \return the subtracted parts
 std::vector<ConvexPiece> take_away(std::vector<ConvexPiece>& pieces, std::span<const HalfPlane> body);
 
-/// Returns the length of the line point + s direction, low <= s <= high, inside a polygon.
+/// Returns the length, inside a polygon, of the line `point` + s * `direction` with low <= s <= high.
 double chord_mm(const ConvexPiece& piece, const geometry::Vec2& point, const geometry::Vec2& direction, double low,
                 double high);
 
