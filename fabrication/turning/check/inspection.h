@@ -40,8 +40,7 @@ struct Inspection {
   double interference_nm = 0.0;  ///< depth of the deepest cut below the design
   double scallop_nm = 0.0;       ///< mean height of all cusps
   double scallop_most_nm = 0.0;
-  double scallop_ratio_low =
-      0.0;  ///< minimum of simulated height divided by predicted height, over the compared profiles
+  double scallop_ratio_low = 0.0;  ///< minimum ratio of simulated to predicted height, over the compared profiles
   double scallop_ratio_high = 0.0;
   double rms_nm = 0.0;  ///< rms deviation from the design, at one random point in each pixel of the map
   /// Number of columns of the map, which is a square around the region; x increases along a row.
