@@ -61,7 +61,7 @@ std::vector<Substrate> substrates() {
           formula("0.1*x - 0.05*y + 0.01*x*y", ElementAxes::parallel)};
 }
 
-/// Returns the height and the slope of the back surface at a point of the xy plane.
+/// Returns the height and the slope of the back surface of the part at a point of the xy plane.
 HeightPlane surface_at(const Part& part, const Vec2& p) {
   for (const Placement& placement : part.placements) {
     const SurfacePatch& patch = part.patches[placement.patch];
@@ -228,8 +228,8 @@ TEST(SubstratePart, AnInclinedArrayIsThePlanarOneTurnedAsOne) {
   }
 }
 
-// If all neighbours have the same orientation and their rims meet on the substrate, there are no vertical walls
-// between them.
+// The rim of an element is the upper edge of its outline. If all neighbours have the same orientation and their rims
+// meet on the substrate, there are no vertical walls between them.
 TEST(SubstratePart, CubesOnAnInclineLeaveNoWalls) {
   for (PartSpec spec : {spec_of(HexagonalCube{0.8}, Arrangement::honeycomb, 3.3, 2.9),
                         spec_of(TriangularCube{0.8}, Arrangement::triangular, 3.3, 2.9),
@@ -243,8 +243,8 @@ TEST(SubstratePart, CubesOnAnInclineLeaveNoWalls) {
   }
 }
 
-/// The roots of prisms on a cylinder are spaced by one pitch, measured along the arc. They are below the cylinder
-/// by the depth of an element, and every prism keeps its right angle.
+/// The roots (valley edges) of prisms on a cylinder are spaced by one pitch, measured along the arc. They are below the
+/// cylinder by the depth of an element, and every prism keeps its right angle.
 TEST(SubstratePart, PrismsOnACylinderAreSpacedByArcLengthAndStandNormal) {
   const double radius = 5.0;
   PartSpec spec = spec_of(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 4.2, 2.0);
@@ -276,9 +276,10 @@ PartSpec pins(double aperture_mm, int columns, int rows, const Substrate& substr
   return spec;
 }
 
-// Neighbouring pins have axes at the distance d, in the direction psi. On an incline with the angle t and the
-// azimuth p, the height difference of two neighbours is d tan(t) |cos(psi - p)|. The wall between them is as long as
-// a side of the hexagon. A period has two pins, and three sides count for each pin.
+// A bundle consists of hexagonal pins with a cube corner at the end of each pin. The axes of neighbouring pins have the
+// distance d; the direction from one to the other is psi. On an incline with the angle t and the azimuth p, the height
+// difference of two neighbours is d tan(t) |cos(psi - p)|. The wall between them is as long as a side of the hexagon. A
+// period of the bundle contains two pins, and each pin counts three of its six sides, because two pins share a side.
 TEST(PinBundle, PocketsHaveTheAreaOfTheirSteps) {
   const double aperture = 2.5;
   const double side = 0.5 * aperture;
@@ -292,8 +293,8 @@ TEST(PinBundle, PocketsHaveTheAreaOfTheirSteps) {
       double highest = 0.0;
       for (const double psi : {30.0, 90.0, 150.0}) {
         const double along = std::abs(std::cos((psi - azimuth) * kDeg));
-        // The part has twelve periods with two sides of each direction. The three sides along x on the
-        // border of the part are not inner walls.
+        // The part has twelve periods, each with two sides in each direction. The three sides along x on the border of
+        // the part are not inner walls.
         const int walls = psi == 90.0 ? 24 - 3 : 24;
         area += walls * side * distance * std::tan(t) * along;
         projected += walls * side * distance * std::tan(t) * along * std::sin(t) * along;
@@ -308,7 +309,7 @@ TEST(PinBundle, PocketsHaveTheAreaOfTheirSteps) {
 }
 
 // A height difference of 200 um between rows of 3 mm pins corresponds to an inclination of 5.08 degrees, because the
-// pitch of the rows is 2.25 mm. These values are reference data.
+// pitch of the rows is 2.25 mm. Both values are reference data.
 TEST(PinBundle, AStepOf200UmBetweenRowsOf3MmPinsIs5Degrees) {
   const double incline = std::atan(0.2 / 2.25) / kDeg;
   EXPECT_NEAR(incline, 5.08, 0.005);
@@ -347,8 +348,9 @@ TEST(SubstratePart, RoundsRootsAndRimsOfElementsThatStandNormal) {
   expect_solid(spec);
 }
 
-// A large array on an incline consists of few patches. On a cylinder, a column needs few patches because the
-// substrate is constant along the axis.
+// Part::patches stores groups of cells, and each patch may be placed at many positions. A large array on an incline
+// therefore needs few patches. On a cylinder, a column needs few patches because the substrate is constant along the
+// axis.
 TEST(SubstratePart, RepeatsPatchesWhereTheSubstrateRepeats) {
   PartSpec spec = spec_of(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 100.0, 100.0);
   spec.thickness_mm = 60.0;
@@ -360,7 +362,7 @@ TEST(SubstratePart, RepeatsPatchesWhereTheSubstrateRepeats) {
   const Part cylinder = build_part(spec);
   std::size_t facets = 0;
   for (const SurfacePatch& patch : cylinder.patches) facets += patch.facets.size();
-  EXPECT_LT(facets, 16 * 3 * 200 * 10U);  // at most three bands of 16 rows, 200 columns
+  EXPECT_LT(facets, 16 * 3 * 200 * 10U);  // 3 bands of 16 rows, 200 columns, 10 facets per element
   // The substrate is constant along the axis of the cylinder.
   for (int k = 0; k < 10; ++k) {
     const Vec2 p(7.13 + 4.3 * k, 40.1);
@@ -387,7 +389,8 @@ TEST(SubstrateCheck, RefusesWhatCannotCarryTheElements) {
   EXPECT_NE(complaint(spec).find("is not finite"), std::string::npos);
   spec.substrate = Substrate{PlaneSubstrate{44.0, 0.0}, ElementAxes::normal};
   EXPECT_NE(complaint(spec).find("at most 88 degrees steep"), std::string::npos) << complaint(spec);
-  spec.substrate->shape = PlaneSubstrate{44.0, 90.0};  // along the roof edges: acos(cos 45 cos 44)
+  // The plane rises along the roof edges. The facets then have the slope angle acos(cos 45 cos 44), which is allowed.
+  spec.substrate->shape = PlaneSubstrate{44.0, 90.0};
   EXPECT_EQ(complaint(spec), "");
   EXPECT_NE(
       complaint(pins(3.0, 3, 3, {PlaneSubstrate{40.0, 90.0}, ElementAxes::parallel})).find("must keep pins in contact"),
@@ -399,7 +402,8 @@ TEST(SubstrateCheck, MeasuresASphere) {
   PartSpec spec = spec_of(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 6.0, 6.0);
   spec.substrate = Substrate{SphereSubstrate{10.0}, ElementAxes::normal};
   const SubstrateMeasures measures = check_substrate(spec);
-  EXPECT_NEAR(measures.least_radius_mm, 10.0, 1e-6);  // square root of a small difference
+  // The curvature is computed with the square root of a small difference, which increases its rounding error.
+  EXPECT_NEAR(measures.least_radius_mm, 10.0, 1e-6);
   EXPECT_NEAR(measures.highest_mm - measures.lowest_mm, 10.0 - std::sqrt(100.0 - 18.0), 1e-9);
   EXPECT_NEAR(measures.steepest_deg, std::asin(std::sqrt(18.0) / 10.0) / kDeg, 1e-9);
   // Area of a sphere over a square: integral of R / sqrt(R^2 - x^2 - y^2), by the midpoint rule with Richardson

@@ -1,5 +1,6 @@
-// Tests of parts with zones. A single zone equals the part without zones. Rectangular zones equal separate parts of
-// the same size. Rotated zones have rotated facets. The boundary of the part is closed for any combination of zones.
+// Tests of parts with zones, which are regions with elements of their own kind and rotation. A single zone equals the
+// part without zones. Rectangular zones equal separate parts of the same size. Rotated zones have rotated facets. The
+// boundary of the part is closed for any combination of zones.
 
 #include "geometry/part/zones.h"
 
@@ -104,7 +105,7 @@ TEST(Zones, OneZoneIsThePartItself) {
       const PatchFacet& b = part.patches[0].facets[f];
       // A part with zones labels all vertical walls as inner walls, including those along the border.
       EXPECT_EQ(a.role, b.role == FacetRole::border_wall ? FacetRole::inner_wall : b.role);
-      EXPECT_LT((a.normal - b.normal).norm(), 1e-10);  // short walls: 1e-3 mm, with an error of 1e-15
+      EXPECT_LT((a.normal - b.normal).norm(), 1e-10);  // corners of walls of 1e-3 mm have errors of 1e-15 mm
     }
   }
 }
@@ -132,8 +133,8 @@ TEST(Zones, RectanglesHoldWhatTheyWouldHoldAlone) {
   }
 }
 
-/// Returns the fraction of the retro facets of `turned`, by area in plan, whose normal is a normal of `other`
-/// rotated by `deg` about z.
+/// Returns the fraction of the retroreflecting facets of `turned`, by their area in the xy plane, whose normal is a
+/// normal of `other` rotated by `deg` about z.
 double share_of_turned(const Part& turned, const Part& other, double deg) {
   const Eigen::AngleAxisd turn(deg * std::numbers::pi / 180.0, Vec3::UnitZ());
   double all = 0.0;
@@ -193,8 +194,8 @@ TEST(Zones, WhateverMeetsIsClosed) {
   }
 }
 
-// With PartialElements::omit, elements that the border of a zone would cut are replaced by land. All remaining
-// facets belong to whole elements.
+// With PartialElements::omit, elements that the border of a zone would cut are replaced by land, which is flat. All
+// remaining facets belong to whole elements.
 TEST(Zones, PartialElementsAreLeftOutIfTheyAreNotWanted) {
   PartSpec kind = hexagons(0.9);
   const auto build = [&] {

@@ -1,5 +1,5 @@
-// Tests of glass catalogues: lines of the format, dispersion formulas compared with independent calculations, and
-// faulty files.
+// Tests of the reader of glass catalogues: records of the file format, dispersion formulas compared with independent
+// calculations, and faulty files.
 
 #include "materials/io/glass_catalogue.h"
 
@@ -217,7 +217,8 @@ TEST(GlassCatalogue, BrokenLinesAreJoined) {
   }
 }
 
-// If a record has lost its code, the glass either is refused or keeps its index and its wavelength range.
+// The first two characters of a line are the code of its record, for example NM or CD. If a line has lost this code,
+// the glass is refused or keeps its index and its wavelength range.
 TEST(GlassCatalogue, LostCodesNeverChangeAnIndex) {
   const std::vector<std::string> whole = catalogue_lines();
   const GlassCatalogue expected(text_of(whole), "x.agf");
@@ -241,8 +242,8 @@ TEST(GlassCatalogue, LostCodesNeverChangeAnIndex) {
   EXPECT_GT(refused, 10);
 }
 
-// If two coefficients are swapped and the index at the d line changes, the value n_d of the record NM reveals the
-// error. A warning is then given.
+// If two coefficients are swapped and the index at the d line changes, this index no longer agrees with the value n_d
+// of the record NM. A warning is then given.
 TEST(GlassCatalogue, SwappedCoefficientsAreWarnedOf) {
   const std::vector<std::string> whole = catalogue_lines();
   const GlassCatalogue right(text_of(whole), "x.agf");
@@ -271,7 +272,7 @@ TEST(GlassCatalogue, SwappedCoefficientsAreWarnedOf) {
         double n = 0.0;
         try {
           n = refractive_index(glass.dispersion, 587.5618);
-        } catch (const InputError&) {  // no real index
+        } catch (const InputError&) {  // the swapped coefficients give no real index
         }
         const bool is_off = !(std::abs(n - n_d.at(name)) <= 1e-3);
         moved += is_off ? 1 : 0;
@@ -298,8 +299,8 @@ TEST(GlassCatalogue, PlaceholdersOfNdAreNoDoubt) {
   EXPECT_EQ(warnings("1.7", "2 12"), 0U) << "the data of infrared glasses do not reach the d line";
 }
 
-// A sample of the transmittance that cannot be used affects neither the index nor the other samples. A warning names
-// its line.
+// A sample of the transmittance that cannot be used affects neither the index nor the other samples. A warning reports
+// the line of this sample.
 TEST(GlassCatalogue, BlemishesOfTheTransmittanceAreWarnedOf) {
   const std::vector<std::string> good = {"NM x 5 0 1.5 60", "CD 1.5", "LD 0.4 0.7", "IT 0.4 0.9 25", "IT 0.6 0.95 25"};
   const Material right = GlassCatalogue(text_of(good), "x.agf").glass("x");

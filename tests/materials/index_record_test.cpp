@@ -128,8 +128,8 @@ TEST(IndexRecord, WhatIsWrongIsToldWithItsLine) {
   EXPECT_EQ(table("0.4 1.5\n      0.4 1.5\n      0.6 1.4"), "") << "equal rows count one time";
 }
 
-// Only some numbers of coefficients give all coefficients of every term of a formula. All other numbers are refused.
-// The expected numbers are derived from the formulas of the database.
+// A formula is complete only for certain numbers of coefficients, because each of its terms needs all its coefficients.
+// All other numbers are refused. The expected numbers are derived from the formulas of the database.
 TEST(IndexRecord, CutTermsAreRefused) {
   const auto is_whole = [](int number, int count) {
     switch (number) {
@@ -163,7 +163,7 @@ Material with_k(const std::vector<std::string>& rows) {
   return parse_index_record(text, "glass.yml");
 }
 
-// A row of k that cannot be used affects neither the index nor the other rows. A warning names its line.
+// A row of k that cannot be used affects neither the index nor the other rows. A warning reports the line of this row.
 TEST(IndexRecord, BlemishesOfTheExtinctionAreWarnedOf) {
   const std::vector<std::string> good = {"0.40 1e-8", "0.60 3e-8", "0.70 1e-8"};
   const Material right = with_k(good);

@@ -167,7 +167,7 @@ TEST(ThickLayers, PowerIsConservedAndReversible) {
   }
 }
 
-// A layer with the index of the body or of the air has no effect, and neither has a part of it.
+// A layer with the index of the body or of the air has no effect, and neither has such a layer on half of the face.
 TEST(ThickLayers, MatchedLayersAreAbsent) {
   for (const StackSide side : {StackSide::body, StackSide::outside})
     for (const double cosine : {1.0, 0.9, 0.6}) {

@@ -1,5 +1,5 @@
-// Tests of facets with errors of angle: directions of the returned light, and conservation of power if the rims of
-// neighbouring cells have different heights.
+// Tests of facets with errors of angle: directions of the returned light, and conservation of power if the rims (upper
+// edges of the outlines) of neighbouring cells have different heights.
 
 #include <gtest/gtest.h>
 
@@ -33,8 +33,8 @@ struct Case {
   PartSpec spec;
 };
 
-/// Returns parts with errors so large that rims are well above and below z = 0. The last part is an array of many
-/// patches.
+/// Returns parts with errors so large that the rims of their cells are well above and below z = 0. The last part is an
+/// array that consists of many patches of cells.
 std::vector<Case> cases() {
   const RtpElement prism{0.5, 0.5, 90.0};
   PartSpec spaced = finite(prism, Arrangement::checker, 2.2, 2.0, 0.3);

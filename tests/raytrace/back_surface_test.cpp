@@ -1,5 +1,5 @@
-// Tests of the search with the boxes of Embree. It is compared with a search through all cells, and with the triangles
-// of exported solids.
+// Tests of BackSurface, which finds hit facets with the bounding boxes of Embree. The results are compared with a
+// search through all cells, and with the triangles of exported solids.
 #include "raytrace/faces/back_surface.h"
 
 #include <gtest/gtest.h>

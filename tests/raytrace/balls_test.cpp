@@ -130,7 +130,8 @@ TEST(Balls, SphericalAberrationIsTheClosedForm) {
     const double m = offset_mm > 0.0 ? spacer : 1.0;
     for (double height = 0.05; height < 0.96; height += 0.05) {
       const double error_deg = std::abs(return_error_rad(height, index, m, rho)) * 180.0 / pi;
-      // Rounding error: the border of a cone is accurate to 1e-9 of its square.
+      // The squared distance of unit vectors at the edge of a cone is increased by 1e-9, so that directions on the edge
+      // belong to the cone. The tolerance covers this increase and rounding errors.
       const double little = 1e-10 + 1e-8 * error_deg;
       const auto power =
           power_by_cone(layer, optics, height, {std::max(error_deg - little, 1e-14), error_deg + little});

@@ -19,7 +19,8 @@ using namespace raytrace;
 constexpr std::uint64_t kCellRays = 1U << 17;
 constexpr std::uint64_t kEmbreeRays = 1U << 14;
 
-/// Returns four standard deviations of a fraction of the power that is estimated from `count` independent random rays.
+/// Returns four standard deviations of a fraction of the power. The fraction is estimated from `count` independent
+/// random rays.
 double most_error(std::uint64_t count) {
   return 4.0 * 0.5 / std::sqrt(static_cast<double>(count));
 }
@@ -165,8 +166,8 @@ TEST_P(CellEngine, AgreesWithTheExactEngineAndWithEmbree) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, CellEngine, ::testing::Range(std::size_t{0}, cases().size()));
 
-// With all branches followed, no random choice is left. Both engines then trace the same rays: one engine traces them
-// one by one, the other in SIMD lanes.
+// If all branches are followed, there are no random choices. Both engines then trace the same rays: one engine traces
+// them one by one, the other in SIMD lanes.
 TEST(CellKernel, SameRaysAsEmbreeWithoutChance) {
   PathPolicy all_branches;
   all_branches.split_power = 0.0;
@@ -214,8 +215,8 @@ std::vector<RoughCase> rough_cases() {
 
 class CellEngineOfRough : public ::testing::TestWithParam<std::size_t> {};
 
-// The exact engine does not trace all textures. Instead, the two engines that find facets in different ways must give
-// the same accounts.
+// The exact engine does not support all surface textures. Instead, the two engines that find facets in different ways
+// must give the same ledgers.
 TEST_P(CellEngineOfRough, AgreesWithEmbree) {
   const RoughCase c = rough_cases()[GetParam()];
   const Part part = build_part(c.spec);

@@ -1,5 +1,5 @@
-// Tests of rounded and chamfered edges: closed forms of the ineffective widths, agreement of the engines, and no effect
-// in the limit of sharp edges.
+// Tests of rounded and chamfered edges: closed forms of the ineffective widths, agreement of the engines, and vanishing
+// effects as the radius goes to 0.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,8 @@ double exact_rre(const PartSpec& spec, const Optics& optics, double incidence_de
       .ledgers[0][Account::retroreflected];
 }
 
-// At normal incidence, a root or rim of radius r makes the width sqrt(2) r of a prism ineffective.
+// A root is a valley edge between the facets of one element; a rim is an edge between neighbouring elements. At normal
+// incidence, a root or rim of radius r makes the width sqrt(2) r of a prism ineffective.
 TEST(Edges, RoundedEdgesOfAPrismTakeTheirWidth) {
   const double substrate = 0.5;
   const PartSpec sharp = infinite(RtpElement{substrate, 0.5, 90.0}, Arrangement::aligned, 1.0);
@@ -59,8 +60,9 @@ TEST(Edges, ChamferedRootOfAPrismIsAPlane) {
   EXPECT_NEAR(exact_rre(spec, lossless), 1.0 - 0.04 * (1.0 - fresnel), 1e-9);
 }
 
-// Between the rim of a prism and horizontal land, the rounded edge is an arc of 45 degrees. It covers the width
-// tan(22.5 degrees) r of the land, and the same length of the facet. The land itself reflects like a plane surface.
+// Land is a flat surface between elements. Between the rim of a prism and horizontal land, the rounded edge is an arc
+// of 45 degrees. It covers the width tan(22.5 degrees) r of the land, and the same length of the facet. The land itself
+// reflects like a plane surface.
 TEST(Edges, RimsBesideLandTakeTheirWidth) {
   const double substrate = 0.5;
   const double gap = 0.1;
@@ -95,8 +97,8 @@ TEST(Edges, ChamferedRimsOfPrismsArePlanes) {
 
 // At normal incidence, light hits a rounded root of a cube with the edge a if its distances to two of the three facets
 // are nearly equal. In plan, these points are within r / sqrt(2) of six half-lines from the axis. A rounded rim makes
-// two strips ineffective: the strip next to the rim, and the strip through which light from there would leave. The
-// remaining effects are of second order.
+// two strips of the aperture ineffective: the strip next to the rim, and the strip through which light that hits the
+// rim would leave. The remaining effects are of second order.
 TEST(Edges, RoundedEdgesOfCubesTakeTheirWidth) {
   struct Case {
     Element element;
@@ -142,8 +144,8 @@ std::vector<PartSpec> all_kinds(const EdgeShape& edges) {
           with_edges(wrong, edges)};
 }
 
-// The arcs have few chords, because each strip splits the beams of the exact engine. The test only compares both
-// engines for the same strips.
+// Each arc is approximated by only four plane strips (chords), because each strip splits the beams of the exact engine.
+// The accuracy of the approximation does not matter here: both engines trace the same strips.
 TEST(Edges, EnginesAgree) {
   for (EdgeShape edges : {EdgeShape{0.02, 0.0, 0.01}, EdgeShape{0.0, 0.03, 0.0, 0.02}}) {
     edges.chords = 4;
@@ -151,7 +153,7 @@ TEST(Edges, EnginesAgree) {
   }
 }
 
-// The RRE decreases as the radius increases, and does not change in the limit of a vanishing radius.
+// The RRE decreases as the radius increases. As the radius goes to 0, the RRE approaches that of sharp edges.
 TEST(Edges, EffectGrowsFromNothing) {
   const auto rre = [](const PartSpec& spec) {
     const Part part = build_part(spec);
@@ -165,7 +167,7 @@ TEST(Edges, EffectGrowsFromNothing) {
     double before = exact[Account::retroreflected];
     const ConeResult faint = rre(all_kinds({1e-6, 0.0, 1e-6, 0.0, 8})[k]);
     EXPECT_NEAR(faint.rre, before, 4.0 * faint.spread + exact[Account::truncated] + 5e-5) << k;
-    if (before < 0.5) continue;  // with such large errors of angle, rounded edges do not reduce the RRE
+    if (before < 0.5) continue;  // errors of angle are so large that rounded edges do not reduce the RRE
     for (const double radius : {0.01, 0.03}) {
       const ConeResult worn = rre(all_kinds({radius, 0.0, radius, 0.0, 8})[k]);
       EXPECT_LT(worn.rre + 4.0 * worn.spread, before) << k << ": " << radius;

@@ -1,6 +1,6 @@
 // Tests of curved entrance surfaces. A plane surface must equal the plane entrance face. Lenses and wedges are compared
-// with rays in closed form, slabs and light that passes the part with closed forms, and curved surfaces with fine
-// meshes. Power must be conserved.
+// with rays in closed form. Slabs and light that misses the part are compared with closed forms, and curved surfaces
+// with fine meshes. Power must be conserved.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -325,8 +325,8 @@ TEST(Entrance, SlabAtNormalIncidence) {
   EXPECT_NEAR(slab.ledger.total(), 1.0, 1e-12);
 }
 
-// The wedge rises by the slope s over the length L. The beam crosses the horizontal plane through the upper edge of the
-// wedge. Rays within L s tan t of the lower edge pass the wedge without meeting it.
+// The wedge rises by the slope s over the length L. The width of the beam is measured in the horizontal plane through
+// the upper edge of the wedge. Rays within L s tan t of the lower edge miss the wedge.
 TEST(Entrance, WhatPassesBesideIsTransmitted) {
   const double slope = 0.25;
   const Part plate = build_plate({2.0, 1.0}, 1.0);

@@ -1,5 +1,5 @@
-// Tests of light that is traced only once for equal elements. Ledgers, far fields and resampled light must equal those
-// of elements that are traced separately.
+// Tests of light that is traced only one time for all equal elements. Ledgers, far fields and resampled light must
+// equal those of elements that are traced separately.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -141,7 +141,7 @@ const ApertureKernel& discs() {
   return kernel;
 }
 
-/// The far field of each cell must also agree, whichever cell the light entered first.
+/// The far fields must also agree if each element is traced separately or equal elements are traced only one time.
 TEST(EqualPlaces, FarFieldsAreThoseOfEachByItself) {
   for (const Question& question : questions()) {
     const Part& part = question.part;
@@ -177,13 +177,13 @@ TEST(EqualPlaces, HalvesOfAPeriodAreAlike) {
     EXPECT_NEAR(shared.field.total_power(), alone.field.total_power(), 1e-4);
     for (const Vec3& direction : receivers(light)) {
       const double expected = alone.field.intensity(direction, discs()).per_sr;
-      // Both runs omit beams below the cut-off, but not the same beams.
+      // Both runs omit beams below the cut-off. The omitted beams of the two runs are different.
       EXPECT_NEAR(shared.field.intensity(direction, discs()).per_sr, expected, 3e-3 * expected);
     }
   }
 }
 
-/// A resampled beam that represents copies at several positions counts at each position.
+/// If a resampled beam represents equal elements at several positions, its light counts at each of these positions.
 TEST(EqualPlaces, ResampledLightIsThatOfAllPlaces) {
   const std::vector<Question> all = questions();
   for (const Question& question :
@@ -210,8 +210,9 @@ TEST(EqualPlaces, ResampledLightIsThatOfAllPlaces) {
   }
 }
 
-/// The RRE of a part of zones approaches the sum of infinite arrays of the zones' cells as the part grows. The
-/// difference, caused by borders and by walls between zones, is inversely proportional to the size of the part.
+/// The RRE of a part with zones (regions with different elements) approaches the area-weighted sum of the RRE of
+/// infinite arrays as the part grows. The difference, caused by borders and by walls between zones, is inversely
+/// proportional to the size of the part.
 TEST(EqualPlaces, PartsOfZonesComeToTheSumOfTheirZones) {
   PartSpec upright = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
   PartSpec opened = infinite(HexagonalCube{0.8}, Arrangement::honeycomb, 1.0);

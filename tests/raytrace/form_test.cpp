@@ -1,5 +1,5 @@
-// Tests of facets with a form, traced by rays: positions of the facet frames, slopes compared with tilted facets, sinks
-// compared with closed forms, and ledgers.
+// Tests of facets with a form, a smooth deviation from the plane, traced by rays: positions of the facet frames, slopes
+// compared with tilted facets, paraboloids (sinks) compared with closed forms, and ledgers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,8 +59,8 @@ std::vector<FacetFrame> frames_of(const SurfacePatch& patch, const PatchCell& ce
   return frames;
 }
 
-// Elements are whole, cut, rotated, rounded, canted or on a base. The distances between the centroids of the facets
-// must be those of a single element.
+// Elements are whole, cut, rotated, rounded, canted or on a curved substrate. The distances between the centroids of
+// the facets must be those of a single element.
 TEST(FormedFacets, MiddlesStayWithTheirElements) {
   const auto finite_of = [](Element element, Arrangement arrangement) {
     return finite(element, arrangement, 3.3, 2.9, 0.8);
@@ -149,13 +149,13 @@ TEST(FormedFacets, SlopeIsTheTiltOfFacets) {
 }
 
 // Light along the normal hits both facets of a prism at equal distances from their centroids. A distance x across the
-// roof edge is sqrt(2) x down the facet. The path is longer by W = P (2 x^2 + y^2), and rays leave along the gradient
-// of W. Rays within the cone come from an ellipse.
+// roof edge corresponds to sqrt(2) x down the facet. The form of both facets lengthens the path by W = P (2 x^2 + y^2),
+// and rays leave along the gradient of W. Rays that return within a cone come from an ellipse of the aperture.
 TEST(FormedFacets, SinkOfAPrismSpreadsRaysAsItsSlopes) {
   constexpr double kBase = 0.5, kWidth = 0.5, kDepth = 5e-5;
   const double radius2 = kBase * kBase / 8.0 + kWidth * kWidth / 4.0;
   const double p = 4.0 * kPmma * std::sqrt(0.5) * kDepth / radius2;
-  const double cone_rad = 4.0 * p * 0.1;  // from an ellipse of 0.1 mm by 0.2 mm
+  const double cone_rad = 4.0 * p * 0.1;  // the cone is reached from an ellipse with the half-axes 0.1 mm and 0.2 mm
   const double share = pi * 0.1 * 0.2 / (0.5 * kBase * kWidth);
   const Part part = build_part(infinite(RtpElement{kBase, kWidth, 90.0}, Arrangement::aligned, 0.5));
   for (const auto engine : {MonteCarlo::Engine::embree, MonteCarlo::Engine::cell})
@@ -201,7 +201,8 @@ TEST(FormedFacets, LedgersCloseAndEnginesAgree) {
   }
 }
 
-// A form with a height like rounding errors has the same effect as plane facets. A form of height 0 is a plane.
+// A form whose height is as small as rounding errors has the same effect as plane facets. A form of height 0 is a
+// plane.
 TEST(FormedFacets, FormGoesToZero) {
   FacetForm none;
   none.add(2, 0, 0.0);
