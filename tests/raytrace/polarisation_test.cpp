@@ -66,7 +66,8 @@ std::vector<Case> cases() {
           {"triangle", single(TriangularCube{1.0}, 0.4), 9.0, 200.0}};
 }
 
-// For every kind of light, both engines are compared with an engine that uses complex field vectors in space.
+// For every kind of light, the exact engine and Monte Carlo are compared with a reference engine that uses complex
+// field vectors in space.
 TEST(Polarisation, AllEnginesAgree) {
   const std::vector<Stokes> lights = {kUnpolarised,  linear(0.0),          linear(45.0),
                                       linear(110.0), {1.0, 0.0, 0.0, 1.0}, {1.0, 0.3, -0.5, -0.4}};
@@ -176,7 +177,7 @@ Jones three_reflections(const std::array<Vec3, 3>& n, double retardance) {
   return out * m * in.transpose();
 }
 
-/// Returns the Stokes parameters of light from the source after a Jones matrix.
+/// Returns the Stokes parameters of light from the source after an optical system with the given Jones matrix.
 std::array<double, 4> after(const Jones& jones, const Stokes& light) {
   const std::complex<double> i(0.0, 1.0);
   Jones coherency;  // right-handed light on its way down rotates from the first axis to the second
@@ -187,8 +188,8 @@ std::array<double, 4> after(const Jones& jones, const Stokes& light) {
           2.0 * out(0, 1).imag()};
 }
 
-// Liu and Azzam, Appl. Opt. 36, 1553 (1997); Murphy and Goodrow, Appl. Opt. 52, 117 (2013). There are six sub-beams,
-// one for each order of the facets.
+// Expects that a cube corner returns six sub-beams, one for each order of its three facets (Liu and Azzam, Appl. Opt.
+// 36, 1553 (1997); Murphy and Goodrow, Appl. Opt. 52, 117 (2013)).
 void expect_six_sub_beams(const Optics& optics, double retardance) {
   const Part part = build_part(single(HexagonalCube{kCubeAperture}, 0.4));
   const Vec2 centre = centroid(part.outline);

@@ -1,4 +1,4 @@
-// Progress that a Monte-Carlo run reports while it traces rays.
+// Tests of the progress that a Monte Carlo run reports while it traces rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -58,7 +58,8 @@ class Random {
   std::mt19937_64 generator_;
 };
 
-/// Expects that every ray that is not too weak has an equal ray in the reference, and vice versa.
+/// Expects that both ledgers agree, and that for every ray of the reference with a power of at least 1e-3 there is an
+/// equal traced ray.
 void expect_same(const TracedRays& found, const ReferenceRay& known, const std::string& what) {
   constexpr double kNoise = 2e-3;   // power that the reference truncates
   constexpr double kChance = 1e-7;  // effect of a branch that is too weak to be traced
@@ -139,7 +140,7 @@ TEST_P(RayByRay, FromInsideIsThatOfTheReference) {
 TEST_P(RayByRay, WithAnotherMediumBehindIsThatOfTheReference) {
   Optics wet = pmma();
   wet.back_index = 1.2;
-  // The ray hits the entrance face from the front. From behind, it would come through the medium behind the part.
+  // The rays hit the entrance face from the front, because rays from behind would start in the medium behind the part.
   for (int k = 0; k < 20; ++k) {
     Vec3 direction = random.direction();
     direction.z() = -std::abs(direction.z()) - 0.3;

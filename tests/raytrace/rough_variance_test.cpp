@@ -42,7 +42,8 @@ TEST(RoughVariance, ErrorsAreTrue) {
   EXPECT_GE(within, 50);
 }
 
-// Separate tracing gives the same mean, and needs fewer rays for the same error.
+// Tracing specular and scattered light separately gives the same mean as a random choice between them, and needs fewer
+// rays for the same error.
 TEST(RoughVariance, SharesAreFollowedApart) {
   const Part part = build_part(kCubes);
   PathPolicy one_by_chance;

@@ -188,8 +188,9 @@ TEST(RoundEdges, TwoTracersAgreeOnSharpEdges) {
     EXPECT_NEAR(rre_of_circles(0.0, 0.0, incidence_deg, 50000), rre_of_chords(0.0, 0.0, incidence_deg, 16), 5e-5);
 }
 
-// All light of one strip of an arc is either inside or outside of the cone. On a circle, only a part of it may be
-// inside. The results therefore differ by at most one strip for each arc.
+// An arc that consists of chords has plane strips, and all light of one strip is either inside or outside of the cone.
+// On a true circle, only some of the light of a strip may be inside. The results therefore differ by at most one strip
+// for each arc.
 TEST(RoundEdges, ChordsConvergeToCircles) {
   constexpr double sampling = 1e-4;
   for (const auto& [root_mm, rim_mm] : {std::array{0.02, 0.0}, std::array{0.0, 0.02}, std::array{0.05, 0.05}})

@@ -66,8 +66,8 @@ TEST(MeanField, OfAPrismIsTheSmoothReturnTimesTheSpecularShares) {
   EXPECT_NEAR(ledger.total(), 1.0, 1e-9);
 }
 
-// In a cone that is too narrow for scattered light, rays return the mean field. In all models, rays return at least
-// this power.
+// In a cone that is too narrow for scattered light, rays return only the mean field if heights are Gaussian. In all
+// other models, rays return at least the power of the mean field.
 TEST(MeanField, IsNowhereMoreThanRaysBring) {
   const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.5));
   const surface_models::ScatterModel gaussian = HarveyShack({15.0, 20.0, 20.0, 300.0});

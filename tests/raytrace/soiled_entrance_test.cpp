@@ -87,7 +87,8 @@ Ray ray_at(const Vec2& k, bool inside) {
   return {direction, {kUnpolarised, direction.unitOrthogonal()}, inside, false};
 }
 
-/// Sums over many events, in batches from which the standard error follows.
+/// Adds values over many events. An event is one ray that hits the entrance face. Events are divided into batches, and
+/// the standard error follows from the sums of the batches.
 class Events {
  public:
   static constexpr std::uint32_t kBatches = 32;
@@ -172,7 +173,7 @@ TEST(SoiledEntrance, EveryEventKeepsItsPower) {
 }
 
 // A plate has one hazy face, on either side. The fraction of the light beyond 2.5 degrees, as measured by a haze meter,
-// must equal the key.
+// must equal the haze that the design specifies.
 TEST(SoiledEntrance, AHazeMeterReadsTheHaze) {
   constexpr double kHaze = 0.12;
   const double spread_deg = 6.0;
@@ -438,7 +439,8 @@ TEST(SoiledEntrance, LayersAndFilmBeforeMirrors) {
   EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
 }
 
-// Both engines must agree for infinite and finite parts. The exact engine is included for layers.
+// Both Monte Carlo engines must agree for infinite and finite parts. Faces with only layers and films are also traced by
+// the exact engine.
 TEST(SoiledEntrance, EnginesAgreeAndLedgersClose) {
   const std::vector<PartSpec> parts = {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5),
                                        finite(HexagonalCube{0.5}, Arrangement::honeycomb, 3.5, 3.0, 0.8)};
@@ -473,7 +475,8 @@ TEST(SoiledEntrance, EnginesAgreeAndLedgersClose) {
   }
 }
 
-// All effects vanish with their fraction of the face. The difference from a clean face is at most this fraction.
+// The effect of every kind of contamination is at most the contaminated fraction of the face. It vanishes as this
+// fraction goes to 0.
 TEST(SoiledEntrance, NothingIsLeftOfNothing) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5));
   const auto ledger = [&](const EntranceCondition& condition) {

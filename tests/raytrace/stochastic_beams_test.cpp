@@ -130,10 +130,10 @@ Truth truth_of(const Question& question, const Optics& optics) {
   return {exact[Account::retroreflected] + 0.5 * exact[Account::truncated], 0.5 * exact[Account::truncated]};
 }
 
-/// Expects that rounds are unbiased and that 1.96 standard errors contain the true value in 90 % of 200 results.
-/// This is less than 95 %, because the run stops as soon as the standard error is small, which favours results
-/// whose replicates agree by chance. For fewer seeds, `min_coverage` lowers the required fraction, because its
-/// standard error is larger.
+/// Expects that the results of single rounds are unbiased. For complete runs, 1.96 standard errors must contain the
+/// true value in 90 % of 200 results. This is less than 95 %, because a run stops as soon as its standard error is
+/// small, which favours results whose replicates agree by chance. With fewer seeds, the observed fraction has a larger
+/// standard error, so that `min_coverage` lowers the required fraction.
 void expect_truth(const Question& question, const Optics& optics, double target_error) {
   const Truth truth = truth_of(question, optics);
   double mean = 0.0;
@@ -180,8 +180,8 @@ TEST(StochasticBeams, IntervalsHoldWhereFewScatteredRaysReachTheCone) {
     const ConeResult cone = answer(2e-5, seed);
     hits += std::abs(cone.rre - truth) <= 1.96 * cone.std_error ? 1 : 0;
   }
-  // 90 of 100 seeds. For fewer seeds, `min_coverage` lowers the required fraction, because its standard error is
-  // larger.
+  // The true value must be in the interval for 90 of 100 seeds. With fewer seeds, the observed fraction has a larger
+  // standard error, so that `min_coverage` lowers the required fraction.
   EXPECT_GE(hits, test::min_coverage(0.9, 100.0, seeds) * seeds);
 }
 

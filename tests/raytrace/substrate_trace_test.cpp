@@ -121,8 +121,9 @@ TEST(HugeCylinder, SendsBackWhatThePlanarArrayDoes) {
   }
 }
 
-// Light along the axis of a pin stays above the hexagon of the pin, whatever the heights of its neighbours. All three
-// reflections of a full cube are within the hexagon, and the walls are parallel to the light.
+// A bundle consists of hexagonal pins with a cube corner at the end of each pin. Light along the axis of a pin stays
+// above the hexagon of the pin, whatever the heights of its neighbours. All three reflections of a full cube are within
+// the hexagon, and the walls are parallel to the light.
 TEST(PinBundle, SendsBackLightAlongThePinsWhateverTheIncline) {
   PartSpec pins = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 6.2, 5.3, 2.0);
   pins.is_pin_bundle = true;
@@ -137,8 +138,8 @@ TEST(PinBundle, SendsBackLightAlongThePinsWhateverTheIncline) {
   for (const double incline : {5.0, 17.0, 30.0}) {
     const Part part = build_part(on({PlaneSubstrate{incline, 33.0}, ElementAxes::parallel}, pins));
     const Ledger ledger = BeamTracer(part).trace(ideal(), from(0.0), {0.5}, policy).ledgers[0];
-    // Omitted pins are replaced by horizontal land. The land remains horizontal if the bundle is inclined, and reflects
-    // the same light.
+    // Omitted pins are replaced by land (a flat surface without elements). The land remains horizontal if the bundle is
+    // inclined, and reflects the same light.
     EXPECT_NEAR(ledger[Account::retroreflected], level, 1e-9) << incline;
   }
 }

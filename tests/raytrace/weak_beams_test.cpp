@@ -78,8 +78,8 @@ TEST(WeakBeams, AgreeWithBeamsAndBookAllPower) {
   }
 }
 
-/// Expects that the mean is unbiased and that 1.96 standard errors contain the true value in 88 of 100 results. For
-/// fewer seeds, `min_coverage` lowers the required fraction, because its standard error is larger.
+/// Expects that the mean is unbiased and that 1.96 standard errors contain the true value in 88 of 100 results. With
+/// fewer seeds, the observed fraction has a larger standard error, so that `min_coverage` lowers the required fraction.
 TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
   const std::uint32_t seeds = test::sample_size(20U, 100U);
   for (const Question& question : questions()) {
@@ -108,8 +108,8 @@ TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
   }
 }
 
-/// The beams above the cut-off are the same as in a run that truncates weak beams. The light that the replicates return
-/// is the returned light of the ledger.
+/// The beams above the cut-off are the same as in a run that truncates weak beams. The power of all returned beams,
+/// where each beam of one of the 16 replicates counts by 1/16, must equal the returned light of the ledger.
 TEST(WeakBeams, LeaveStrongBeamsAsTheyAre) {
   for (const Question& question : questions()) {
     const BeamTracer tracer(question.part);
@@ -259,7 +259,8 @@ TEST(WeakBeams, DiffractedFarFieldAgreesWithBeams) {
   }
 }
 
-/// Sums over directions contain the same resampled light: sums over bins, and the power inside and outside of a cone.
+/// All integrals of a far field contain the resampled light. The sum over bins, and the power inside and outside of a
+/// cone, must equal the total power.
 TEST(WeakBeams, SumsOverDirectionsHoldAllReplicates) {
   const Question question = wide_cubes();
   const BeamPolicy beams = resampled(1e-4, 32.0);

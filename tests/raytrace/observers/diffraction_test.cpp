@@ -325,7 +325,7 @@ TEST(FarField, IsNotSummedOnceItIsCancelled) {
   EXPECT_TRUE(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).groups().empty());
 }
 
-// Polygons beyond the limit are not diffracted, and their power is reported.
+// At most FarFieldPolicy::most_polygons polygons are diffracted. The power of all other polygons is reported.
 TEST(FarField, TellsWhatTheBudgetOfPolygonsLeavesUndiffracted) {
   FarFieldPolicy policy;
   EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
@@ -333,7 +333,8 @@ TEST(FarField, TellsWhatTheBudgetOfPolygonsLeavesUndiffracted) {
   const FarField field = field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy);
   EXPECT_TRUE(field.groups().empty());
   EXPECT_NEAR(field.beyond_budget_power(), 1.0, 1e-12);
-  // If the discs are larger than the finest detail, nothing is missing.
+  // If the patterns are narrower than the finest detail that is computed, diffraction is not necessary, and no power is
+  // reported.
   policy.finest_detail_rad = 1.0;
   EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
 }
@@ -362,8 +363,8 @@ double mean_over(const FarField& field, const Vec3& direction, const ApertureKer
   return sum;
 }
 
-/// The diffraction patterns of the cells have details wider than the discs, as wide as the discs and much narrower.
-/// Light falls along the normal and obliquely.
+/// The discs are those of source and receiver. The diffraction patterns of the cells have details wider than the discs,
+/// as wide as the discs and much narrower. Light falls along the normal and obliquely.
 TEST(DiscMeans, AreMeansOverTheDiscs) {
   for (const double discs_arcmin : {3.0, 10.0})
     for (const double radius_mm : {0.1, 0.4, 1.5})

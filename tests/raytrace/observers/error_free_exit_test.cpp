@@ -103,7 +103,7 @@ TEST(ErrorFreeExit, ThicknessChangesNoReading) {
     }
 }
 
-// If polygons do not overlap, their fields conserve power for any waves on the polygons (Parseval's theorem).
+// Polygons that do not overlap conserve power, whatever waves leave through them (Parseval's theorem).
 TEST(ErrorFreeExit, WindowAndOutsideAddUpToTheGeometricPower) {
   const std::vector<Case> all = cases();
   for (std::uint32_t set = 0; set < 50; ++set) {

@@ -1,5 +1,5 @@
-// Tests of diffraction with forms of facets: comparison with a pixel model of a cube corner, Fresnel integrals, tilted
-// facets, and rays.
+// Tests of diffraction by facets with a form, a smooth deviation from the plane: comparison with a pixel model of a
+// cube corner, Fresnel integrals, tilted facets, and rays.
 #include "raytrace/observers/formed_aperture.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,8 @@ FacetForm paraboloid(double depth_mm, double radius_mm) {
   return form;
 }
 
-// The forms are a sink, and a form without symmetry that tests positions, signs and axes.
+// Two forms are tested: a paraboloid (sink), and a form without symmetry that reveals errors of positions, signs and
+// axes.
 TEST(FormedAperture, CubeCornerAgreesWithAPixelModel) {
   constexpr double kAperture = 0.5;
   const double radius = 0.5 * kAperture / std::sqrt(4.0 / 3.0);  // half the diagonal of a square facet
@@ -100,9 +101,9 @@ Complex fresnel_mean(double c, double a) {
   return sum;
 }
 
-// Both paths through a prism are longer by P (2 x^2 + y^2), where x is the distance across the roof edge from the
-// centroid of a facet, in plan. The field on the axis is therefore a product of two Fresnel integrals. For small
-// heights, the relative intensity is 1 less the variance of the phase (Marechal).
+// The form of the facets lengthens both paths through a prism by P (2 x^2 + y^2), where x is the distance across the
+// roof edge from the centroid of a facet, in plan. The field on the axis is therefore a product of two Fresnel
+// integrals. For small heights, the relative intensity is 1 less the variance of the phase (Marechal).
 TEST(FormedAperture, SunkPrismHasTheProductOfTwoFresnelIntegrals) {
   constexpr double kBase = 0.5, kWidth = 0.4;
   const double radius2 = kBase * kBase / 8.0 + kWidth * kWidth / 4.0;
@@ -120,8 +121,8 @@ TEST(FormedAperture, SunkPrismHasTheProductOfTwoFresnelIntegrals) {
   }
 }
 
-// A form is a constant slope down every facet. Except for terms of second order, its field is that of a cube corner
-// with tilted facets.
+// The form in this test is a constant slope down every facet. Except for terms of second order, the field is that of a
+// cube corner with tilted facets.
 TEST(FormedAperture, SlopeIsTheTiltOfFacets) {
   constexpr double kTiltArcmin = 0.7;
   FacetForm slope;

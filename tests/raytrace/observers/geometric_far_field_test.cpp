@@ -315,7 +315,8 @@ TEST(GeometricFarField, MonteCarloAgreesWithTheExactEngine) {
   }
 }
 
-// With rough facets, the scores must add up to the accounts of the ledger, including the accounts of scattered light.
+// With rough facets, the power in all bins of the far field must equal the accounts of the ledger for light that leaves
+// through the entrance face, including scattered light.
 TEST(GeometricFarField, ScatteredLightSumsToTheLedger) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0));
   Optics optics = pmma();

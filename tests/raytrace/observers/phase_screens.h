@@ -142,7 +142,8 @@ class Screens {
     Complex rs = -1.0;
     Complex rp = 1.0;
     if (!mirrors_) {
-      // Born and Wolf, 1.5.2 (20). The root of total reflection is that for the convention exp(-i w t).
+      // Born and Wolf, 1.5.2 (20). For total reflection, the sign of the root is that of the time dependence exp(-i w
+      // t).
       const double m = 1.0 / (kPmma * kPmma);
       const Complex root = std::sqrt(Complex(m - (1.0 - c * c)));
       rs = (c - root) / (c + root);
@@ -239,10 +240,10 @@ class Heights {
   double length_ = 0.0;
 };
 
-/// The far field of the aperture: in the bins of a Fourier transform, and in single directions.
+/// The far field of the aperture. It is computed in the bins of a Fourier transform, and in single directions (nodes).
 struct Pattern {
-  std::vector<double> bins;   ///< power per direction cosines; frequencies from 0 upwards, then negative
-  std::vector<double> nodes;  ///< power per direction cosines in single directions
+  std::vector<double> bins;   ///< power per area of direction cosines; non-negative frequencies first
+  std::vector<double> nodes;  ///< power per area of direction cosines, in single directions
 };
 
 /// The fields of all paths over the aperture, on a grid of pixels.
@@ -261,7 +262,7 @@ class Aperture {
         const Vec2 at = step_ * Vec2(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5) -
                         Vec2(screens.half(), screens.half());
         if (auto ray = screens.trace(at)) {
-          // The centers of pixels are mapped to centers of pixels.
+          // A ray that enters at the center of a pixel leaves at the center of a pixel.
           const Vec2 out = (ray->out + Vec2(screens.half(), screens.half())) / step_;
           cell_.push_back(static_cast<std::size_t>(out.y()) * points_ + static_cast<std::size_t>(out.x()));
           rays_.push_back(std::move(*ray));
@@ -360,7 +361,8 @@ struct Case {
 
 inline constexpr std::array<double, 2> kSqNm = {5.0, 20.0};
 
-/// The light that heights of kSqNm scatter, and the factor of the mean amplitude.
+/// Far fields of the light that heights with each value of kSqNm scatter, and the factors by which these heights reduce
+/// the mean amplitude.
 struct Scattered {
   std::array<Pattern, 2> patterns;
   std::array<double, 2> mean_factors = {};

@@ -80,7 +80,8 @@ PhotometricGeometry from_intrinsic(const IntrinsicGeometry& intrinsic) {
   const double alpha = intrinsic.alpha.rad();
   const Vec3 up = part_from_lab * Vec3::UnitY();
   const Vec3 s = part_from_lab * Vec3::UnitZ();
-  // The half plane of the observer is known even if alpha is 0.
+  // The direction `up` determines the half plane of the observer. If the direction to the observer were used instead,
+  // the half plane would be undefined for alpha = 0.
   PhotometricGeometry geometry = geometry_of({s, (s + up).normalized()});
   geometry.alpha = Angle::from_rad(alpha);
   return geometry;
@@ -127,8 +128,8 @@ TEST(PhotometricGeometry, IntrinsicAnglesRoundTrip) {
   }
 }
 
-// Direction to the source in regulations: V is a rotation about the fixed horizontal axis. H is a rotation about the
-// axis that moves with V.
+// Regulations describe the direction to the source by two rotations. V is a rotation about the fixed horizontal axis. H
+// is a rotation about the axis that moves with V.
 TEST(PhotometricGeometry, SourceAndObserverOfVAndH) {
   for (std::uint32_t k = 0; k < 1000; ++k) {
     const double v = uniform(k, 8, -60.0, 60.0) * kDeg;
@@ -143,7 +144,8 @@ TEST(PhotometricGeometry, SourceAndObserverOfVAndH) {
   }
 }
 
-// ASTM E808 publishes relations between the two systems, and with the entrance angle and the viewing angle.
+// ASTM E808 publishes relations between the goniometer system and the intrinsic system, and relations of both to the
+// entrance angle and the viewing angle.
 TEST(PhotometricGeometry, PublishedRelationsHold) {
   for (std::uint32_t k = 0; k < 1000; ++k) {
     const PhotometricGeometry g = random_geometry(k);

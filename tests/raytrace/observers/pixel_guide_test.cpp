@@ -56,7 +56,7 @@ Vec2 place_of(const PixelPlace& pixel, const Vec2& within) {
 
 struct Mean {
   double mean = 0.0;
-  double variance = 0.0;  ///< variance of one pass
+  double variance = 0.0;  ///< variance of one pass, which takes one sample of the pixel
   double error() const { return std::sqrt(variance / kPasses); }
 };
 
@@ -130,7 +130,7 @@ TEST(PixelGuide, MeetsWhatIsRare) {
 TEST(PixelGuide, ServesOnlyWhereItsMapIsUneven) {
   const PixelGuide guide = guide_of(strip(0.505, 100.0));
   EXPECT_TRUE(guide.serves({{4.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0}));
-  // A pixel next to the strip, and a pixel of the tile with uniform luminance.
+  // The guide serves neither a pixel next to the strip nor a pixel of the tile with uniform luminance.
   EXPECT_FALSE(guide.serves({{0.8, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0}));
   EXPECT_FALSE(guide.serves({{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 1}));
 }

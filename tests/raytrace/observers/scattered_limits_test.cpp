@@ -69,15 +69,15 @@ double scattered_by_prism(double size_mm, double length_mm, double variance, dou
 }
 
 // Within a quarter of wavelength / (prism size) of the return direction, the scattered light is twice that of single
-// paths. Fringes follow at larger angles. Heights of 1 nm scatter light only once. Near points whose partner is the
-// point itself, the far field is accurate to l / size.
+// paths. Fringes follow at larger angles. Heights of 1 nm scatter light only one time. Points near x = 0 almost
+// coincide with their partners at -x, which limits the accuracy of the far field to l / size.
 TEST(DiffractionWithRoughness, OppositePathsOfAPrismDoubleTheScatterAboutTheReturn) {
   constexpr double kSize_mm = 0.45, kLength_um = 10.0, kSq_nm = 1.0;
   const Part part = build_part(single(RtpElement{kSize_mm, kSize_mm}, 0.3));
   const FarField field = engine_field(part, optics_of(rough(kSq_nm, kLength_um), true));
   const double phase = 4.0 * pi * kPmma * std::sqrt(0.5) * kSq_nm / kWaveNm;
   const FarField smooth = engine_field(part, optics_of({}, true));
-  const auto by_engine = [&](double cosine) {  // without the mean field
+  const auto by_engine = [&](double cosine) {  // scattered light only, without the mean field
     const Vec3 d(cosine, 0.0, std::sqrt(1.0 - cosine * cosine));
     return (field.diffracted_per_sr(d) + field.scattered_per_sr(d) -
             std::exp(-2.0 * phase * phase) * smooth.diffracted_per_sr(d)) /
