@@ -174,8 +174,9 @@ TEST(Coating, OpticsAreThoseOfEachWavelength) {
       kInfinity);
 }
 
-// Ten wavelengths represent a lamp as accurately with a thin layer as without a layer. The reference is a mean over a
-// fine spectrum. A thick hard coat has more fringes than ten wavelengths can resolve, which causes a warning.
+// Ten wavelengths give the mean over a lamp's spectrum with a thin layer as accurately as without a layer. The
+// reference is a mean over a fine spectrum. A thick hard coat has more fringes than ten wavelengths can resolve, which
+// causes a warning.
 TEST(Coating, SpectraOfThinAndThickLayers) {
   const auto reflectance = [](const raytrace::Optics& optics) {
     return std::norm(
@@ -238,7 +239,7 @@ TEST(Coating, InspectionTellsTheStack) {
   EXPECT_EQ(json["coating"]["facets"]["layers"].size(), 2U);
   EXPECT_EQ(json["coating"]["entrance"]["reflectance"].get<double>(), entrance.reflectance);
   EXPECT_EQ(json["design"]["coating"]["entrance"][0]["material"], "MgF2");
-  // Aluminised facets are already described by their key, so there is no report of layers.
+  // The key `facet_coating` already describes aluminised facets, so there is no report of layers.
   EXPECT_FALSE(inspect(set({"body.facet_coating=aluminium"}), library()).coating.facets);
 }
 

@@ -327,7 +327,8 @@ TEST(DesignReader, FilesAreNamedInTheOrderThatStoresOfStudiesHave) {
   EXPECT_EQ(paths("[light]\nspectrum = \"A\"\n[element]\nkind = \"rtp\"\n"), std::vector<std::filesystem::path>{});
 }
 
-// Unsetting a key has the same effect as removing it from the file. The last override of a key wins.
+// Removing a key by an override has the same effect as removing it from the file. The last override of a key takes
+// precedence.
 TEST(DesignReader, KeysAreUnset) {
   const std::string text = joined(kLines) + "refractive_index = 1.6\nmaterial = \"PC\"\n[form]\nsink_um = 0.1\n";
   const auto read = [&](const std::vector<std::string>& overrides) { return parse_design(text, "d.toml", overrides); };
@@ -351,7 +352,7 @@ TEST(DesignReader, KeysAreUnset) {
             "\"body.refractive_index\"?");
 }
 
-// A warning names a key that has no effect together with the key that takes precedence over it.
+// If a key has no effect because another key takes precedence, a warning reports both keys.
 TEST(DesignReader, KeysWithoutEffectAreTold) {
   const std::string index = joined(kLines) + "refractive_index = 1.6\n";  // line 11
   const auto warnings = [](const std::string& text, const std::vector<std::string>& overrides) {
@@ -366,7 +367,7 @@ TEST(DesignReader, KeysWithoutEffectAreTold) {
   EXPECT_EQ(warnings(index + "material = \"PC\"\n", {}), Warnings{"d.toml:12: body.material:" + ends});
   EXPECT_EQ(warnings(index, {"body.refractive_index=", "body.material=PC"}), Warnings{});
   EXPECT_EQ(warnings(index, {"body.material=PMMA"}), Warnings{}) << "an override by the default";
-  // If the override sets the key that takes precedence, the user intends this effect, and no warning is given. A file
+  // If an override sets the key that takes precedence, the user intends this effect, and no warning is given. A file
   // may give both an absorption and a material without a warning.
   const std::string plastic = joined(kLines) + "material = \"PC\"\n";
   EXPECT_EQ(warnings(plastic, {"body.refractive_index=1.6"}), Warnings{});

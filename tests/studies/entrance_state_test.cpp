@@ -136,8 +136,8 @@ RreResult rre(const Design& design, Engine engine = Engine::automatic) {
   return RreStudy({design}, request).run();
 }
 
-// If no light is scattered, the exact engine can be used. Otherwise, `auto` selects rays, and `exact` is refused with
-// the name of the key.
+// If no light is scattered, the exact engine can be used. Otherwise, `auto` selects rays, and `exact` is refused with a
+// message that reports the key.
 TEST(EntranceState, EnginesThatServe) {
   const std::string infinite =
       "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"offset\"\nextent = "
@@ -151,7 +151,7 @@ TEST(EntranceState, EnginesThatServe) {
   EXPECT_EQ(refusal_of([&] { rre(design(kHaze), Engine::exact); }),
             "d.toml:11: entrance.haze: entrance faces that scatter split a beam into infinitely many: use --engine "
             "montecarlo, without --footprint, --far-field and --derivatives");
-  // Photometry uses rays, and reports that diffraction is left out and why.
+  // Photometry uses rays. It reports that diffraction is left out, and why.
   PhotometryRequest request;
   request.programme.points.push_back(
       {0.2, 0.0, 0.0, 1.0, PhotometricUnit::cd_per_lx_per_m2, LimitStatus::confirmed, 2});

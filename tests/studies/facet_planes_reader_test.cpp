@@ -79,7 +79,7 @@ std::string refused_cube(const std::string& text) {
 
 TEST(FacetPlanesReader, CubeCornersHaveThreeFacetsAndFlares) {
   // The apex is at (2, 2), at a depth of 0.70711. From there, the facets rise towards the azimuths 60, 180 and 300
-  // degrees.
+  // degrees. A flare is the part of a machined facet that extends into the area of a missing neighbour.
   const std::string cube = "2,2,1,-0.70711,0.7071,1.2247\n2,2,2,-0.70711,-1.41421,0\n2,2,3,-0.70711,0.7071,-1.2247\n";
   const std::string flare = "2.75,1.57,5,0.3536,0.7071,-1.2247\n";
   EXPECT_EQ(refused_cube(kHead + cube), "accepted");

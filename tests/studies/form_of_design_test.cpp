@@ -1,4 +1,5 @@
-// Tests of [form] in designs: keys, refused values, and results of studies.
+// Tests of the table [form] in designs: keys, refused values, and results of studies. A form is the smooth deviation of
+// a facet from a plane.
 #include "studies/design/form_of_design.h"
 
 #include <gtest/gtest.h>
@@ -71,8 +72,9 @@ TEST(FacetForm, SlopeIsTheDerivativeOfTheHeight) {
   }
 }
 
-// The sink of a square facet is a paraboloid with the mean height 0. Its center is one sink below its corners. The
-// center is a third of the sink below the mean, and the variance is 2 / 45 of the square of the sink.
+// The sink of a square facet is a paraboloid with the mean height 0. The center of the paraboloid is one sink below its
+// corners and a third of the sink below the mean height. The variance of the heights is 2 / 45 of the square of the
+// sink.
 TEST(FormOfDesign, SinkIsAParaboloidAboutItsMean) {
   const FormReport report = report_of(kCubes + "[form]\nsink_um = 0.1\n");
   EXPECT_NEAR(report.radius_mm, 0.5 / (2.0 * std::sqrt(2.0 / 3.0)) / std::sqrt(2.0), 1e-12);
@@ -83,7 +85,7 @@ TEST(FormOfDesign, SinkIsAParaboloidAboutItsMean) {
   EXPECT_NEAR(report.steepest_mrad, 0.2 / report.radius_mm, 1e-9);
   // A negative sink is a bulge.
   EXPECT_NEAR(report_of(kCubes + "[form]\nsink_um = -0.1\n").highest_um, 0.1 / 3.0, 1e-12);
-  // Without this symmetry, the form is also relative to its best-fitting plane.
+  // A facet of a triangular cube is not square. Its form must also have no tilt relative to its best-fitting plane.
   const std::string triangles =
       "[element]\nkind = \"triangular_icc\"\naperture_mm = 0.5\n[array]\narrangement = "
       "\"triangular\"\nextent = \"infinite\"\n[body]\nthickness_mm = 1.5\n";
@@ -154,7 +156,8 @@ TEST(FormOfDesign, MapGivesItsPolynomial) {
         EXPECT_NEAR(bend(form, p, step), bend(expected, p, step), 1e-12);
   }
   EXPECT_NEAR(report_of(folder.text("")).tilt_mrad, 0.0, 1e-9);
-  // If the y axis of the map is horizontal, the heights along y of the map are along x of the facet.
+  // If the y axis of the map is the horizontal axis of the facet, the heights along y of the map are along x of the
+  // facet.
   const FacetForm turned = form_of(folder.text("map_level_axis = \"y\"\n"));
   const auto second = [&](const Vec2& step) {
     return turned.height_mm(step) - 2.0 * turned.height_mm({0.0, 0.0}) + turned.height_mm(-step);
@@ -222,8 +225,8 @@ TEST(FormOfDesign, InspectTellsIt) {
             std::string::npos);
 }
 
-// A facet with a form does not reflect a beam as a plane wave. Rays are used by default, and exact engines are refused
-// with the name of the key.
+// A facet with a form does not reflect a beam as a plane wave. Rays are used by default. Exact engines are refused with
+// a message that reports the key.
 TEST(FormOfDesign, ExactEnginesAreForPlanes) {
   const Design sunk = parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml");
   const auto refusal = [&](const auto& change) {

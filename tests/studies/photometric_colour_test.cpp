@@ -75,7 +75,7 @@ TEST(PhotometricColour, OfADyedPartIsTheSumOverTheTable) {
     EXPECT_NEAR(found.x, expected.x, 1e-5) << name;
     EXPECT_NEAR(found.y, expected.y, 1e-5) << name;
     EXPECT_NEAR(found.z(), expected.z(), 1e-5) << name;
-    // The design's own key gives the same absorption.
+    // The key `absorption_per_mm` of the design gives the same result as the absorption of the dye in the request.
     Design coloured = colourless();
     std::vector<SpectralAbsorption> own;
     for (std::size_t k = 0; k < dye.values.size(); ++k) own.push_back({dye.wavelengths_nm[k], dye.values[k]});

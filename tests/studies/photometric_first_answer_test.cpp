@@ -1,4 +1,4 @@
-// Preliminary readings of photometry, which are computed in parallel with a long measurement.
+// Tests of preliminary readings of photometry, which are computed in parallel with a long measurement.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -26,7 +26,8 @@ Design cubes() {
 }
 
 /// Returns a photometry request with two observation angles, at an entrance angle at which some light is trapped in the
-/// part. Requests by beams use diffraction and the wavelengths of CIE A. Requests by rays use one wavelength.
+/// part. The Monte Carlo engine uses one wavelength without diffraction. All other engines use diffraction and the
+/// wavelengths of illuminant A.
 PhotometryRequest request_by(Engine engine) {
   TestProgramme programme = points_at({0.1, 0.2}, 1.0);
   for (TestPoint& point : programme.points) point.h_deg = 20.0;
@@ -69,7 +70,7 @@ TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
 TEST(PhotometricFirstAnswer, CostsLess) {
   const PhotometryStudy by_beams(cubes(), request_by(Engine::automatic));
   EXPECT_LT(3 * by_beams.first_answer(kRayShare)->wavelengths_nm.size(), by_beams.run().wavelengths_nm.size());
-  // With 1/32 of the rays, the expected standard error is sqrt(32) = 5.7 times as large.
+  // The preliminary readings use 1/32 of the rays. Their expected standard error is sqrt(32) = 5.7 times as large.
   const PhotometryStudy by_rays(cubes(), request_by(Engine::montecarlo));
   const PhotometryResult result = by_rays.run();
   EXPECT_GT(by_rays.first_answer(kRayShare)->points[0].std_error_mcd_per_lx,

@@ -186,7 +186,7 @@ Design rough(Design design, double sq_nm) {
   return design;
 }
 
-// A roughness of 0.001 nm changes neither the readings, bright or faint, nor their errors.
+// A roughness of 0.001 nm changes neither the readings nor their errors, for both bright and faint readings.
 TEST(Photometry, InvisibleRoughnessChangesNoReading) {
   geometry::PartSpec small = finite(geometry::HexagonalCube{1.0}, Arrangement::honeycomb, 4.0, 4.0, 1.0);
   small.angle_errors.dihedral_error_arcmin.fill(2.0);
@@ -307,7 +307,7 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
     }
     const double dyed = run(design, request).points[0].r_a;
     EXPECT_NEAR(dyed / clear, behind / all, 2e-3 * behind / all) << name;
-    // The design's own key gives the same absorption.
+    // The key `absorption_per_mm` of the design gives the same result as the absorption of the dye in the request.
     Design coloured = design;
     std::vector<SpectralAbsorption> curve;
     for (std::size_t k = 0; k < request.dye_absorption_per_mm.values.size(); ++k)
@@ -357,8 +357,8 @@ TEST(Photometry, DiffractionReachesWhereRaysDoNot) {
   EXPECT_GT(split.outside, 5e-3);
 }
 
-// Perfect cube corners return no light to a driver above the lamps. The program finds the dihedral error that does, and
-// reports the table of the changed design.
+// Perfect cube corners return no light to a driver above the lamps. The program finds a dihedral error with which the
+// part returns enough light, and reports the table of the changed design.
 TEST(Photometry, FindsTheAngleErrorThatPasses) {
   const Design design = design_of(honeycomb(0.0, 10.0), true);
   PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 300.0));

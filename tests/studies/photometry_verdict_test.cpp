@@ -60,8 +60,8 @@ Design rough(Design design, double sq_nm) {
   return design;
 }
 
-/// With these parameters, every facet scatters the fraction pi a ln(1 + 4 / b) of the light. The fraction includes
-/// direction cosines up to 2.
+/// With these parameters and direction cosines up to 2, every facet scatters the fraction pi a ln(1 + 4 / b) of the
+/// light.
 constexpr double kAbgA = 1e-3, kAbgB = 1e-3;
 
 Design scattering_by_abg(Design design, double a = kAbgA) {
@@ -69,8 +69,8 @@ Design scattering_by_abg(Design design, double a = kAbgA) {
   return design;
 }
 
-/// Returns a request for two points with diffraction. Smooth cube corners with errors of 0.75 arcmin reach these
-/// limits.
+/// Returns a request for two points with diffraction. The limits of the regulation are multiplied by `share_of_limits`.
+/// Smooth cube corners with errors of 0.75 arcmin reach the limits of the regulation.
 PhotometryRequest diffracted_request(double share_of_limits) {
   PhotometryRequest request = request_of(r150("IA", "red"));
   request.programme.points.resize(2);
@@ -134,7 +134,7 @@ TEST(PhotometryVerdict, RoughPartsShowTheirSpecularShareAndWhatTheyScatter) {
   EXPECT_LT(after.points[0].r_a, specular * before.points[0].r_a + 2.0 * middle_per_sr);
 }
 
-// For textures without information on phases, rays and the mean field are used.
+// Textures that contain no information on phases are traced by rays, and diffraction includes only the mean field.
 TEST(PhotometryVerdict, MeanFieldIsTheSmoothPatternTimesTheSpecularShares) {
   const Design smooth = design_of(honeycomb(0.0, 0.5), true);
   PhotometryRequest request = request_of(points_at({0.1, 1.0 / 3.0}, 1e-3));
@@ -180,8 +180,8 @@ TEST(PhotometryVerdict, DiffractionThatIsLeftOutIsNamedWhyEver) {
   EXPECT_NE(reason(smooth).find("as it was not asked for"), std::string::npos);
 }
 
-// With discs of 10', diffraction is negligible for cells of at least 64 wavelengths divided by 10', which is 12.9 mm.
-// Cube corners of 13 mm therefore pass or fail by rays.
+// With discs of 10 arcmin, diffraction is negligible for cells of at least 64 wavelengths divided by 10 arcmin, which
+// is 12.9 mm. Rays are then sufficient for a verdict, so that cube corners of 13 mm pass or fail.
 TEST(PhotometryVerdict, WideCellsNeedNoDiffraction) {
   for (const auto& [aperture_mm, limit, verdict] :
        {std::tuple{13.0, 1e9, Verdict::fail}, {13.0, 1.0, Verdict::pass}, {12.8, 1e9, Verdict::undetermined}}) {
@@ -192,7 +192,7 @@ TEST(PhotometryVerdict, WideCellsNeedNoDiffraction) {
   }
 }
 
-// A few rays do not reach the region between the spots. This does not prove that there is no light.
+// The receiver is between the spots, and none of the few rays hits it. This does not prove that it receives no light.
 TEST(PhotometryVerdict, AReceiverThatNoRayMetHasTheErrorOfOne) {
   PhotometryRequest request = request_of(points_at({1.0}, 100.0));
   request.engine = Engine::montecarlo;

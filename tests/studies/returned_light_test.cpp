@@ -98,8 +98,9 @@ TEST(Footprint, OfPrismsAtNormalIncidenceIsTheWholeFace) {
   }
 }
 
-// docs/theory/closed_forms.md, 1: a full element returns all light that enters. A half element returns the light that
-// its border wall reflects, because the wall and the entrance face are parallel.
+// A full element returns all light that enters (docs/theory/closed_forms.md, 1). In a half element, which the border of
+// the part cuts, the wall and the entrance face are parallel. A half element therefore returns the light that its wall
+// reflects.
 TEST(Footprint, ShowsTheHalvesOfABrickArray) {
   const Footprint footprint = *run(design_of(bricks()), {0.0}).returned.at(0).footprint;
   const double r = std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0);
@@ -115,7 +116,7 @@ TEST(Footprint, ShowsTheHalvesOfABrickArray) {
 TEST(Footprint, HalvesAreDeadOffTheNormal) {
   const double t = 1.0;
   const Footprint footprint = *run(design_of(bricks()), {t}).returned.at(0).footprint;
-  // The light reaches the elements at a distance of `shift` from its entry point.
+  // The light reaches the elements at a horizontal distance of `shift` from its entry point.
   const double shift = 3.0 * std::tan(std::asin(std::sin(t * kDeg) / kPmma));
   const auto covers = [&](double x, double y) {
     for (const ActiveRegion& region : footprint.regions) {

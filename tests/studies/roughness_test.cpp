@@ -70,8 +70,8 @@ double phase2(double index, double sa_nm) {
   return std::pow(4.0 * pi * index * std::sqrt(0.5 * pi) * sa_nm * std::cos(0.25 * pi) / 587.56, 2);
 }
 
-// Light is reflected twice at 45 degrees. The specular fraction of each reflection is exp(-g), closed form 7, with Sq =
-// sqrt(pi / 2) Sa.
+// Light is reflected two times at 45 degrees. The specular fraction of each reflection is exp(-g), where g is the
+// variance of the phase (closed form 7 in docs/theory/closed_forms.md), with Sq = sqrt(pi / 2) Sa.
 TEST(RoughnessStudy, SpecularShareIsTheClosedFormOfSa) {
   const Design design = parse_design(kPrism, "d.toml");
   const double index = make_model(design, materials::MaterialLibrary::shipped()).optics.index;

@@ -83,9 +83,9 @@ double luminous_mean(const materials::SpectralCurve& lamp, const materials::Spec
   return sum / flux;
 }
 
-/// Returns an upper bound of the difference between the mean over `nodes` and the sum over the table. It is the
-/// integral of the difference of the cumulated weights over the change of the RRE. The RRE is assumed to be monotonic
-/// between neighbours of the table.
+/// Returns an upper bound of the difference between the mean over `nodes` and the sum over the table (Koksma's
+/// inequality). Between two neighbouring wavelengths of the table, the bound is the difference of the cumulated weights
+/// times the change of the RRE. The RRE is assumed to be monotonic between neighbours.
 double koksma_bound(const materials::SpectralCurve& lamp, const materials::SpectralCurve& efficiency,
                     const std::vector<SpectralRre>& table, const std::vector<SpectralRre>& nodes) {
   const auto below = [&](double wavelength_nm) {

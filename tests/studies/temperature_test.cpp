@@ -104,8 +104,8 @@ TEST(Temperature, MovesTheIndexOfEveryWavelength) {
   ASSERT_EQ(cold.light.size(), warm.light.size());
   for (std::size_t k = 0; k < cold.light.size(); ++k) {
     const double per_k = (warm.light[k].optics.index - cold.light[k].optics.index) / 50.0;
-    EXPECT_GT(per_k, 2.4e-6);  // data sheet: value at 1060 nm
-    EXPECT_LT(per_k, 3.7e-6);  // data sheet: value at 436 nm
+    EXPECT_GT(per_k, 2.4e-6);  // value of the data sheet at 1060 nm: lower bound
+    EXPECT_LT(per_k, 3.7e-6);  // value of the data sheet at 436 nm: upper bound
   }
 }
 

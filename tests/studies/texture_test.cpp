@@ -97,7 +97,7 @@ double index_of(const std::string& design) {
 /// Allowed rounding error of specular light, which is traced without sampling.
 constexpr double kRounding = 1e-12;
 
-/// Returns the specular fraction of two successive facets by closed form 7.
+/// Returns the specular fraction after two successive facets (closed form 7 in docs/theory/closed_forms.md).
 double specular_share_of_two(double index, double sq_nm, double incidence_deg) {
   const double inside = std::asin(std::sin(incidence_deg * kPi / 180.0) / index);
   double phase2 = 0.0;
@@ -137,7 +137,8 @@ TEST(DesignTexture, ShortRoughnessScattersLessAtTotalReflection) {
   EXPECT_GT(traced.ledger[raytrace::Account::transmitted], 0.1 * (1.0 - kept));
 }
 
-// For g above 10, no light remains specular. The waviness tilts the facets, and the light counts as scattered.
+// g is the variance of the phase of the reflected light. Above 10, no light remains specular. The waviness then acts
+// like tilts of the facets, and the light counts as scattered.
 TEST(DesignTexture, HighWavinessLeavesNothingSpecular) {
   const double sq_nm = std::sqrt(10.1) * kWavelengthNm / (4.0 * kPi * index_of(kPrism) * std::cos(0.25 * kPi));
   const RrePoint wavy =
@@ -167,9 +168,9 @@ TEST(DesignTexture, SpecularSharesOfTwoFacetsMultiply) {
   }
 }
 
-// Waves along the roof edge deviate light by w / L out of the plane of incidence. Waves across the edge deviate it by w
-// / (L cos 45 degrees) within this plane. The half-angle of the cone is between both values, so that the RRE shows the
-// orientation of the map.
+// Waves along the roof edge deviate light by w / L out of the plane of incidence, where w is the wavelength and L the
+// period of the waves. Waves across the edge deviate it by w / (L cos 45 degrees) within this plane. The half-angle of
+// the cone is between both values, so that the RRE shows the orientation of the map.
 TEST(DesignTexture, LevelAxisOfTheMapLiesAlongTheRoofEdge) {
   const Folder folder;
   const double period_um = 20.0;
@@ -189,10 +190,10 @@ TEST(DesignTexture, LevelAxisOfTheMapLiesAlongTheRoofEdge) {
   EXPECT_LT(rre("y"), specular + 0.1 * (1.0 - specular));
 }
 
-// Roughness with a lay has different correlation lengths in two directions. If the length along the roof edge is short,
-// the standard deviation of the angles is w / (sqrt(2) pi l), out of the plane of incidence. If the length down the
-// facets is short, it is this value divided by cos 45 degrees, within the plane. The half-angle of the cone is the
-// first value. The fractions in the cone follow from the error function.
+// Roughness with a lay (a preferred direction) has different correlation lengths in two directions. If the length l
+// along the roof edge is short, the standard deviation of the angles is w / (sqrt(2) pi l), out of the plane of
+// incidence. If the length down the facets is short, it is this value divided by cos 45 degrees, within the plane. The
+// half-angle of the cone is the first value. The fractions in the cone follow from the error function.
 TEST(DesignTexture, LayLiesAsItsKeysSay) {
   const double level_rad = 1e-3 * kWavelengthNm / (std::sqrt(2.0) * kPi * 10.0);
   const std::string cone = "detector.acceptance_half_angle_deg=" + shortest(level_rad * 180.0 / kPi);
@@ -269,8 +270,8 @@ TEST(DesignTexture, VanishingRoughnessGivesTheExactAnswer) {
   }
 }
 
-/// Settings of the two tests below. The smallest change between two values is about ten standard errors, so that more
-/// rays are not necessary.
+/// Request of the two tests below. The smallest change of the RRE between two values is about ten standard errors, so
+/// that more rays are not necessary.
 const Question kSteps{0.0, Engine::montecarlo, 1U << 14};
 
 // The values of Sa differ so much that the RRE changes by more than the statistical error.
@@ -316,7 +317,7 @@ TEST(DesignTexture, VanishingRadiusGivesTheExactAnswer) {
   }
 }
 
-// The flat of a chamfered root is horizontal, but it still needs the direction of the roof edge for its texture.
+// The plane of a chamfered root is horizontal, but it still needs the direction of the roof edge for its texture.
 TEST(DesignTexture, WavyFacetsWithAChamferCloseTheLedger) {
   const RrePoint point =
       rre_of(kArray,

@@ -1,4 +1,5 @@
-// Tests of designs with zones: reading, refused values, writing, inspection, and the returned light.
+// Tests of designs with zones, which are regions with elements of their own kind: reading, refused values, writing,
+// inspection, and the returned light.
 
 #include <gtest/gtest.h>
 
@@ -240,7 +241,7 @@ TEST(ZonedDesign, MasksChooseTheElementsUnderTheirDarkPixels) {
   const std::string rest = "[[zone]]\nrest = true\nrotation_deg = 180\n";
   const auto left = zones("[[zone]]\nmask = \"left.pgm\"\n" + rest);
   const auto right = zones("[[zone]]\nmask = \"left.pgm\"\n[[zone]]\nmask = \"right.pgm\"\n");
-  // No column of elements is cut. The column at the middle belongs to the right half.
+  // The masks select whole columns of elements. The column in the center of the part belongs to the right half.
   EXPECT_NEAR(left[0].area_mm2, 100.0, 10.0);
   EXPECT_NEAR(left[0].area_mm2 + left[1].area_mm2, 200.0, 1e-9);
   EXPECT_EQ(right[0].full, left[0].full);
@@ -325,8 +326,8 @@ TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   const Inspection inspection = inspect(turned, materials::MaterialLibrary::shipped());
   EXPECT_EQ(inspection.elements_full, 32);
   EXPECT_EQ(inspection.zones->crossings[0].share, 0.0);
-  // Light moves across the roof edge by twice its distance from the edge. The mean of this distance is half of the
-  // base.
+  // Light leaves a prism on the other side of the roof edge, at the same distance from it. It has moved by twice this
+  // distance, and the mean of this movement is half of the base.
   for (const ZoneReport& zone : inspection.zones->zones) EXPECT_NEAR(zone.wander_mm.value(), 0.5, 0.01);
 }
 
@@ -350,8 +351,8 @@ TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
 }
 
 // If all columns have equal elements, the part equals the array. In the other designs, every second column is rotated
-// by 180 degrees. If a part with an odd number of columns is rotated about its center, the columns that were rotated
-// become the others.
+// by 180 degrees. A part with an odd number of columns that is rotated about its center has the rotated columns at the
+// positions of the other columns.
 TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
   const std::string lengths = "x_length_mm = 20; y_length_mm = 20";
   const std::string canted = "; cant_deg = 8; cant_azimuth_deg = 40";

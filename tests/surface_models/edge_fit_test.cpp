@@ -19,9 +19,10 @@ double rad(double deg) {
   return deg * std::numbers::pi / 180.0;
 }
 
-/// Returns the profile of two facets with these slopes on both sides of the crest, cut by `top`. The height is the
-/// minimum of all.
-/// \param top depth below the crest, in um, as a function of the distance x from the crest
+/// Returns the profile of two facets with these slopes on both sides of the crest. `top` replaces the heights of the
+/// facets near the crest.
+/// \param top height relative to the crest, in um, as a function of the distance x from the crest and of the height of
+/// the facet there
 template <class Top>
 std::vector<double> profile(double left_deg, double right_deg, Top top) {
   std::vector<double> heights_nm;

@@ -36,7 +36,8 @@ TEST(GaussianFilter, PassesWavesAsTheStandardSays) {
       const Split split = gaussian_split(map, kCutoff);
       const double expected = std::exp(-std::numbers::pi * std::pow(a * kCutoff / wavelength, 2));
       EXPECT_NEAR(gaussian_transmission(1.0 / wavelength, kCutoff), expected, 1e-15);
-      // Away from the border, the filter changes only the amplitude of a wave. The maps are compared point by point.
+      // Away from the border, the filter changes only the amplitude of a wave and not its phase, so that the maps can
+      // be compared point by point.
       for (const auto& [x, y] : {std::pair{320U, 320U}, {100U, 540U}, {431U, 207U}}) {
         EXPECT_NEAR(split.waviness.at(x, y), expected * map.at(x, y), 1e-3) << wavelength << " " << direction_deg;
         EXPECT_NEAR(split.roughness.at(x, y), (1.0 - expected) * map.at(x, y), 1e-3);

@@ -122,7 +122,8 @@ Vec2 unit(const Vec2& v) {
   return v / v.norm();
 }
 
-// Compares both first orders of a grating with a depth of 1e-5 wavelengths, every component with its phase.
+// Compares both first orders of a grating whose depth of 1e-4 w / (2 pi) is very small. Every component is compared
+// with its phase.
 TEST(FirstOrder, IsTheFirstOrderOfAShallowGrating) {
   constexpr double kDepth = 1e-4;
   int compared = 0;
@@ -216,15 +217,15 @@ TEST(FirstOrder, SpecularLightLosesWhatIsScattered) {
             scattered += 0.25 * kDepth * kDepth *
                          power(interface.amplitudes(i.k().norm(), unit(i.k()), i.k() + Vec2(m * i.g, 0.0), lobe));
       }
-      // Terms of fourth order increase with the slope relative to the order, 1 / q.
+      // The difference is of fourth order in the depth. It grows with the slope of the grating relative to 1 / q.
       EXPECT_NEAR((1.0 - specular) / scattered, 1.0, 1e-3) << i.incidence_deg;
     }
   }
 }
 
-// For small heights, the model removes the power R (1 - exp(-x_r)) + T (1 - exp(-x_t)) from the specular light of both
-// sides. This equals the power that it scatters to both sides, below and above the critical angle. Nothing is removed
-// from transmitted light at total reflection.
+// For small heights, the specular light on both sides loses the power R (1 - exp(-x_r)) + T (1 - exp(-x_t)). This
+// equals the power that the model scatters to both sides, below and above the critical angle. At total reflection,
+// transmitted light loses nothing.
 TEST(FirstOrder, MeansTakeWhatIsScatteredToBothSides) {
   for (const double length_um : {0.3, 1.5}) {
     const HarveyShack model({0.2, length_um, 0.0, 0.0}, {kIndex, 1.0, 550.0});
@@ -267,8 +268,8 @@ Losses losses_by_gratings(double index_from, double index_to, double incidence_d
   Losses sum;
   for (int a = 0; a < kAngles; ++a)
     for (int r = 0; r < kRadii; ++r) {
-      // The samples represent equal fractions of the spectrum. The fraction 1 - exp(-(length g / 2)^2) of the spectrum
-      // is below g.
+      // Each sample represents an equal fraction of the spectrum. The fraction of the spectrum below g is 1 -
+      // exp(-(length g / 2)^2).
       const double g = 2.0 / length * std::sqrt(-std::log(1.0 - (r + 0.5) / kRadii));
       const double angle = 2.0 * std::numbers::pi * (a + 0.5) / kAngles;
       const GratingOf<1> grating(index_from, index_to, k * Vec2(std::cos(angle), std::sin(angle)), g, kDepth);
@@ -283,8 +284,9 @@ Losses losses_by_gratings(double index_from, double index_to, double incidence_d
   return sum;
 }
 
-// The division of the loss between R and T is an effect of second order. The rule of the model is as accurate as
-// docs/theory/scatter.md states. The sum is correct, and beyond the critical angle only reflected light has a loss.
+// The way in which the loss is divided between R and T is an effect of second order. The model divides it by a rule,
+// whose accuracy docs/theory/scatter.md states. The sum is correct, and beyond the critical angle only reflected light
+// has a loss.
 TEST(FirstOrder, ReflectedAndTransmittedLightShareTheLoss) {
   struct Split {
     double length_um, incidence_deg, within_s, within_p;  ///< of R's part
@@ -420,8 +422,8 @@ TEST(FirstOrder, MeansAreThePhaseVariancesOfLongHeights) {
   }
 }
 
-// The upper bound used for drawing is valid for every index ratio, incidence and direction, and some directions come
-// close to it.
+// An upper bound of the density is used for drawing. It must hold for every index ratio, incidence and direction, and
+// some directions must come close to it.
 TEST(FirstOrder, BoundHolds) {
   double closest = 0.0;
   for (const double ratio : {0.4, 0.67, 0.9, 1.02, 1.12, 1.49, 2.0, 3.0}) {

@@ -1,4 +1,4 @@
-// Compares quantities of surfaces with those of Gwyddion's libraries, whose lengths and heights are in metres.
+// Tests of quantities of surfaces against the libraries of Gwyddion, whose lengths and heights are in metres.
 
 #include <gtest/gtest.h>
 #include <libgwyddion/gwycontainer.h>
@@ -88,8 +88,8 @@ TEST(Gwyddion, AgreesOnTheGaussianFilterInside) {
 }
 
 TEST(Gwyddion, AgreesOnSpectraAlongBothAxes) {
-  // Gwyddion scales each line to its original variance before the window is applied. Long waves, of which a line
-  // contains only one, would therefore have different amplitudes.
+  // Gwyddion scales each line to the variance that it had before the window was applied. The map therefore contains only
+  // short waves: a long wave, of which a line contains only one period, would get a different amplitude.
   HeightMap map = testing::gaussian_surface(384, 300, 9.0, 3.0, 8);
   testing::add_wave(map, 5.0, 1.0 / 16.0, 1.0 / 12.0, 0.3);
   const Field field = field_of(map);
@@ -99,7 +99,7 @@ TEST(Gwyddion, AgreesOnSpectraAlongBothAxes) {
                         axis == Axis::x ? GWY_ORIENTATION_HORIZONTAL : GWY_ORIENTATION_VERTICAL,
                         GWY_INTERPOLATION_LINEAR, GWY_WINDOWING_HANN, -1);
     const Spectrum spectrum = line_spectrum(map, axis);
-    // Gwyddion's density also starts at the first harmonic. It is two-sided, in m^3, as a function of the angular
+    // Gwyddion's density also starts at the first harmonic. It is two-sided, in m^3, and a function of the angular
     // frequency 2 pi f.
     constexpr double kOneSided = 2.0;
     constexpr double kNm2MmPerM3 = 1e21;

@@ -106,7 +106,7 @@ TEST(PointList, FindsTheGrid) {
   EXPECT_EQ(map.columns, 8U);
   EXPECT_NEAR(map.x_pixel_um, 2.0, 1e-9);
   EXPECT_NEAR(map.y_pixel_um, 3.0, 1e-9);
-  // In the file, y decreases from row to row. The rows of the map are therefore in reversed order.
+  // In the file, y decreases from row to row, so that the rows of the map are in reversed order.
   expect_heights(map, {9, 10, 11, kNaN, 13, 14, 15, 16, 1, 2, 3, 4, 5, 6, 7, 8});
   const HeightMap profile =
       parse_height_map(
@@ -157,8 +157,7 @@ constexpr int kRows = 5;
 constexpr double kStepX = 2.0;
 constexpr double kStepY = 2.0;
 
-/// Returns heights without any symmetry: no two heights are equal, and a mirrored or transposed map differs from the
-/// map.
+/// Returns heights without any symmetry: no two heights are equal, and mirroring or transposing the map changes it.
 double height_at(int column, int row) {
   return 100.0 * row + 3.0 * column + 0.5 * column * row * row;
 }

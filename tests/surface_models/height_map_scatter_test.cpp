@@ -50,13 +50,13 @@ TEST(HeightMapScatter, SpecularShareIsTheMeanPhaseOfTheMap) {
 }
 
 TEST(HeightMapScatter, SamplesFollowTheDensity) {
-  // The correlation lengths along x and y differ, so that the test detects swapped axes. In one case, the lobe is cut
-  // by the horizon.
+  // The correlation lengths along x and y differ, so that the test detects swapped axes. In one case, the horizon cuts
+  // the lobe.
   const HeightMapScatter model(random_map(32, 0.4, 40.0, 2.0, 1.0), 550.0);
   std::uint32_t seed = 600;
   for (const auto& [name, event, lobe] : cases()) {
     const double wave_um = 0.55 / event.index_of(lobe);
-    // The bins are the cells of the spectrum, because the density has steps between them.
+    // The density has steps between the cells of the spectrum. Each bin therefore is one of these cells.
     const double step = wave_um / (32 * 0.4);
     const Vec2 centre = specular_direction(event, Vec3::UnitZ(), lobe)->head<2>();
     const Density density = scaled_density(model, event, lobe);

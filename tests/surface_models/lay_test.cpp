@@ -1,4 +1,4 @@
-// Tests of roughness with a lay, which has two correlation lengths.
+// Tests of roughness with a lay, which is a preferred direction: the correlation lengths along and across it differ.
 #include "core/error.h"
 #include "tests/surface_models/scatter_checks.h"
 
@@ -55,8 +55,8 @@ TEST(Lay, SpreadsByTheLengthOfEachAxis) {
   EXPECT_NEAR(moments(0, 1) / std::sqrt(moments(0, 0) * moments(1, 1)), 0.0, 0.02);
 }
 
-// Roughness with wavelengths shorter than the light does not scatter. The effective Sq^2 is the part of the spectrum
-// inside a disc, here summed on a grid.
+// Roughness whose spatial wavelength is shorter than that of the light does not scatter. The effective Sq^2 is the
+// integral of the spectrum inside a disc, which the test computes as a sum over a grid.
 TEST(Lay, ShortWavesDoNotScatter) {
   const Roughness r = {10.0, 1.0, 0.0, 0.0, 0.1};
   const ScatterEvent event = inside(0.0);

@@ -65,7 +65,7 @@ inline RandomStream stream(std::uint32_t seed, std::uint32_t sample) {
 
 /// Density of directions per area in the plane of direction cosines.
 using Density = std::function<double(const Vec2&)>;
-/// One draw of a direction, or nothing if the drawn light is not part of the density.
+/// One draw of a direction. It is empty if the drawn light does not belong to the density, for example specular light.
 using Draw = std::function<std::optional<Vec2>(RandomStream&)>;
 
 /// Bins for directions: sectors of rings around the specular direction, and one bin for all other directions.
@@ -115,8 +115,8 @@ class Rings {
   std::vector<double> edges_;
 };
 
-/// Returns the probability of a chi-square that is at least as large, if the draws follow the density. Bins with fewer
-/// than ten expected draws are merged with the bin of all other directions.
+/// Returns the p-value of a chi-square test: the probability of at least the observed chi-square if the draws follow
+/// the density. Bins with fewer than ten expected draws are merged with the bin of all other directions.
 inline double chi_square_p(const Rings& rings, const Density& density, const Draw& draw, std::uint32_t seed,
                            std::uint32_t draws = 100000) {
   std::vector<double> expected(rings.size() + 1, 0.0), seen(rings.size() + 1, 0.0);
@@ -174,8 +174,8 @@ inline Draw draw_of(const ScatterModel& model, const ScatterEvent& event, Lobe l
   };
 }
 
-/// Returns a fast form of a density that the model computes by quadrature: its shape, scaled by its value in one
-/// direction.
+/// Returns a fast form of a density that the model computes by quadrature. The fast form is the unscaled density of the
+/// model, scaled so that both agree in one direction.
 template <class Model>
 Density scaled_density(const Model& model, const ScatterEvent& event, Lobe lobe) {
   const Vec2 at = specular_direction(event, Vec3::UnitZ(), lobe)->template head<2>() * 0.99;

@@ -40,8 +40,8 @@ TEST(HarveyShack, SamplesFollowTheDensity) {
     }
 }
 
-// Drawing the specular and the scattered light separately is equivalent to drawing one of them: the powers, and the
-// mean and the spread of the scattered directions, are the same.
+// The specular and the scattered light can be drawn together, with a random choice between them, or separately. Both
+// methods must give the same powers, and the same mean and spread of the scattered directions.
 TEST(HarveyShack, SharesDrawnApartAreThoseOfOneDraw) {
   constexpr std::uint32_t kDraws = 40000;
   const HarveyShack model({40.0, 2.0, 0.0, 0.0});
@@ -219,7 +219,8 @@ TEST(HarveyShack, IsReciprocalBeforeScaling) {
   }
 }
 
-// At the limit between both regimes of waviness, reflection by slopes and diffraction give the same spread.
+// The waviness model changes from diffraction to reflection by slopes at a threshold of the phase. There, both must
+// give the same spread.
 TEST(HarveyShack, WavinessHasOneWidthOnBothSidesOfItsThreshold) {
   const double waviness_length_um = 40.0;
   const auto spread = [&](double phase2) {
@@ -250,7 +251,8 @@ TEST(HarveyShack, OnlyTheWavinessOwnPhaseDecidesOnSlopes) {
   EXPECT_FALSE(sample_facet(wavy, inside(85.0), random).is_tilted);
 }
 
-// Roughness is added to facets. Given the facet, the weight is BSDF * cosine / pdf.
+// Light is scattered by roughness on a facet that waviness has tilted. Given the facet, the weight of a draw is BSDF *
+// cosine / pdf.
 TEST(HarveyShack, WeightOnATiltedFacet) {
   const ScatterModel model = HarveyShack({20.0, 1.0, 400.0, 20.0});
   const ScatterEvent event = inside(50.0);
@@ -382,8 +384,8 @@ TEST(Microfacet, WeightIsBsdfTimesCosineOverPdf) {
     }
 }
 
-// With Fresnel's factors at the facet, reflection and transmission together contain at most all light. The remainder is
-// masked, which is little for moderate Gaussian slopes.
+// Reflection and transmission, with Fresnel's factors at the facet, together contain at most all light. The remainder
+// is masked, which is little for moderate Gaussian slopes.
 TEST(Microfacet, EnergyOfBothLobes) {
   for (const auto& [shape, rms_slope] : kMicrofacets) {
     if (rms_slope < 0.1) continue;  // too narrow for the plain rule of the test; its weights are 1

@@ -39,14 +39,14 @@ Arguments export_of(const std::string& file, const std::string& window_deg = "0.
           error,      "--quiet"};
 }
 
-/// A geometry of a goniometer, with the R_A that was read there.
+/// A geometry of a goniometer, and the R_A that `retrace photometry` gives for it.
 struct Reading {
   double observation_deg, v_deg, h_deg, turn_deg;
   double r_a = 0.0;
 };
 
-/// Returns readings of `retrace photometry` in random geometries away from the mirror image, ten for each rotation of
-/// the part.
+/// Returns readings of `retrace photometry` in random geometries, ten for each rotation of the part. The geometries
+/// avoid the direction in which the entrance face reflects the lamp.
 std::vector<Reading> readings(const TemporaryFolder& folder) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(0.0, 1.0);
@@ -229,7 +229,7 @@ TEST(Material, ColoursAreThoseOfPhotometry) {
   }
 }
 
-/// The shader is compiled by the compiler of Khronos, for desktops and browsers.
+/// The reference compiler of Khronos must accept the shader, for desktops and for browsers.
 TEST(Material, TheShaderCompiles) {
   const TemporaryFolder folder;
   folder.write("d.toml", cubes("0.5"));
@@ -277,7 +277,7 @@ TEST(Material, EveryFormatKeepsThePower) {
 
   ASSERT_EQ(retrace(folder, export_of("m.json", "0.6", "0.1")).code, 0);
   const Json header = folder.json("m.json");
-  // Sums the grid of the nearest direction of light over the values of the CSV file.
+  // From the CSV file, the grid that belongs to the nearest tabulated direction of light is summed.
   std::size_t nearest = 0;
   const auto distance = [&](std::size_t k) {
     const Json& at = header.at("directions").at(k);

@@ -148,8 +148,8 @@ double largest_tilt_arcsec(const FabricationResult& plan, const Machine& real) {
   return (all - turns * turns.colPivHouseholderQr().solve(all)).cwiseAbs().maxCoeff();
 }
 
-/// The first programs are planned for the nominal machine, the second for the calibrated machine. The second facets
-/// have tilts of at most a twentieth of the first tilts, or of 2 arcsec.
+/// The first programs are planned for the nominal machine, the second for the calibrated machine. The facets of the
+/// second part have tilts of at most a twentieth of the tilts of the first part, or of 2 arcsec if that is larger.
 TEST(Calibration, TheSecondCutIsRight) {
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     std::mt19937 bits(seed);
@@ -219,8 +219,8 @@ TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
   }
 }
 
-/// The test tilts a part so that its +X or +Y side rises. The facets then rise in this direction, which must agree with
-/// the described sense of a positive tilt.
+/// The test tilts a part so that its +X or +Y side rises. The facets then rise in this direction. It must be the
+/// direction that positive_sense() describes.
 TEST(Calibration, TiltsAlongTheRootArePositiveWhereTheWordsSay) {
   const FabricationResult& plan = test_cuts().plans.front();
   const CutPart part(plan, {});
@@ -237,8 +237,8 @@ TEST(Calibration, TiltsAlongTheRootArePositiveWhereTheWordsSay) {
     }
 }
 
-/// The measurement `end` is the position at which a cut ends. It must equal the material that the verifier finds at the
-/// root, or the depth of the cut into the other facet.
+/// The measurement `end` is the distance between the end of a cut and the root. It must equal the height of the
+/// material that the verifier finds at the root, or the depth of the cut into the other facet.
 TEST(Calibration, WhereCutsEndIsWhatTheVerifierFinds) {
   const FabricationResult& plan = test_cuts().plans.front();
   const SetupQuantity& quantity = *setup_quantity(Tilt::table, "tool_z_um");

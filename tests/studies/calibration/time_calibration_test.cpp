@@ -103,9 +103,9 @@ const Timed& timed() {
   return programs;
 }
 
-/// Returns a random machine. Acceleration times ramp time is above 1 mm/s, the speed of short steps. Otherwise,
-/// settling times and ramps could not be distinguished. It is below half of the rapid speed of 33 mm/s. Otherwise,
-/// ramps and accelerations could not be distinguished.
+/// Returns a random machine. Acceleration times ramp time is above 1 mm/s, the speed of short steps, because settling
+/// times and ramps could otherwise not be distinguished. It is below half of the rapid speed of 33 mm/s, because ramps
+/// and accelerations could otherwise not be distinguished.
 Hidden drawn(std::uint32_t seed) {
   std::mt19937 bits(seed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(bits); };
@@ -154,8 +154,8 @@ TEST(TimeCalibration, WhatTheFileSaysStaysWhereItIsRight) {
 }
 
 TEST(TimeCalibration, SaysWhatProgramsDoNotTell) {
-  // First without the program that rotates axes; then with the program of short steps only, whose time depends on the
-  // sum of settling and ramps.
+  // The first table lacks the program that rotates axes. The second table contains only the program of short steps,
+  // whose time depends on the sum of settling and ramps.
   const TimeCalibration without_turns = timed().calibrate(timed().table(drawn(3), 0.5, 3, 3));
   ASSERT_EQ(without_turns.untold.size(), 1U);
   EXPECT_EQ(without_turns.untold[0], "rotary_acceleration_factor");

@@ -22,7 +22,8 @@ namespace {
 
 constexpr std::array<int, 4> kAzimuthsDeg = {0, 60, 120, 210};
 
-/// Returns a study of canted, rotated cube corners. The goals are the RRE at large angles of incidence.
+/// Returns a study that composes a part from zones with canted, rotated cube corners. The goals of the composition are
+/// the RRE at an incidence of 35 degrees, for four azimuths.
 std::string study(const std::string& keys, const std::string& cutoff = "1e-2") {
   return "design = \"" + example("honeycomb_infinite.toml") +
          "\"\n"
@@ -50,8 +51,8 @@ TEST(ComposeCommand, WritesZonesThatMakeThePart) {
   const std::vector<std::string> names = folder.names();
   for (const std::string name : {"composition.csv", "composition.svg", "composition.png", "composition.sqlite"})
     EXPECT_EQ(std::ranges::count(names, "out/" + name), 1) << name;
-  // Traces the design of each zone by another command, with the light's direction in the frame of the zone. The
-  // weighted sum must equal the goal of the part.
+  // The design of each zone is traced by `retrace rre`, with the light's direction in the frame of the zone. The sum,
+  // weighted by the areas of the zones, must equal the goal of the part.
   for (std::size_t goal = 0; goal < kAzimuthsDeg.size(); ++goal) {
     double part = 0.0;
     for (std::size_t z = 0; z < zones.size(); ++z) {
@@ -167,7 +168,7 @@ TEST(ComposeCommand, GoesOnWithItsStore) {
   ASSERT_EQ(retrace(folder, compose()).code, 0);
   const Json first = folder.json("out/composition.json");
   EXPECT_EQ(retrace(folder, compose()).code, 2) << "an existing store needs a word";
-  // A study with other rules for the mixture uses all stored cells.
+  // A study that differs only in the rules for the mixture of zones uses all stored cells.
   folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
   ASSERT_EQ(retrace(folder, compose({"--resume"})).code, 0);
   const Json second = folder.json("out/composition.json");

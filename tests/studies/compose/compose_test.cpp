@@ -1,5 +1,6 @@
-// Tests of compositions of analytic cells, compared with closed forms, exhaustive search and `optimise`. Reading,
-// messages and storage are also tested.
+// Tests of compositions, which mix cells so that the smallest of several goals becomes as large as possible. The cells
+// are analytic functions. Results are compared with closed forms, exhaustive search and `optimise`. Reading, messages
+// and storage are also tested.
 
 #include "studies/compose/compose.h"
 
@@ -80,7 +81,8 @@ double number(const ParameterValue& value) {
 constexpr const char* kMaximize = "[compose]\nmaximize = \"g\"\n";
 
 TEST(Compose, OfTwoLobesHasTheSharesAndPricesOfTheClosedForm) {
-  // There are two cells and three goals. The first and the last goal limit the result.
+  // There are two cells and three goals. Only the first and the last goal limit the smallest value that a mixture can
+  // reach.
   const Study study = analytic_study(kMaximize, kThreePoints,
                                      "[[parameter]]\nkey = \"body.thickness_mm\"\nname = \"x\"\nvalues = [1.1, 2.1]\n");
   const Composition composition = composed(study).composition;
@@ -236,8 +238,8 @@ TEST(Compose, IsTheSameWhateverAKilledRunLeft) {
   ASSERT_GT(points.size(), 40U);
   std::mt19937 random(30);
   for (int kill = 0; kill < 20; ++kill) {
-    // Up to eight points are computed in parallel. If a run is killed, some of its last eight points may be
-    // missing.
+    // Up to eight points are computed in parallel. If a run is killed, the store may lack some of the last eight points
+    // that it began.
     const std::size_t begun = random() % points.size();
     ResultStore left("", compose_layout(study), IfExists::refuse);
     for (std::size_t k = 0; k < begun; ++k)

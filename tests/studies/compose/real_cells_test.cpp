@@ -1,5 +1,5 @@
-// Tests of compositions of traced cells: comparison with an exhaustive search over a grid and with `optimise`, and
-// traces of the designs that are written for the zones.
+// Tests of compositions of traced cells: comparison with an exhaustive search over a grid and with `optimise`. The
+// designs that are written for the zones are also traced.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,8 @@ using namespace studies;
 constexpr std::size_t kGoals = 4;
 using Goals = std::array<double, kGoals>;
 
-/// Returns a study of canted, rotated cube corners. The goals are the RRE at large angles of incidence.
+/// Returns a study of canted, rotated cube corners. The goals are the RRE at an incidence of 35 degrees, for several
+/// azimuths.
 Study study_of_corners(const std::string& keys) {
   return parse_study(
       "design = \"../honeycomb_infinite.toml\"\n"
@@ -152,8 +153,8 @@ TEST(RealCells, AreWrittenAsOnePartOfZones) {
   }
 }
 
-// If the part is traced as a whole, its RRE is that of infinite arrays of the zones, weighted by their fractions of the
-// area. Borders cause a small difference.
+// If the part is traced as a whole, its RRE is the mean of the RRE of infinite arrays, one for each zone, weighted by
+// the areas of the zones. Borders cause a small difference.
 TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
   const Study& study = three_zones().study;
   const Composition& composition = three_zones().composition;

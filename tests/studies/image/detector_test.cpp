@@ -71,7 +71,7 @@ TEST(DetectorMaps, MeansAreRre) {
 
 /// At normal incidence, a triangular cube corner returns light in the overlap of the triangle and its point reflection
 /// about the apex. This overlap is a hexagon with two thirds of the area and uniform irradiance (Eckhardt 1971). The
-/// three corners return nothing.
+/// three corners of the triangle return nothing.
 TEST(DetectorMaps, TriangleIsAliveInItsHexagonAlone) {
   const Part part = build_part(single(TriangularCube{kCubeAperture}, 1.0));
   const DetectorSetting setting = setting_of(part, 120, 104);
@@ -103,8 +103,8 @@ TEST(DetectorMaps, TriangleIsAliveInItsHexagonAlone) {
   EXPECT_GT(judged, 9000U);
 }
 
-/// Light leaves a prism at the mirror image of its entry point about the roof edge. Some halves of prisms therefore
-/// return nothing, and other halves are not illuminated.
+/// Light leaves a prism at the mirror image of its entry point about the roof edge, on the other half of the prism.
+/// Some halves of prisms therefore return nothing, and other halves are not illuminated.
 TEST(DetectorMaps, PathsAndBeamsRecordTheSame) {
   const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 1.0));
   for (const double incidence : {0.0, 4.0}) {

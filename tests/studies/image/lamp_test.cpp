@@ -93,8 +93,8 @@ TEST(Lamp, EvenOnesHaveTheFluxOfASphere) {
   EXPECT_NEAR(parse_ies(ies(1, steps(0, 360, 30), whole, kPlain), "a.ies").intensity.lumens(), 400.0 * pi, 1e-9);
   EXPECT_NEAR(parse_ies(ies(3, steps(-180, 180, 30), steps(-90, 90, 10), kPlain), "a.ies").intensity.lumens(),
               400.0 * pi, 1e-9);
-  // Planes B from -90 to 90 degrees cover the half space ahead. The file gives the angles of these planes as vertical
-  // angles.
+  // Type B files give planes that all contain the horizontal axis. From -90 to 90 degrees they cover the half space
+  // ahead. The angles of these planes are the vertical angles of the file.
   EXPECT_NEAR(parse_ies(ies(2, steps(-90, 90, 30), steps(-90, 90, 10), kPlain), "a.ies").intensity.lumens(), 200.0 * pi,
               1e-9);
   EXPECT_NEAR(parse_ldt(ldt(1, 30, whole, kPlain, {0}), "a.ldt").intensity.lumens(), 400.0 * pi, 1e-9);
@@ -136,7 +136,7 @@ TEST(Lamp, DirectionsAreThoseOfItsPlanes) {
   EXPECT_EQ(a.cd(towards(61, 0)), 0.0);
   EXPECT_EQ(a.cd(towards(0, 51)), 0.0);
   EXPECT_EQ(a.cd(towards(180, 0)), 0.0);
-  // For planes B, the horizontal angle of the file is the angle within a plane. In this test file, it selects the row.
+  // In type B files, the horizontal angle is the angle within a plane. In this test file, it selects the row.
   const auto b = parse_ies(ies(2, steps(-60, 60, 10), steps(-50, 50, 10), sum), "a.ies").intensity;
   EXPECT_NEAR(b.cd(towards(0, 5)), 1005.0, 1e-9);
   EXPECT_NEAR(b.cd(towards(20, 0)), 1200.0, 1e-9);
@@ -194,7 +194,7 @@ TEST(Lamp, FactorsCountAsTheFilesEditionSays) {
     return parse_ies(ies(1, {0}, {0, 90}, kPlain, first, factors), "a.ies").intensity.largest_cd();
   };
   EXPECT_NEAR(largest("IESNA:LM-63-2002\n", "0.9 1 60"), 90.0, 1e-9);
-  EXPECT_NEAR(largest("IES:LM-63-2019\n", "0.9 1.10000 60"), 90.0, 1e-9);  // this field is no factor in LM-63-2019
+  EXPECT_NEAR(largest("IES:LM-63-2019\n", "0.9 1.10000 60"), 90.0, 1e-9);  // in LM-63-2019, 1.1 is no factor
   EXPECT_NEAR(largest("", "0.9 0.5 60"), 45.0, 1e-9);                      // LM-63-86
   const PhotometricLamp lamp = parse_ies(ies(1, {0}, {0, 90}, kPlain), "a.ies");
   EXPECT_EQ(lamp.printed_lumens, 1000.0);

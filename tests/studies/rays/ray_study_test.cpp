@@ -1,5 +1,5 @@
-// Tests of rays of a set at a part. Positions, wavelengths, polarisation and accounts are compared with closed forms
-// and with beams.
+// Tests of a set of rays that hits a part. Positions, wavelengths, polarisation and accounts are compared with closed
+// forms and with beams.
 #include "studies/rays/ray_study.h"
 
 #include <gtest/gtest.h>
@@ -75,8 +75,8 @@ TEST(RayStudy, APlateSplitsLightAsItsSeriesSays) {
   Kept kept;
   const RayResult result = traced(plate(), request, Given({}, {down_at(4, 5)}), kept);
   const double r = 0.04;  // (0.5 / 2.5)^2
-  // The powers that leave upwards are r and then (1 - r)^2 r^(2k - 1). The powers that leave downwards are (1 - r)^2
-  // r^(2k).
+  // r is the reflectance of a face. The upward rays have the powers r and (1 - r)^2 r^(2k - 1) for k = 1, 2, ...; the
+  // downward rays have the powers (1 - r)^2 r^(2k) for k = 0, 1, ...
   ASSERT_GE(kept.rays.size(), 4U);
   double up = 0.0;
   double down = 0.0;
@@ -247,7 +247,7 @@ TEST(RayStudy, LightOfTheDesignIsTakenWhereTheSetTellsNone) {
   EXPECT_TRUE(kept.layout.tells_wavelengths);
   double sum = 0.0;
   for (const AccountedRay& ray : kept.rays) sum += ray.wavelength_nm / static_cast<double>(kept.rays.size());
-  EXPECT_NEAR(sum, 572.0, 3.0);  // luminous centroid of illuminant A
+  EXPECT_NEAR(sum, 572.0, 3.0);  // luminous centroid of illuminant A: 572 nm
 }
 
 TEST(RayStudy, BothFluxesAndTristimulusValuesShrinkAlike) {
@@ -268,7 +268,8 @@ TEST(RayStudy, BothFluxesAndTristimulusValuesShrinkAlike) {
   }
 }
 
-// A collimated emitter has the same accounts as the beam of `retrace rre`. Rays that do not hit the part are missed.
+// Collimated light from an emitter has the same accounts as the beam of `retrace rre`, except for rays that do not hit
+// the part. Those rays count as missed.
 TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
   const Design design = parse_design(
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"offset\"\nx_length_mm = "

@@ -204,7 +204,7 @@ TEST(Tm25, WrongRaysAreRefusedWithTheirByte) {
             "led.tm25ray: byte 36356: a direction must not be 0");
   EXPECT_EQ(complaint(plain(), [](File& f) { f.values[2][6] = -3.0F; }),
             "led.tm25ray: byte 36368: the radiant flux of a ray must be >= 0, got -3");
-  const auto last = [](std::size_t column) {  // byte position in the only ray of full()
+  const auto last = [](std::size_t column) {  // byte position of a column in the only ray of full()
     return std::to_string(bytes_of(full()).size() - 60 + 4 * column);
   };
   EXPECT_EQ(complaint(full(), [](File& f) { f.values[0][7] = 1.0F; }),

@@ -44,8 +44,8 @@ TEST(SetupSheet, TheLargestErrorsComeFirst) {
   ASSERT_EQ(sheet.sensitivities.kinds.size(), 4U);
   for (std::size_t k = 1; k < sheet.sensitivities.rows.size(); ++k)
     EXPECT_GE(sheet.sensitivities.rows[k - 1].largest_nm(), sheet.sensitivities.rows[k].largest_nm());
-  // An error of 1 um of the center of C shifts facet 2. It also shifts the facets of rotated elements that face in the
-  // opposite direction.
+  // If the center of C is displaced by 1 um, facet 2 is shifted. The facets of rotated elements that face in the
+  // opposite direction are also shifted.
   const Sensitivity& centre = row_of(sheet, "c_y_um");
   EXPECT_NEAR(centre.facets[0].distance_nm, 0.0, 1e-9);
   EXPECT_NEAR(centre.facets[1].distance_nm, 1000.0 * std::numbers::sqrt2, 1e-9);
@@ -53,8 +53,8 @@ TEST(SetupSheet, TheLargestErrorsComeFirst) {
   EXPECT_FALSE(sheet.light.has_value());
 }
 
-/// An error of the tool along Z moves the edge but not the facets. The edge stops before it reaches the other facet, or
-/// cuts into it.
+/// An error of the tool along Z moves the end of the cut but not the facets. The cut ends before it reaches the other
+/// facet, or enters it.
 TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
   const FabricationResult result = made();
   const SetupSheet sheet = setup_sheet(result, false);
@@ -78,7 +78,8 @@ TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
   EXPECT_NEAR(level.root_cut_nm, end_nm, 1e-6);
 }
 
-/// If an edge is displaced along the root, it cuts into a wall by the same amount, whatever the cause.
+/// If the cutting edge is displaced along the root, it cuts into a wall by the same amount, whatever the cause of the
+/// displacement.
 TEST(SetupSheet, WallsAreWhatTheVerifierFinds) {
   const FabricationResult result = made();
   const SetupSheet sheet = setup_sheet(result, false);
@@ -95,8 +96,8 @@ TEST(SetupSheet, WallsAreWhatTheVerifierFinds) {
   EXPECT_NEAR(row_of(sheet, "tool_z_um").wall_nm, 0.0, 1e-6);
 }
 
-/// Roughing ploughs facet 2 in the pose of facet 1. An error of A leaves material on facet 2, which the first finishing
-/// cut then removes.
+/// During roughing, facet 2 is ploughed (cut along the root) in the pose of facet 1. An error of A leaves material on
+/// facet 2, which the first finishing cut then removes.
 TEST(SetupSheet, ChipsAreWhatTheVerifierFinds) {
   std::string job = kJob;
   const std::string roughing = "roughing_depth_um = 50";
@@ -128,7 +129,7 @@ TEST(SetupSheet, SaysWhereTheProgramsGo) {
   EXPECT_EQ(*sheet.blank.fixture_height_mm, 15.0);
 }
 
-/// The sheet gives the remaining stock on the facets after each stage, and the depth of the root at that time.
+/// The sheet gives the remaining stock on the facets and the depth of the root at the end of each stage of machining.
 TEST(SetupSheet, SaysWhatToMeasureWhen) {
   const SetupSheet sheet = setup_sheet(made(), false);
   ASSERT_EQ(sheet.checks.front().stage, "roughing");
@@ -139,8 +140,8 @@ TEST(SetupSheet, SaysWhatToMeasureWhen) {
   for (std::size_t k = 1; k < sheet.checks.size(); ++k) EXPECT_GT(sheet.checks[k].ends_s, sheet.checks[k - 1].ends_s);
 }
 
-/// If facets of perfect prisms do not meet, there is a wall between them and the RRE decreases. Errors that move no
-/// facet have no effect.
+/// If an error displaces facets of perfect prisms so that they no longer meet, there is a wall between them and the RRE
+/// decreases. Errors that move no facet have no effect.
 TEST(SetupSheet, LightChangesWhereFacetsMove) {
   const FabricationResult result = made();
   const SetupSheet sheet = setup_sheet(result);
@@ -170,7 +171,7 @@ TEST(SetupSheet, StopsAreTold) {
   job.insert(job.find("[process]\n") + 10, "stop_before_finishing = true\n");
   job.insert(job.find("[tool]\n") + 7, "edge_life_mm = 1e6\n");
   const FabricationResult result = made(job);
-  ASSERT_EQ(result.plan.stops.size(), 2U);  // rotated prisms have their own roughing stage
+  ASSERT_EQ(result.plan.stops.size(), 2U);  // rotated prisms are roughed in a stage of their own
   const SetupSheet sheet = setup_sheet(result, false);
   const nlohmann::ordered_json stops = setup_json(result, sheet)["stops"];
   ASSERT_EQ(stops.size(), 2U);

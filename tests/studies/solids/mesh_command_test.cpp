@@ -56,7 +56,8 @@ TEST(MeshPart, SendsBackWhatTheDesignItWasMadeOfDoes) {
   const auto found = rre(folder, mesh);
   ASSERT_EQ(found.size(), expected.size());
   ASSERT_EQ(found.size(), 4U);  // two directions, two cones
-  // Beams at single triangles are weaker than beams at whole facets. Different beams are therefore below the cut-off.
+  // A beam that hits a single triangle is weaker than a beam that hits a whole facet. The mesh and the design therefore
+  // have different beams below the cut-off.
   for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 2e-4);
 }
 
@@ -102,7 +103,8 @@ std::string in_quarters(const std::string& stl) {
   return out;
 }
 
-/// Returns the luminance of a part in a camera picture and the luminances of two such reflectors on a car ahead.
+/// Returns the luminance of a part in a camera picture, followed by the luminances of two such parts that are mounted
+/// on a car ahead.
 std::vector<double> seen_of(const TemporaryFolder& folder, const std::string& design) {
   std::vector<double> values = {
       retrace_json(folder, {"image", design, "--camera", "--passes", "8", "--pixels", "60x60", "-o", "camera"})
@@ -170,10 +172,9 @@ TEST(MeshPart, AnOpenOneIsRefusedUnlessOneInsists) {
 }
 
 /// Returns the triangles of a box as ASCII STL. The corners 0 to 3 are the bottom face: (low x, low y), (high x, low
-/// y), (high x, high y) and (low x, high y), all at low z. The corners 4 to 7 are above them in the same order, at
-/// high z.
-/// \param order position number of each corner: corner k is placed at the position of corner order[k] of a regular
-/// box
+/// y), (high x, high y) and (low x, high y), all at low z. The corners 4 to 7 are above them in the same order, at high
+/// z.
+/// \param order permutation of the corners: corner k of a triangle is written at the position of corner order[k]
 std::string box_facets(const std::array<double, 3>& low, const std::array<double, 3>& high,
                        const std::array<int, 8>& order = {0, 1, 2, 3, 4, 5, 6, 7}) {
   constexpr int kTriangles[12][3] = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
@@ -215,13 +216,14 @@ TEST(MeshPart, BodiesThatCrossAreUnitedOnRequest) {
   EXPECT_NE(refused.err.find("cannot be united"), std::string::npos) << refused.err;
 }
 
-/// If some triangles are reversed, the message names their orientation and not an opening. `allow_open` has no effect.
+/// If some triangles are reversed, the message reports the orientation of the triangles and no opening. `allow_open`
+/// has no effect.
 TEST(MeshPart, MixedWindingIsNamed) {
   const TemporaryFolder folder;
   folder.write("mesh.toml", kMesh);
   const std::string box = box_facets({0, 0, 0}, {4, 4, 2});
   for (const std::size_t turned : {0U, 3U, 7U, 11U}) {
-    // Swaps the first two vertices of a triangle.
+    // The first two vertices of the triangle `turned` are swapped.
     std::vector<std::string> lines;
     std::stringstream stream(box);
     for (std::string line; std::getline(stream, line);) lines.push_back(line);

@@ -47,7 +47,7 @@ TEST(Stl, WhatIsWrittenIsReadBackClosedWithItsVolume) {
   const BoundaryMesh back = as_boundary(parse_stl(text, "a.stl"));
   EXPECT_EQ(back.triangles.size(), mesh.triangles.size());
   EXPECT_TRUE(is_closed_manifold(back));
-  // The coordinates of the file are in single precision.
+  // The file stores coordinates in single precision.
   EXPECT_NEAR(volume_mm3(back), volume_mm3(mesh), 1e-6 * volume_mm3(mesh));
 }
 

@@ -66,7 +66,7 @@ TEST(MeshPart, ExportedPartsComeBack) {
   }
 }
 
-/// Returns the number of elements that have retro facets.
+/// Returns the number of elements with retroreflecting facets.
 std::size_t retro_elements(const Part& part) {
   std::set<std::uint64_t> elements;
   for (const PatchCell& cell : part.patches[0].cells)
@@ -76,8 +76,8 @@ std::size_t retro_elements(const Part& part) {
   return elements.size();
 }
 
-/// Counts the distinct normals of the retro facets of each element and returns the sum over all elements. Normals whose
-/// facets have a total area below 1e-7 mm^2 are ignored: rounding turns low walls into such small facets.
+/// Counts the distinct normals of the retroreflecting facets of each element and returns the sum over all elements.
+/// Normals whose facets have a total area below 1e-7 mm^2 are ignored: rounding turns low walls into such small facets.
 std::ptrdiff_t retro_planes(const Part& part) {
   std::map<std::array<double, 4>, double> area_of_plane;
   for (const PatchCell& cell : part.patches[0].cells)
@@ -138,7 +138,7 @@ TEST(MeshPart, FacetsAndElementsDoNotDependOnTheTriangles) {
   }
 }
 
-/// The land around a single prism is a facet with a hole. This facet must be divided into convex polygons.
+/// The flat land around a single prism is a facet with a hole. This facet must be divided into convex polygons.
 TEST(MeshPart, FacetsWithHolesAreDivided) {
   PartSpec spec = test::array_part(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 1.5, 1.5);
   spec.array.x_offset_mm = spec.array.y_offset_mm = 0.5;
@@ -184,7 +184,7 @@ TEST(MeshPart, ShapesThatAreNoPartAreRefused) {
     if (p.z() < 0.5) p.head<2>() *= 1.2;
   EXPECT_TRUE(
       complaint([&] { part_of_mesh(wide); }).starts_with("the mesh must be within the outline of its entrance face"));
-  // This mesh has no plate.
+  // This mesh is only a tetrahedron and has no plate.
   const TriangleMesh tetrahedron = parse_stl(
       "solid\nfacet normal 0 0 0 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n"
       "facet normal 0 0 0 outer loop vertex 1 0 0 vertex 0 0 0 vertex 0.3 0.3 -1 endloop endfacet\n"

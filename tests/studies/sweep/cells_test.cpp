@@ -58,8 +58,8 @@ TEST(Cells, FullCubes) {
 
 TEST(Cells, Triangles) {
   auto rre = curve("cells_triangular.toml", 0);
-  // At normal incidence all azimuths are equal, and light is divided into few beams. The exact engine gives this value
-  // without noise; up to 2e-4 of the power is truncated.
+  // At normal incidence all azimuths are equal, and light is divided into few beams. The exact engine therefore gives
+  // the value without noise; up to 2e-4 of the power is truncated.
   rre[0.0] = curve("cells_triangular.toml", 0,
                    {"analysis.engine=exact", "analysis.cutoff=1e-7", "analysis.target_error="}, "", {0.0})
                  .at(0.0);

@@ -134,8 +134,8 @@ TEST(Optimise, SlopesServeWhereThereAreAny) {
   ResultStore store("", optimise_layout(study), IfExists::refuse);
   const OptimiseRequest request = read_optimise(study);
   optimise(study, request, store, nullptr, nullptr);
-  // The designs that were evaluated with derivatives reach the maximum itself. The chosen design has rounder values and
-  // is equally good within the tolerance.
+  // The designs that were evaluated with derivatives include the maximum itself. The design that the program chooses
+  // has rounder values and is equally good within the tolerance.
   double nearest_mm = 1.0;
   for (const StoredPoint& point : store.points())
     nearest_mm = std::min(nearest_mm, std::abs(std::get<double>(point.inputs[0]) - top_mm));
@@ -249,7 +249,7 @@ TEST(Optimise, IsTheSameWhateverAKilledRunLeft) {
   }
 }
 
-/// The example study, with fewer sizes that are too small for the tool.
+/// This is the example study with fewer sizes below the smallest size that the tool can cut.
 TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByTheLens) {
   const Study whole = read_study(kFolder + "element_size.toml", std::vector<std::string>{});
   Study study = whole;

@@ -210,8 +210,8 @@ TEST_F(PhotometricStudy, QuantitiesAreThoseOfTheTable) {
   EXPECT_EQ(result.sweep.layout().outputs.size(), 6U);
 }
 
-// If diffraction is important, a margin computed by rays could be mistaken for a verdict, so the point fails. R_A by
-// rays is allowed.
+// If diffraction is important, a margin that is computed by rays could be mistaken for a verdict. The point is
+// therefore stored as failed. R_A that is computed by rays is allowed.
 TEST_F(PhotometricStudy, AnUndeterminedMarginIsNone) {
   const auto swept_with = [&](const std::string& quantity) {
     std::string study = text(quantity) + "[analysis]\nengine = \"montecarlo\"\nsamples = 1024\n";
@@ -268,8 +268,8 @@ TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
                   .starts_with("study.toml:12: quantity[1].width: unknown key (allowed: kind, name, "));
 }
 
-/// The surface that the machining process leaves is inserted into the design. Values that the study sets itself take
-/// precedence.
+/// The surface that the machining process leaves is inserted into the design. If the study itself sets one of these
+/// values, the study takes precedence.
 TEST(MachiningLoop, SurfacesAreThoseThatTheStrategyLeaves) {
   const auto design = [](const std::string& machining, const std::vector<std::string>& overrides = {}) {
     const Study study = parse_study(
@@ -306,7 +306,8 @@ TEST(MachiningLoop, TheProcessIsAQuantity) {
   ASSERT_FALSE(result.points[0].failed) << result.points[0].reason;
   ASSERT_FALSE(result.points[1].failed) << result.points[1].reason;
   EXPECT_NEAR(output(result, 0, "process_sa_nm"), 48.9, 1e-9);
-  // Half of the facets are ploughed with 468 nm, and half are plunged with 115 nm.
+  // In the unidirectional process, half of the facets are ploughed with an Sa of 468 nm, and half are plunged with 115
+  // nm.
   EXPECT_NEAR(output(result, 1, "process_sa_nm"), std::sqrt(0.5 * (468.0 * 468.0 + 115.0 * 115.0)), 1e-9);
   EXPECT_LT(output(result, 1, "machining_time_h"), output(result, 0, "machining_time_h")) << "nothing is finished";
   EXPECT_NEAR(output(result, 0, "root_radius_um"), 2.0, 1e-12);
