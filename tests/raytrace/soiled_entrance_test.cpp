@@ -439,8 +439,8 @@ TEST(SoiledEntrance, LayersAndFilmBeforeMirrors) {
   EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
 }
 
-// Both Monte Carlo engines must agree for infinite and finite parts. Faces with only layers and films are also traced by
-// the exact engine.
+// Both Monte Carlo engines must agree for infinite and finite parts. Faces with only layers and films are also traced
+// by the exact engine.
 TEST(SoiledEntrance, EnginesAgreeAndLedgersClose) {
   const std::vector<PartSpec> parts = {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5),
                                        finite(HexagonalCube{0.5}, Arrangement::honeycomb, 3.5, 3.0, 0.8)};

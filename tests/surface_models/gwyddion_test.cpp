@@ -88,8 +88,8 @@ TEST(Gwyddion, AgreesOnTheGaussianFilterInside) {
 }
 
 TEST(Gwyddion, AgreesOnSpectraAlongBothAxes) {
-  // Gwyddion scales each line to the variance that it had before the window was applied. The map therefore contains only
-  // short waves: a long wave, of which a line contains only one period, would get a different amplitude.
+  // Gwyddion scales each line to the variance that it had before the window was applied. The map therefore contains
+  // only short waves: a long wave, of which a line contains only one period, would get a different amplitude.
   HeightMap map = testing::gaussian_surface(384, 300, 9.0, 3.0, 8);
   testing::add_wave(map, 5.0, 1.0 / 16.0, 1.0 / 12.0, 0.3);
   const Field field = field_of(map);
