@@ -30,10 +30,11 @@ namespace {
 using geometry::Vec2, geometry::Vec3;
 using View = raytrace::PhotometricDirections;
 
-// Number of spans into which each colour matching function is divided, with two wavelengths each.
+// Number of spectral intervals into which each colour matching function is divided. Each interval is represented by two
+// wavelengths.
 constexpr std::size_t kParts = 2;
-// Number of spans for the random geometries by which the table is judged. They are computed for the eye's response
-// only.
+// Number of spectral intervals for the random geometries at which the table is compared with the photometer. These
+// geometries are computed for the eye's response only.
 constexpr std::size_t kPartsOfProbes = 4;
 // Initial resolution of a grid of view directions: number of grid steps across the radius of the aperture kernel. The
 // kernel averages over the discs of source and receiver. Its radius is taken along the plane of incidence at the
@@ -46,23 +47,23 @@ constexpr std::size_t kMostColumns = 161;
 constexpr double kShareOfGrid = 0.5;
 // Factor by which the number of grid points along each side grows if the interpolation error is too large.
 constexpr double kFinerGrid = 1.5;
-// Maximum number of grid points along a side to which refinement may lead.
+// Maximum number of grid points along a side for which the grid is still refined.
 constexpr std::size_t kMostColumnsForError = 121;
 // Azimuth of the test light by which back_of() distinguishes prisms from cube corners. At this azimuth, prisms and cube
 // corners return light into clearly different directions.
 constexpr double kAsideDeg = 30.0;
-// Maximum extents of the first cells, in entrance angle and azimuth.
+// Maximum extents, in entrance angle and azimuth, of the initial cells of the table, which are then halved.
 constexpr double kFirstEntranceDeg = 20.0;
 constexpr double kFirstAzimuthDeg = 30.0;
-// Maximum number of halvings of a first cell. A first cell has 3 x 2^8 steps of the lattice of light directions, so
-// that neighbouring cells share the directions on their common sides.
+// Maximum number of times that an initial cell is halved. An initial cell has 3 x 2^8 steps of the lattice of light
+// directions along each side. Neighbouring cells can therefore share the directions on their common sides.
 constexpr int kMostHalvings = 8;
-// Minimum third difference of the values along one side of a cell, relative to that along the other side. If the third
-// difference is smaller, the cell is not halved along the first side.
+// Minimum ratio between the third differences of the values along the two sides of a cell. A cell is halved along a
+// side only if the third difference along it is at least this fraction of the larger one.
 constexpr double kLeastBend = 0.3;
 // Number of directions of light that are computed in parallel.
 constexpr std::size_t kBatch = 16;
-// Number of random views by which a cell is judged.
+// Number of random view directions at which the error of a cell is measured, for each tested direction of light.
 constexpr std::uint32_t kViews = 48;
 constexpr std::uint32_t kProbes = 200;
 // Fraction of the views of a cell whose errors must be below the requested error.
@@ -110,14 +111,14 @@ Eigen::Matrix3d rgb_from_xyz(const materials::Tristimulus& white) {
   return (primaries * brightness.asDiagonal()).inverse();
 }
 
-/// Returns the directions to source and observer, or nothing if the observer is below the horizon.
+/// Returns the directions to source and observer, or nothing if `across` is too long to be part of a unit vector.
 /// \param across x and y components of the unit vector to the observer
 std::optional<View> view_of(const Vec3& to_source, const Vec2& across) {
   if (across.squaredNorm() >= 1.0) return std::nullopt;
   return View{to_source, {across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm())}};
 }
 
-/// Position on the lattice of light directions that cells share.
+/// Position on the lattice of light directions, which is common to all cells.
 using LatticePlace = std::pair<int, int>;  ///< entrance angle and azimuth, in lattice steps
 
 /// Cell of the reflection table while the table is being made.
@@ -130,8 +131,8 @@ struct PlannedCell {
   bool is_least() const { return size[0] <= 3 && size[1] <= 3; }
 };
 
-/// Returns a photometer for the response x, y or z. It ignores the mirror image of the light, which the entrance face
-/// reflects like a mirror and not back to the source.
+/// Returns a photometer for the response x, y or z. The photometer ignores light that the entrance face reflects
+/// specularly, because this light does not return to the source.
 Photometer photometer_of(const Design& design, const PhotometryRequest& request, std::size_t response,
                          std::size_t parts) {
   Photometer photometer(design, request_of_response(request, response), parts,
@@ -182,8 +183,8 @@ std::optional<Vec2> back_of(const Design& design, const AppearanceRequest& reque
   return has_most_light ? ways[static_cast<std::size_t>(most - powers.begin())] : ways[0];
 }
 
-/// Returns the relative error of the value `told`. If the true value is below the fraction AppearanceError::kFloor of
-/// the maximum `most`, the error is relative to this fraction of `most`.
+/// Returns the relative error of the interpolated value `told`, compared with `truth`. If `truth` is below the fraction
+/// AppearanceError::kFloor of the maximum `most`, the error is relative to this fraction of `most`.
 double error_of(double told, double truth, double most) {
   return std::abs(told - truth) / std::max({truth, AppearanceError::kFloor * most, 1e-300});
 }
@@ -510,8 +511,8 @@ class TableMaker {
     return most;
   }
 
-  /// Measures random geometries inside the cells from index `first` on, and sets the errors of these cells. Returns
-  /// false if the computation was cancelled.
+  /// Compares the table with the photometer at random geometries inside the cells from index `first` on, and sets the
+  /// errors of these cells. Returns false if the computation was cancelled.
   bool judge(std::size_t first, const Cancellation* cancel) {
     std::vector<PhotometerSetting> settings;
     std::vector<double> told;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Reflection of a part as a material for renderers and for simulators of lidar. This study is behind `retrace export`
-// to a material file.
+// Reflection of a part as a material for renderers and for simulators of lidar. `retrace export` uses this study to
+// write material files.
 
 #include <cstdint>
 #include <string>

@@ -22,11 +22,11 @@ struct Ring {
   int count;
 };
 constexpr std::array<Ring, 3> kRings = {{{0.0, 0.3, 1}, {0.7, 0.3, 6}, {1.2, 0.4, 12}}};
-// Step of the square lattice of lobes that represent dim light, in grid steps of the table.
+// Step of the square lattice of narrow lobes that represent dim light, in grid steps of the table.
 constexpr double kStepsPerLattice = 2.5;
-// Standard deviation of these lobes, in steps of the lattice.
+// Standard deviation of the lobes on the lattice, in steps of the lattice.
 constexpr double kLatticeSpread = 0.7;
-// Maximum number of these lobes in a row. Shaders keep all lobes in registers or in a small memory.
+// Maximum number of lattice lobes in a row. Shaders keep all lobes in registers or in a small memory.
 constexpr int kMostInARow = 15;
 // Minimum variance of a lobe, in squares of the table's grid step. Narrower lobes would fall between grid points.
 constexpr double kLeastVariance = 0.5;
@@ -110,7 +110,8 @@ class Fit {
 
   double least_variance() const { return kLeastVariance * table_.step() * table_.step(); }
 
-  /// Returns the densities of the lobes at the grid points, by grid point and lobe.
+  /// Returns the densities of the lobes at the grid points, with one row for each grid point and one column for each
+  /// lobe.
   ArrayXXd lobe_densities() const {
     ArrayXXd densities(luminous_.rows(), static_cast<Index>(lobes_.size()));
     for (Index k = 0; k < densities.cols(); ++k)
@@ -120,7 +121,8 @@ class Fit {
     return densities;
   }
 
-  /// Adds a square lattice of lobes over all deviations. They have the colour of the central lobe.
+  /// Adds a square lattice of lobes that covers all deviations from the central direction of view. The lobes have the
+  /// colour of the central lobe.
   void add_lattice() {
     const double steps = static_cast<double>(table_.columns - 1) / kStepsPerLattice;
     const int row = std::clamp(static_cast<int>(std::ceil(steps)) + 1, 2, kMostInARow);
@@ -149,7 +151,8 @@ class Fit {
     }
   }
 
-  /// Returns the sum of the lobes at the grid points, by grid point and direction of light.
+  /// Returns the sum of the lobes at the grid points, with one row for each grid point and one column for each
+  /// direction of light.
   ArrayXXd model_of(const ArrayXXd& densities) const {
     return (densities.matrix() * of_light_.matrix().transpose()).array().max(1e-300);
   }

@@ -37,7 +37,7 @@ struct ReflectionLobes {
   std::array<bool, 2> mirrors{};
   geometry::Vec2 back = geometry::Vec2::Ones();  ///< value of ReflectionTable::back
 
-  /// Returns R_A in cd/(lx m^2), as ReflectionTable::r_a(). Returns 0 for light beyond the maximum entrance angle.
+  /// Returns R_A in cd/(lx m^2), like ReflectionTable::r_a(). Returns 0 for light beyond the maximum entrance angle.
   Rgb r_a(const geometry::Vec3& to_source, const geometry::Vec3& to_observer) const;
 };
 

@@ -15,7 +15,7 @@ constexpr int kFinestLevel = 8;
 constexpr int kCoarsestLevel = 3;
 // Minimum number of grid steps of the table across a leaf.
 constexpr double kStepsPerLeaf = 4.0;
-// Number of directions of light across a leaf, along each side.
+// Number of sampled directions of light along each side of a leaf. The value of the leaf is their mean.
 constexpr int kLightsAcross = 3;
 
 /// Maps the unit square to the unit disc (Shirley and Chiu).

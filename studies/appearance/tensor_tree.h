@@ -17,8 +17,8 @@ namespace retrace::studies {
 struct TensorTree {
   int level = 0;
   /// Numbers and values of all leaves that are not 0, in ascending order. The hexadecimal digits of a number are the
-  /// branches from the root, the most significant first. Bit k of a digit is the half along dimension k; the two
-  /// dimensions of light come first.
+  /// branches from the root, the most significant first. Bit k of a digit selects the half of the branch along
+  /// dimension k; the two dimensions of light come first.
   std::vector<std::pair<std::uint64_t, double>> leaves;
 
   /// Returns the width of a leaf, in components of a unit vector at normal incidence.

@@ -23,8 +23,8 @@ struct VerificationRequest {
   std::vector<std::string> programs;   ///< names as for fabrication::program_name(), in the order of execution
   std::string dialect = "auto";        ///< name in fabrication::kNcDialectWords; "auto": recognised from the text
   std::optional<double> tolerance_nm;  ///< tolerance for facet planes; empty: fabrication::usual_tolerance_nm()
-  /// Name of a stage. All stages before it are assumed to be cut already, by the program of the job. Empty: the blank
-  /// is uncut.
+  /// Name of a stage, which is one step of machining with its own program, such as roughing. All stages before it count
+  /// as already cut by the programs of the job. Empty: the blank is uncut.
   std::string standing;
   FileTexts texts = {};  ///< contents of files that are used instead of reading these files
 };
@@ -33,7 +33,7 @@ struct VerificationRun {
   VerificationRequest request;
   fabrication::Job job;
   fabrication::Machine machine;
-  std::vector<fabrication::NcProgram> programs;  ///< programs for the stages before, followed by the given programs
+  std::vector<fabrication::NcProgram> programs;  ///< programs of the stages that are already cut, then the given ones
   std::size_t standing = 0;                      ///< number of programs at the beginning that are not checked
   fabrication::Verification result;
   Warnings warnings;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kErrorKey = "surface.dihedral_error_arcmin";
 
-/// Returns the errors of angle of the cell itself, which the key `surface.dihedral_error_arcmin` of its design gives.
+/// Returns the angle errors that the design of the cell itself specifies with the key `surface.dihedral_error_arcmin`.
 std::vector<double> own_errors(const Study& study, const PointValues& values) {
   const Candidate candidate = make_candidate(study, values);
   if (!candidate.design().elements()) return {};
@@ -29,7 +29,7 @@ std::vector<double> own_errors(const Study& study, const PointValues& values) {
   return {errors.begin(), is_prism ? errors.begin() + 1 : errors.end()};
 }
 
-/// Returns the study with the given errors of angle for its cells. They replace the errors that the cells would have.
+/// Returns the study with the given angle errors for its cells. They replace the angle errors that the cells specify.
 Study with_errors(const Study& study, const std::vector<double>& errors_arcmin) {
   Study changed = study;
   for (Parameter& parameter : changed.parameters) std::erase(parameter.keys, kErrorKey);

@@ -16,12 +16,12 @@ namespace retrace::studies {
 namespace {
 
 constexpr const char* kStoreKind = "retrace.composition/1";
-/// Minimum gain, relative to the size of the merit, with which a cell counts as an improvement.
+/// Minimum gain of a cell that counts as an improvement, relative to the absolute value of the merit.
 constexpr double kHelps = 1e-3;
-/// First step of a search by prices, as a fraction of each parameter's interval.
+/// Initial step of a search for cells that gain at the dual prices, as a fraction of each parameter's interval.
 constexpr double kFirstStep = 0.1;
 
-/// Returns the search for the best part with only one kind of cell.
+/// Returns the request of a search for the best part with only one kind of cell.
 OptimiseRequest single_request(const ComposeRequest& request) {
   OptimiseRequest single;
   for (const std::string& goal : request.goals) single.objective.weights.emplace_back(goal, 1.0);
@@ -152,8 +152,9 @@ class Composer {
     return zones;
   }
 
-  /// Adds cells that gain at the dual prices of the best mixture. The prices are first those without a limit on zones,
-  /// then those with the limit if the limit lowers the merit.
+  /// Adds cells with a positive gain (see gain() in mixture.h). The search uses the dual prices of the best mixture
+  /// without a limit on the number of zones. If the limit lowers the merit, a second search uses the prices with the
+  /// limit.
   void search_by_prices(Composition& composition) {
     for (std::size_t round = 0; round < request_.rounds; ++round) {
       const Mixture relaxed = mixture_of(composition, relaxed_rules());
@@ -168,7 +169,7 @@ class Composer {
     }
   }
 
-  /// Returns the search for the cell that adds most to the merit of a mixture at its dual prices.
+  /// Returns the request of a search for the cell that adds most to the merit of a mixture at its dual prices.
   OptimiseRequest pricing_request(const Mixture& mixture) const {
     std::map<std::string, double> weights;
     for (std::size_t k = 0; k < request_.goals.size(); ++k)
@@ -182,8 +183,9 @@ class Composer {
     return pricing;
   }
 
-  /// Searches for cells that gain. The search starts from the cells of the mixture and from the cells that gain most.
-  /// \return true if a cell that gains was found
+  /// Searches for cells with a positive gain. The search starts from the cells of the mixture and from the cells with
+  /// the highest gain.
+  /// \return true if such a cell was found
   bool search(Composition& composition, const Mixture& mixture) {
     if (!has_intervals(study_)) return false;
     const OptimiseRequest pricing = pricing_request(mixture);
@@ -198,8 +200,8 @@ class Composer {
                                [&](const FamilyCell& cell) { return gain(mixture.prices, cell.mixed) > least_gain; });
   }
 
-  /// Returns the starting points of a search: the cells of the mixture, the largest zones first, then the cells that
-  /// gain most. Cells near an earlier starting point are left out.
+  /// Returns the starting points of a search. The cells of the mixture come first, in descending order of their zones.
+  /// The cells with the highest gain follow. Cells near an earlier starting point are left out.
   std::vector<PointValues> starts_of(const Composition& composition, const Mixture& mixture) const {
     std::vector<std::size_t> order;
     for (const ZoneShare& zone : mixture.zones) order.push_back(zone.cell);
@@ -269,7 +271,7 @@ class Composer {
       composition.proof = has_intervals(study_) ? Proof::catalogue : Proof::family;
   }
 
-  /// Returns why no mixture satisfies the bounds.
+  /// Returns the reason why no mixture satisfies the bounds, as text.
   std::string why_none(const Composition& composition, const Mixture& relaxed) const {
     if (composition.catalogue.empty())
       return composition.failed > 0 ? fmt::format("no cell can be computed: {}", composition.first_failure)
@@ -293,8 +295,8 @@ class Composer {
     if (mixture.is_there()) composition.by_zones.push_back({zones_of(composition, mixture), mixture, zones});
   }
 
-  /// Adds the best part with one zone more than allowed, or than the best part has. It shows what a further zone is
-  /// worth.
+  /// Adds to `by_zones` the best part with one more zone than allowed, or with one more zone than the best part has. It
+  /// shows how much a further zone improves the merit.
   void count_zones(Composition& composition) const {
     const PartOfZones& last = composition.by_zones.empty() ? *composition.best : composition.by_zones.back();
     add_by_zones(composition, std::max(last.most_zones, composition.best->zones.size()) + 1);

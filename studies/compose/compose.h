@@ -1,7 +1,7 @@
 #pragma once
 
 // Composes a part of zones with different cells. The study selects designs of a family and their fractions of the area,
-// so that the minimum of all goals is as large as possible. It is behind `retrace compose`.
+// so that the minimum of all goals is as large as possible. `retrace compose` runs this study.
 
 #include <cstddef>
 #include <optional>
@@ -38,7 +38,7 @@ struct ComposeRequest {
   double most_share = 1.0;
   std::optional<std::size_t> most_zones;  ///< maximum number of zones; none: no limit
   std::size_t scan = 65;                  ///< cells of the first scan, per combination of discrete values
-  std::size_t rounds = 4;                 ///< maximum number of searches by dual prices
+  std::size_t rounds = 4;                 ///< maximum number of searches with dual prices
   std::size_t starts = 3;                 ///< number of cells from which each such search starts
   int looks = 20;                         ///< maximum number of cells that are evaluated from each start
   std::optional<ErrorSpread> errors;
@@ -87,7 +87,8 @@ struct PartForWorst {
 /// Effects of errors of the angles between facets on a part.
 struct ErrorEffects {
   std::vector<double> goals;  ///< goals of the part with errors from cell to cell only
-  /// Slopes of the minimum goal, per arcmin, by zone and angle; areas are re-optimized.
+  /// Derivatives of the minimum goal with respect to the angle errors, per arcmin, indexed by zone and angle. They
+  /// include the effect of re-optimized areas.
   std::vector<std::vector<double>> slopes;
   PartYield yield;
   std::optional<PartForWorst> for_worst;
@@ -96,8 +97,8 @@ struct ErrorEffects {
 
 /// Proof of optimality of the part.
 enum class Proof {
-  family,     ///< the whole family was evaluated, and no part of its cells is better
-  catalogue,  ///< no part of the evaluated cells is better
+  family,     ///< the whole family was evaluated, and no part composed of its cells is better
+  catalogue,  ///< no part composed of the evaluated cells is better
   none        ///< the search among the evaluated cells ended at a limit
 };
 

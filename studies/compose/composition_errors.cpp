@@ -29,7 +29,7 @@ double step_of(const ErrorSpread& spread) {
   return std::max(kLeastStep, kStepOfSpread * std::max(spread.cell_sigma_arcmin, spread.zone_sigma_arcmin));
 }
 
-/// Returns random errors of angle between minus and plus `step_arcmin`.
+/// Returns random angle errors between minus and plus `step_arcmin`.
 std::vector<std::vector<double>> errors_to_check(std::size_t angles, double step_arcmin, std::uint32_t seed) {
   const UnitSamples samples(UnitSamples::Kind::sobol, angles, kChecked, seed);
   std::vector<std::vector<double>> errors;
@@ -40,7 +40,7 @@ std::vector<std::vector<double>> errors_to_check(std::size_t angles, double step
   return errors;
 }
 
-/// Response of a cell's goals to errors of angle, and its largest deviation from computed goals.
+/// Response of a cell's goals to angle errors, and its largest deviation from computed goals.
 struct CheckedResponse {
   ErrorResponse response;
   double missed_by = 0.0;
@@ -91,8 +91,8 @@ std::vector<double> mean_goals(const std::vector<ErrorResponse>& responses, cons
   return goals;
 }
 
-/// Returns the slopes of the minimum goal by the errors of angle. They follow from the dual prices of the goals,
-/// because the areas of the zones are re-optimized.
+/// Returns the derivatives of the minimum goal with respect to the angle errors. The goals are weighted by their dual
+/// prices, because the areas of the zones are re-optimized.
 std::vector<std::vector<double>> slopes_of(const std::vector<ErrorResponse>& responses, const PartOfZones& part) {
   std::vector<std::vector<double>> slopes;
   for (std::size_t z = 0; z < responses.size(); ++z) {

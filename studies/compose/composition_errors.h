@@ -7,10 +7,10 @@
 
 namespace retrace::studies {
 
-/// Computes the effects of errors of angle on the best part of a composition.
+/// Computes the effects of angle errors on the best part of a composition.
 /// \pre request.errors is set, and the cells of all zones have angles between facets
 /// \throw Interrupted if the computation is cancelled
-/// \throw InputError if cells with errors of angle cannot be computed
+/// \throw InputError if cells with angle errors cannot be computed
 ErrorEffects effects_of_errors(const Study& study, const ComposeRequest& request, const Composition& composition,
                                OptimiseObserver* observer, const Cancellation* cancel);
 

@@ -14,14 +14,14 @@ class ErrorResponse {
   /// \param goals goals for the errors of errors_to_compute(), in the same order
   ErrorResponse(std::size_t angles, double step_arcmin, const std::vector<std::vector<double>>& goals);
 
-  /// Returns the errors for which goals are needed: no error, each angle by plus and minus one step, and each pair of
-  /// angles by one step.
+  /// Returns the sets of errors for which goals are needed: no error, plus and minus one step for each angle, and plus
+  /// one step for both angles of each pair.
   static std::vector<std::vector<double>> errors_to_compute(std::size_t angles, double step_arcmin);
 
   std::size_t angles() const { return slopes_.size(); }
   /// Returns the goals for given errors.
   std::vector<double> at(const std::vector<double>& errors_arcmin) const;
-  /// Returns the slope of a goal by an angle, per minute of arc.
+  /// Returns the derivative of a goal with respect to the error of an angle, per minute of arc.
   double slope(std::size_t angle, std::size_t goal) const { return slopes_[angle][goal]; }
   /// Returns the mean response of many cells that have additional random errors. These errors are independent and
   /// Gaussian with the given standard deviation.
@@ -30,7 +30,7 @@ class ErrorResponse {
  private:
   std::vector<double> nominal_;
   std::vector<std::vector<double>> slopes_;                   ///< indexed by angle
-  std::vector<std::vector<std::vector<double>>> curvatures_;  ///< second derivatives, by two angles
+  std::vector<std::vector<std::vector<double>>> curvatures_;  ///< second derivatives, indexed by two angles
 };
 
 }  // namespace retrace::studies

@@ -45,7 +45,8 @@ bool is_price(double price) {
   return std::abs(price) > kNoPrice;
 }
 
-/// The margin of a goal is R / limit - 1. Its slope by the limit is therefore -(1 + margin) / limit.
+/// The margin of a goal with the value R is R / limit - 1. Its derivative with respect to the limit is therefore -(1 +
+/// margin) / limit.
 std::optional<double> cost_of_limit(const Quantity& quantity, const Mixture& mixture, std::size_t goal) {
   const std::optional<QuantityLimit> limit = quantity.limit();
   if (!limit) return std::nullopt;

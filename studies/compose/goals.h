@@ -25,12 +25,12 @@ double given_by(const Zone& zone, std::size_t goal, bool is_margin);
 /// Returns true if a price is not zero within rounding errors.
 bool is_price(double price);
 
-/// Returns the decrease of the minimum goal per unit of a margin's limit. Returns nothing for goals that are no
-/// margins.
+/// Returns the decrease of the minimum goal per unit by which the limit of a margin is raised. Returns nothing for
+/// goals that are no margins.
 std::optional<double> cost_of_limit(const Quantity& quantity, const Mixture& mixture, std::size_t goal);
 
-/// Returns the goals to show. Of several readings of one test point, only the minimum is shown. The names of such goals
-/// are equal up to the last dot.
+/// Returns the goals to show. If a test point has several readings, only the minimum is shown. Names of goals from the
+/// same test point differ only after the last dot.
 std::vector<std::size_t> goals_to_show(const ComposeRequest& request, const Mixture& mixture);
 
 /// Formats the value of a goal. Margins are in percent.

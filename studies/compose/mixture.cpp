@@ -135,9 +135,9 @@ class PriceBound {
   std::vector<std::size_t> order_;
 };
 
-/// Branch and bound over sets of few cells. At any prices, a set that is better than the best mixture contains a cell
-/// whose merit is above that of the best mixture. Sets are extended by such cells, at the prices for which there are
-/// fewest of them.
+/// Branch and bound over small sets of cells. At any dual prices, a set that is better than the best mixture found so
+/// far contains a cell whose merit is above that of the best mixture. Sets are extended by such cells, at the prices
+/// for which there are fewest of them.
 class SetSearch {
  public:
   SetSearch(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Cancellation* cancel,
@@ -288,8 +288,8 @@ class SetSearch {
     return std::ranges::all_of(bounds_, [&](const PriceBound& bound) { return bound.lets_pass(set, to_beat()); });
   }
 
-  /// Returns cells such that every better set which contains this set has at least one of them. Of all stored prices,
-  /// those with the fewest such cells are used.
+  /// Returns cells such that every better set which contains this set has at least one of them. The function uses those
+  /// stored prices for which there are fewest such cells.
   std::vector<std::size_t> candidates(const std::vector<std::size_t>& set, const Mixture& mixture) const {
     const PriceBound* fewest = nullptr;
     std::size_t least = cells_.size() + 1;

@@ -14,8 +14,8 @@ namespace retrace::studies {
 
 /// Values of a part that consists of only one kind of cell.
 struct MixedCell {
-  std::vector<double> goals;  ///< each is to be large
-  std::vector<double> means;  ///< each must be within bounds, as a mean over the part
+  std::vector<double> goals;  ///< values whose minimum is maximized
+  std::vector<double> means;  ///< values whose means over the part must be within bounds
   double cost = 0.0;          ///< reduction of the merit
 };
 
@@ -59,7 +59,8 @@ struct Mixture {
   double bound = 0.0;            ///< upper bound of the merit of any allowed mixture of these cells
   std::vector<double> goals;     ///< goals of the mixture
   std::vector<double> means;
-  /// For the cells of the mixture; without a limit on zones and a minimum fraction: for all cells.
+  /// Dual prices. They hold for the cells of the mixture. If the rules have no limit on zones and no minimum fraction,
+  /// they hold for all cells.
   MixturePrices prices;
   bool is_there() const { return kind == Kind::optimal || kind == Kind::best_found; }
 };

@@ -1,7 +1,7 @@
 #pragma once
 
-// Random parts of zones with errors of angle, and the areas of zones that are optimal for the worst of these parts.
-// This file does not depend on optics.
+// Random parts with zones whose cells have angle errors, and the areas of zones that are optimal for the worst of these
+// parts. This file does not depend on optics.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,10 +15,10 @@
 
 namespace retrace::studies {
 
-/// Goals of the cells in random parts, by part, zone and goal.
+/// Goals of the cells in random parts, indexed by part, zone and goal.
 using DrawnParts = std::vector<std::vector<std::vector<double>>>;
 
-/// Returns random parts. Each zone has random errors of angle, Gaussian and independent, which are the same for all its
+/// Returns random parts. Each zone has random angle errors, Gaussian and independent, which are the same for all its
 /// cells.
 /// \param responses response of each zone, which includes the errors from cell to cell
 DrawnParts drawn_parts(const std::vector<ErrorResponse>& responses, double sigma_arcmin, std::size_t parts,

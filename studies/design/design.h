@@ -38,7 +38,8 @@ struct Idealisation {
 enum class HeightMapAxis { x, y };
 
 struct SmoothTexture {};
-/// Roughness and waviness of Gaussian or periodic height correlation. At least one of the two heights is above 0.
+/// Roughness with a Gaussian autocorrelation of heights, and periodic waviness. At least one of the two rms heights is
+/// above 0.
 struct HarveyShackTexture {
   double roughness_sq_nm = 0.0;        ///< rms height of the roughness
   double correlation_length_um = 0.0;  ///< distance at which the Gaussian autocorrelation is 1/e
@@ -86,7 +87,7 @@ struct FormMap {
 };
 /// Deviation of the retro facets from planes, the same for all facets. It is the sum of the three members.
 struct FormOfFacets {
-  double sink_um = 0.0;  ///< depth of a paraboloid, from its farthest corner to its centre, into the body
+  double sink_um = 0.0;  ///< sag of a paraboloid into the body, from the farthest corner of the facet to its centre
   std::vector<FormTerm> terms;
   std::optional<FormMap> map;
 
@@ -249,7 +250,7 @@ struct EntranceState {
   double film_coverage = 0.0;
   double water_index = 1.333;
   double drop_coverage = 0.0;
-  /// Like the other optional members, set if the coverage or haze is above 0.
+  /// Set if `drop_coverage` is above 0. The other optional members are set if their coverage or `haze` is above 0.
   std::optional<double> drop_contact_angle_deg;
   double dust_coverage = 0.0;
   std::optional<double> dust_albedo;
@@ -324,7 +325,8 @@ struct Design {
   InputLocation where_texture() const;
   /// Returns the position of the key that determines the form of the facets.
   InputLocation where_form() const;
-  /// Returns the position of the key by which facets are not smooth planes: the texture, or the form of smooth facets.
+  /// Returns the position of the key because of which the facets are not smooth planes. It is the key of the texture,
+  /// or the key of the form if the facets are smooth.
   InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
   std::string_view entrance_key() const;
   /// Sets the position that messages about a key report.

@@ -1,6 +1,7 @@
 #pragma once
 
-// Part of a design of elements, with its mask and its table of facet planes applied, and single elements of it.
+// Part of a design that consists of elements, after its mask and its table of facet planes are applied. Also designs
+// with only one of its elements.
 
 #include "geometry/part/part.h"
 #include "studies/design/design.h"
@@ -12,7 +13,7 @@ namespace retrace::studies {
 /// \throw InputError as geometry::build_part(), and for an invalid table or mask
 geometry::Part part_of(const Design& design);
 
-/// Returns a design with a single element of the array, on its own part of the plate.
+/// Returns a design with only one element of the array, on the piece of plate that belongs to the element.
 /// \pre the design consists of elements
 Design single_element_of(const Design& design);
 

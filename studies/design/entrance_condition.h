@@ -8,7 +8,7 @@
 namespace retrace::studies {
 
 /// Returns the optical model of contamination and damage of the entrance face.
-/// \param optics optical properties, complete but for the entrance face and the texture of the facets
+/// \param optics optical properties, complete except for the entrance face and the texture of the facets
 /// \throw InputError at the key of a roughness for which no model is valid
 raytrace::EntranceCondition condition_of(const Design& design, const raytrace::Optics& optics);
 

@@ -30,7 +30,7 @@ constexpr std::size_t kLeastPoints = 8;
 /// polynomials of degree 8.
 constexpr std::size_t kPoints = 10;
 
-/// Facet of the design's element without errors of angle and without cant, in the frame of the facet.
+/// Facet of the design's element without angle errors and without cant, in the frame of the facet.
 struct NominalFacet {
   Polygon corners;
   double radius_mm = 0.0;

@@ -106,7 +106,7 @@ surface_models::ScatterModel height_map_model(const HeightMapTexture& t, const s
 }
 
 /// Returns the Harvey-Shack scatter model of a texture.
-/// \param optics optical properties of the part, complete but for the texture
+/// \param optics optical properties of the part, complete except for the texture
 surface_models::ScatterModel harvey_shack_model(const HarveyShackTexture& t, const raytrace::Optics& optics) {
   const surface_models::Roughness heights = {t.roughness_sq_nm, t.correlation_length_um, t.waviness_sq_nm,
                                              t.waviness_length_um, t.down_correlation_length_um};
@@ -116,7 +116,7 @@ surface_models::ScatterModel harvey_shack_model(const HarveyShackTexture& t, con
 
 /// Returns the scatter model of the facets' texture.
 /// \param map result of facet_map()
-/// \param optics optical properties of the part, complete but for the texture
+/// \param optics optical properties of the part, complete except for the texture
 surface_models::ScatterModel scatter_model(const Design& design, const std::optional<surface_models::HeightMap>& map,
                                            const raytrace::Optics& optics) {
   using surface_models::ScatterModel;

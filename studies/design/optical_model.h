@@ -43,7 +43,7 @@ enum class Entrances { plane, any };
 
 /// Builds the part, finds the material and selects the wavelengths of the light.
 /// \throw InputError that names file and line, for an unknown material, an invalid spectrum, a wavelength without an
-/// index, for balls (which are no part), and for a curved entrance face unless `entrances` is any
+///        index, for balls, which have no geometry::Part, and for a curved entrance face unless `entrances` is any
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library,
                         Entrances entrances = Entrances::plane);
 
@@ -56,12 +56,12 @@ class OpticsOfDesign {
  public:
   /// Reads all data that do not depend on the wavelength.
   /// \param warnings receives warnings for the user
-  /// \pre `design` and `library` exist as long as this object
+  /// \pre `design` and `library` outlive this object
   /// \throw InputError as make_model()
   OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library, Warnings& warnings);
   ~OpticsOfDesign();
 
-  /// Returns the properties at a wavelength, without another medium behind single elements.
+  /// Returns the properties at a wavelength for a part without wet elements, which have another medium behind them.
   /// \throw InputError if there are no data for this wavelength
   raytrace::Optics at(double wavelength_nm) const;
   /// Returns the properties at a wavelength, with another medium behind selected elements.

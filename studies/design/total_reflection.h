@@ -17,8 +17,8 @@ namespace retrace::studies {
 /// \pre both indices are >= 1
 std::optional<double> tir_limit_deg(const geometry::PartSpec& part, double index, double back_index);
 
-/// Returns the azimuth of the light for which total reflection ends at the smallest incidence. It is 0 to below 360
-/// degrees; the smallest of equivalent azimuths.
+/// Returns the azimuth of the light for which total reflection ends at the smallest incidence, from 0 to below 360
+/// degrees. If several azimuths are equivalent, returns the smallest.
 double tir_limit_azimuth_deg(const geometry::PartSpec& part);
 
 /// Returns the minimum incidence at this azimuth at which every facet reflects the retroreflected light totally.

@@ -15,7 +15,7 @@ namespace retrace::studies {
 std::size_t count_of_lines(const geometry::ArrayPlan& plan, Eigen::Index axis);
 
 /// Assigns the cells of the array to the zones.
-/// \pre `part.elements` has an entry for each zone, and `part.spec` is complete but for the cells
+/// \pre `part.elements` has an entry for each zone, and `part.spec` is complete except for the cells
 /// \param dark function that returns the mask of a zone (geometry::mask_pattern()); it is called only for zones with a
 ///        mask
 void choose_cells(ZonedPart& part, const std::function<std::vector<std::string>(std::size_t zone)>& dark);

@@ -14,7 +14,7 @@ namespace {
 using geometry::BoundaryMesh, geometry::FacetRole, geometry::Part, geometry::SurfacePatch, geometry::Vec2,
     geometry::Vec3;
 
-// Tolerance of the cosine between the normals of two neighbours. Within it, there is no edge between them.
+// Tolerance of the cosine between the normals of two neighbouring triangles. Within it, there is no edge between them.
 constexpr double kSameDirection = 1e-6;
 
 using Triangle = std::array<std::uint32_t, 3>;

@@ -52,7 +52,8 @@ struct SectionMove {
 /// \param roughing true: moves of roughing stages; false: moves of all other stages
 std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing);
 
-/// Returns, for each element, its number in the order of cutting, from 1, in the first stage of its orientation.
+/// Returns, for each element, its number in the order of cutting, counted from 1. If several programs cut an element,
+/// the first one counts.
 std::vector<std::int64_t> cutting_places(const FabricationResult& result);
 
 }  // namespace retrace::studies

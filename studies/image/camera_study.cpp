@@ -189,13 +189,13 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
 
 namespace {
 
-/// Returns the number of passes that reaches the requested noise. The noise is inversely proportional to the square
-/// root of the number of passes.
+/// Returns the number of passes that reaches the requested noise. A pass adds one sample to every pixel. The noise is
+/// inversely proportional to the square root of the number of passes.
 double passes_needed(const raytrace::CameraImage& image, const CameraRequest& request) {
   return image.passes * std::pow(image.relative_noise() / request.noise, 2.0);
 }
 
-/// Adds the passes of a picture in ascending order, whatever the order in which they are finished.
+/// Adds the passes of a picture in ascending order of their numbers, even if they are finished in another order.
 class PassLedger : public TaskLedger {
  public:
   PassLedger(const CameraRequest& request, raytrace::CameraImage& image, Progress* progress,
@@ -249,7 +249,7 @@ class PassLedger : public TaskLedger {
   Progress* progress_;
   const std::function<void(const raytrace::CameraImage&)>& after_pass_;
   std::uint32_t goal_;
-  std::size_t most_ahead_;  ///< maximum number of passes that are finished before their turn
+  std::size_t most_ahead_;  ///< maximum number of passes that are traced before an earlier one is finished
   std::uint64_t next_ = 0;
   std::set<std::uint64_t> given_back_;
   std::map<std::uint64_t, std::string> ahead_;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Pictures of a part that is illuminated by a lamp and seen by an eye. This study is behind `retrace image` with a
-// camera.
+// Pictures of a part that is illuminated by a lamp and seen by an eye. `retrace image` runs this study if a camera is
+// requested.
 
 #include <array>
 #include <cstdint>
@@ -23,11 +23,12 @@ namespace retrace::studies {
 /// Default width and height, in mm, of the sheet that the picture shows for an infinite part.
 inline constexpr std::array<double, 2> kUsualFilmMm = {100.0, 100.0};
 
-/// Request for a picture of the part in the light of a lamp. Positions are those of CameraScene.
+/// Request for a picture of the part in the light of a lamp. Positions are in the camera frame
+/// (raytrace/observers/camera.h).
 struct CameraRequest {
   double distance_m = 10.0;       ///< distance of lamp and eye from the centre of the face; > 0
   double observation_deg = 0.33;  ///< angle between lamp and eye; the eye is above the lamp; 0 to 180
-  double v_deg = 0.0;             ///< direction of the lamp as in regulations; -90 to 90
+  double v_deg = 0.0;             ///< vertical angle of the lamp, as in regulations; -90 to 90
   double h_deg = 0.0;
   double rotation_deg = 0.0;                     ///< rotation of the part about its normal
   std::optional<std::array<double, 3>> eye_mm;   ///< position of the eye; replaces distance and angles
@@ -36,19 +37,20 @@ struct CameraRequest {
   double pupil_arcmin = 10.0;                    ///< angular diameter of the eye's pupil; 0 to 600
   /// Illuminance by the lamp at the part, perpendicular to the light; not used with `lamp`.
   double illuminance_lx = 10.0;
-  /// Lamp with this intensity distribution; its axis points at the centre of the face.
+  /// Luminous intensity distribution of the lamp, if it comes from a file. The axis of the lamp points at the centre of
+  /// the face.
   std::optional<PhotometricLamp> lamp;
   double lamp_aim_deg = 0.0;  ///< angle by which the lamp's axis is rotated downwards; -45 to 45
   double ambient_lx = 0.0;    ///< illuminance of the face by uniform light from the half space in front
   double backlight_lx = 0.0;  ///< illuminance by uniform light from behind and around the part
   std::size_t columns = 400;
   std::size_t rows = 300;
-  std::optional<double> field_mm;  ///< width that the picture shows at the part; none: the part and a margin
+  std::optional<double> field_mm;  ///< width of the field of view at the part; none: the part and a margin
   /// Width and height, in mm, of the sheet that the picture shows for an infinite part. Default: kUsualFilmMm. Not
   /// allowed for finite parts.
   std::optional<std::array<double, 2>> film_mm;
   std::optional<double> cylinder_mm;    ///< radius of the cylinder on which the sheet is bent; < 0: on its inside
-  double noise = 0.02;                  ///< relative noise of a pixel to reach
+  double noise = 0.02;                  ///< target for the relative noise of a pixel
   std::optional<std::uint32_t> passes;  ///< number of passes; replaces the noise
   std::uint32_t seed = 1;
   raytrace::DiscAverage discs = raytrace::DiscAverage::kernel;
@@ -91,7 +93,7 @@ class CameraStudy {
   CameraResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                    const std::function<void(const raytrace::CameraImage&)>& after_pass = {},
                    const ShareTasks& share = {}) const;
-  /// Returns a task that traces passes by their numbers, each on all threads.
+  /// Returns a task that traces the pass with a given number, using all threads.
   /// \pre the study exists as long as the task
   ComputeTask passes() const;
 

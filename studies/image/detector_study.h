@@ -1,6 +1,6 @@
 #pragma once
 
-// Maps of the returned light over the face and over angles. This study is behind `retrace image` with a detector.
+// Maps of the returned light over the face and over angles. `retrace image` runs this study if a detector is requested.
 
 #include <cstdint>
 #include <optional>
@@ -25,7 +25,7 @@ struct DetectorRequest {
   std::size_t pixels = 400;           ///< pixels along the longer side of the face; 1 to 8192
   std::size_t angle_pixels = 201;     ///< pixels along each side of the angular map; 1 to 2049
   double window_deg = 1.0;            ///< half-width of the angular map; > 0, up to 90
-  Engine engine = Engine::automatic;  ///< neither stochastic nor cell
+  Engine engine = Engine::automatic;  ///< any engine except stochastic and cell
   std::optional<double> cutoff;       ///< exact engine: minimum power of a beam, as a fraction of the incident power
   std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays; empty: kUsualDetectorRays
   std::uint32_t seed = 1;

@@ -24,7 +24,7 @@ class LuminousIntensity {
   LuminousIntensity(Planes kind, std::vector<double> planes_deg, std::vector<double> angles_deg,
                     std::vector<double> cd);
 
-  /// Returns the intensity in a direction of any length above 0. Returns 0 outside the planes and angles.
+  /// Returns the intensity in a direction, which need not be a unit vector. Returns 0 outside the planes and angles.
   double cd(const geometry::Vec3& direction) const;
   /// Returns the total luminous flux in lm.
   double lumens() const;

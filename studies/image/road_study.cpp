@@ -62,7 +62,8 @@ Vec3 reflector_place(const RoadScene& s, std::size_t side) {
   return {side == 0 ? -s.reflector_half_gap : s.reflector_half_gap, s.reflector_height, 0.0};
 }
 
-/// Returns the reflectance of the car's rear at a point. Returns nothing beside the car.
+/// Returns the reflectance of the car's rear at a point. Returns nothing if the point is outside the outline of the
+/// car.
 std::optional<double> car_reflectance(const RoadScene& s, const Vec2& p) {
   const double half = 0.5 * s.car_width;
   for (const double side : {-1.0, 1.0})

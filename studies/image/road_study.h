@@ -1,6 +1,6 @@
 #pragma once
 
-// Reflectors of a car as seen at night by the driver behind it. This study is behind `retrace image` on a road.
+// Reflectors of a car as seen at night by the driver behind it. `retrace image` runs this study if a road is requested.
 
 #include <array>
 #include <cstdint>
@@ -33,7 +33,7 @@ struct RoadScene {
 };
 
 struct RoadRequest {
-  /// Distances from the headlamps to the reflectors; 1 to 6 values of 5 to 1000.
+  /// Distances from the headlamps to the reflectors, in m: 1 to 6 values between 5 and 1000.
   std::vector<double> distance_m = {10.0, 30.0, 100.0};
   double lamp_cd = 10'000.0;  ///< intensity of each dipped headlamp towards the reflectors; > 0; not used with `lamp`
   std::optional<PhotometricLamp> lamp;  ///< photometric data of each headlamp
@@ -76,7 +76,7 @@ struct RoadResult {
 /// Study of a checked request, ready to run.
 class RoadStudy {
  public:
-  /// \throw InputError for numbers out of range, and for everything that photometry refuses
+  /// \throw InputError for numbers out of range, and for designs that Photometer refuses
   RoadStudy(Design design, RoadRequest request, std::uint32_t seed = 1);
 
   RoadResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;

@@ -11,8 +11,7 @@
 namespace retrace::studies {
 
 /// Coating of one face, with fractions of unpolarised power at normal incidence, averaged over the light. The light
-/// hits facets from inside the body and the entrance face from the air. For balls, it is the light that hits their
-/// mirror.
+/// hits facets from inside the body and the entrance face from the air. The facets of balls are their mirrors.
 struct CoatingReport {
   std::vector<CoatingLayer> layers;
   materials::LayerStack stack;  ///< layers at the traced wavelength that is nearest to that of the light

@@ -9,8 +9,8 @@
 namespace retrace::studies {
 namespace {
 
-/// Returns the mean reflectance for unpolarised light from the air whose directions follow Lambert's law. It is
-/// integrated over the cosine by Simpson's rule.
+/// Returns the mean reflectance for diffuse unpolarised light from the air, whose directions follow Lambert's law. The
+/// integral over the cosine uses Simpson's rule.
 double diffuse_reflectance(const raytrace::Optics& optics) {
   constexpr int kSteps = 2000;
   double sum = 0.0;

@@ -15,7 +15,7 @@ struct EntranceStateReport {
   double reflectance = 0.0;             ///< reflectance of the clean face with its layers and film
   double transmittance = 0.0;           ///< transmittance of the clean face with its layers and film
   double absorptance = 0.0;             ///< absorptance of the clean face with its layers and film
-  double specular_transmittance = 0.0;  ///< fraction of all light that is transmitted as by a plane face
+  double specular_transmittance = 0.0;  ///< fraction of all light that is transmitted without being scattered
   double haze_share = 0.0;              ///< fraction of the light that haze deflects in one passage, by any angle
   double dust_cd_per_lx_m2 = 0.0;       ///< R_A of dust and the face under it, along the normal
 };

@@ -48,7 +48,7 @@ geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_
 
 std::string finding_of(const geometry::Part& part) {
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
-  // With errors of angle or cant, neighbouring elements may differ in height. The part may then touch itself where more
+  // With angle errors or cant, neighbouring elements may differ in height. The part may then touch itself where more
   // than three cells meet.
   return report.ok()           ? "closed, free of self-intersections"
          : !report.is_closed   ? "not closed"

@@ -1,7 +1,7 @@
 #pragma once
 
-// Properties of a design before tracing: sizes, areas, counts, angles, and limits of total reflection. This study is
-// behind `retrace inspect`.
+// Properties of a design before tracing: sizes, areas, counts, angles, and limits of total reflection. `retrace
+// inspect` runs this study.
 
 #include <cstdint>
 #include <optional>
@@ -24,10 +24,12 @@ namespace retrace::studies {
 
 /// Figures of a layer of balls, or of a single ball, for light along its axis, in closed form (docs/theory/beads.md).
 struct BallFigures {
-  double packing_share = 0.0;             ///< fraction of the plan that balls cover
-  double paraxial_error = 0.0;            ///< return error divided by height near the axis, in rad; 0: parallel
+  double packing_share = 0.0;  ///< fraction of the plan that balls cover
+  /// Derivative of the return error with respect to height / radius, at the axis, in rad. If it is 0, light near the
+  /// axis returns parallel to it.
+  double paraxial_error = 0.0;
   std::optional<double> focal_offset_mm;  ///< mirror offset for which the paraxial error is 0; none if there is none
-  double largest_return_error_deg = 0.0;  ///< maximum over the whole aperture: spherical aberration
+  double largest_return_error_deg = 0.0;  ///< maximum over the aperture, due to spherical aberration
   /// Fraction of the aperture within the narrowest cone; by geometry only, without Fresnel losses.
   double share_within_acceptance = 0.0;
   double mirror_half_angle_deg = 0.0;
@@ -36,7 +38,7 @@ struct BallFigures {
 /// Figures of a base under the elements.
 struct SubstrateReport {
   geometry::SubstrateMeasures measures;
-  double element_mm = 0.0;     ///< circle around an element, which the minimum radius must exceed
+  double element_mm = 0.0;     ///< width of an element; the base must have at least this radius
   geometry::InnerWalls walls;  ///< walls between neighbours, seen along the normal at the centre of the base
 };
 
@@ -74,8 +76,8 @@ struct Inspection {
   /// Curved entrance face. Limits of total reflection are nevertheless those of light that enters through a plane.
   std::optional<EntranceReport> entrance;
   std::optional<WetReport> wet_back;
-  std::optional<ZonesReport> zones;  ///< zones of a part of zones
-  std::optional<FormReport> form;    ///< form of facets that have one
+  std::optional<ZonesReport> zones;  ///< zones of the part; empty if it has none
+  std::optional<FormReport> form;    ///< form of the facets; empty for plane facets
   CoatingReports coating;
   std::optional<EntranceStateReport> entrance_state;  ///< state of a face that is not clean
   double dead_zone_share = 0.0;      ///< fraction of an element's plan that rounded and chamfered edges occupy

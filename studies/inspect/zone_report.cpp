@@ -16,8 +16,8 @@ using geometry::Vec2;
 constexpr int kPlaces = 4096;
 constexpr double kIncidences[] = {0.0, 20.0};
 constexpr int kAzimuths = 4;
-/// Maximum angle to the direction of the source at which light counts as returned. Errors of angle may be larger than
-/// the acceptance cone.
+/// Maximum angle to the direction of the source at which light counts as returned. The limit is larger than the
+/// acceptance cone, because angle errors may deflect light beyond the cone.
 constexpr double kBackDeg = 5.0;
 
 class Wanderer {

@@ -11,8 +11,8 @@ namespace retrace::studies {
 
 enum class AppearanceFormat { table, radiance, glsl };
 
-/// Returns the format by the ending of a file's name, in lower or upper case: .json, .xml or .glsl. Returns nothing for
-/// other files.
+/// Returns the format for which the ending of a file's name stands, in lower or upper case: .json, .xml or .glsl.
+/// Returns nothing for other endings.
 std::optional<AppearanceFormat> appearance_format(const std::string& file);
 
 /// Material in a file format: contents of its files, and its error compared with the photometer.

@@ -1,6 +1,6 @@
 #pragma once
 
-// Writes the cells of zones, and the part of all zones, as design files.
+// Writes design files: one for the cells of each zone, and one for the whole part with all zones.
 
 #include <cstddef>
 #include <optional>
@@ -26,7 +26,7 @@ std::string zone_design_text(const Study& study, const std::vector<Zone>& zones,
 enum class ZoneLayout {
   stripes,  ///< side by side, each over the whole height
   blocks,   ///< rectangles that are as square as the areas allow
-  rows      ///< many rows per zone over the whole width, with the zones in turn
+  rows      ///< many rows over the whole width, which are assigned to the zones in turn
 };
 inline constexpr std::string_view kZoneLayouts[] = {"stripes", "blocks", "rows"};
 /// Reads the name of an arrangement.

@@ -129,8 +129,8 @@ void set_balls(Document& document, const raytrace::BallLayer& balls) {
   array.set("gap_mm", *balls.pitch_mm - balls.diameter_mm);
 }
 
-/// Writes regions that are rectangles as [[x_from, y_from, x_to, y_to], ...]. Otherwise writes the corners of the only
-/// region.
+/// Writes the regions of a zone. Rectangles are written as [[x_from, y_from, x_to, y_to], ...]. A zone of another shape
+/// has only one region, whose corners are written.
 void set_regions(Keys& keys, const std::vector<geometry::Polygon>& regions) {
   std::vector<std::vector<double>> boxes;
   for (const geometry::Polygon& region : regions) {

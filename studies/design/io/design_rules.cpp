@@ -48,7 +48,7 @@ template <void (*check)(const Document&, const PartSpec&)>
 void of_part(const Document& document) {
   if (has_elements(document)) check(document, read_part(document));
 }
-/// Applies a rule to the array, before errors of angle, edges and the base are read.
+/// Applies a rule to the array, before angle errors, edges and the base are read.
 template <void (*check)(const Document&, const PartSpec&)>
 void of_array(const Document& document) {
   if (has_elements(document)) check(document, read_array(document));
@@ -177,7 +177,8 @@ void check_one_shape(const Document& document, const PartSpec& part) {
     document.fail("surface.rim_chamfer_um", "must be 0 where rim_radius_um is given");
 }
 
-/// Checks that the gap between elements is wide enough for rounded or chamfered rims on both sides.
+/// Checks that the gap between elements is wide enough for rounded or chamfered rims on both sides. Rims are the edges
+/// along which elements meet each other or the flat land between them.
 void check_land(const Document& document, const PartSpec& part) {
   if (!part.edges.rounds_rims() || !is_prism(part)) return;
   const bool is_checker = part.array.arrangement == Arrangement::checker;
@@ -226,7 +227,7 @@ void check_scratches(const Document& document, const PartSpec& part) {
   for (std::size_t i = 0; i < part.scratches.size(); ++i) check_scratch(document, part, i);
 }
 
-/// Returns the key that messages about errors of angle name: the first such key that was given.
+/// Returns the key that messages about angle errors name: the first such key that was given.
 std::string_view blamed_error(const Document& document, std::string_view otherwise) {
   for (const std::string_view key : {kDihedralError, kFacetTilt})
     if (document.has(key)) return key;
@@ -283,7 +284,7 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
   }
 }
 
-/// Checks that the plate covers all rims.
+/// Checks that the plate is thick enough to cover all rims, the upper edges of the elements.
 void check_thickness(const Document& document, const PartSpec& part) {
   const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
   const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;

@@ -95,7 +95,8 @@ class Reader {
 
   /// Returns true if a plane is similar to that of the nominal facet. A flare lies in the plane of the facet across its
   /// edge.
-  /// \param rotated compare with the rotated element: 90 degrees in a checker, 180 degrees in a triangular array
+  /// \param rotated true: compare with the rotated element: by 90 degrees in a checker, 180 degrees in a triangular
+  ///        array
   bool resembles(const FacetRow& row, bool rotated) const {
     const std::size_t facet = row.facet < kFlares ? row.facet : (row.facet - kFlares + 1) % 3;
     Vec2 slope = nominal_slopes_[facet];

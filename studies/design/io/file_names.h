@@ -1,6 +1,6 @@
 #pragma once
 
-// Files that the keys of a design name.
+// Checks and units of the files whose names are values of keys in a design.
 
 #include <string_view>
 

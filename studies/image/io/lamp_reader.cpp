@@ -321,8 +321,8 @@ Table read_ldt_table(Lines& lines, std::size_t symmetry, std::size_t planes, std
   Table table;
   for (std::size_t k = 0; k < angles; ++k) table.angles_deg.push_back(lines.number("angles", 0, 180));
   check_ascending(lines, table.angles_deg, "angles");
-  // First plane with intensities in the file, and number of such planes. The index is the symmetry: none, about the
-  // axis, to the plane C0 - C180, to the plane C90 - C270, to both planes.
+  // First plane with intensities in the file, and number of such planes. The index is the symmetry code of the file: 0
+  // none, 1 about the axis, 2 about the plane C0 - C180, 3 about the plane C90 - C270, 4 about both planes.
   const std::size_t begins[] = {0, 0, 0, 3 * planes / 4, 0};
   const std::size_t counts[] = {planes, 1, planes / 2 + 1, planes / 2 + 1, planes / 4 + 1};
   if ((symmetry > 1 && planes % (symmetry == 2 ? 2 : 4) != 0) || all_planes.front() != 0.0)
@@ -340,7 +340,7 @@ Table read_ldt_table(Lines& lines, std::size_t symmetry, std::size_t planes, std
   return table;
 }
 
-/// Adds planes by the symmetry of the file.
+/// Adds the planes that follow from the symmetry code of the file.
 void complete_ldt(Table& table, std::size_t symmetry) {
   if (symmetry == 3 || symmetry == 4) mirror(table, 90.0, false);
   if (symmetry == 2 || symmetry == 4) mirror(table, 180.0, false);
