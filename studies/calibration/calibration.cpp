@@ -21,18 +21,19 @@ namespace {
 using namespace fabrication;
 using Eigen::Index, Eigen::VectorXd;
 
-/// Maximum length of the last Gauss-Newton step, in standard uncertainties of the observable combinations.
+/// Maximum length of the last Gauss-Newton step. Its unit is the standard uncertainty of the observable combinations,
+/// which are the combinations of set-up errors that the measurements determine.
 constexpr double kLastStep = 1e-3;
 constexpr int kMostSteps = 20;
 /// Probability that a calibration with correct measurements rejects one of them as an outlier.
 constexpr double kFalseAlarm = 0.01;
 /// Maximum fraction of the measurements that may be outliers.
 constexpr double kMostOutliers = 0.1;
-/// Assumed standard deviations of unobservable combinations. Axes are set with dial gauges, and tools under a
-/// microscope.
+/// Assumed standard deviations of the unobservable combinations. They are typical of axes that are set with dial gauges
+/// and of tools that are set under a microscope.
 constexpr double kUntoldArcsec = 50.0;
 constexpr double kUntoldUm = 2.0;
-/// Leverage above which no other measurement checks a measurement.
+/// Leverage above which a measurement determines an unknown on its own, so that no other measurement can check it.
 constexpr double kUnchecked = 1.0 - 1e-9;
 
 void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
@@ -41,8 +42,9 @@ void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
       throw InputError({measured.file, m.line, ""}, fault);
 }
 
-/// What is not told still changes figures, by products with itself and with what is told. How far that moves the told
-/// combinations, as mean squares over machines that are set up so well.
+/// Returns the covariance of the observable combinations that is due to the unobservable ones. Unobservable errors
+/// change the measurements by second-order products with themselves and with the observable errors. The covariance is
+/// the mean over random machines with the assumed deviations kUntoldArcsec and kUntoldUm.
 Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const MeasuredParts& measured,
                                  const Estimate& fitted, const Estimate& first, const std::vector<PartPose>& poses) {
   constexpr int kMachines = 64;
@@ -71,9 +73,10 @@ Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const Measur
   return first.told * spread * first.told.transpose();
 }
 
-/// Gauss-Newton steps among the combinations that are told about the nominal machine: in all others the measurements
-/// change by terms of the second order alone, which would be taken for signs of them. Parts lie askew by as much as
-/// machines do, and maps tell products of the two.
+/// Estimates the observable combinations by Gauss-Newton steps, which start at the nominal machine. Unobservable
+/// combinations are not varied. They change the measurements only by second-order terms, and these must not be mistaken
+/// for observations. The poses of the parts are estimated as well, because they can be as large as the errors of the
+/// machine, and measurements from height maps depend on products of both.
 Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
   const Machine& nominal = measured.plans.front().machine;
   std::vector<PartPose> poses(parts.size());
@@ -106,7 +109,7 @@ Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
                    "no machine near that of the jobs leaves what was measured: are units and facets right?");
 }
 
-/// Returns the index of the measurement with the largest deviation from the fit, and this deviation in its standard
+/// Returns the index of the measurement with the largest deviation from the fit, and this deviation in standard
 /// deviations.
 std::pair<std::size_t, double> worst(const Estimate& estimate, std::size_t measurements) {
   std::pair<std::size_t, double> found{0, 0.0};
@@ -147,7 +150,8 @@ bool is_alike(const MeasuredParts& measured, const Measurement& a, const Measure
 }
 
 /// Refuses a table if all measurements of one quantity of similar facets of a part are outliers, because their sign is
-/// then probably wrong. A single outlier is accepted if other parts have such measurements that are no outliers.
+/// then probably wrong. If a part has only one such measurement, it is accepted as an outlier if similar measurements
+/// of other parts agree with the fit.
 /// \param measured measurements without the outliers
 void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& parts,
                  const std::vector<Outlier>& outliers) {
@@ -189,7 +193,8 @@ std::string words_of(const VectorXd& combination, std::span<const SetupQuantity>
   return words;
 }
 
-/// Writes the calibrated value of a quantity and its uncertainty to the source of the machine's value.
+/// Records the calibrated value of a quantity and its uncertainty in the text that names the source of the machine's
+/// value.
 void tell_source(Machine& machine, const CalibratedQuantity& found, const std::string& file) {
   const std::string source = fmt::format("retrace calibrate {}", file);
   const auto mark = [&](auto& sourced) {

@@ -28,8 +28,8 @@ struct MeasuredParts {
   std::string file;               ///< name of the measurement file, for messages
   std::vector<std::string> jobs;  ///< names of the jobs, as given in the file
   std::vector<FabricationResult> plans;
-  /// If the parts are height maps of one part (the first plan): the blank's face in each map. Empty: the parts are
-  /// measured relative to the face.
+  /// Figures of the blank's face in each height map, if all `parts` are height maps of one part (the first plan). Empty
+  /// if the parts are measured relative to their face, which is then the reference.
   std::vector<std::optional<FaceFigures>> map_faces;
   std::vector<Measurement> measurements;
   std::size_t empty_rows = 0;  ///< number of rows without a value

@@ -19,7 +19,7 @@ void take(FacetOutlook& outlook, FacetQuantity what, double value) {
   most = std::max(most, std::abs(value));
 }
 
-/// How far facets are off at most, and how uncertain that is.
+/// Sets the maximum deviations of the facets before and after correction.
 void tell_outlooks(Correction& result) {
   const MeasuredParts& measured = result.calibration.parts;
   const std::vector<CutPart> parts = cut_parts(measured);
@@ -34,7 +34,7 @@ void tell_outlooks(Correction& result) {
   }
 }
 
-/// Waves and marks that the facets of all maps have, and warnings of them.
+/// Sets the waves and marks that facets of all maps have in common, and adds warnings about them.
 void tell_rests(Correction& result, double feed_mm_per_min) {
   std::vector<FacetRest> rests;
   for (const RegisteredMap& map : result.registered) rests.insert(rests.end(), map.rests.begin(), map.rests.end());

@@ -1,7 +1,7 @@
 #pragma once
 
-// From height maps of a part to the machine that cut it, and to what its next part will be. The study behind `retrace
-// correct`.
+// Estimates the errors of a machine from height maps of a part that it cut, and predicts the deviations of the next
+// part. `retrace correct` runs this study.
 
 #include <filesystem>
 #include <string>
@@ -12,28 +12,33 @@
 
 namespace retrace::studies {
 
-/// What facets that were measured are at most.
+/// Maximum deviations of the measured facets.
 struct FacetOutlook {
-  double distance_nm = 0.0;  ///< of a facet's middle along its normal
-  double tilt_arcsec = 0.0;  ///< either way
+  double distance_nm = 0.0;  ///< distance of a facet's centre along its normal
+  double tilt_arcsec = 0.0;  ///< tilt in either direction
 };
 
 struct Correction {
   std::vector<FacetMap> maps;
-  std::vector<RegisteredMap> registered;  ///< in their order
-  Calibration calibration;                ///< its parts are the maps
-  FacetOutlook before;                    ///< that the job's programs leave on the calibrated machine
-  std::vector<FacetWave> waves;           ///< that facets have, the highest first: told, not corrected
-  std::vector<FacetMark> marks;           ///< likewise
-  std::size_t facets = 0;                 ///< that are looked at for them
-  FacetOutlook after;  ///< twice the standard uncertainty of what programs for the calibrated machine leave
+  std::vector<RegisteredMap> registered;  ///< registrations, in the order of the maps
+  Calibration calibration;                ///< calibration in which each map counts as a part
+  FacetOutlook before;                    ///< predicted deviations if the job's programs run on the calibrated machine
+  /// Common waves of the facets, the highest first. They are reported, not corrected.
+  std::vector<FacetWave> waves;
+  std::vector<FacetMark> marks;  ///< common marks of the facets; they are reported, not corrected
+  std::size_t facets = 0;        ///< number of facets that were searched for waves and marks
+  /// Expected deviations after correction: twice the standard uncertainty of the deviations that programs for the
+  /// calibrated machine leave.
+  FacetOutlook after;
 };
 
-/// In words. \param facets that were looked at
+/// Returns a description of a wave.
+/// \param facets number of facets that were searched
 std::string words_of(const FacetWave& wave, std::size_t facets);
 std::string words_of(const FacetMark& mark);
 
-/// \throw InputError for maps that lie nowhere on the part, show no facet or contradict each other
+/// Registers the maps, calibrates the machine and predicts the deviations of the next part.
+/// \throw InputError for maps that fit no position on the part, show no facet or contradict each other
 Correction correct(const FabricationResult& plan, std::vector<FacetMap> maps);
 
 }  // namespace retrace::studies

@@ -9,12 +9,12 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Combinations whose share of an unknown is below this leave it told.
+/// Maximum component of an observable unknown in the unobservable combinations.
 constexpr double kLeastShare = 1e-3;
-/// Beside the largest share of a combination those below this are left out of words.
+/// Minimum component of a combination that its text mentions, relative to the largest component.
 constexpr double kLeastShareInWords = 0.02;
 
-/// Orthonormal columns that span those of a matrix.
+/// Returns orthonormal columns that span the column space of a matrix.
 MatrixXd span_of(const MatrixXd& columns) {
   if (columns.cols() == 0 || columns.isZero(0.0)) return MatrixXd(columns.rows(), 0);
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(columns);
@@ -49,7 +49,7 @@ Estimate estimate(const MatrixXd& derivatives, const MatrixXd& of_nuisance, cons
 
 MatrixXd reduced_combinations(const MatrixXd& untold) {
   MatrixXd rows = untold.transpose();
-  // Gauss and Jordan, the largest element of a row first.
+  // Gauss-Jordan elimination with full pivoting.
   for (Index k = 0; k < rows.rows(); ++k) {
     Index row = 0;
     Index column = 0;

@@ -1,33 +1,36 @@
 #pragma once
 
-// Weighted linear least squares where observations may not tell all unknowns apart.
+// Weighted linear least squares for observations that may not determine all unknowns.
 
 #include <Eigen/Core>
 
 namespace retrace::studies {
 
-/// What observations say of unknowns. With A the derivatives and r the observations, both divided by the observations'
-/// standard uncertainties: the shortest x that makes |r - A x| least, nuisance unknowns free.
+/// Result of a least-squares estimate. Let A be the derivatives and r the observations, both divided by the standard
+/// uncertainties of the observations. The estimate is the shortest x that minimizes |r - A x|, where nuisance unknowns
+/// may have any value. A combination of unknowns is observable if the observations determine it.
 struct Estimate {
-  Eigen::VectorXd value;       ///< of the unknowns
-  Eigen::MatrixXd covariance;  ///< of what is told of them
-  Eigen::MatrixXd told;        ///< columns, orthonormal: combinations that are told, x is one of them
-  Eigen::MatrixXd untold;      ///< all others, likewise
-  Eigen::VectorXd residual;    ///< of the observations, in their standard uncertainties
-  /// Of the observations: the share of one that the unknowns take up. 1: nothing checks it.
+  Eigen::VectorXd value;       ///< estimated values of the unknowns
+  Eigen::MatrixXd covariance;  ///< covariance matrix of the observable part of the unknowns
+  Eigen::MatrixXd told;        ///< observable combinations as orthonormal columns; x is a combination of them
+  Eigen::MatrixXd untold;      ///< unobservable combinations as orthonormal columns
+  Eigen::VectorXd residual;    ///< residuals of the observations, in their standard uncertainties
+  /// Leverages of the observations: the fraction of each observation that the unknowns adapt to. If it is 1, no other
+  /// observation checks the observation.
   Eigen::VectorXd leverage;
 
-  /// Whether the observations tell an unknown whatever the others are.
+  /// Returns true if the observations determine an unknown, independently of all other unknowns.
   bool is_told(Eigen::Index unknown) const;
 };
 
-/// A combination of length 1 counts as untold if its standard uncertainty is above `most_uncertain`.
-/// \pre rows of all three are as many; most_uncertain > 0
+/// Computes the estimate.
+/// \param most_uncertain standard uncertainty above which a combination of length 1 counts as unobservable
+/// \pre all three matrices have the same number of rows; most_uncertain > 0
 Estimate estimate(const Eigen::MatrixXd& derivatives, const Eigen::MatrixXd& of_nuisance,
                   const Eigen::VectorXd& observations, double most_uncertain);
 
-/// The same combinations in words that people read: each column has a 1 where the others have 0, and small shares are
-/// 0.
+/// Returns combinations that span the same space in a form that is easy to read. Each column has an element 1 where all
+/// other columns have 0. Small elements are set to 0.
 Eigen::MatrixXd reduced_combinations(const Eigen::MatrixXd& untold);
 
 }  // namespace retrace::studies

@@ -25,28 +25,32 @@ namespace {
 using namespace fabrication;
 using geometry::Vec2, geometry::Vec3;
 
-/// Points that registration looks at, at first and then.
+/// Number of points that registration uses for the coarse search and for the refinement.
 constexpr std::size_t kCoarsePoints = 300;
 constexpr std::size_t kFinePoints = 4000;
-/// Places that are tried across an element, and turns.
+/// Positions that the coarse search tries across an element, along each axis, and rotations that it tries.
 constexpr int kPlaces = 12;
 constexpr double kTurnsDeg[] = {-2.0, -1.0, 0.0, 1.0, 2.0};
-/// The best of them that are followed.
+/// Number of the best poses of the coarse search that are refined.
 constexpr std::size_t kFollowed = 4;
-constexpr int kMostMoves = 20;       ///< among all points, and then among those clear of edges
-constexpr double kRoughMove = 1e-6;  ///< mm or rad: the last one among all points
-constexpr double kLastMove = 1e-9;   ///< and of all: a pose is free in what follows, so that a small change is none
-/// Of an element's depth, that a registered map may lie off the design.
+/// Maximum number of refinement steps, with all points and with points away from edges.
+constexpr int kMostMoves = 20;
+constexpr double kRoughMove = 1e-6;  ///< length of the last step with all points, in mm or rad
+/// Length of the last step with points away from edges, in mm or rad. Smaller changes have no effect, because
+/// the calibration estimates the pose again.
+constexpr double kLastMove = 1e-9;
+/// Maximum median deviation of a registered map from the design, as a fraction of an element's depth.
 constexpr double kMostOff = 0.02;
-/// A facet, or a face, is told by so many points at least.
+/// Minimum number of points that determine the plane of a facet or of the blank's face.
 constexpr std::size_t kLeastPoints = 30;
-/// Of a facet's length, and in points of the map: nearer to edges nothing is taken.
+/// Distance from edges within which points are ignored: a fraction of the facet's length, and a number of pixels. The
+/// larger one applies.
 constexpr double kMargin = 0.05;
 constexpr double kMarginPixels = 2.0;
-/// Points farther off than so many median deviations are left out.
+/// Deviation above which points are left out, in median deviations.
 constexpr double kFarOff = 6.0;
 
-/// What a point of the design's surface belongs to: a facet of an element, or the blank's face.
+/// Region of the design's surface: a facet of an element, or the blank's face.
 struct Region {
   std::size_t element = 0;
   std::size_t facet = 0;
@@ -55,7 +59,7 @@ struct Region {
   auto operator<=>(const Region&) const = default;
 };
 
-/// The design as a surface over the plane.
+/// Surface of the design as a height over x and y.
 class DesignSurface {
  public:
   explicit DesignSurface(const std::vector<Groove>& grooves) : grooves_(grooves), map_(grooves) {}
@@ -72,7 +76,7 @@ class DesignSurface {
     const Region r = region(x_mm, y_mm);
     return r.is_face ? 0.0 : std::min(0.0, z_of(r.element, r.facet, x_mm, y_mm));
   }
-  /// The region that holds all within a margin; none where there are several.
+  /// Returns the region of a point, or nothing if another region is within the margin.
   std::optional<Region> clear_region(const Vec3& p, double margin_mm) const {
     const Region middle = region(p.x(), p.y());
     for (const Vec2& off : {Vec2(margin_mm, margin_mm), Vec2(-margin_mm, margin_mm), Vec2(margin_mm, -margin_mm),
@@ -87,7 +91,7 @@ class DesignSurface {
   const std::vector<Groove>& grooves() const { return grooves_; }
 
  private:
-  /// Whether that is the region of a point; of prisms that stand upright without asking which element it is.
+  /// Returns true if a point is in the region. For prisms with a vertical axis, the dimensions of the element decide.
   bool lies_in(const Region& r, double x_mm, double y_mm) const {
     if (r.is_face) return !map_.at(x_mm, y_mm);
     const Groove& groove = grooves_[r.element];
@@ -107,7 +111,7 @@ class DesignSurface {
   GrooveMap map_;
 };
 
-/// The measured points, from the middle of the map, z from their mean.
+/// Returns the measured points. x and y are relative to the centre of the map, and z is relative to the mean height.
 std::vector<Vec3> points_of(const surface_models::HeightMap& map) {
   std::vector<Vec3> points;
   double mean = 0.0;
@@ -127,7 +131,8 @@ std::vector<Vec3> points_of(const surface_models::HeightMap& map) {
   return points;
 }
 
-/// So many of the points at most, the same ones each time. Drawn: any fixed step may be one of the rows.
+/// Returns at most `most` of the points. The choice is random, because points at regular steps might all be in one row.
+/// It is the same in every run.
 std::vector<Vec3> thinned(const std::vector<Vec3>& points, std::size_t most) {
   if (points.size() <= most) return points;
   std::vector<Vec3> some;
@@ -142,7 +147,7 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// Turns maps until they lie on the design.
+/// Registers a map to the design.
 class Registration {
  public:
   Registration(const FacetMap& map, const DesignSurface& surface)
@@ -210,7 +215,8 @@ class Registration {
     return all;
   }
 
-  /// The median distance of points on facets off the design: a face fits itself wherever it lies.
+  /// Returns the median distance of points on facets from the design. Points on the blank's face are ignored, because
+  /// the face fits itself in any position.
   double off_mm(const RigidMotion& pose) const {
     std::vector<double> off;
     for (const Vec3& p : fine_) {
@@ -221,8 +227,8 @@ class Registration {
     return off.empty() ? std::numeric_limits<double>::infinity() : median_of(off);
   }
 
-  /// Steps of Gauss and Newton, each point drawn to the plane that it lies over: of all points, or of those that are
-  /// clear of edges.
+  /// Improves a pose by Gauss-Newton steps, which minimize the distances of the points from the planes below them.
+  /// \param is_clear true: only points away from edges are used
   void refine(RigidMotion& pose, bool is_clear) const {
     for (int step = 0; step < kMostMoves; ++step) {
       std::vector<std::pair<Vec3, Region>> placed;
@@ -260,27 +266,27 @@ class Registration {
 
   const DesignSurface& surface_;
   std::vector<Vec3> points_;
-  std::vector<Vec3> coarse_;  ///< few of them, to try places with
-  std::vector<Vec3> fine_;    ///< more, to refine
+  std::vector<Vec3> coarse_;  ///< few points, for the coarse search
+  std::vector<Vec3> fine_;    ///< more points, for the refinement
   double margin_mm_ = 0.0;
   double reach_mm_ = 0.0;
 };
 
-/// A plane through heights over a region, about the middle of its points: its height and both tilts.
+/// Plane that is fitted to the heights of a region: its height at the centroid of the points, and its slopes.
 struct RegionFit {
   Vec2 middle_mm;
   Vec3 value;
   Vec3 uncertainty;
 };
 
-/// How far a point lies over the plane of a fit.
+/// Returns the height of a point above the plane of a fit.
 double left_of(const RegionFit& fit, const Vec3& p) {
   return p.z() - fit.value.dot(Vec3(1.0, p.x() - fit.middle_mm.x(), p.y() - fit.middle_mm.y()));
 }
 
-/// Fits a plane, and waves with it that would tilt it.
-/// \param points two coordinates and the height of each; those too far off the others do not count
-/// \param waves in radians for a mm of either coordinate
+/// Fits a plane together with waves that would otherwise tilt it.
+/// \param points two coordinates and the height of each point; points that are too far from the plane are left out
+/// \param waves angular wave vectors of the waves, in rad/mm
 std::optional<RegionFit> fitted(const std::vector<Vec3>& points, const std::vector<Vec2>& waves = {}) {
   constexpr int kRounds = 8;
   RegionFit fit{Vec2::Zero(), Vec3::Zero(), Vec3::Zero()};
@@ -331,7 +337,9 @@ std::optional<RegionFit> fitted(const std::vector<Vec3>& points, const std::vect
   return fit;
 }
 
-/// A facet's plane without its marks and waves, and what that leaves. \param points up the facet, along it, the height
+/// Fits the plane of a facet without its marks and waves.
+/// \param points distances up the facet and along it, and the height
+/// \param rest receives the marks and waves
 std::optional<RegionFit> fitted_facet(const std::vector<Vec3>& points, const EdgeView& view, const Vec2& pitch_mm,
                                       FacetRest& rest) {
   constexpr int kRounds = 3;
@@ -359,7 +367,7 @@ std::optional<RegionFit> fitted_facet(const std::vector<Vec3>& points, const Edg
   return waves.empty() ? fit : fitted(unmarked, waves);
 }
 
-/// How far points of a map lie apart along a direction of the part, in the facet that it lies in.
+/// Returns the distance of neighbouring points of a map along a direction of the part.
 double pitch_mm(const FacetMap& map, const RigidMotion& part_from_map, const Vec3& along) {
   const Vec3 seen = part_from_map.rotation.transpose() * along;
   return 1e-3 * std::min(map.heights.x_pixel_um / std::max(std::abs(seen.x()), 1e-6),
@@ -425,7 +433,7 @@ RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
     if (view == views.end()) continue;
     const Groove& groove = grooves[region.element];
     const auto pitch = [&, facet = region.facet](Eigen::Index axis) {
-      // Directions of the edge and of its way: the rows of what takes places on the facet to them.
+      // Direction along the edge (axis 0) or along its motion (axis 1).
       return pitch_mm(map, result.part_from_map,
                       view->second.of_up[axis] * groove.facets[facet].up_slope +
                           view->second.of_along[axis] * groove.level_of(facet));

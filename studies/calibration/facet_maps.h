@@ -1,6 +1,6 @@
 #pragma once
 
-// Height maps of a part: where they lie on it, and what they say of its facets.
+// Registers height maps of a part to its design, and measures the facets in them.
 
 #include <optional>
 #include <string>
@@ -12,27 +12,28 @@
 
 namespace retrace::studies {
 
-/// A measured piece of a part's surface. Its rows lie along x of the workpiece and follow each other along y, but for
-/// the turn; it lies askew as it may.
+/// Height map of a region of a part's surface. Its rows are parallel to x of the workpiece and follow each other along
+/// y, except for a rotation about z and an unknown small tilt.
 struct FacetMap {
   std::string file;  ///< for messages
   surface_models::HeightMap heights;
-  geometry::Vec2 middle_mm = geometry::Vec2::Zero();  ///< of the map in the workpiece frame, within half an element
-  double turn_deg = 0.0;                              ///< about z, within 2
+  /// Centre of the map in the workpiece frame, accurate to half an element.
+  geometry::Vec2 middle_mm = geometry::Vec2::Zero();
+  double turn_deg = 0.0;  ///< rotation about z, accurate to 2 degrees
 };
 
-/// A registered map: turned and shifted so that it lies on the design as well as it can.
+/// Registered map: the rotation and translation that fit it best to the design.
 struct RegisteredMap {
-  fabrication::RigidMotion part_from_map;  ///< from the map's middle
-  double rms_nm = 0.0;                     ///< of what then lies off the design
-  std::vector<Measurement> figures;        ///< of every facet that it shows: distance and both tilts
-  std::optional<FaceFigures> face;         ///< none: it shows too little of the blank's face
-  std::vector<FacetRest> rests;            ///< of the facets that figures are of: what these leave
+  fabrication::RigidMotion part_from_map;  ///< transformation of points relative to the centre of the map
+  double rms_nm = 0.0;                     ///< rms deviation from the design after registration
+  std::vector<Measurement> figures;        ///< distance and both tilts of every facet that the map shows
+  std::optional<FaceFigures> face;         ///< figures of the blank's face; none: the map shows too little of it
+  std::vector<FacetRest> rests;            ///< waves and marks of the measured facets
 };
 
-/// Marks of chips and scratches are left out of figures.
-/// \param plan of the programs that cut the part
-/// \throw InputError for a map that lies nowhere on the design, or shows no facet
+/// Registers a map to the design and measures its facets. Marks of chips and scratches are excluded from the figures.
+/// \param plan plan of the programs that cut the part
+/// \throw InputError for a map that fits no position on the design, or shows no facet
 RegisteredMap registered(const FacetMap& map, const FabricationResult& plan);
 
 }  // namespace retrace::studies

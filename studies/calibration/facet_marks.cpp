@@ -21,10 +21,12 @@ constexpr double kUmPerMm = 1e3;
 constexpr double kBesideUm = 30.0;
 /// Minimum number of periods on a facet. Longer waves belong to the form of the facet.
 constexpr double kLeastPeriods = 3.0;
-/// Relative tolerance for equal frequencies, and tolerance in periods over the facet.
+/// Tolerances within which waves of two facets count as the same wave: relative difference of their frequencies, and
+/// difference of their numbers of periods on a facet.
 constexpr double kSameFrequency = 0.02;
 constexpr double kSamePeriods = 0.5;
-/// Minimum fraction of the facets showing a position that must have a mark there, for a mark caused by the tool's edge.
+/// Minimum fraction of the facets with a mark at a position, for which the mark counts as caused by the tool's edge.
+/// Only facets whose measured area contains the position are counted.
 constexpr double kShareOfEdge = 0.5;
 /// Minimum distance, in um, of detectable marks from the end of the measured area of a facet.
 constexpr double kUnseenUm = kBesideUm;

@@ -1,14 +1,14 @@
 #pragma once
 
-// Waves, and marks of chips and scratches, that are left of measured facets once their planes are taken away. They are
-// told, not corrected.
+// Finds waves, and marks of chips and scratches, in the residual heights of measured facets after their planes are
+// subtracted. Waves and marks are reported, not corrected.
 //
-// A facet is a rectangle or a triangle that stands over the plane of its map, turned as it may be. What is left of it
-// is therefore laid out anew over the two directions of its cut: along the edge that cut it, counted from the middle of
-// the edge, and up the facet, along which the edge went. There what the edge does lies at one place, and what happens
-// in time lies along the other axis: waves along the edge are those of the edge itself, waves up the facet those of a
-// drive or a spindle, and a chip of the edge leaves a ridge up each facet at the same place. Each layout is measured
-// with the means of `retrace metrology`; what facets have in common is then told once.
+// A facet is a rectangle or a triangle in any orientation to the grid of its height map. Its residual heights are
+// therefore resampled on a grid along the two directions of its cut: x along the cutting edge, from the centre of the
+// edge, and y up the facet, in the direction in which the edge moved. Effects of the edge depend only on x, and effects
+// in time depend only on y. Waves along x are those of the edge itself, waves along y come from a drive or a spindle,
+// and a chip of the edge leaves a ridge along y at the same x on each facet. Each grid is evaluated with the methods of
+// `retrace metrology`. Features that facets have in common are reported one time.
 
 #include <map>
 #include <optional>
@@ -21,61 +21,68 @@
 
 namespace retrace::studies {
 
-/// Where points of a facet lie under the edge that cut it.
+/// Transformation of points of a facet to coordinates of its cut: x along the cutting edge, from the centre of the
+/// edge, and y up the facet.
 struct EdgeView {
-  geometry::Vec2 root_mm =
-      geometry::Vec2::Zero();                      ///< the facet's root or apex: along the edge from its middle, and up
-  geometry::Vec2 of_up = geometry::Vec2::UnitY();  ///< for a mm up the facet's slope
-  geometry::Vec2 of_along = geometry::Vec2::UnitX();  ///< and along its level line
+  geometry::Vec2 root_mm = geometry::Vec2::Zero();  ///< coordinates of the facet's root or apex
+  geometry::Vec2 of_up = geometry::Vec2::UnitY();   ///< coordinates of a step of 1 mm up the facet
+  /// Coordinates of a step of 1 mm along the facet's horizontal line.
+  geometry::Vec2 of_along = geometry::Vec2::UnitX();
 
-  /// \param p up the facet and along it, from its root
+  /// Returns the coordinates of a point.
+  /// \param p distances from the root, up the facet and along its horizontal line
   geometry::Vec2 place_mm(const geometry::Vec3& p) const { return root_mm + p.x() * of_up + p.y() * of_along; }
 };
 
-/// The facets of these elements, ascending, as their last cuts made them.
+/// Returns the transformations for the last cuts of the facets.
+/// \param elements numbers of the elements, in ascending order
 std::map<FacetPlace, EdgeView> edge_views(const FabricationResult& plan, const std::vector<std::size_t>& elements);
 
-/// What is left of a facet.
+/// Waves and marks in the residual heights of a facet. Coordinates are those of EdgeView.
 struct FacetRest {
   FacetPlace at;
-  geometry::Vec2 low_mm = geometry::Vec2::Zero();  ///< of what is shown of it: along the edge and up the facet
+  geometry::Vec2 low_mm = geometry::Vec2::Zero();  ///< lower limits of the measured area
   geometry::Vec2 high_mm = geometry::Vec2::Zero();
-  geometry::Vec2 pitch_mm = geometry::Vec2::Zero();  ///< of the map's points, likewise
-  std::vector<surface_models::SpectralPeak> waves;   ///< along x: along the edge; along y: up the facet
-  /// That run along y, the cut, and along x, the edge; their positions count from the edge's middle and from where its
-  /// tip stood last.
+  geometry::Vec2 pitch_mm = geometry::Vec2::Zero();  ///< distances between points of the map
+  std::vector<surface_models::SpectralPeak> waves;   ///< waves along x (the edge) or along y (up the facet)
+  /// Marks that run along y (the cut) or along x (the edge). Positions count from the centre of the edge, or from the
+  /// last position of its tip.
   std::vector<surface_models::Scratch> marks;
 
-  /// Whether a place lies in a mark, or so near that its flanks may reach there.
+  /// Returns true if a position is inside a mark or so close that the flanks of the mark may extend to it.
   bool is_marked(const geometry::Vec2& place_mm) const;
 };
 
-/// Marks of a facet. \param left places by EdgeView and heights over the plane, mm \param pitch_mm of the map's points
+/// Finds the marks of a facet.
+/// \param left coordinates of EdgeView and residual heights, in mm
+/// \param pitch_mm distances between points of the map
 FacetRest marks_of(const FacetPlace& at, std::span<const geometry::Vec3> left, const geometry::Vec2& pitch_mm);
-/// And its waves, beside the marks that it has.
+/// Adds the waves of a facet. Points inside the marks of `rest` are left out.
 void add_waves(FacetRest& rest, std::span<const geometry::Vec3> left);
 
-/// A wave that facets have in common.
+/// Wave that facets have in common.
 struct FacetWave {
-  bool is_along_edge = false;  ///< else up the facet
+  bool is_along_edge = false;  ///< true: along the edge; false: up the facet
   double length_um = 0.0;
-  double amplitude_nm = 0.0;           ///< root mean square of those of its facets
-  std::optional<double> frequency_hz;  ///< of one up the facet
+  double amplitude_nm = 0.0;           ///< root mean square of the amplitudes on the facets
+  std::optional<double> frequency_hz;  ///< temporal frequency of a wave up the facet; none for a wave along the edge
   std::vector<FacetPlace> facets;
 };
 
-/// A ridge or a groove that facets have at the same place.
+/// Ridge or groove that facets have at the same position.
 struct FacetMark {
-  bool is_along_cut = false;  ///< else along the edge
-  bool is_of_edge = false;    ///< it is on most of the facets that show its place
-  double place_um = 0.0;      ///< along the edge from its middle, or up the facet from where the tip stood last
-  double height_nm = 0.0;     ///< mean; negative: a groove
-  double width_um = 0.0;      ///< over which it stays beyond half of that
+  bool is_along_cut = false;  ///< true: along the cut; false: along the edge
+  bool is_of_edge = false;    ///< true: the edge causes the mark, which most facets with this position have
+  /// Position along the edge from its centre, or up the facet from the last position of the tip.
+  double place_um = 0.0;
+  double height_nm = 0.0;  ///< mean height; negative: a groove
+  double width_um = 0.0;   ///< full width at half of the height
   std::vector<FacetPlace> facets;
-  std::size_t shown = 0;  ///< facets that show its place
+  std::size_t shown = 0;  ///< number of facets whose measured area contains the position
 };
 
-/// What rests have in common. \param feed_mm_per_min of their cuts
+/// Returns the waves or marks that facets have in common, the highest first.
+/// \param feed_mm_per_min feed of the cuts of the facets
 std::vector<FacetWave> common_waves(const std::vector<FacetRest>& rests, double feed_mm_per_min);
 std::vector<FacetMark> common_marks(const std::vector<FacetRest>& rests);
 

@@ -10,18 +10,20 @@ namespace {
 using Eigen::Index;
 using fabrication::Machine, fabrication::SetupQuantity, fabrication::kNmPerMm;
 
-/// Steps of um and arcsec over which differences are taken: measurements are smooth over millions of them.
+/// Step of the difference quotients, in um and arcsec. Measurements are smooth over millions of such steps.
 constexpr double kStep = 1.0;
-/// Of a part's pose: three turns, shifts along X, Y and Z; then the turns of the face about X and Y.
+/// Numbers of unknowns of a part's pose: three rotations, then shifts along X, Y and Z. The rotations of the face about
+/// X and Y follow.
 constexpr Index kTurns = 3;
 constexpr Index kPose = 6;
 constexpr double kUmInMm = 1e3;
 
-/// Standard deviations of poses, um and arcsec.
+/// Standard deviations of the priors on poses, in um and arcsec.
 constexpr double kShiftByEye = 100.0;
 constexpr double kTurnByEye = 3600.0;
 
-/// \param unknown of one part, or kPose and kPose + 1: of the face
+/// Adds an amount to an unknown of a pose.
+/// \param unknown index of an unknown of the part, or kPose and kPose + 1 for the rotations of the face
 void move_one(PartPose& pose, Index unknown, double amount) {
   if (unknown >= kPose)
     pose.face_turn_arcsec[unknown - kPose] += amount;
@@ -29,7 +31,7 @@ void move_one(PartPose& pose, Index unknown, double amount) {
     (unknown < kTurns ? pose.turn_arcsec[unknown] : pose.shift_um[unknown - kTurns]) += amount;
 }
 
-/// What a map that lies askew shows of the face.
+/// Returns the height and tilts of the face that a map with this pose shows.
 geometry::Vec3 predicted_face(const FaceFigures& face, const PartPose& pose) {
   const geometry::Vec3 normal = pose.face_rotation().col(2);
   const geometry::Vec3 shift = pose.shift_um / kUmInMm;

@@ -1,7 +1,7 @@
 #pragma once
 
-// How measurements change with the set-up of the machine that cut the parts, and with how these lay when they were
-// measured.
+// Linear model of measurements: their derivatives with respect to the set-up of the machine and to the poses of the
+// parts during the measurement.
 
 #include <Eigen/Core>
 #include <optional>
@@ -13,36 +13,40 @@
 
 namespace retrace::studies {
 
-/// Measurements about a machine, each divided by its standard uncertainty.
+/// Linear model of the measurements at a given machine. Each row is divided by the standard uncertainty of its
+/// measurement.
 struct LinearModel {
-  Eigen::MatrixXd of_setup;  ///< by setup_quantities()
-  /// By the poses of the parts: shifts along X and Y and three turns of each. Heights count from the face that the tool
-  /// was touched off on, which therefore lies where programs have it. Maps lie at any height as well, which what they
-  /// show of the face tells; how that face lay in the machine, two turns, is common to all maps of a part.
+  Eigen::MatrixXd of_setup;  ///< derivatives with respect to the quantities of setup_quantities()
+  /// Derivatives with respect to the poses of the parts. Each part has shifts along X and Y and three rotations.
+  /// Heights are relative to the face on which the tool was touched off. Its height is therefore that of the programs.
+  /// For height maps, the height is unknown as well; the figures of the face determine it. The two rotations of the
+  /// face in the machine are common to all maps of a part.
   Eigen::MatrixXd of_poses;
-  Eigen::VectorXd residual;  ///< what was measured, less what the machine would leave
+  Eigen::VectorXd residual;  ///< measured values minus the values that the machine would produce
 };
 
-/// \param parts as Measurement::part counts them
-/// \param map_faces as MeasuredParts::map_faces; three rows more for each face, behind all measurements
-/// \param poses about which the model is, of each part; none: all as programs have them
+/// Returns the linear model.
+/// \param parts measured parts, in the order of Measurement::part
+/// \param map_faces as MeasuredParts::map_faces; each face adds three rows after those of all measurements
+/// \param poses pose of each part at which the derivatives are taken; empty: the poses in the programs
 LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Measurement> measurements,
                          const fabrication::Machine& machine,
                          const std::vector<std::optional<FaceFigures>>& map_faces = {},
                          const std::vector<PartPose>& poses = {});
 
-/// LinearModel::residual alone.
+/// Returns only LinearModel::residual.
 Eigen::VectorXd residual_of(const std::vector<CutPart>& parts, std::span<const Measurement> measurements,
                             const fabrication::Machine& machine,
                             const std::vector<std::optional<FaceFigures>>& map_faces,
                             const std::vector<PartPose>& poses);
 
-/// The same with what is known of poses without measurements, as rows behind all others: parts lie where programs have
-/// them to 100 um and a degree (standard). Without it a shift that only moves facets because they are tilted a little
-/// could be of any size, and take the place of what is told.
+/// Returns the model with prior knowledge about the poses as additional rows at the end. The priors have standard
+/// deviations of 100 um and one degree about the poses in the programs. Without them, a shift that moves facets only
+/// because they are slightly tilted could become arbitrarily large and hide an observable combination.
 LinearModel with_poses_by_eye(LinearModel model, const std::vector<PartPose>& poses);
 
-/// Poses moved by the unknowns of LinearModel::of_poses. \pre poses are as many as parts
+/// Adds changes of the unknowns of LinearModel::of_poses to the poses.
+/// \pre there is one pose for each part
 void move(std::vector<PartPose>& poses, const Eigen::VectorXd& by);
 
 }  // namespace retrace::studies

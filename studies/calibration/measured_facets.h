@@ -34,65 +34,70 @@ enum class FacetQuantity {
 inline constexpr std::string_view kFacetQuantityWords[] = {"distance_nm",  "up_arcsec", "along_arcsec",
                                                            "angle_arcsec", "depth_nm",  "end_nm"};
 
-/// A facet of a part.
+/// Facet of a part.
 struct FacetPlace {
-  std::size_t element = 0;  ///< its number, as programs have it
-  std::size_t facet = 0;    ///< from 0
+  std::size_t element = 0;  ///< number of the element in the programs
+  std::size_t facet = 0;    ///< index of the facet, from 0
 
   auto operator<=>(const FacetPlace&) const = default;
 };
 
-/// One figure that was measured.
+/// Measured value.
 struct Measurement {
-  std::size_t part = 0;  ///< of those that were cut, each by a job of its own
+  std::size_t part = 0;  ///< index of the part, in the order of the jobs
   FacetPlace at;
   FacetQuantity what = FacetQuantity::distance;
-  double value = 0.0;              ///< in the quantity's unit
-  double uncertainty = 1.0;        ///< standard, likewise; > 0
-  std::optional<FacetPlace> from;  ///< the value is the difference from this facet's; of `angle` the other facet
-  double along_edge = 0.0;         ///< of `end`: -1 and 1 at the ends of the edge, 0 in its middle
-  int line = 0;                    ///< of the file
-  /// Of `distance`: where, up the facet from the root and along that; none: in the facet's middle.
+  double value = 0.0;        ///< measured value, in the unit of the quantity
+  double uncertainty = 1.0;  ///< standard uncertainty, in the unit of the quantity; > 0
+  /// Reference facet, from whose value the measured value is the difference. For `angle`, the other facet of the angle.
+  std::optional<FacetPlace> from;
+  double along_edge = 0.0;  ///< for `end`: position along the edge; -1 and 1 at its ends, 0 at its centre
+  int line = 0;             ///< line in the file; 0 for values from height maps
+  /// For `distance`: position on the facet, up the facet from the root and along the root. None: the centre of the
+  /// facet.
   std::optional<geometry::Vec2> place_mm = {};
 };
 
-/// What a map of a part shows of the blank's face about the middle of what it shows of it: its height over the face,
-/// nm, and its tilts, which rise along X and Y of the workpiece, arcsec.
+/// Figures of the blank's face in a height map, at the centroid of the measured points of the face: height relative to
+/// the nominal face in nm, and tilts that rise along X and Y of the workpiece in arcsec.
 struct FaceFigures {
   geometry::Vec2 middle_mm = geometry::Vec2::Zero();
   geometry::Vec3 value = geometry::Vec3::Zero();
-  geometry::Vec3 uncertainty = geometry::Vec3::Ones();  ///< standard
+  geometry::Vec3 uncertainty = geometry::Vec3::Ones();  ///< standard uncertainties of the values
 };
 
-/// How a part lies where it is measured, against how it lay when it was cut: small, and never known.
+/// Pose of a part during its measurement, relative to its pose during cutting. It is small and unknown.
 struct PartPose {
   geometry::Vec3 shift_um = geometry::Vec3::Zero();
-  geometry::Vec3 turn_arcsec = geometry::Vec3::Zero();  ///< as a vector of rotation
-  /// Of a part that is seen from its face: how its facets are turned against that, before, about X and Y.
+  geometry::Vec3 turn_arcsec = geometry::Vec3::Zero();  ///< rotation vector
+  /// For height maps: rotation of the facets relative to the blank's face, about X and Y. It is applied before
+  /// `turn_arcsec`.
   geometry::Vec2 face_turn_arcsec = geometry::Vec2::Zero();
 
-  /// Of the face; and of the facets.
+  /// These functions return the rotation of the face and of the facets.
   Eigen::Matrix3d face_rotation() const;
   Eigen::Matrix3d rotation() const;
 };
 
-/// The facets of a part as its programs ask for them, so that it can be told what any machine makes of them.
+/// Facets of a part as its programs cut them. They are used to predict the measurements for any machine.
 class CutPart {
  public:
-  /// Facets of these elements alone, ascending.
+  /// \param elements numbers of the elements to use, in ascending order; empty: all elements
   CutPart(const FabricationResult& result, const std::vector<std::size_t>& elements);
 
-  /// What is wrong with a measurement of this part; empty: nothing.
+  /// Returns the reason why a measurement is not possible for this part. Empty if it is possible.
   std::string fault_of(const Measurement& measurement) const;
   /// Returns the meaning of a positive value of a measurement, such as "rises towards +Y". Directions are machine axes
   /// at A = C = 0 (or B = C = 0).
   /// \pre fault_of() is empty
   std::string positive_sense(const Measurement& measurement) const;
-  /// What would be measured. \pre fault_of() is empty
+  /// Returns the value that would be measured.
+  /// \param real machine that cut the part
+  /// \pre fault_of() is empty
   double predicted(const Measurement& measurement, const fabrication::Machine& real, const PartPose& pose) const;
 
  private:
-  /// A facet as a machine makes it.
+  /// Facet as a machine cuts it.
   struct MadeFacet {
     const fabrication::Groove* groove = nullptr;
     std::size_t facet = 0;
@@ -112,7 +117,7 @@ class CutPart {
   double end_nm(const Measurement& measurement, const fabrication::Machine& real) const;
 
   std::vector<fabrication::Groove> grooves_;
-  std::map<std::pair<std::size_t, std::size_t>, fabrication::EdgeCut> cuts_;  ///< the last, by element and facet
+  std::map<std::pair<std::size_t, std::size_t>, fabrication::EdgeCut> cuts_;  ///< last cuts, by element and facet
   double half_edge_mm_ = 0.0;
 };
 

@@ -19,15 +19,17 @@ namespace {
 using namespace fabrication;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Half of each is an angle of A; a chisel of 50 and 3 degrees cuts all of them.
+/// Apex angles of the test prisms. Axis A is at half of each angle. A chisel with a wedge angle of 50 degrees and a
+/// clearance of 3 degrees can cut all of them.
 constexpr double kApexAnglesDeg[] = {90.0, 70.0, 105.0};
-/// From one prism to the next: a lever for what turns, which a microscope's stage still reaches.
+/// Distance between neighbouring prisms. It is the lever arm for angular errors, and is within the travel of a
+/// microscope's stage.
 constexpr double kPitchMm = 10.0;
-/// Figures are taken until what they tell is this much less certain than by all of them.
+/// Maximum ratio of the uncertainty with the chosen measurements to that with all possible measurements.
 constexpr double kEnough = 3.0;
 
-/// Standard uncertainties of who measures with a profiler, an autocollimator and an AFM. The table that is written can
-/// be changed.
+/// Returns the standard uncertainty of measurements with a profiler, an autocollimator and an AFM. The user can change
+/// the values in the written table.
 double uncertainty_of(FacetQuantity what) {
   switch (what) {
     case FacetQuantity::distance: return 20.0;
@@ -36,7 +38,7 @@ double uncertainty_of(FacetQuantity what) {
   }
 }
 
-/// Four prisms of the design's base.
+/// Returns a design of four prisms with the base of the given design.
 Design test_design(const Design& design, double apex_angle_deg, double most_mm) {
   const auto* const array = std::get_if<ElementArray>(&design.shape);
   const auto* const prism = array ? std::get_if<geometry::RtpElement>(&array->part.element) : nullptr;
@@ -79,7 +81,7 @@ Estimate estimate_of(const LinearModel& model) {
   return estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
 }
 
-/// Takes figures one by one.
+/// Chooses measurements one by one.
 class Chooser {
  public:
   explicit Chooser(const LinearModel& all) : all_(all), of_all_(estimate_of(all)) {
@@ -109,7 +111,8 @@ class Chooser {
            });
   }
 
-  /// The figure that makes the told quantities most certain, each beside what all figures make of it.
+  /// Takes the measurement that reduces the uncertainties of the observable quantities most, each relative to its
+  /// uncertainty with all measurements.
   Index take() {
     Index best = 0;
     double most = -1.0;
@@ -130,8 +133,8 @@ class Chooser {
 
   const LinearModel& all_;
   Estimate of_all_;
-  MatrixXd rows_;        ///< of all unknowns, poses too
-  MatrixXd covariance_;  ///< by the figures taken so far
+  MatrixXd rows_;        ///< derivatives with respect to all unknowns, including poses
+  MatrixXd covariance_;  ///< covariance matrix from the measurements taken so far
   Eigen::Array<bool, Eigen::Dynamic, 1> taken_;
   std::vector<Index> told_;
 };

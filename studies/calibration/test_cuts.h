@@ -1,6 +1,6 @@
 #pragma once
 
-// Test cuts: few prisms in few poses, and which figures of them tell how a machine is set up.
+// Test cuts: a few prisms in a few poses, and the measurements of them that determine the set-up of a machine.
 
 #include <cstddef>
 #include <string>
@@ -11,24 +11,25 @@
 
 namespace retrace::studies {
 
-/// What the test cuts will say of a quantity of the set-up.
+/// Expected result of the test cuts for a quantity of the set-up.
 struct PlannedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
   bool is_told = false;
-  double uncertainty = 0.0;        ///< standard, um or arcsec
-  std::vector<std::size_t> needs;  ///< parts without any one of which it is not told
+  double uncertainty = 0.0;        ///< expected standard uncertainty, um or arcsec
+  std::vector<std::size_t> needs;  ///< needed parts: without one of them, the quantity is unobservable
 };
 
 struct TestCuts {
-  std::vector<MadeJob> jobs;                ///< by MeasuredParts::jobs
-  MeasuredParts parts;                      ///< what is to be measured, without values
-  std::vector<PlannedQuantity> quantities;  ///< as setup_quantities()
-  std::vector<std::string> untold;          ///< combinations that no figure tells
+  std::vector<MadeJob> jobs;                ///< jobs, in the order of MeasuredParts::jobs
+  MeasuredParts parts;                      ///< measurements to be made, without values
+  std::vector<PlannedQuantity> quantities;  ///< quantities, in the order of setup_quantities()
+  std::vector<std::string> untold;          ///< unobservable combinations, as text
 };
 
-/// Jobs of four prisms each, two of them turned, of apex angles that the tool can cut: A stands at half of each, C at
-/// 0, 90, 180 and 270. Figures are chosen one after the other, always the one that tells most of what is not known yet,
-/// until all that any of them tell is known half as well as by all of them together, and each is checked by others.
+/// Plans the test cuts. Each job has four prisms, two of them rotated, and an apex angle that the tool can cut. Axis A
+/// is at half of the apex angle, and C at 0, 90, 180 and 270 degrees. Measurements are chosen one by one, each time the
+/// one that reduces the uncertainty most. The choice ends when each observable quantity has at most three times the
+/// uncertainty that all possible measurements would give, and each measurement is checked by others.
 /// \throw InputError for designs without prisms and requests that cannot be cut
 TestCuts plan_test_cuts(const Design& design, const JobRequest& request);
 

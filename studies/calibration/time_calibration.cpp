@@ -24,28 +24,29 @@ constexpr auto at(TimeQuantity quantity) {
   return static_cast<Index>(quantity);
 }
 
-/// Unknowns that are less certain than this count as untold: settling and ramp in s, accelerations in the logarithm of
-/// their factor.
+/// Standard uncertainties above which an unknown counts as undetermined. Settling and ramp are in s, accelerations in
+/// the logarithm of their factor.
 constexpr double kTooUncertain[kTimeQuantities] = {0.05, 0.7, 0.05, 0.7};
-/// Below which a step of an unknown, in parts of that, ends the search.
+/// Length of the last step of the search, as a fraction of kTooUncertain.
 constexpr double kLastTimeStep = 1e-7;
 constexpr int kMostTimeSteps = 60;
-/// Ramps and factors of acceleration from which the search begins: time is not convex in them.
+/// Ramps and acceleration factors at which searches start. Several starts are needed because the sum of squares is not
+/// convex in these unknowns.
 constexpr double kFirstRampsS[] = {0.0, 3e-3, 1e-2, 3e-2, 0.1};
 constexpr double kFirstFactors[] = {0.5, 1.0, 2.0};
-/// Rows that miss what the others say by more than this are named.
+/// Deviation, in standard deviations, above which a row causes a warning.
 constexpr double kManyDeviations = 4.0;
-/// Ramps that are shorter are none.
+/// Ramps below this time count as 0.
 constexpr double kLeastRampS = 1e-6;
 
-/// Unknowns in parts of kTooUncertain; both factors are 1 where theirs are 0.
+/// Unknowns as multiples of kTooUncertain. For both acceleration factors, the unknown is the logarithm of the factor.
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 
 bool is_bounded(Index unknown) {
   return unknown == at(TimeQuantity::settling) || unknown == at(TimeQuantity::linear_ramp);
 }
 
-/// What a machine file can say: 10 s, and a factor of 100.
+/// Returns the maximum of an unknown that a machine file may contain: 10 s, or a factor of 100.
 double most(Index unknown) {
   return (is_bounded(unknown) ? 10.0 : std::log(100.0)) / kTooUncertain[unknown];
 }
@@ -55,7 +56,7 @@ double value_of(const Unknowns& unknowns, TimeQuantity quantity) {
   return is_bounded(at(quantity)) ? amount : std::exp(amount);
 }
 
-/// Until an axis has its acceleration.
+/// Returns the time in which an axis reaches its acceleration.
 double ramp_s(const LinearAxis& axis) {
   return axis.acceleration_mm_per_s2.value / axis.jerk_mm_per_s3.value;
 }
@@ -73,7 +74,7 @@ Unknowns of_machine(const Machine& machine) {
 
 Machine with_times(Machine machine, const Unknowns& unknowns) {
   machine.settling_s.value = value_of(unknowns, TimeQuantity::settling);
-  // Ramps of axes stay in proportion; of a file without jerks all are alike.
+  // The ramps of the axes keep their ratios. If the machine file has no jerks, all ramps are equal.
   const double longest_before = longest_ramp_s(machine);
   const double longest = value_of(unknowns, TimeQuantity::linear_ramp);
   for (LinearAxis* axis : {&machine.x, &machine.y, &machine.z}) {
@@ -83,14 +84,14 @@ Machine with_times(Machine machine, const Unknowns& unknowns) {
         ramp > kLeastRampS ? axis->acceleration_mm_per_s2.value / ramp : std::numeric_limits<double>::infinity();
   }
   for (RotaryAxis* axis : {&machine.a, &machine.c}) {
-    // Its ramp takes as long as before.
+    // Acceleration and jerk are scaled by the same factor, so that the ramp takes the same time.
     axis->acceleration_deg_per_s2.value *= value_of(unknowns, TimeQuantity::rotary_acceleration);
     axis->jerk_deg_per_s3.value *= value_of(unknowns, TimeQuantity::rotary_acceleration);
   }
   return machine;
 }
 
-/// Times of the rows on a machine, what was measured less those, and derivatives: each in uncertainties of its row.
+/// Least-squares problem of the rows: residuals and derivatives, each divided by the standard uncertainty of its row.
 class Fit {
  public:
   Fit(const TimedPrograms& programs, const Machine& nominal) : programs_(programs), nominal_(nominal) {}
@@ -118,7 +119,7 @@ class Fit {
     return result;
   }
 
-  /// Derivatives without those of unknowns at their bound that would fall below it.
+  /// Returns the derivatives. Columns of unknowns that are at their bound and would fall below it are 0.
   Eigen::MatrixXd free_derivatives(const Unknowns& unknowns, const VectorXd& left) const {
     Eigen::MatrixXd result = derivatives(unknowns);
     for (Index k = 0; k < kUnknowns; ++k)
@@ -126,7 +127,8 @@ class Fit {
     return result;
   }
 
-  /// Gauss-Newton steps from there, halved until they are no worse.
+  /// Returns the local minimum near the given unknowns. Gauss-Newton steps are halved until they do not increase the
+  /// sum of squares.
   Unknowns nearest(Unknowns unknowns) const {
     const Eigen::MatrixXd nothing(static_cast<Index>(programs_.rows.size()), 0);
     VectorXd left = residual(unknowns);
@@ -159,7 +161,8 @@ class Fit {
         start[at(TimeQuantity::linear_acceleration)] =
             std::log(factor) / kTooUncertain[at(TimeQuantity::linear_acceleration)];
         const Unknowns other = nearest(start);
-        // Better by more than what rounding makes of it: what is not told stays as the file has it.
+        // Accept only an improvement beyond rounding errors, so that undetermined unknowns keep the values of the
+        // machine file.
         if (residual(other).squaredNorm() < residual(found).squaredNorm() * (1.0 - 1e-6) - 1e-9) found = other;
       }
     return found;
@@ -206,7 +209,7 @@ void warn_of_misses(TimeCalibration& result, const Estimate& fitted) {
   for (std::size_t k = 0; k < result.residuals.size(); ++k) {
     const auto row = static_cast<Index>(k);
     const double spare = 1.0 - fitted.leverage[row];
-    // A row that nothing checks is met, unless no machine takes so long.
+    // A row that no other row checks has a residual of 0, unless no machine can take so long.
     const double deviations = std::abs(result.residuals[k]) / (spare > 1e-6 ? std::sqrt(spare) : 1.0);
     if (deviations > kManyDeviations)
       result.warnings.push_back(

@@ -1,7 +1,7 @@
 #pragma once
 
-// From how long programs took to how the axes of the machine speed up and settle. The study behind
-// `retrace calibrate --times`.
+// Estimates accelerations, ramps and settling times of a machine's axes from measured program times. `retrace calibrate
+// --times` runs this study.
 
 #include <array>
 #include <cstddef>
@@ -16,33 +16,33 @@
 
 namespace retrace::studies {
 
-/// Moves that are alike: of one of them the time of all follows.
+/// Number of equal moves, which take the same time.
 struct AlikeMoves {
   fabrication::NcMotion motion;
   std::int64_t count = 0;
 };
 
-/// How long a program took, or some of its lines.
+/// Measured time of a program, or of some of its lines.
 struct TimedMoves {
-  int line = 0;         ///< of the table
-  std::string program;  ///< as the table has it
+  int line = 0;         ///< line in the table
+  std::string program;  ///< name of the program, as given in the table
   double seconds = 0.0;
-  double uncertainty_s = 0.0;  ///< standard
+  double uncertainty_s = 0.0;  ///< standard uncertainty
   std::vector<AlikeMoves> moves;
   double dwell_s = 0.0;
 
-  /// As long as that machine takes.
+  /// Returns the time that a machine takes for the moves and dwells.
   double on_s(const fabrication::Machine& machine) const;
 };
 
-/// Programs of a machine with their times.
+/// Programs of a machine with their measured times.
 struct TimedPrograms {
-  std::string file;  ///< of the table, for messages
+  std::string file;  ///< name of the table, for messages
   std::vector<TimedMoves> rows;
-  std::size_t empty_rows = 0;  ///< that have no time yet
+  std::size_t empty_rows = 0;  ///< number of rows without a time
 };
 
-/// What times tell, in the order of TimeCalibration::quantities.
+/// Quantities that program times determine, in the order of TimeCalibration::quantities.
 enum class TimeQuantity : std::uint8_t { settling, linear_acceleration, linear_ramp, rotary_acceleration };
 inline constexpr std::size_t kTimeQuantities = 4;
 
@@ -59,24 +59,28 @@ inline constexpr std::array<TimeQuantityWords, kTimeQuantities> kTimeQuantityWor
 
 struct CalibratedTime {
   bool is_told = false;
-  double value = 0.0;  ///< of one that is not told: the file's
+  double value = 0.0;  ///< value; that of the machine file if the times do not determine the quantity
   double uncertainty = 0.0;
 };
 
 struct TimeCalibration {
   TimedPrograms programs;
   fabrication::Machine nominal;
-  fabrication::Machine machine;  ///< the calibrated one
+  fabrication::Machine machine;  ///< calibrated machine
   std::array<CalibratedTime, kTimeQuantities> quantities;
-  std::vector<std::string> untold;  ///< quantities that the rows do not tell apart: "settling_s, linear_ramp_s"
-  std::vector<double> residuals;    ///< of the rows, in standard uncertainties
-  double scatter = 1.0;             ///< root mean square of the residuals, by the rows to spare; 1 without any
-  std::size_t freedom = 0;          ///< rows less what is estimated
+  /// Groups of quantities that the times do not separate, such as "settling_s, linear_ramp_s".
+  std::vector<std::string> untold;
+  std::vector<double> residuals;  ///< residuals of the rows, in standard uncertainties
+  /// Square root of the residuals' sum of squares per degree of freedom. 1 if there are no degrees of freedom.
+  double scatter = 1.0;
+  std::size_t freedom = 0;  ///< degrees of freedom: number of rows minus number of estimated unknowns
   Warnings warnings;
 };
 
-/// Least squares by Gauss and Newton; neither settling nor ramp falls below 0. Where rows scatter more than their
-/// uncertainties say, the uncertainties of what is told are larger by as much. \throw InputError for no rows
+/// Estimates the quantities by least squares with Gauss-Newton steps. Settling and ramp have the lower bound 0. If the
+/// residuals are larger than the uncertainties of the rows, the uncertainties of the results are enlarged by the same
+/// factor.
+/// \throw InputError if there are no rows
 TimeCalibration calibrate_times(TimedPrograms programs, const fabrication::Machine& machine);
 
 }  // namespace retrace::studies

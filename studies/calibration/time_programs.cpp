@@ -16,7 +16,7 @@ using namespace fabrication;
 constexpr double kSecondsPerMinute = 60.0;
 constexpr double kTurnDeg = 2.0;
 
-/// To and fro along X and Y, or about C and the axis that tilts, from a place in the middle.
+/// Program of moves back and forth along X and Y, or about C and the tilting axis, from the centre of the travel.
 class TimeProgram {
  public:
   TimeProgram(std::string name, std::string what, const Machine& machine, std::string_view dialect)
@@ -38,7 +38,7 @@ class TimeProgram {
     go(start);
   }
 
-  /// Along X and along Y in turn, there and back.
+  /// Adds moves along X and Y in turn, each back and forth.
   void strokes(int times, double length_mm, std::optional<double> feed_mm_per_min) {
     const Nanometres length = linear(length_mm);
     for (int k = 0; k < times; ++k) {
@@ -49,7 +49,7 @@ class TimeProgram {
     }
   }
 
-  /// About C and about the other axis in turn, there and back.
+  /// Adds rotations about C and the tilting axis in turn, each back and forth.
   void turns(int times, double tilt_deg, double c_deg) {
     for (int k = 0; k < times; ++k) {
       const Axis axis = k / 2 % 2 == 0 ? kC : kTilt;
@@ -86,7 +86,7 @@ double quarter(const Interval& limits) {
   return 0.25 * (limits.high - limits.low);
 }
 
-/// Half of the way from 0 to the farther limit, with its sign.
+/// Returns half of the limit that is farther from 0, with its sign.
 double half_way_deg(const RotaryAxis& axis) {
   const Interval& limits = axis.limits_deg.value;
   return 0.5 * (limits.high > -limits.low ? limits.high : limits.low);
@@ -99,7 +99,7 @@ std::vector<Program> time_programs(const Machine& machine, std::string_view dial
   const double rapid_mm_per_s =
       std::min(machine.x.rapid_mm_per_min.value, machine.y.rapid_mm_per_min.value) / kSecondsPerMinute;
   const double acceleration = std::min(machine.x.acceleration_mm_per_s2.value, machine.y.acceleration_mm_per_s2.value);
-  // Up to the rapid speed and down again.
+  // Shortest distance in which an axis reaches its rapid speed and stops again.
   const double to_speed_mm = rapid_mm_per_s * rapid_mm_per_s / acceleration;
 
   TimeProgram steps("times-steps", "Short moves at a low feed", machine, dialect);

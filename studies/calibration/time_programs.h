@@ -1,6 +1,6 @@
 #pragma once
 
-// Programs that cut nothing and take times from which TimeCalibration's quantities follow.
+// Programs that cut nothing. The quantities of TimeCalibration follow from the times that the programs take.
 
 #include <string_view>
 #include <vector>
@@ -10,10 +10,11 @@
 
 namespace retrace::studies {
 
-/// Four programs that spend their time on one thing each: `times-steps` short slow moves, whose time is settling and
-/// ramps; `times-strokes` rapid moves too short for the rapid speed, which accelerations decide; `times-ways` rapid
-/// moves that reach it; `times-turns` turns of the rotary axes. All of them begin as every program does, with Z at the
-/// machine's safe height, and stay there, X and Y within a quarter of their travel about its middle.
+/// Returns four programs, each of which spends its time on one kind of move. `times-steps` has short slow moves, whose
+/// time is determined by settling and ramps. `times-strokes` has rapid moves that are too short to reach the rapid
+/// speed, so that accelerations determine the time. `times-ways` has rapid moves that reach this speed. `times-turns`
+/// has rotations of the rotary axes. All programs begin like every other program, with Z at the machine's safe height.
+/// Z stays there, and X and Y stay within a quarter of their travel about its centre.
 std::vector<fabrication::Program> time_programs(const fabrication::Machine& machine, std::string_view dialect);
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// The documents of a calibration.
+// Output documents and tables of a calibration.
 
 #include <string>
 
@@ -11,13 +11,13 @@ namespace retrace::studies {
 
 std::string calibration_json(const Calibration& result);
 std::string calibration_table(const Calibration& result);
-/// What was measured with what is left of it, in standard uncertainties.
+/// Returns the measurements with their residuals in standard uncertainties, as CSV.
 std::string residuals_csv(const Calibration& result);
 
 std::string correction_json(const Correction& result);
 std::string correction_table(const Correction& result);
 
-/// The table to be filled in with what is measured of test cuts.
+/// Returns a table without values, into which the user enters the measurements of the test cuts.
 std::string test_cuts_csv(const TestCuts& cuts);
 std::string test_cuts_json(const TestCuts& cuts);
 std::string test_cuts_table(const TestCuts& cuts);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads tables of what was measured of parts, and plans the jobs that these were cut by.
+// Reads tables of measurements, and plans the jobs that cut the measured parts.
 
 #include <filesystem>
 #include <string_view>
@@ -9,10 +9,10 @@
 
 namespace retrace::studies {
 
-/// The table of a text. Columns `job` (a job file, from the table's folder), `element`, `facet`, `what` (a word of
-/// kFacetQuantityWords), `value`, `uncertainty`, and where they are needed `from_element`, `from_facet` and `at`
-/// (along the edge, -1 to 1). Rows without a value are passed over.
-/// \throw InputError naming file, line and column, also for jobs of several machines
+/// Reads a table with the columns `job` (a job file in the table's folder), `element`, `facet`, `what` (a word of
+/// kFacetQuantityWords), `value` and `uncertainty`. The columns `from_element`, `from_facet` and `at` (position along
+/// the edge, -1 to 1) are needed for some quantities. Rows without a value are skipped.
+/// \throw InputError that names file, line and column; also for jobs of several machines
 MeasuredParts parse_measurements(std::string_view text, const std::filesystem::path& file, const FileTexts& texts = {});
 
 MeasuredParts read_measurements(const std::filesystem::path& file);

@@ -100,7 +100,7 @@ class Timeline final : public NcSink {
   const NcProgram& program_;
   std::map<Key, std::size_t> kinds_;
   std::vector<NcMotion> motions_;
-  std::vector<std::pair<int, std::size_t>> moves_;  ///< line and kind
+  std::vector<std::pair<int, std::size_t>> moves_;  ///< line, and index of the kind of move
   std::vector<std::pair<int, double>> dwells_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The table of times of programs, and the documents of what they tell.
+// Reads tables of program times, and writes the documents of their calibration.
 
 #include <filesystem>
 #include <string>
@@ -12,17 +12,18 @@
 
 namespace retrace::studies {
 
-/// Reads a table with the columns `program` (a file from the table's folder), `seconds`, `uncertainty`, and, of a log,
-/// `from_line` and `to_line`: lines of the main program, both included, calls with all that they do. Rows without
-/// seconds are passed over. \param texts programs in place of files that would be read
-/// \throw InputError naming file, line and column
+/// Reads a table with the columns `program` (a file in the table's folder), `seconds` and `uncertainty`. Tables from a
+/// log also have `from_line` and `to_line`, the first and last line of the main program. A line that calls a subroutine
+/// includes the whole call. Rows without seconds are skipped.
+/// \param texts contents of programs that are used instead of reading files
+/// \throw InputError that names file, line and column
 TimedPrograms parse_times(std::string_view text, const std::filesystem::path& file, const fabrication::Machine& machine,
                           const FileTexts& texts = {});
 TimedPrograms read_times(const std::filesystem::path& file, const fabrication::Machine& machine);
 
 std::string time_calibration_json(const TimeCalibration& result);
 std::string time_calibration_table(const TimeCalibration& result);
-/// The table to be filled in with how long these programs take.
+/// Returns a table without values, into which the user enters the times of the programs.
 std::string times_csv(const std::vector<std::string>& programs);
 std::string time_programs_json(const fabrication::Machine& machine, const std::vector<std::string>& programs);
 
