@@ -206,7 +206,7 @@ class Fit {
   std::array<ArrayXXd, 3> power_;  ///< indexed by grid point and direction of light
   ArrayXXd luminous_;
   std::vector<Lobe> lobes_;
-  ArrayXXd of_light_;  ///< power of lobes, by direction of light and lobe
+  ArrayXXd of_light_;  ///< powers of the lobes: one row per direction of light, one column per lobe
 };
 
 }  // namespace

@@ -26,16 +26,17 @@ using geometry::Vec3;
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 constexpr double kUmPerMm = 1e3;
 
-// Of five facets finished by plunging, with a mean Sa of 48.9 nm, the roughness below an 80 um cut-off has a mean Sa of
-// 19.7 nm, the waviness above of 29.9 nm (Milliken 2017, Table 3.4). Other motions are shared in the same way.
+// Fractions of the published Sa that are roughness and waviness. Five facets that were finished by plunging have a mean
+// Sa of 48.9 nm. Below an 80 um cut-off, their roughness has a mean Sa of 19.7 nm; above it, their waviness has 29.9 nm
+// (Milliken 2017, Table 3.4). Other motions are assumed to have the same fractions.
 constexpr double kRoughnessShare = 19.7 / 48.9;
 constexpr double kWavinessShare = 29.9 / 48.9;
-// Oscillation across the feed: 42.4 per mm at 10 mm/min (Milliken, 3.3.5), so 7.07 Hz.
+// Temporal frequency of feed marks. They have 42.4 periods per mm at a feed of 10 mm/min (Milliken, 3.3.5).
 constexpr double kFeedMarksHz = 7.07;
-constexpr double kCorrelationLengthUm = 5.0;  // assumed: the profilometer resolved no less
+constexpr double kCorrelationLengthUm = 5.0;  // assumed; smaller than the resolution of the profilometer
 /// Minimum angle, in arcmin, that is reported.
 constexpr double kShownArcmin = 0.05;
-const double kSqPerSa = std::sqrt(0.5 * std::numbers::pi);  // of Gaussian heights
+const double kSqPerSa = std::sqrt(0.5 * std::numbers::pi);  // ratio for Gaussian heights
 
 /// Returns Sa of the facets after the last cuts. If one of two facets is ploughed, returns the quadratic mean of both.
 double sa_of(const Job& job) {
@@ -67,8 +68,9 @@ PredictedTexture predicted_texture(const Job& job) {
 
 namespace {
 
-/// What chips of the edge leave on the facets of the part. The edge lies along the roof edge, turned by 180 degrees
-/// where facet 2 is plunged; where it is ploughed the tool stands as for facet 1.
+/// Returns the scratches that chips of the tool's edge leave on the facets of the part. The edge is parallel to the
+/// roof edge. For facet 2, it is rotated by 180 degrees if the facet is plunged; if the facet is ploughed, the tool
+/// keeps the orientation of facet 1.
 std::vector<geometry::Scratch> scratches_of(const Job& job) {
   const bool is_direct = job.workpiece.kind == WorkpieceKind::direct;
   const double scale = 1.0 / blank_scale(job.workpiece);
@@ -80,7 +82,7 @@ std::vector<geometry::Scratch> scratches_of(const Job& job) {
       scratch.facet = is_direct ? 1 - facet : facet;
       scratch.position_mm = 1e-3 * sense * scale * chip.position_um;
       scratch.width_mm = 1e-3 * scale * chip.width_um;
-      // The ridge in a mould is a groove in the part; one that is cut directly keeps the ridge.
+      // A ridge in a mould becomes a groove in the part. A part that is cut directly keeps the ridge.
       scratch.depth_mm = 1e-3 * scale * (is_direct ? -chip.depth_um : chip.depth_um);
       scratches.push_back(scratch);
     }
@@ -88,7 +90,7 @@ std::vector<geometry::Scratch> scratches_of(const Job& job) {
   return scratches;
 }
 
-/// Tilts of one element's facets, opening is positive.
+/// Returns the tilts of an element's facets. A positive tilt opens the element.
 std::vector<double> tilts_of(const ElementResult& element) {
   std::vector<double> tilt(element.figures.facets.size());
   // A facet that rises above the design up its slope leans into the groove and closes it.
@@ -97,10 +99,10 @@ std::vector<double> tilts_of(const ElementResult& element) {
   return tilt;
 }
 
-/// By how much the elements differ from one that a design can name.
+/// Differences between the machined elements and the equal elements that a design can describe.
 struct Unlikeness {
-  double along_arcmin = 0.0;   ///< turned along the root, at most
-  double spread_arcmin = 0.0;  ///< of tilts, from their mean
+  double along_arcmin = 0.0;   ///< maximum rotation of a facet that raises one end of its root
+  double spread_arcmin = 0.0;  ///< maximum deviation of a tilt from the mean
   std::int64_t missing = 0;
 };
 
@@ -124,7 +126,7 @@ Unlikeness unlikeness_of(const VerificationRun& run, const std::vector<double>& 
   return unlike;
 }
 
-/// The planes that verification fitted to an element's facets.
+/// Returns the planes that verification fitted to an element's facets.
 ElementCutPlanes fitted_planes(const Groove& groove, const ElementFigures& figures) {
   ElementCutPlanes planes;
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
@@ -148,7 +150,8 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
   return part_planes(run.job, planes);
 }
 
-/// What a design with all elements alike leaves out.
+/// Adds warnings about the differences that a design with equal elements leaves out.
+/// \param where end of the warning, such as "on a base"
 void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
   if (unlike.along_arcmin > kShownArcmin)
     part.warnings.push_back(
@@ -168,12 +171,15 @@ void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
 
 namespace {
 
-/// A single element's part ends with its aperture.
+/// Returns true if cavities extend beyond hexagonal elements at the border. A part with a single element has no
+/// material there, because it ends with the aperture.
 bool has_flares(const VerificationRun& run) {
   return run.result.border_overcut_mm3 > 0.0 && run.job.array.arrangement != geometry::Arrangement::single;
 }
 
-/// A design has a base and elements that are alike, and no table of planes on it.
+/// Checks a part on a base, which a design describes by equal elements and without a table of planes. Adds warnings
+/// about the differences.
+/// \throw InputError if an element is not cut
 void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
   if (unlike.missing > 0)
     throw InputError(
@@ -228,7 +234,8 @@ AsMachined as_machined(const VerificationRun& run) {
   for (double& tilt : part.facet_tilt_arcmin) tilt /= static_cast<double>(cut);
   const Unlikeness unlike = unlikeness_of(run, part.facet_tilt_arcmin);
   const bool is_direct = run.job.workpiece.kind == WorkpieceKind::direct;
-  // Facet 1 lies at -x of a moulded part; a blank that is cut directly is turned about y.
+  // Facet 1 faces -x in a moulded part. A part that is cut directly is rotated about y, so that its facets are
+  // exchanged.
   if (is_direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
   if (is_direct)
     warn_of(unlike, part, "of a part that is cut directly");

@@ -19,7 +19,7 @@ bool is_prism(const Job& job) {
   return std::holds_alternative<geometry::RtpElement>(job.element);
 }
 
-/// Turns points of a mould's blank into those of the part that is moulded in it.
+/// Transforms points of a mould's blank to the frame of the part that is moulded in it.
 class PartFrame {
  public:
   explicit PartFrame(const Job& job) : scale_(1.0 / blank_scale(job.workpiece)) {
@@ -34,7 +34,7 @@ class PartFrame {
   Vec3 corner_ = Vec3::Zero();
 };
 
-/// A plane of the part, its height told over `centre`.
+/// Returns a plane in the part frame, with its height at `centre`.
 geometry::HeightPlane height_plane(const PartFrame& frame, const CutPlane& cut, const geometry::Vec2& centre) {
   const Vec3 normal = PartFrame::direction(cut.normal);
   const Vec3 point = frame.point(cut.point_mm);
@@ -44,7 +44,8 @@ geometry::HeightPlane height_plane(const PartFrame& frame, const CutPlane& cut, 
   return plane;
 }
 
-/// Under the middle of an element's aperture, on the blank's face or its base.
+/// Returns the planes of an element. Their heights are those at the centre of the element's aperture, which is on the
+/// blank's face or on its base.
 geometry::ElementPlanes planes_of(const PartFrame& frame, const CutElement& element, const ElementCutPlanes& cuts,
                                   bool is_prism) {
   geometry::ElementPlanes planes;
@@ -92,7 +93,8 @@ MachinedBody machined_body(const Job& job, const fs::path& job_file, Warnings& w
 
 geometry::PartSpec machined_elements(const Job& job, bool has_planes) {
   geometry::PartSpec part = part_on_substrate(job);
-  // Flares reach into margins: which elements there are, the table of planes says.
+  // Cube corners with individual facet planes have flares that extend into the margins. Their array therefore has no
+  // margins, and the table of planes determines the positions of the elements.
   if (!has_planes || is_prism(job)) {
     part.array.x_offset_mm = job.array.x_offset_mm;
     part.array.y_offset_mm = job.array.y_offset_mm;

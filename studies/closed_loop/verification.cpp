@@ -16,7 +16,7 @@ namespace {
 
 using namespace fabrication;
 
-/// What the job's own programs of all stages before that one do.
+/// Returns the programs of the job for all stages before the given one.
 std::vector<NcProgram> programs_before(const std::string& stage, const Job& job, const Machine& machine) {
   constexpr std::string_view dialect = "rs274ngc";
   PlanOptions options;
@@ -54,7 +54,8 @@ ErrorMap error_map(const VerificationRun& run) {
   constexpr double kMargin = 1.2;
   ErrorMap map;
   map.field = fabrication::error_field(run.job, run.machine, run.programs, kPixels);
-  // What is unavoidable is seen whole; faults are seen where they are, not how large.
+  // The colour scale covers all unavoidable deviations. Larger faults are clamped: the picture shows where they are,
+  // but not how large they are.
   map.shown_nm = std::max(kTolerances * run.result.tolerance_nm, kMargin * run.result.root_residual_nm_predicted);
   return map;
 }

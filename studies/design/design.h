@@ -44,7 +44,7 @@ struct HarveyShackTexture {
   double roughness_sq_nm = 0.0;        ///< rms height of the roughness
   double correlation_length_um = 0.0;  ///< distance at which the Gaussian autocorrelation is 1/e
   double waviness_sq_nm = 0.0;
-  double waviness_length_um = 0.0;  ///< period
+  double waviness_length_um = 0.0;  ///< period of the waviness
   /// Correlation length along the line of steepest descent of the facet, if it differs from correlation_length_um. In
   /// this case, correlation_length_um applies to the horizontal direction. 0: the same in both directions.
   double down_correlation_length_um = 0.0;

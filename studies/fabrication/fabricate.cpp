@@ -26,7 +26,7 @@ const fabrication::Dialect& dialect_of(const std::string& name) {
   throw InputError({"", 0, "--dialect"}, fmt::format("must be {}, got {}", alternatives(names), in_quotes(name)));
 }
 
-/// Where the axes are, in the section of an element.
+/// Returns the position of the tool tip in the section of an element, in the coordinates of SectionMove.
 geometry::Vec2 in_section(const FabricationResult& result, const fabrication::CutElement& element,
                           const fabrication::Words& at) {
   const auto mm = [&](fabrication::Axis axis) { return 1e-6 * static_cast<double>(at[axis].value_or(0)); };
@@ -42,7 +42,7 @@ geometry::Vec2 in_section(const FabricationResult& result, const fabrication::Cu
     const auto& [first, second, third] = corner.edges;
     return {(second - first).normalized().dot(from_root), (second + first).normalized().dot(from_root)};
   }
-  // Facet 1 has its wall on the side of +y_w; of turned elements on that of +x_w.
+  // The wall of facet 1 is on the side of +y in the workpiece frame, or +x for rotated elements.
   return {element.rotated ? -from_root.x() : -from_root.y(), from_root.z()};
 }
 
@@ -64,7 +64,8 @@ FabricationResult fabricate(const FabricationRequest& request) {
 
 std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing) {
   const bool is_dmc = result.job.strategy == fabrication::Strategy::dmc;
-  // By their titles: programs hold the subroutines that they call, under numbers of their own.
+  // Subroutines are identified by their titles, because each program has its own numbers for the subroutines that it
+  // calls.
   std::set<std::string> wanted;
   for (const fabrication::Stage& stage : result.plan.stages)
     if (stage.roughs == roughing && (!is_dmc || result.plan.poses[stage.pose].facet.facet == 1))
@@ -82,7 +83,7 @@ std::vector<SectionMove> section_moves(const FabricationResult& result, bool rou
       if (visit == nullptr || !wanted.contains(program.subroutines[visit->subroutine].title)) continue;
       const bool rotated = result.plan.elements[static_cast<std::size_t>(visit->element)].rotated;
       if (!element && !rotated) element = visit->element;
-      // Side-by-side passes look the same in the section.
+      // Passes next to each other along the root are equal in the section, so that one of them is enough.
       if (element == visit->element && seen.insert(visit->subroutine).second) first_only.items.push_back(item);
     }
     if (!element) continue;

@@ -30,7 +30,8 @@ namespace {
 
 using fabrication::Job, geometry::Arrangement, geometry::PartSpec;
 
-/// \throw InputError at the option if the word is none of `words`
+/// Returns the index of a word.
+/// \throw InputError at the option if `words` does not contain the word
 std::size_t word_index(const std::string& option, const std::string& given, std::span<const std::string_view> words) {
   const auto found = std::find(words.begin(), words.end(), given);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
@@ -89,7 +90,7 @@ bool is_prism(const PartSpec& part) {
   return std::holds_alternative<geometry::RtpElement>(part.element);
 }
 
-/// Whether the design has tilts or edges that a job does not know.
+/// Returns true if the design has tilts, edges or scratches that a job cannot contain.
 bool has_errors(const PartSpec& part) {
   const std::array<double, 3> none{};
   return !part.edges.is_sharp() || !part.scratches.empty() || part.random_tilts.sigma_arcmin > 0.0 ||
@@ -258,7 +259,8 @@ void check_element(const Design& design, const JobRequest& request) {
 
 namespace {
 
-/// The tool as it was requested. \throw InputError if it does not fit the element
+/// Returns the requested tool.
+/// \throw InputError if the tool does not fit the element
 fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
   fabrication::Tool tool;
   tool.width_mm = request.tool_width_mm;
@@ -281,7 +283,8 @@ fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
 
 namespace {
 
-/// Pins are ground one by one and bundled; elements that are cut into a base are cut into a mould.
+/// Checks that a design with a base can be cut. Pins are ground one by one and bundled, so that they are refused. Other
+/// elements on a base can only be cut in a mould.
 void check_substrate(const Design& design, const JobRequest& request) {
   if (design.zoned() || !design.part().substrate) return;
   if (design.part().is_pin_bundle)

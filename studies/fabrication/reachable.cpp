@@ -19,7 +19,9 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
-/// A plane through a point told from the apex, which lies `depth_mm` below the rims; for a turned cell turned with it.
+/// Returns the plane through a point that is given relative to the apex.
+/// \param depth_mm depth of the apex below the rims
+/// \param rotated true: the plane is rotated by 180 degrees, like its cell
 geometry::HeightPlane height_plane(const Vec3& normal, const Vec3& point_mm, double depth_mm, bool rotated) {
   geometry::HeightPlane plane;
   plane.slope = (rotated ? 1.0 : -1.0) * normal.head<2>() / normal.z();
@@ -40,14 +42,15 @@ geometry::ElementPlanes element_at(const geometry::Element& element, const fabri
   return planes;
 }
 
-/// Middle of the extent, in the part's frame.
+/// Returns the centre of the array in the part frame.
 Vec2 middle_of(const geometry::PartSpec& part) {
   if (part.array.arrangement != geometry::Arrangement::single)
     return 0.5 * Vec2(part.array.x_length_mm, part.array.y_length_mm);
   return 0.5 * geometry::bounding_box(geometry::aperture_outline(part.element)).size();
 }
 
-/// What the design is as far as a chisel reaches: whole elements of the same body, with planes from a table.
+/// Returns a design that contains only what a chisel can cut: whole elements of the same material, with facet planes
+/// from a table.
 Design reached(const Design& design, const std::string& facets_file) {
   const geometry::PartSpec& part = design.part();
   Design reached;

@@ -1,6 +1,7 @@
 #pragma once
 
-// What a straight-edged chisel leaves of a design of cube corners, as a design that can be traced.
+// Computes the part that a chisel with a straight edge can cut from a design of cube corners. The result is a design
+// that can be traced.
 
 #include <string>
 
@@ -10,22 +11,24 @@
 
 namespace retrace::studies {
 
-/// What a chisel with a straight edge makes of cube corners (single-point inverted cutting of them).
+/// Cube corners as a chisel with a straight edge can cut them (single-point inverted cutting). The chisel leaves a core
+/// over each apex.
 struct ReachablePart {
   fabrication::ChiselReach reach;
   std::int64_t elements = 0;
-  std::string design;  ///< file (retrace.design/1) of the part that it can make, for `retrace rre`
-  std::string facets;  ///< the table of planes that goes with it
+  std::string design;  ///< text of the design file (retrace.design/1) of this part, for `retrace rre`
+  std::string facets;  ///< table of facet planes that belongs to the design
 };
 
-/// \param facets_file name of that table
-/// \throw InputError for prisms, for `dmc`, and for tools that leave nothing to trace
+/// Computes the part that the chisel of a request can cut.
+/// \param facets_file file name of the table of facet planes
+/// \throw InputError for prisms, for `dmc`, and for tools that are too wide
 ReachablePart reachable_part(const Design& design, const JobRequest& request, const std::string& facets_file);
 
-/// Share of the facets that the request's chisel reaches; nothing for one that has no share.
+/// Returns the fraction of the facets' area that a chisel reaches, or 0 if it reaches nothing.
 double reachable_share(const geometry::Element& element, double tool_width_mm);
 
-/// retrace.reach/1, and the same for people.
+/// These functions return the result as JSON (retrace.reach/1) and as a table.
 std::string reach_json(const ReachablePart& part, const JobRequest& request);
 std::string reach_table(const ReachablePart& part);
 

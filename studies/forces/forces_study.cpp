@@ -30,7 +30,7 @@ CutConditions conditions_of(const Job& job, const ForcesRequest& request) {
   const double half_apex = 0.5 * Angle::from_deg(element.apex_angle_deg).rad();
   const double facet_mm = 0.5 * element.base_mm / std::sin(half_apex);
   CutConditions cut;
-  // Roughing of a two-step job is unidirectional.
+  // The roughing of a two-step job is unidirectional.
   cut.strategy = job.strategy == Strategy::bidirectional ? Strategy::bidirectional : Strategy::unidirectional;
   cut.facet = request.facet;
   cut.configuration = configuration_of(request.configuration);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The study behind `retrace forces`: cutting forces over one cycle of a job.
+// Cutting forces over one cycle of a job. `retrace forces` runs this study.
 
 #include <string>
 #include <vector>
@@ -11,12 +11,12 @@
 
 namespace retrace::studies {
 
-/// Which cut's forces are requested.
+/// Request for the forces of a cut.
 struct ForcesRequest {
-  std::string job;                         ///< file
-  std::string configuration = "isolated";  ///< a word of fabrication::kConfigurationWords
-  int facet = 1;                           ///< of a bidirectional job: 1 or 2
-  double plunge_mm = 0.0;                  ///< length of the plunge; 0: that of the last cut
+  std::string job;                         ///< name of the job file
+  std::string configuration = "isolated";  ///< configuration, a word of fabrication::kConfigurationWords
+  int facet = 1;                           ///< number of the facet in a bidirectional job: 1 or 2
+  double plunge_mm = 0.0;                  ///< length of the plunge; 0: length of the last cut
 };
 
 struct ForcesResult {
@@ -27,8 +27,9 @@ struct ForcesResult {
   Warnings warnings;
 };
 
-/// Forces over one cycle of a job's roughing (of a bidirectional job: of a layer), by the shipped measurements.
-/// \throw InputError for a job or a request that makes no sense
+/// Returns the forces over one cycle of a job's roughing, or over one layer of a bidirectional job. They are computed
+/// from the shipped measurements.
+/// \throw InputError for an invalid job or request
 ForcesResult cutting_forces(const ForcesRequest& request);
 
 }  // namespace retrace::studies

@@ -28,8 +28,8 @@ constexpr int kFiner = 4;
 
 // Diffuse reflectances, typical of dark paint, glass, tyres, asphalt, and white paint on plates and lines.
 constexpr double kPaint = 0.025, kGlass = 0.004, kTyre = 0.012, kAsphalt = 0.05, kWhite = 0.3;
-constexpr double kNightSky = 0.002;   ///< cd/m^2, overcast over inhabited land
-constexpr double kNightLight = 0.02;  ///< lx, all round
+constexpr double kNightSky = 0.002;   ///< luminance of an overcast sky over inhabited land, cd/m^2
+constexpr double kNightLight = 0.02;  ///< illuminance by the night sky from all directions, lx
 
 /// Returns the luminance of light scattered in the eye, per illuminance at the pupil, in 1/sr. It is 10 / theta^2 with
 /// theta in degrees (W. S. Stiles 1929, L. L. Holladay 1927; CIE 146:2002). Below 0.2 degrees, it is constant.

@@ -18,7 +18,9 @@ std::string number(double value) {
   return text;
 }
 
-/// `const TYPE NAME[n] = TYPE[n](...);`, a line for each lobe. \param of what a lobe adds
+/// Returns the GLSL text `const TYPE NAME[n] = TYPE[n](...);` with one line for each lobe.
+/// \param each number of values for each lobe
+/// \param of function that returns the values of a lobe as text
 template <class Of>
 std::string constant(const ReflectionLobes& lobes, const std::string& type, const std::string& name, std::size_t each,
                      Of of) {

@@ -54,7 +54,7 @@ std::vector<std::vector<Rectangle>> blocks_of(const std::vector<double>& shares,
 }
 
 /// Divides the part into rows and assigns them to the zones in turn.
-/// \param element_mm height of the highest element
+/// \param element_mm maximum extent of an element along y
 std::vector<std::vector<Rectangle>> rows_of(const std::vector<double>& shares, const Vec2& size_mm, double element_mm) {
   const double least = *std::ranges::min_element(shares);
   const double most = std::floor(kMostRows / static_cast<double>(shares.size()));

@@ -45,7 +45,7 @@ std::string_view word_of(fabrication::Strategy strategy) {
   return fabrication::kStrategyWords[static_cast<std::size_t>(strategy)];
 }
 
-/// Key of the axis that tilts.
+/// Returns the key of the tilting axis.
 std::string tilt_key(const fabrication::Machine& machine) {
   return machine.tilt == fabrication::Tilt::table ? "a_deg" : "b_deg";
 }
@@ -99,9 +99,10 @@ const char* word_of(fabrication::Motion motion) {
   return kWords[static_cast<std::size_t>(motion)];
 }
 
-/// The way of the tool through one element: for each move its kind, and from where to where in the section, in mm.
+/// Returns the path of the tool through one element: for each move, its kind and its start and end point in the
+/// section, in mm.
 Json section_path_json(const FabricationResult& result) {
-  // A page shows no more, and there are no more but for very thin layers.
+  // Maximum number of moves for a page. Only jobs with very thin layers have more.
   constexpr std::size_t kMostMoves = 2000;
   Json paths = Json::array();
   for (const bool roughing : {true, false}) {
@@ -156,7 +157,7 @@ std::string fabrication_json(const FabricationResult& result, const Json& setup)
                {"programs", programs},
                {"program_times_s", plan.program_times_s}};
   if (result.job.tool.edge_life_mm) json["program_cuts_mm"] = plan.program_cuts_mm;
-  // A V cuts in both directions with its leading edge, always with the same rake.
+  // A V-shaped tool cuts in both directions with its leading edge and always has the same rake.
   if (result.job.strategy == fabrication::Strategy::dmc) json.erase("plough_rake_deg");
   if (!setup.is_null()) json["setup"] = setup;
   return result_text("retrace.fabrication/1", json, result.warnings);

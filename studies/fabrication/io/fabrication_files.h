@@ -10,12 +10,13 @@
 
 namespace retrace::studies {
 
-/// The result of `retrace job` as JSON (retrace.job_summary/1) and as a table.
+/// These functions return the result of `retrace job` as JSON (retrace.job_summary/1) and as a table.
 std::string job_json(const MadeJob& made);
 std::string job_table(const MadeJob& made);
 
-/// The result of `retrace fabricate` as JSON (retrace.fabrication/1), as one line a stage, and as a table.
-/// \param setup the object `setup` of it; null: there is none
+/// These functions return the result of `retrace fabricate` as JSON (retrace.fabrication/1), as CSV with one line for
+/// each stage, and as a table.
+/// \param setup value of the key `setup`; null: the key is omitted
 std::string fabrication_json(const FabricationResult& result, const nlohmann::ordered_json& setup = nullptr);
 std::string stages_csv(const FabricationResult& result);
 std::string fabrication_table(const FabricationResult& result);

@@ -8,13 +8,14 @@
 
 namespace retrace::studies {
 
-/// The document `retrace.forces/1`.
+/// Returns the document `retrace.forces/1`.
 std::string forces_json(const ForcesResult& result);
 
-/// time_s,phase,engaged_mm,fx_n,fy_n,fz_n: corners of the profile, straight between.
+/// Returns the force profile as CSV with the columns time_s, phase, engaged_mm, fx_n, fy_n and fz_n. Between the lines,
+/// the profile is linear.
 std::string forces_csv(const ForcesResult& result);
 
-/// A short table for people.
+/// Returns a short table for the terminal.
 std::string forces_table(const ForcesResult& result);
 
 }  // namespace retrace::studies
