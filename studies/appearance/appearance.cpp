@@ -591,8 +591,8 @@ AppearanceResult compute_appearance(const Design& design, const AppearanceReques
     result.warnings.push_back(
         {"table_error_above_target",
          fmt::format(
-             "of 95 % of random geometries the table is within {} % of the photometer, not within {} %: give more "
-             "--most-directions, or a smaller --entrance-deg",
+             "for 95 % of random geometries, the table is within {} % of the photometer, but {} % were requested: give "
+             "more --most-directions, or a smaller --entrance-deg",
              fixed(100.0 * result.error.of_95_percent, 1), fixed(100.0 * request.error, 1))});
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (progress != nullptr) progress->at(1.0);

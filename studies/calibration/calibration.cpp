@@ -106,7 +106,7 @@ Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
     }
   }
   throw InputError({measured.file, 0, ""},
-                   "no machine near that of the jobs leaves what was measured: are units and facets right?");
+                   "no machine near that of the jobs would produce these measurements: check units and facets");
 }
 
 /// Returns the index of the measurement with the largest deviation from the fit, and this deviation in standard

@@ -45,14 +45,14 @@ void tell_rests(Correction& result, double feed_mm_per_min) {
     result.calibration.warnings.push_back(
         {"waves_not_corrected",
          fmt::format("{}: waves are not corrected. {}", words_of(wave, result.facets),
-                     wave.is_along_edge ? "They are the edge's own"
+                     wave.is_along_edge ? "They come from the tool's edge"
                                         : "Look for a drive or a spindle that runs at their frequency")});
   for (const FacetMark& mark : result.marks)
     result.calibration.warnings.push_back(
         {"marks_not_corrected",
          fmt::format("{}: marks are not corrected. {}", words_of(mark),
-                     mark.is_of_edge ? "Most facets that show this place have it: it is the edge's"
-                                     : "Figures are taken beside it")});
+                     mark.is_of_edge ? "Most facets with this position have it, so that the tool's edge causes it"
+                                     : "The facets are measured next to it")});
 }
 
 }  // namespace
@@ -93,8 +93,9 @@ Correction correct(const FabricationResult& plan, std::vector<FacetMap> maps) {
     if (!result.registered[k].face)
       result.calibration.warnings.push_back(
           {"blank_face_not_visible",
-           fmt::format("{} shows too little of the blank's face: what shifts all that it shows alike is not told by it",
-                       result.maps[k].file)});
+           fmt::format(
+               "{} shows too little of the blank's face: it does not determine errors that shift all facets equally",
+               result.maps[k].file)});
   tell_outlooks(result);
   tell_rests(result, plan.job.process.finishing_feed_mm_per_min);
   return result;

@@ -73,7 +73,9 @@ std::string CutPart::fault_of(const Measurement& m) const {
     const Vec3& b = grooves_[m.from->element].facets[m.from->facet].normal;
     if (a.cross(b).norm() < kParallel) return "facets that are parallel include no angle";
   }
-  if (m.what == FacetQuantity::end && m.from) return "where a cut ends is told over the other facet of its element";
+  if (m.what == FacetQuantity::end && m.from)
+    return "the end of a cut is measured above the other facet of its element: from_element and from_facet must be "
+           "empty";
   return {};
 }
 

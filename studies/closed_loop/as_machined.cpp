@@ -162,9 +162,9 @@ void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
         {"facets_differ_from_mean", fmt::format("facets of single elements differ from the mean by up to {} arcmin",
                                                 fixed(unlike.spread_arcmin, 2))});
   if (unlike.missing > 0)
-    part.warnings.push_back(
-        {"uncut_elements_included",
-         "elements that are not cut are there in the as-machined design of a part that is cut directly"});
+    part.warnings.push_back({"uncut_elements_included",
+                             "elements that are not cut are nevertheless contained in the as-machined design of a part "
+                             "that is cut directly"});
 }
 
 }  // namespace
@@ -251,7 +251,7 @@ AsMachined as_machined(const VerificationRun& run) {
     part.warnings.push_back(
         {"facet_roughness_averaged",
          fmt::format("plunged and ploughed facets differ in roughness (Sa {} and {} nm), which a design "
-                     "cannot say: it has the root of the mean of their squares",
+                     "cannot describe: it contains their root mean square",
                      shortest(run.job.process.roughing_plunge_sa_nm), shortest(run.job.process.plough_sa_nm))});
   part.root_radius_um = run.result.root_radius_um;
   part.root_chamfer_um = run.result.root_chamfer_um;

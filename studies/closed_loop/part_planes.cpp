@@ -87,7 +87,8 @@ MachinedBody machined_body(const Job& job, const fs::path& job_file, Warnings& w
             design->substance.absorption_per_mm};
   warnings.push_back(
       {"design_not_found",
-       "the job's design is not where the job names it: the as-machined part is given a plate of 2 mm of PMMA"});
+       "the job's design does not exist at the path that the job gives: the as-machined part is described with a "
+       "plate of 2 mm of PMMA"});
   return {};
 }
 

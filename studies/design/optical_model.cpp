@@ -304,9 +304,8 @@ void add_coating_warnings(const Design& design, const materials::MaterialLibrary
     if (fringes > kMostFringesPerStep)
       model.warnings.push_back(
           {"unresolved_fringes",
-           fmt::format("{}: layers of that thickness have up to {:.1f} interference fringes from one wavelength that "
-                       "stands for the "
-                       "lamp to the next; means over the spectrum are those of the few wavelengths",
+           fmt::format("{}: layers of this thickness have up to {:.1f} interference fringes from one wavelength that "
+                       "is traced to the next; means over the spectrum are means over these few wavelengths",
                        design.source_name(), fringes)});
   }
 }

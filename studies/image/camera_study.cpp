@@ -305,9 +305,8 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
     result.warnings.push_back(
         {"noise_above_target",
-         fmt::format("{}: the noise of {} is above the target of {} after {} passes, which would take about {:.2g}, of "
-                     "{} at most "
-                     "(--passes N sets the number of passes)",
+         fmt::format("{}: the noise of {} is above the target of {} after {} passes, which would take about {:.2g} "
+                     "passes, but at most {} are allowed (--passes N sets the number of passes)",
                      design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise),
                      result.image.passes, passes_needed(result.image, request_), kMostPasses)});
   if (result.complete && result.image.part_mean() == 0.0)

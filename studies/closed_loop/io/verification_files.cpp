@@ -95,7 +95,7 @@ std::string verification_table(const VerificationRun& run) {
         fmt::format("cut at borders: {} elements, {} mm2 of their apertures, at most {} um deep", r.elements_overcut,
                     fixed(r.zone_overcut_mm2, 4), fixed(r.zone_overcut_um_max, 3)));
   if (r.rim_overcut_um_max > 0.0)
-    row("under rims", fixed(r.rim_overcut_um_max, 3) + " um, as neighbours at other heights must");
+    row("under rims", fixed(r.rim_overcut_um_max, 3) + " um, unavoidable next to neighbours at other heights");
   row("free tool length", fixed(r.free_tool_length_mm, 2) + " mm needed");
   row("time", fixed(r.time.total_s(), 1) + " s");
   return text + findings_table(r.findings);
