@@ -66,7 +66,7 @@ constexpr std::size_t kBatch = 16;
 // Number of random view directions at which the error of a cell is measured, for each tested direction of light.
 constexpr std::uint32_t kViews = 48;
 constexpr std::uint32_t kProbes = 200;
-// Fraction of the views of a cell whose errors must be below the requested error.
+// Fraction of the random view directions of a cell at which the error must be below the requested error.
 constexpr double kJudgedShare = 0.95;
 constexpr RandomKey kViewKey{.seed = 0x6d61746cU, .stream = 1};
 constexpr RandomKey kProbeKey{.seed = 0x6d61746cU, .stream = 2};

@@ -27,7 +27,7 @@ struct LinearModel {
 
 /// Returns the linear model.
 /// \param parts measured parts, in the order of Measurement::part
-/// \param map_faces as MeasuredParts::map_faces; each face adds three rows after those of all measurements
+/// \param map_faces value of MeasuredParts::map_faces; each face adds three rows after the rows of all measurements
 /// \param poses pose of each part at which the derivatives are taken; empty: the poses in the programs
 LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Measurement> measurements,
                          const fabrication::Machine& machine,

@@ -133,7 +133,7 @@ Sweep compose_scan(const Study& study, const ComposeRequest& request);
 /// improves the best cells of the scan. Then cells are added that improve the mixture according to the dual prices of
 /// its linear programme (column generation). The search ends when no further cell improves the mixture. Cells that are
 /// already in the store are not computed again, and the result is the same.
-/// \throw OutputError as ResultStore::record()
+/// \throw OutputError under the same conditions as ResultStore::record()
 Composition compose(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
                     const Cancellation* cancel);
 

@@ -288,8 +288,8 @@ class SetSearch {
     return std::ranges::all_of(bounds_, [&](const PriceBound& bound) { return bound.lets_pass(set, to_beat()); });
   }
 
-  /// Returns cells such that every better set which contains this set has at least one of them. The function uses those
-  /// stored prices for which there are fewest such cells.
+  /// Returns cells of which every better extension of this set contains at least one. Each stored bound gives such a
+  /// list of cells; the shortest list is returned.
   std::vector<std::size_t> candidates(const std::vector<std::size_t>& set, const Mixture& mixture) const {
     const PriceBound* fewest = nullptr;
     std::size_t least = cells_.size() + 1;

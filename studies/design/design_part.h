@@ -10,7 +10,7 @@ namespace retrace::studies {
 
 /// Returns the part of a design. It has the elements that the mask selects, and the facet planes of the table if there
 /// is one.
-/// \throw InputError as geometry::build_part(), and for an invalid table or mask
+/// \throw InputError under the same conditions as geometry::build_part(), and for an invalid table or mask
 geometry::Part part_of(const Design& design);
 
 /// Returns a design with only one element of the array, on the piece of plate that belongs to the element.

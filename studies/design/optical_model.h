@@ -48,7 +48,7 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
                         Entrances entrances = Entrances::plane);
 
 /// Returns a model without a part, for tracers of balls.
-/// \throw InputError as make_model()
+/// \throw InputError under the same conditions as make_model()
 OpticalModel make_light_model(const Design& design, const materials::MaterialLibrary& library);
 
 /// Optical properties of a design at any wavelength.
@@ -57,7 +57,7 @@ class OpticsOfDesign {
   /// Reads all data that do not depend on the wavelength.
   /// \param warnings receives warnings for the user
   /// \pre `design` and `library` outlive this object
-  /// \throw InputError as make_model()
+  /// \throw InputError under the same conditions as make_model()
   OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library, Warnings& warnings);
   ~OpticsOfDesign();
 
@@ -65,7 +65,7 @@ class OpticsOfDesign {
   /// \throw InputError if there are no data for this wavelength
   raytrace::Optics at(double wavelength_nm) const;
   /// Returns the properties at a wavelength, with another medium behind selected elements.
-  /// \param chosen selected elements, as OpticalModel::wet_elements
+  /// \param chosen selected elements, for example OpticalModel::wet_elements
   raytrace::Optics at(double wavelength_nm, const std::shared_ptr<const geometry::ChosenElements>& chosen) const;
   /// Returns true if the index of the body at this wavelength is within its data.
   bool is_backed_at(double wavelength_nm) const;

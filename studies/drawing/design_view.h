@@ -25,7 +25,7 @@ DesignView view_of(const geometry::Part& part);
 
 /// Returns the view of a design. Of infinite arrays, and of arrays with very small elements, it shows only a few
 /// elements.
-/// \throw InputError as part_of_design()
+/// \throw InputError under the same conditions as part_of_design()
 DesignView view_of(const Design& design);
 
 /// Number of elements along a side if an array is not shown as a whole.

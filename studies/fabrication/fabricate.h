@@ -49,7 +49,7 @@ struct SectionMove {
 };
 
 /// Returns all cutting moves of the first element. For a cube corner, returns only the moves on facet 1.
-/// \param roughing true: moves of roughing stages; false: moves of all other stages
+/// \param roughing true: moves of roughing stages (steps of machining); false: moves of all other stages
 std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing);
 
 /// Returns, for each element, its number in the order of cutting, counted from 1. If several programs cut an element,

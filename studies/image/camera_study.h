@@ -80,7 +80,7 @@ class CameraStudy {
   /// Minimum number of passes before the noise is compared with the request.
   static constexpr std::uint32_t kFewestPasses = 8;
   static constexpr std::uint32_t kMostPasses = 65536;
-  /// Minimum number of passes before a noise may be judged unreachable.
+  /// Minimum number of passes after which the requested noise may be judged unreachable.
   static constexpr std::uint32_t kPassesToJudge = 64;
 
   /// \throw InputError for numbers out of range, for an eye or a lamp inside the part, and for polarised light

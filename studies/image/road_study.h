@@ -41,9 +41,9 @@ struct RoadRequest {
   double lamp_aim_deg = 0.0;            ///< angle by which a lamp's axis is rotated downwards; -45 to 45
   std::string dye;                      ///< name of the reflectors' dye: red, amber or another; empty: none
   materials::SpectralCurve dye_absorption_per_mm;
-  std::size_t columns = 480;  ///< pixels of each view
+  std::size_t columns = 480;  ///< number of pixels of each picture
   std::size_t rows = 330;
-  double field_deg = 13.0;  ///< width of each view; 1 to 90
+  double field_deg = 13.0;  ///< angular width of each picture; 1 to 90
 };
 
 /// Reflector that is illuminated by both headlamps.
@@ -54,7 +54,7 @@ struct RoadReflector {
   double luminance = 0.0;                  ///< cd/m^2, in the direction of the eye
 };
 
-/// View of the driver from one distance.
+/// Picture of the front car as the driver sees it from one distance.
 struct RoadView {
   double distance_m = 0.0;
   std::array<RoadReflector, 2> reflectors;  ///< left, right

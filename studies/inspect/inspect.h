@@ -46,7 +46,7 @@ struct SubstrateReport {
 struct WetReport {
   std::int64_t elements = 0;  ///< number of these elements, including partial ones
   std::int64_t of_all = 0;
-  /// Limit as Inspection::tir_limit_deg, for these elements.
+  /// Limit of total reflection for these elements, defined like Inspection::tir_limit_deg.
   std::optional<double> tir_limit_deg;
 };
 
@@ -87,7 +87,7 @@ struct Inspection {
 };
 
 /// Returns the properties of a design.
-/// \throw InputError as make_model()
+/// \throw InputError under the same conditions as make_model()
 Inspection inspect(const Design& design, const materials::MaterialLibrary& library);
 
 }  // namespace retrace::studies

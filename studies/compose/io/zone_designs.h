@@ -19,7 +19,7 @@ std::size_t most_zone_designs(const ComposeRequest& request);
 /// Returns the text of a design file with the cells of a single zone. A comment in the file gives the zone's fraction
 /// of the area and its rotation.
 /// \param zone index in `zones`
-/// \throw InputError as make_candidate()
+/// \throw InputError under the same conditions as make_candidate()
 std::string zone_design_text(const Study& study, const std::vector<Zone>& zones, std::size_t zone);
 
 /// Arrangement of the zones in a part.
@@ -44,7 +44,7 @@ struct ZonedDesignRequest {
 void check_zoned_design(const Study& study, const ZonedDesignRequest& request);
 
 /// Returns the text of the design file of the whole part.
-/// \throw InputError as check_zoned_design(), and if a zone is smaller than one element
+/// \throw InputError under the same conditions as check_zoned_design(), and if a zone is smaller than one element
 std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones, const ZonedDesignRequest& request);
 
 }  // namespace retrace::studies

@@ -26,7 +26,7 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
 /// designs are applied to it.
 /// \pre a design that was read from a file has not been changed since
 /// \param overrides as for read_design()
-/// \throw InputError as read_design()
+/// \throw InputError under the same conditions as read_design()
 Design with(const Design& design, std::span<const std::string> overrides);
 
 /// File whose name is the value of a key of a design.
