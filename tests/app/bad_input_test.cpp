@@ -44,72 +44,72 @@ struct BadLine {
 
 TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
   const std::vector<BadLine> cases = {
-      {3, "base_mn = 0.5", "d.toml:3: element.base_mn: "},                       // unknown key
-      {10, "[bodi]", "d.toml:10: bodi: "},                                       // unknown table
-      {3, "base_mm = \"0.5\"", "d.toml:3: element.base_mm: "},                   // wrong type
-      {7, "arrangement = 3", "d.toml:7: array.arrangement: "},                   //
-      {3, "", "d.toml:1: element.base_mm: missing"},                             // missing key
-      {11, "", "d.toml:10: body.thickness_mm: missing"},                         //
-      {9, "", "d.toml:6: array.y_length_mm: missing"},                           //
-      {3, "base_mm = 0", "d.toml:3: element.base_mm: "},                         // size zero
-      {3, "base_mm = -0.5", "d.toml:3: element.base_mm: "},                      // negative
-      {12, "[light]\nwavelength_nm = 1e9", "d.toml:13: light.wavelength_nm: "},  // no index there
-      {11, "thickness_mm = -1", "d.toml:11: body.thickness_mm: "},               //
-      {3, "base_mm = inf", "d.toml:3: element.base_mm: "},                       // not finite
-      {4, "width_mm = nan", "d.toml:4: element.width_mm: "},                     //
-      {8, "x_length_mm = -inf", "d.toml:8: array.x_length_mm: "},                //
-      {5, "apex_angle_deg = 59.9", "d.toml:5: element.apex_angle_deg: "},        // outside 60..120
-      {5, "apex_angle_deg = 120.1", "d.toml:5: element.apex_angle_deg: "},       //
-      {12, "refractive_index = 0.99", "d.toml:12: body.refractive_index: "},     // n < 1
-      {8, "x_length_mm = 0.4", "d.toml:8: array.x_length_mm: "},                 // smaller than an element
-      {9, "y_length_mm = 0.4", "d.toml:9: array.y_length_mm: "},                 //
-      {12, "material = \"Glas\"", "d.toml:12: body.material: "},                 // unknown material
-      {7, "arrangement = \"honeycomb\"", "d.toml:7: array.arrangement: "},       // of another kind
-      {2, "kind = \"prism\"", "d.toml:2: element.kind: "},                       //
-      {4, "this is no TOML", "d.toml:4: not valid TOML"},                        //
-      {4, "base_mm = 1", "d.toml:4: "},                                          // twice the same key
-      {12, "[light]\nspectrum = \"B\"", "d.toml:13: light.spectrum: must be \"A\", \"D65\", a file"},
-      {12, "[light]\nspectrum = \"no.csv\"", "d.toml:13: light.spectrum: no.csv: cannot be read"},
-      {12, "[light]\nspectrum = \"d.toml/a.csv\"", "d.toml:13: light.spectrum: d.toml/a.csv: cannot be read"},
-      {12, "[light]\nspectrum = [[555, -1]]", "d.toml:13: light.spectrum: must be >= 0, got -1"},
-      {12, "[light]\nspectrum = [[1000, 1]]", "d.toml:13: light.spectrum: holds no light that the eye sees"},
-      {12, "[light]\nspectrum = \"A\"\nwavelength_nm = 1", "d.toml:14: light.wavelength_nm: not allowed together"},
-      {12, "[light]\nweighting = \"radiant\"", "d.toml:13: light.weighting: only allowed together with spectrum"},
-      {12, "[surface]\nroughness_sq_nm = 5", "d.toml:12: surface.correlation_length_um: "},
+      {3, "base_mn = 0.5", "d.toml:3: element.base_mn"},                       // unknown key
+      {10, "[bodi]", "d.toml:10: bodi"},                                       // unknown table
+      {3, "base_mm = \"0.5\"", "d.toml:3: element.base_mm"},                   // wrong type
+      {7, "arrangement = 3", "d.toml:7: array.arrangement"},                   //
+      {3, "", "d.toml:1: element.base_mm"},                                    // missing key
+      {11, "", "d.toml:10: body.thickness_mm"},                                //
+      {9, "", "d.toml:6: array.y_length_mm"},                                  //
+      {3, "base_mm = 0", "d.toml:3: element.base_mm"},                         // size zero
+      {3, "base_mm = -0.5", "d.toml:3: element.base_mm"},                      // negative
+      {12, "[light]\nwavelength_nm = 1e9", "d.toml:13: light.wavelength_nm"},  // no index there
+      {11, "thickness_mm = -1", "d.toml:11: body.thickness_mm"},               //
+      {3, "base_mm = inf", "d.toml:3: element.base_mm"},                       // not finite
+      {4, "width_mm = nan", "d.toml:4: element.width_mm"},                     //
+      {8, "x_length_mm = -inf", "d.toml:8: array.x_length_mm"},                //
+      {5, "apex_angle_deg = 59.9", "d.toml:5: element.apex_angle_deg"},        // outside 60..120
+      {5, "apex_angle_deg = 120.1", "d.toml:5: element.apex_angle_deg"},       //
+      {12, "refractive_index = 0.99", "d.toml:12: body.refractive_index"},     // n < 1
+      {8, "x_length_mm = 0.4", "d.toml:8: array.x_length_mm"},                 // smaller than an element
+      {9, "y_length_mm = 0.4", "d.toml:9: array.y_length_mm"},                 //
+      {12, "material = \"Glas\"", "d.toml:12: body.material"},                 // unknown material
+      {7, "arrangement = \"honeycomb\"", "d.toml:7: array.arrangement"},       // of another kind
+      {2, "kind = \"prism\"", "d.toml:2: element.kind"},                       //
+      {4, "this is no TOML", "d.toml:4"},                                      //
+      {4, "base_mm = 1", "d.toml:4"},                                          // twice the same key
+      {12, "[light]\nspectrum = \"B\"", "d.toml:13: light.spectrum"},
+      {12, "[light]\nspectrum = \"no.csv\"", "d.toml:13: light.spectrum"},
+      {12, "[light]\nspectrum = \"d.toml/a.csv\"", "d.toml:13: light.spectrum"},
+      {12, "[light]\nspectrum = [[555, -1]]", "d.toml:13: light.spectrum"},
+      {12, "[light]\nspectrum = [[1000, 1]]", "d.toml:13: light.spectrum"},
+      {12, "[light]\nspectrum = \"A\"\nwavelength_nm = 1", "d.toml:14: light.wavelength_nm"},
+      {12, "[light]\nweighting = \"radiant\"", "d.toml:13: light.weighting"},
+      {12, "[surface]\nroughness_sq_nm = 5", "d.toml:12: surface.correlation_length_um"},
       {12, "[surface]\nroughness_sq_nm = 5\ncorrelation_length_um = 2\ncorrelation_length_down_um = 0",
-       "d.toml:15: surface.correlation_length_down_um: must be > 0"},
-      {12, "[surface]\ncorrelation_length_down_um = \"long\"", "d.toml:13: surface.correlation_length_down_um: "},
+       "d.toml:15: surface.correlation_length_down_um"},
+      {12, "[surface]\ncorrelation_length_down_um = \"long\"", "d.toml:13: surface.correlation_length_down_um"},
   };
   for (const BadLine& bad : cases)
     for (const std::string command : {"rre", "inspect"}) {
       SCOPED_TRACE(command + ", line " + std::to_string(bad.number) + ": " + bad.line);
       const TemporaryFolder folder;
       folder.write("d.toml", design_with(bad.number, bad.line));
-      expect_refused(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"}), bad.where);
+      EXPECT_EQ(refused_at(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"})), bad.where);
       EXPECT_EQ(folder.names(), Arguments{"d.toml"});
     }
 }
 
 TEST(BadInput, WrongFilesOfSpectraAreRefusedWithFileLineAndColumn) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"", ": must have the header wavelength_nm,power"},
-      {"wavelength_nm,power\n", ": must hold at least two wavelengths, got 0"},
-      {"400,1\n500,1\n", ":1: must be the header"},
-      {"wavelength_nm,power\n400,1\n500,nan\n", ":3: power: must be a number >= 0, got \"nan\""},
-      {"wavelength_nm,power\n400,1\n500,-1\n", ":3: power: must be a number >= 0, got \"-1\""},
-      {"wavelength_nm,power\n500,1\n400,1\n", ":3: wavelength_nm: must ascend, got 400 after 500"},
+      {"", "lamp.csv: "},
+      {"wavelength_nm,power\n", "lamp.csv: "},
+      {"400,1\n500,1\n", "lamp.csv:1: "},
+      {"wavelength_nm,power\n400,1\n500,nan\n", "lamp.csv:3: power: "},
+      {"wavelength_nm,power\n400,1\n500,-1\n", "lamp.csv:3: power: "},
+      {"wavelength_nm,power\n500,1\n400,1\n", "lamp.csv:3: wavelength_nm: "},
       {"wavelength_nm,power\n400,0\n500,0\n", ""},   // the file is sound, but all of it is dark
       {"wavelength_nm,power\n900,1\n1000,1\n", ""},  // or unseen
   };
-  for (const auto& [text, complaint] : cases)
+  for (const auto& [text, at] : cases)
     for (const std::string command : {"rre", "inspect"}) {
       SCOPED_TRACE(text);
       const TemporaryFolder folder;
       folder.write("d.toml", design_with(12, "[light]\nspectrum = \"lamp.csv\""));
       folder.write("lamp.csv", text);
-      const std::string where = "d.toml:13: light.spectrum: ";
-      expect_refused(retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"}),
-                     where + (complaint.empty() ? "holds no light that the eye sees" : "lamp.csv" + complaint));
+      const Outcome outcome = retrace(folder, {command, "d.toml", "-o", "out", "--json", "r.json"});
+      EXPECT_EQ(refused_at(outcome), "d.toml:13: light.spectrum");
+      EXPECT_TRUE(outcome.err.starts_with("retrace: d.toml:13: light.spectrum: " + at)) << outcome.err;
       EXPECT_EQ(folder.names(), (Arguments{"d.toml", "lamp.csv"}));
     }
 }
@@ -119,24 +119,24 @@ TEST(BadOutput, NoOutputReplacesTheFileOfASpectrum) {
   const std::string lamp = "wavelength_nm,power\n400,1\n700,1\n";
   folder.write("d.toml", design_with(12, "[light]\nspectrum = \"rre.csv\""));
   folder.write("rre.csv", lamp);
-  expect_refused(retrace(folder, {"rre", "d.toml", "-o", "."}), "--out: ./rre.csv is a file that is read");
-  expect_refused(retrace(folder, {"inspect", "d.toml", "--json", "rre.csv"}), "--json: rre.csv is a file that is read");
+  EXPECT_EQ(refused_at(retrace(folder, {"rre", "d.toml", "-o", "."})), "--out");
+  EXPECT_EQ(refused_at(retrace(folder, {"inspect", "d.toml", "--json", "rre.csv"})), "--json");
   EXPECT_EQ(folder.read("rre.csv"), lamp);
 }
 
 TEST(BadInput, ErrorsOfStandardInputAndOverridesSayWhere) {
   const TemporaryFolder folder;
-  expect_refused(retrace(folder, {"rre", "-", "-o", "out"}, design_with(3, "base_mm = -1")),
-                 "standard input:3: element.base_mm: ");
-  expect_refused(retrace(folder, {"rre", "-", "-o", "out", "--set", "element.base_mm=-2"}, design_with(0, "")),
-                 "--set element.base_mm=-2: ");
+  EXPECT_EQ(refused_at(retrace(folder, {"rre", "-", "-o", "out"}, design_with(3, "base_mm = -1"))),
+            "standard input:3: element.base_mm");
+  EXPECT_EQ(refused_at(retrace(folder, {"rre", "-", "-o", "out", "--set", "element.base_mm=-2"}, design_with(0, ""))),
+            "--set element.base_mm=-2: element.base_mm");
   EXPECT_TRUE(folder.names().empty());
 }
 
 TEST(BadInput, OneBadDesignOfSeveralStopsAllOfThem) {
   const TemporaryFolder folder;
   folder.write("bad.toml", design_with(3, "base_mm = 0"));
-  expect_refused(retrace(folder, {"rre", example("rtp_brick_2mm.toml"), "bad.toml", "-o", "out"}), "bad.toml:3: ");
+  EXPECT_EQ(refused_at(retrace(folder, {"rre", example("rtp_brick_2mm.toml"), "bad.toml", "-o", "out"})), "bad.toml:3");
   EXPECT_EQ(folder.names(), Arguments{"bad.toml"});
 }
 
@@ -148,14 +148,14 @@ TEST(BadInput, FilesThatCannotBeReadAreRefused) {
     folder.write("binary.toml", std::string("\x89PNG\r\n\x1a\n\0\0\xff", 11));
     fs::create_directory(folder.path() / "folder.toml");
     const Arguments before = folder.names();
-    expect_refused(retrace(folder, {command, "missing.toml", "-o", "out"}), "missing.toml: cannot be read");
-    expect_refused(retrace(folder, {command, "folder.toml", "-o", "out"}), "folder.toml: cannot be read");
-    expect_refused(retrace(folder, {command, "empty.toml/d.toml", "-o", "out"}), "empty.toml/d.toml: cannot be read");
-    expect_refused(retrace(folder, {command, "empty.toml", "-o", "out"}), "empty.toml: element.kind: missing");
-    expect_refused(retrace(folder, {command, "binary.toml", "-o", "out"}), "binary.toml:1: not valid TOML");
-    expect_refused(retrace(folder, {command, "two\nlines.toml", "-o", "out"}), "two lines.toml: cannot be read");
-    expect_refused(retrace(folder, {command, "\x1b[31mred.toml", "-o", "out"}), "\\x1b[31mred.toml: cannot be read");
-    expect_refused(retrace(folder, {command, "", "-o", "out"}), "DESIGN: must not be empty");
+    EXPECT_EQ(refused_at(retrace(folder, {command, "missing.toml", "-o", "out"})), "missing.toml");
+    EXPECT_EQ(refused_at(retrace(folder, {command, "folder.toml", "-o", "out"})), "folder.toml");
+    EXPECT_EQ(refused_at(retrace(folder, {command, "empty.toml/d.toml", "-o", "out"})), "empty.toml/d.toml");
+    EXPECT_EQ(refused_at(retrace(folder, {command, "empty.toml", "-o", "out"})), "empty.toml: element.kind");
+    EXPECT_EQ(refused_at(retrace(folder, {command, "binary.toml", "-o", "out"})), "binary.toml:1");
+    EXPECT_EQ(refused_at(retrace(folder, {command, "two\nlines.toml", "-o", "out"})), "two lines.toml");
+    EXPECT_EQ(refused_at(retrace(folder, {command, "\x1b[31mred.toml", "-o", "out"})), "\\x1b[31mred.toml");
+    EXPECT_EQ(refused_at(retrace(folder, {command, "", "-o", "out"})), "DESIGN");
     EXPECT_EQ(folder.names(), before);
   }
 }
@@ -164,7 +164,6 @@ TEST(BadInput, FilesThatCannotBeReadAreRefused) {
 /// position is file, line and key, or the option.
 TEST(BadInput, MissingFilesAreReportedWithWhatNamesThem) {
   const TemporaryFolder folder;
-  const std::string missing = "none.toml: cannot be read: No such file or directory\n";
   folder.write("d.toml", design_with(0, "") + "[part]\nfacets = \"none.toml\"\n");
   folder.write("plain.toml", design_with(0, ""));
   const std::string quantity = "[[quantity]]\nkind = \"elements_full\"\n";
@@ -185,16 +184,16 @@ TEST(BadInput, MissingFilesAreReportedWithWhatNamesThem) {
   folder.write("m.csv", "job,element,facet,what,value,uncertainty\nnone.toml,0,1,up_arcsec,1,1\n");
   folder.write("t.csv", "program,seconds,uncertainty\nnone.toml,1,1\n");
   const std::vector<Refused> cases = {
-      {{"rre", "d.toml"}, "d.toml:14: part.facets: " + missing},
-      {{"inspect", "d.toml"}, "d.toml:14: part.facets: " + missing},
-      {{"sweep", "study.toml"}, "study.toml:2: design: " + missing},
-      {{"tolerance", "study.toml"}, "study.toml:2: design: " + missing},
-      {{"sweep", "designs.toml"}, "designs.toml:4: parameter[1].values: " + missing},
-      {{"fabricate", "job.toml"}, "job.toml:" + line + ": machine: " + missing},
-      {{"job", "plain.toml", "--tool-width-mm", "0.5", "--machine", "none.toml"}, "--machine: " + missing},
-      {{"job", "plain.toml", "--tool-width-mm", "0.5", "--process", "none.toml"}, "--process: " + missing},
-      {{"calibrate", "m.csv"}, "m.csv:2: job: " + missing},
-      {{"calibrate", "--times", "ideal", "t.csv"}, "t.csv:2: program: " + missing},
+      {{"rre", "d.toml"}, "d.toml:14: part.facets"},
+      {{"inspect", "d.toml"}, "d.toml:14: part.facets"},
+      {{"sweep", "study.toml"}, "study.toml:2: design"},
+      {{"tolerance", "study.toml"}, "study.toml:2: design"},
+      {{"sweep", "designs.toml"}, "designs.toml:4: parameter[1].values"},
+      {{"fabricate", "job.toml"}, "job.toml:" + line + ": machine"},
+      {{"job", "plain.toml", "--tool-width-mm", "0.5", "--machine", "none.toml"}, "--machine"},
+      {{"job", "plain.toml", "--tool-width-mm", "0.5", "--process", "none.toml"}, "--process"},
+      {{"calibrate", "m.csv"}, "m.csv:2: job"},
+      {{"calibrate", "--times", "ideal", "t.csv"}, "t.csv:2: program"},
   };
   expect_refused(folder, cases, {}, {});
 }
@@ -228,17 +227,15 @@ TEST(BadInput, MissingFilesOfTheDesignsOfAStudyAreReportedWithWhatNamesThem) {
     const TemporaryFolder folder;
     folder.write("d.toml", text);
     folder.write("study.toml", study("body.back_index", "1, 1.1"));
-    const std::string file = text.find("none.csv") != std::string::npos ? "none.csv" : "none";
-    expect_named(folder, where + ": " + file + ": cannot be read: No such file or directory");
+    expect_named(folder, where);
   }
   const TemporaryFolder folder;
   folder.write("d.toml", design + "[surface]\nmodel = \"height_map\"\nheight_map = \"map.txt\"\n");
   folder.write("map.txt", read_text(example("facet_height_map.txt")));
   folder.write("study.toml", study("surface.height_map", "\"map.txt\", \"none\""));
-  expect_named(folder, "study.toml:5: parameter[1].values: none: cannot be read");
+  expect_named(folder, "study.toml:5: parameter[1].values");
   folder.write("study.toml", study("body.back_index", "1"));
-  expect_named(folder, "--set surface.height_map=none: surface.height_map: none: cannot be read",
-               {"--set", "surface.height_map=none"});
+  expect_named(folder, "--set surface.height_map=none: surface.height_map", {"--set", "surface.height_map=none"});
   EXPECT_EQ(retrace(folder, {"sweep", "study.toml"}).code, 0) << "all its files exist";
 }
 
@@ -253,17 +250,15 @@ TEST(BadInput, UnreadableFilesOfPhotometryAreReportedWithWhatNamesThem) {
       "kind = \"photometry\"\narea_cm2 = 1\n";
   const Arguments photometry = {"photometry", "d.toml", "--area-cm2", "1"};
   const Arguments r150 = {"--standard", "r150", "--class", "IA", "--colour", "red", "--dye"};
-  for (const auto& [name, why] :
-       {std::pair<std::string, std::string>("folder", "it is a folder"), {"fifo", "it is no regular file"}}) {
-    const std::string complaint = ": " + name + ": cannot be read: " + why + "\n";
+  for (const std::string name : {"folder", "fifo"}) {
     folder.write("standard.toml", before + "standard = \"" + name + "\"\n");
     folder.write("dye.toml",
                  before + "standard = \"r150\"\nclass = \"IA\"\ncolour = \"red\"\ndye = \"" + name + "\"\n");
     expect_refused(folder,
-                   {{{"sweep", "standard.toml"}, "standard.toml:8: quantity[1].standard" + complaint},
-                    {{"sweep", "dye.toml"}, "dye.toml:11: quantity[1].dye" + complaint},
-                    {with(photometry, {"--standard", name}), "--standard" + complaint},
-                    {with(with(photometry, r150), {name}), "--dye" + complaint}},
+                   {{{"sweep", "standard.toml"}, "standard.toml:8: quantity[1].standard"},
+                    {{"sweep", "dye.toml"}, "dye.toml:11: quantity[1].dye"},
+                    {with(photometry, {"--standard", name}), "--standard"},
+                    {with(with(photometry, r150), {name}), "--dye"}},
                    {});
   }
 }
@@ -339,7 +334,6 @@ TEST(BadInput, NamesThatTheSystemRefusesAreReportedInOneLine) {
       const Outcome outcome = retrace(folder, arguments);
       EXPECT_EQ(outcome.code, code) << arguments.front() << ' ' << outcome.err;
       EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-      EXPECT_EQ(outcome.err.find("filesystem error"), std::string::npos) << outcome.err;
     }
   }
   EXPECT_EQ(folder.names(), (Arguments{"d.toml", "loop"}));
@@ -347,59 +341,53 @@ TEST(BadInput, NamesThatTheSystemRefusesAreReportedInOneLine) {
 
 TEST(BadInput, WrongOptionsAreRefused) {
   const std::vector<Refused> cases = {
-      {{"--engine", "magic"}, "--engine: must be auto, exact, stochastic, montecarlo, cell or embree, got magic"},
+      {{"--engine", "magic"}, "--engine"},
       {{"--engine", ""}, "--engine: "},
-      {{"--engine", "cell"},
-       "--engine: cell takes endless arrays, and arrays of equal elements that reach more than two elements from every "
-       "border; "},
-      {{"--sampling", "random"}, "--sampling: must be stratified or plain, got random"},
-      {{"--sampling", "plain", "--engine", "exact"},
-       "--sampling: needs --engine auto or montecarlo or cell or embree, got exact"},
-      {{"--sampling", "plain", "--engine", "stochastic"},
-       "--sampling: needs --engine auto or montecarlo or cell or embree, got stochastic"},
-      {{"--footprint", "--engine", "stochastic"}, "--footprint: needs --engine exact"},
-      {{"--sampling", "plain", "--engine", "cell"}, "--sampling: plain needs --engine montecarlo or embree, got cell"},
-      {{"--incidence=5:1:1"}, "--incidence: the step of a range must lead from start towards stop"},
-      {{"--incidence=1:1:auto"}, "--incidence: a range start:stop:auto must have start < stop, got \"1:1:auto\""},
-      {{"--incidence=40:-40:auto"}, "--incidence: a range start:stop:auto must have start < stop, got \"40:-40:auto\""},
-      {{"--incidence=-95:0:auto"}, "--incidence: must lie between -90 and 90 degrees, got -95"},
-      {{"--incidence=0:90:auto"}, "--incidence: must lie between -90 and 90 degrees, got 90"},
-      {{"--incidence=0:nan:auto"},
-       "--incidence: must be numbers a,b,c or ranges start:stop:step or start:stop:auto, got "},
-      {{"--incidence=0:10:aut"},
-       "--incidence: must be numbers a,b,c or ranges start:stop:step or start:stop:auto, got "},
-      {{"--incidence=auto"}, "--incidence: must be numbers a,b,c or ranges start:stop:step or start:stop:auto, got "},
-      {{"--incidence=auto:10:1"}, "--incidence: must be numbers "},
-      {{"--azimuth=0:90:auto"}, "--azimuth: must be numbers a,b,c or ranges start:stop:step, got \"0:90:auto\""},
-      {{"--incidence", ""}, "--incidence: the list is empty"},
-      {{"--azimuth", ""}, "--azimuth: the list is empty"},
-      {{"--incidence", "90"}, "--incidence: must lie between -90 and 90 degrees, got 90"},
-      {{"--incidence=0,-90"}, "--incidence: must lie between -90 and 90 degrees, got -90"},
-      {{"--threads", "0"}, "--threads: must be a whole number from 1 to 4096, got 0"},
-      {{"--threads", "two"}, "--threads: must be a whole number"},
-      {{"--samples", "0"}, "--samples: must be a whole number from 1 "},
-      {{"--samples", "-1"}, "--samples: must be a whole number from 1 "},
-      {{"--samples", "1e6"}, "--samples: must be a whole number from 1 "},
-      {{"--target-error", "0"}, "--target-error: must lie between 0 and 1, got 0"},
-      {{"--target-error", "-1e-4"}, "--target-error: must lie between"},
-      {{"--target-error", "nan"}, "--target-error: must lie between"},
-      {{"--target-error", "small"}, "--target-error: must be a number, got small"},
-      {{"--target-error=1e-3", "--samples=64"}, "--samples excludes --target-error"},
-      {{"--cutoff", "-1"}, "--cutoff: must lie between 0 (included) and 1, got -1"},
-      {{"--cutoff", "1"}, "--cutoff: must lie between"},
-      {{"--seed", "lucky"}, "--seed: must be a whole number from 0 to 4294967295, got lucky"},
-      {{"--seed", "-1"}, "--seed: must be"},
-      {{"--seed", "1.5"}, "--seed: must be"},
-      {{"--seed", "010"}, "--seed: must be"},
-      {{"--seed", "4294967296"}, "--seed: must be"},
-      {{"--set", "element.base_mm"}, "--set element.base_mm: must be of the form KEY=VALUE"},
-      {{"--set", "element.bas=1"}, "--set element.bas=1: element.bas: unknown key"},
-      {{"--frobnicate"}, "The following argument was not expected: --frobnicate"},
-      {{"--samples"}, "--samples: "},
-      {{"--azimuth=1e300"}, "--azimuth: must be -360 to 360 degrees, got 1e+300"},
-      {{"--set", "body.refractive_index=1e6"}, "--set body.refractive_index=1e6: body.refractive_index: must be "},
-      {{"--json", ""}, "--json: must not be empty"},
-      {{"--out", ""}, "--out: must not be empty"},
+      {{"--engine", "cell"}, "--engine"},
+      {{"--sampling", "random"}, "--sampling"},
+      {{"--sampling", "plain", "--engine", "exact"}, "--sampling"},
+      {{"--sampling", "plain", "--engine", "stochastic"}, "--sampling"},
+      {{"--footprint", "--engine", "stochastic"}, "--footprint"},
+      {{"--sampling", "plain", "--engine", "cell"}, "--sampling"},
+      {{"--incidence=5:1:1"}, "--incidence"},
+      {{"--incidence=1:1:auto"}, "--incidence"},
+      {{"--incidence=40:-40:auto"}, "--incidence"},
+      {{"--incidence=-95:0:auto"}, "--incidence"},
+      {{"--incidence=0:90:auto"}, "--incidence"},
+      {{"--incidence=0:nan:auto"}, "--incidence"},
+      {{"--incidence=0:10:aut"}, "--incidence"},
+      {{"--incidence=auto"}, "--incidence"},
+      {{"--incidence=auto:10:1"}, "--incidence"},
+      {{"--azimuth=0:90:auto"}, "--azimuth"},
+      {{"--incidence", ""}, "--incidence"},
+      {{"--azimuth", ""}, "--azimuth"},
+      {{"--incidence", "90"}, "--incidence"},
+      {{"--incidence=0,-90"}, "--incidence"},
+      {{"--threads", "0"}, "--threads"},
+      {{"--threads", "two"}, "--threads"},
+      {{"--samples", "0"}, "--samples"},
+      {{"--samples", "-1"}, "--samples"},
+      {{"--samples", "1e6"}, "--samples"},
+      {{"--target-error", "0"}, "--target-error"},
+      {{"--target-error", "-1e-4"}, "--target-error"},
+      {{"--target-error", "nan"}, "--target-error"},
+      {{"--target-error", "small"}, "--target-error"},
+      {{"--target-error=1e-3", "--samples=64"}, "?"},
+      {{"--cutoff", "-1"}, "--cutoff"},
+      {{"--cutoff", "1"}, "--cutoff"},
+      {{"--seed", "lucky"}, "--seed"},
+      {{"--seed", "-1"}, "--seed"},
+      {{"--seed", "1.5"}, "--seed"},
+      {{"--seed", "010"}, "--seed"},
+      {{"--seed", "4294967296"}, "--seed"},
+      {{"--set", "element.base_mm"}, "--set element.base_mm"},
+      {{"--set", "element.bas=1"}, "--set element.bas=1: element.bas"},
+      {{"--frobnicate"}, ""},
+      {{"--samples"}, "--samples"},
+      {{"--azimuth=1e300"}, "--azimuth"},
+      {{"--set", "body.refractive_index=1e6"}, "--set body.refractive_index=1e6: body.refractive_index"},
+      {{"--json", ""}, "--json"},
+      {{"--out", ""}, "--out"},
   };
   for (const Refused& bad : cases) {
     Arguments command = {"rre", example("rtp_single_0p45mm.toml")};
@@ -419,18 +407,18 @@ TEST(BadInput, SeedMayBeAnyOfThem) {
 
 TEST(BadInput, WordsThatAreNoCommandAreRefused) {
   const TemporaryFolder folder;
-  expect_refused(retrace(folder, {}), "a command is required");
-  expect_refused(retrace(folder, {"trace", "d.toml", "-o", "out"}), "unknown command trace");
-  expect_refused(retrace(folder, {"--bogus"}), "unknown option --bogus");
-  expect_refused(retrace(folder, {"rre", "--bogus"}), "unknown option --bogus");
-  expect_refused(retrace(folder, {"rre", "-o", "out"}), "DESIGN is required");
-  expect_refused(retrace(folder, {"rre", "-", "-", "-o", "out"}), "standard input can be read as one design only");
-  expect_refused(retrace(folder, {"inspect", "a.toml", "b.toml"}), "The following argument was not expected: b.toml");
-  expect_refused(retrace(folder, {"init", "prism", "-o", "out"}), "KIND must be one of");
-  expect_refused(retrace(folder, {"init", "-o", "out"}), "KIND is required");
-  expect_refused(retrace(folder, {"init", "rtp", "--set", "element.base_mm=1", "-o", "out"}), "--set: ");
-  expect_refused(retrace(folder, {"list", "planets", "-o", "out"}), "list: ");
-  expect_refused(retrace(folder, {"list"}), "WHAT is required");
+  EXPECT_EQ(refused_at(retrace(folder, {})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"trace", "d.toml", "-o", "out"})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"--bogus"})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"rre", "--bogus"})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"rre", "-o", "out"})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"rre", "-", "-", "-o", "out"})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"inspect", "a.toml", "b.toml"})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"init", "prism", "-o", "out"})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"init", "-o", "out"})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"init", "rtp", "--set", "element.base_mm=1", "-o", "out"})), "--set");
+  EXPECT_EQ(refused_at(retrace(folder, {"list", "planets", "-o", "out"})), "list");
+  EXPECT_EQ(refused_at(retrace(folder, {"list"})), "?");
   EXPECT_TRUE(folder.names().empty());
 }
 
@@ -442,7 +430,7 @@ TEST(BadOutput, FolderThatCannotBeMadeEndsWith3) {
     for (const std::string out : {"way", "way/below"}) {
       Arguments arguments = run;
       arguments.insert(arguments.end(), {"-o", out, "--json", "r.json"});
-      expect_refused(retrace(folder, arguments), out + ": the output folder cannot be made", 3);
+      EXPECT_EQ(refused_at(retrace(folder, arguments), 3), out);
     }
   EXPECT_EQ(folder.names(), Arguments{"way"});
   EXPECT_EQ(folder.read("way"), "in the way");
@@ -455,10 +443,10 @@ TEST(BadOutput, JsonThatCannotBeWrittenEndsWith3AndMakesNoFolder) {
   for (const std::string json : {"missing/r.json", "folder"}) {
     Arguments arguments = run;
     arguments.push_back(json);
-    expect_refused(retrace(folder, arguments), json + ": cannot be written", 3);
+    EXPECT_EQ(refused_at(retrace(folder, arguments), 3), json);
     EXPECT_EQ(folder.names(), Arguments{"folder"});
   }
-  expect_refused(retrace(folder, {"list", "materials", "--json", "/dev/full"}), "/dev/full: cannot be written", 3);
+  EXPECT_EQ(refused_at(retrace(folder, {"list", "materials", "--json", "/dev/full"}), 3), "/dev/full");
 }
 
 TEST(BadOutput, NoOutputReplacesADesignOrAnotherOutput) {
@@ -468,25 +456,25 @@ TEST(BadOutput, NoOutputReplacesADesignOrAnotherOutput) {
   folder.write("rre.csv", design);
   const Arguments run = {"rre", "d.toml", "rre.csv", "--samples=64", "--quiet"};
   const std::vector<Refused> cases = {
-      {{"--json", "d.toml"}, "--json: d.toml is a file that is read"},
-      {{"--json", "./d.toml"}, "--json: ./d.toml is a file that is read"},
-      {{"-o", "."}, "--out: ./rre.csv is a file that is read"},
-      {{"-o", "out", "--json", "out/rre.csv"}, "--json: out/rre.csv is a file that --out writes"},
-      {{"-o", "out", "--json", "./out/rre.png"}, "--json: ./out/rre.png is a file that --out writes"},
+      {{"--json", "d.toml"}, "--json"},
+      {{"--json", "./d.toml"}, "--json"},
+      {{"-o", "."}, "--out"},
+      {{"-o", "out", "--json", "out/rre.csv"}, "--json"},
+      {{"-o", "out", "--json", "./out/rre.png"}, "--json"},
   };
   for (const Refused& bad : cases) {
     expect_refused(folder, {bad}, run, {});
     EXPECT_EQ(folder.read("d.toml"), design);
     EXPECT_EQ(folder.read("rre.csv"), design);
   }
-  expect_refused(retrace(folder, {"inspect", "d.toml", "--json", "d.toml"}), "--json: d.toml is a file that is read");
+  EXPECT_EQ(refused_at(retrace(folder, {"inspect", "d.toml", "--json", "d.toml"})), "--json");
 }
 
 TEST(BadOutput, ResultFileBehindAFolderEndsWith3AndLeavesNoTemporaryFile) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "out/rre.csv");
-  expect_refused(retrace(folder, {"rre", example("rtp_single_0p45mm.toml"), "--samples=64", "-o", "out"}),
-                 "out/rre.csv: cannot be written", 3);
+  EXPECT_EQ(refused_at(retrace(folder, {"rre", example("rtp_single_0p45mm.toml"), "--samples=64", "-o", "out"}), 3),
+            "out/rre.csv");
   for (const std::string& name : folder.names()) EXPECT_EQ(name.find(".tmp"), std::string::npos) << name;
 }
 
@@ -497,8 +485,7 @@ TEST(BadOutput, FullStandardOutputEndsWith3) {
                                Arguments{"inspect", example("rtp_single_0p45mm.toml")}, Arguments{"init", "rtp"},
                                Arguments{"list", "materials"}, Arguments{"--help"}, Arguments{"--version"}}) {
     const Outcome outcome = retrace(folder, run, "", "/dev/full");
-    EXPECT_EQ(outcome.code, 3) << run.front();
-    EXPECT_EQ(outcome.err, "retrace: standard output: cannot be written\n");
+    EXPECT_EQ(refused_at(outcome, 3), "?") << run.front();
   }
 }
 

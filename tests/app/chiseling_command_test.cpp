@@ -153,17 +153,15 @@ TEST(ReachablePart, WhatIsWrongIsRefusedInOneLine) {
                "[body]\nthickness_mm = 1\n");
   const Arguments before = folder.names();
   const std::pair<Arguments, std::string> cases[] = {
-      {{"job", "d.toml", "--tool-width-mm", "0.5", "--reachable", "o.toml"},
-       "--tool-width-mm: must be < 0.269713, or what it leaves over the apex reaches the blank's face, got 0.5"},
-      {{"job", "d.toml", "--tool-width-mm", "0.2", "--strategy", "dmc", "--reachable", "o.toml"},
-       "--reachable: is for strategies with a chisel"},
-      {{"job", "p.toml", "--tool-width-mm", "0.2", "--reachable", "o.toml"}, "--reachable: is for cube corners"},
-      {{"job", "d.toml", "--tool-width-mm", "0.2", "--reachable", "o.toml", "-o", "j.toml"}, "--out: makes a job"},
-      {{"job", "d.toml", "--tool-width-mm", "0.2", "--reachable", "d.toml"}, "--reachable: d.toml is a file that is"},
+      {{"job", "d.toml", "--tool-width-mm", "0.5", "--reachable", "o.toml"}, "--tool-width-mm"},
+      {{"job", "d.toml", "--tool-width-mm", "0.2", "--strategy", "dmc", "--reachable", "o.toml"}, "--reachable"},
+      {{"job", "p.toml", "--tool-width-mm", "0.2", "--reachable", "o.toml"}, "--reachable"},
+      {{"job", "d.toml", "--tool-width-mm", "0.2", "--reachable", "o.toml", "-o", "j.toml"}, "--out"},
+      {{"job", "d.toml", "--tool-width-mm", "0.2", "--reachable", "d.toml"}, "--reachable"},
       {{"job", "d.toml", "--tool-width-mm", "0.2", "--set", "array.x_length_mm=0.1", "--reachable", "o.toml"},
-       "array.x_length_mm: must be >= 1 to hold one element"}};
+       "array.x_length_mm"}};
   for (const auto& [arguments, message] : cases) {
-    expect_refused_with(retrace(folder, arguments), message);
+    EXPECT_EQ(refused_at(retrace(folder, arguments)), message);
     EXPECT_EQ(folder.names(), before);
   }
 }

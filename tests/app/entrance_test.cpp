@@ -38,15 +38,13 @@ class Entrance : public ::testing::Test {
     return retrace_json(folder_, all);
   }
 
-  /// Returns the error message of a refused design, without the prefix "retrace: ".
+  /// Returns the place `file:line: key` at which a design is refused.
   std::string refusal(const std::string& design, Arguments command = {"rre", "design.toml", "-o", "out"}) {
     folder_.write("design.toml", design);
     const auto before = folder_.names();
     const Outcome outcome = retrace(folder_, command);
-    EXPECT_EQ(outcome.code, 2) << outcome.err;
     EXPECT_EQ(folder_.names(), before);
-    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
-    return outcome.err.starts_with("retrace: ") ? outcome.err.substr(9, outcome.err.size() - 10) : outcome.err;
+    return refused_at(outcome);
   }
 };
 
@@ -216,9 +214,7 @@ TEST_F(Entrance, ReportSaysThatItIsNotShown) {
   rre(kPlate + kFront + kBody, {"--samples", "64", "-o", "out"});
   const Outcome outcome = retrace(folder_, {"report", "out", "--read", "lens.toml"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("no view in three dimensions"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("a [front] is taken by retrace rre, photometry, inspect and rays alone"),
-            std::string::npos);
+  EXPECT_EQ(warnings_of(outcome).size(), 1U) << outcome.err;
 }
 
 // Freeform lenslets of the example of `retrace turn`, including their steep blends, in front of prisms.
@@ -262,82 +258,56 @@ TEST_F(Entrance, OthersRefuseItByName) {
   const std::string prisms =
       "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
   const std::string design = prisms + kFront + kBody;
-  const std::string where = "design.toml:9: front.turned: ";
-  EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=exact"}),
-            "--engine: exact takes a plane entrance face alone, design.toml has a [front]: use --engine embree");
-  EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=cell"}),
-            "--engine: cell takes a plane entrance face alone, design.toml has a [front]: use --engine embree");
+  const std::string where = "design.toml:9: front.turned";
+  EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=exact"}), "--engine");
+  EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=cell"}), "--engine");
   for (const char* option : {"--footprint", "--far-field", "--derivatives"})
-    EXPECT_EQ(refusal(design, {"rre", "design.toml", option, "-o", "out"}),
-              where + option + " takes no [front], only a plane entrance face");
+    EXPECT_EQ(refusal(design, {"rre", "design.toml", option, "-o", "out"}), where);
   for (const std::string kind : {"--detector", "--camera"})
-    EXPECT_EQ(refusal(design, {"image", "design.toml", kind, "-o", "out"}),
-              where + "a [front] is taken by retrace rre, photometry, inspect and rays alone");
-  EXPECT_EQ(refusal(design, {"image", "design.toml", "--road", "-o", "out"}),
-            where + "retrace image takes no [front], only a plane entrance face");
-  EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl"}),
-            where + "retrace export takes no [front], only a plane entrance face");
-  EXPECT_EQ(refusal(design, {"job", "design.toml", "--tool-width-mm=0.2", "-o", "job.toml"}),
-            where + "retrace job takes no [front], only a plane entrance face");
-  EXPECT_EQ(refusal(design, {"roughness", "design.toml", "-o", "out"}),
-            where + "retrace roughness takes no [front], only a plane entrance face");
+    EXPECT_EQ(refusal(design, {"image", "design.toml", kind, "-o", "out"}), where);
+  EXPECT_EQ(refusal(design, {"image", "design.toml", "--road", "-o", "out"}), where);
+  EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl"}), where);
+  EXPECT_EQ(refusal(design, {"job", "design.toml", "--tool-width-mm=0.2", "-o", "job.toml"}), where);
+  EXPECT_EQ(refusal(design, {"roughness", "design.toml", "-o", "out"}), where);
 }
 
 TEST_F(Entrance, FilesThatMakeNoSenseAreRefused) {
   const std::string design = kPlate + kFront + kBody;
-  const std::string where = "design.toml:4: front.turned: ";
-  EXPECT_EQ(refusal(design), where + "lens.toml: cannot be read: No such file or directory");
+  const std::string where = "design.toml:4: front.turned";
+  EXPECT_EQ(refusal(design), where);
   folder_.write("lens.toml", turned(kFlat, {}, 0.6));
-  EXPECT_EQ(refusal(design), where +
-                                 "lens.toml: must be turned all over the part, its path has a radius of 0.6 mm, "
-                                 "x = -0.5000, y = -0.4000 mm of its frame lies outside");
+  EXPECT_EQ(refusal(design), where);
   folder_.write("lens.toml", turned(kFlat, "[boundary]\nkind = \"circle\"\nradius_mm = 0.55\n"));
-  EXPECT_EQ(refusal(design), where +
-                                 "lens.toml: must have a boundary round the whole part, x = -0.5000, y = -0.4000 mm "
-                                 "of its frame lies outside");
+  EXPECT_EQ(refusal(design), where);
   folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -0.9\n"));
-  EXPECT_EQ(refusal(kPlate + kFront + "centre_mm = [0.45, 0.38]\n[body]\nthickness_mm = 0.2\n"),
-            where +
-                "lens.toml: must lie above the part's back, whose highest place is z = 0.0000, it comes down to "
-                "-0.1246 mm at x = 1.0000, y = 0.8000 mm: give more body.thickness_mm");
+  EXPECT_EQ(refusal(kPlate + kFront + "centre_mm = [0.45, 0.38]\n[body]\nthickness_mm = 0.2\n"), where);
   folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = 0\n"));
-  EXPECT_TRUE(refusal(design).starts_with(where + "lens.toml:4: base.radius_mm: ")) << refusal(design);
+  EXPECT_EQ(refusal(design), where);
   folder_.write("lens.toml", "solid\nendsolid\n");
-  EXPECT_TRUE(
-      refusal(kPlate + "[front]\nmesh = \"lens.toml\"\n" + kBody).starts_with("design.toml:4: front.mesh: lens.toml"));
+  EXPECT_EQ(refusal(kPlate + "[front]\nmesh = \"lens.toml\"\n" + kBody), "design.toml:4: front.mesh");
 }
 
 TEST_F(Entrance, KeysThatMakeNoSenseAreRefused) {
   folder_.write("lens.toml", turned(kFlat));
   const std::string plate_body = kPlate + kBody;
-  EXPECT_EQ(refusal(plate_body + "[front]\n"),
-            "design.toml:6: front.turned: missing, must name the file of a turned part, or front.mesh an STL file");
-  EXPECT_EQ(refusal(plate_body + kFront + "mesh = \"a.stl\"\n"),
-            "design.toml:7: front.turned: not allowed beside mesh: a part has one front, got \"lens.toml\"");
-  EXPECT_EQ(refusal(plate_body + kFront + "mesh_side = \"top\"\n"),
-            "design.toml:8: front.mesh_side: only allowed with mesh, got \"top\"");
+  EXPECT_EQ(refusal(plate_body + "[front]\n"), "design.toml:6: front.turned");
+  EXPECT_EQ(refusal(plate_body + kFront + "mesh = \"a.stl\"\n"), "design.toml:7: front.turned");
+  EXPECT_EQ(refusal(plate_body + kFront + "mesh_side = \"top\"\n"), "design.toml:8: front.mesh_side");
   EXPECT_EQ(refusal(plate_body + "[front]\nmesh = \"a.stl\"\nmesh_side = \"left\"\n"),
-            "design.toml:8: front.mesh_side: must be \"top\" or \"bottom\", got \"left\"");
-  EXPECT_EQ(refusal(plate_body + kFront + "centre_mm = [1]\n"),
-            "design.toml:8: front.centre_mm: must be a list of 2 places, x and y, got 1 of them");
+            "design.toml:8: front.mesh_side");
+  EXPECT_EQ(refusal(plate_body + kFront + "centre_mm = [1]\n"), "design.toml:8: front.centre_mm");
   EXPECT_EQ(refusal("[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n" + kFront +
                     kBody),
-            "design.toml:8: front.turned: not allowed for extent = \"infinite\": give lengths");
+            "design.toml:8: front.turned");
   EXPECT_EQ(refusal("[element]\nkind = \"ball\"\ndiameter_mm = 1\n[body]\nrefractive_index = 1.9\n" + kFront),
-            "design.toml:6: front: not allowed for kind = \"ball\"");
-  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1, 1]\n" + kBody),
-            "design.toml:2: part.plate_mm: must be a list of 2 lengths, along x and y, got 3 of them");
-  EXPECT_EQ(refusal("[part]\nplate_mm = 1\n" + kBody),
-            "design.toml:2: part.plate_mm: must be a list of 2 lengths, along x and y, got 1");
-  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\nmesh = \"a.stl\"\n" + kBody),
-            "design.toml:3: part.mesh: not allowed beside plate_mm, got \"a.stl\"");
-  EXPECT_NE(refusal("[part]\nplate_mm = [1, 1]\n" + kBody + "[surface]\nfacet_tilt_arcmin = [1, 1]\n")
-                .find("surface.facet_tilt_arcmin: not allowed with [part]"),
-            std::string::npos);
-  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[element]\nkind = \"rtp\"\n" + kBody),
-            "design.toml:3: element: not allowed beside part.plate_mm, which is the whole part");
-  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[body]\nrefractive_index = 1.5\n"),
-            "design.toml:3: body.thickness_mm: missing, must be > 0");
+            "design.toml:6: front");
+  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1, 1]\n" + kBody), "design.toml:2: part.plate_mm");
+  EXPECT_EQ(refusal("[part]\nplate_mm = 1\n" + kBody), "design.toml:2: part.plate_mm");
+  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\nmesh = \"a.stl\"\n" + kBody), "design.toml:3: part.mesh");
+  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n" + kBody + "[surface]\nfacet_tilt_arcmin = [1, 1]\n"),
+            "surface.facet_tilt_arcmin");
+  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[element]\nkind = \"rtp\"\n" + kBody), "design.toml:3: element");
+  EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[body]\nrefractive_index = 1.5\n"), "design.toml:3: body.thickness_mm");
 }
 
 }  // namespace

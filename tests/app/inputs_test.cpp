@@ -29,22 +29,18 @@ std::map<std::string, std::string> contents(const TemporaryFolder& folder) {
   return all;
 }
 
-/// Expects that the command is refused with one line, and that no file in the folder changes.
-void expect_refused(const TemporaryFolder& folder, const Arguments& arguments, const std::string& why) {
+/// Expects that the command is refused at this option, and that no file in the folder changes.
+void expect_refused(const TemporaryFolder& folder, const Arguments& arguments, const std::string& option) {
   std::string shown;
   for (const std::string& word : arguments) shown += word + " ";
   SCOPED_TRACE(shown);
   const auto before = contents(folder);
   const auto names = folder.names();
   const Outcome outcome = retrace(folder, arguments);
-  EXPECT_EQ(outcome.code, 2) << outcome.out;
-  EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
-  EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
+  EXPECT_EQ(refused_at(outcome), option);
   EXPECT_EQ(folder.names(), names);
   EXPECT_TRUE(contents(folder) == before) << "a file was changed";
 }
-
-const std::string kRead = " is a file that is read; it would be overwritten";
 
 /// Expects that retrace refuses a file as an output of --json, for every name that the file can have: path, symbolic
 /// link and hard link.
@@ -56,7 +52,7 @@ void expect_protected(const TemporaryFolder& folder, const Arguments& command, c
   fs::create_hard_link(folder.path() / file, folder.path() / "twin");
   for (const std::string& name :
        {file, "./beside/../" + file, (folder.path() / file).string(), std::string("link"), std::string("twin")})
-    expect_refused(folder, with(command, {"--json", name}), "--json: " + name + kRead);
+    expect_refused(folder, with(command, {"--json", name}), "--json");
 }
 
 std::string ascii_stl(const std::vector<std::array<double, 3>>& vertices,
@@ -135,7 +131,7 @@ TEST(Inputs, FilesThatADesignNamesAreNoOutputs) {
         << retrace(folder, {"inspect", "d/design.toml"}).err;
     expect_protected(folder, {"inspect", "d/design.toml"}, "d/" + key.name);
     for (const std::string& file : {"d/" + key.name, std::string("d/design.toml")})
-      expect_refused(folder, {"rre", "d/design.toml", "--samples=64", "--json", file}, "--json: " + file + kRead);
+      expect_refused(folder, {"rre", "d/design.toml", "--samples=64", "--json", file}, "--json");
   }
 }
 
@@ -149,7 +145,7 @@ TEST(Inputs, FilesThatADesignNamesAreNotReplacedInTheOutputFolder) {
       fs::create_directory(folder.path() / "out");
       folder.write("out/" + name, key.content);
       folder.write("design.toml", key.before + "out/" + name + key.after);
-      expect_refused(folder, {"rre", "design.toml", "--samples=64", "-o", "out"}, "--out: out/" + name + kRead);
+      expect_refused(folder, {"rre", "design.toml", "--samples=64", "-o", "out"}, "--out");
     }
 }
 
@@ -161,16 +157,16 @@ TEST(Inputs, CommandsThatWriteOneFileSpareWhatTheyRead) {
   folder.write("plain.toml", kPrisms + kBody);
   for (const char* file : {"design.toml", "planes.csv", "plain.toml"})
     fs::create_hard_link(folder.path() / file, folder.path() / (fs::path(file).stem().string() + ".stl"));
-  expect_refused(folder, {"export", "design.toml", "design.stl"}, "--out: design.stl" + kRead);
-  expect_refused(folder, {"export", "design.toml", "planes.stl"}, "--out: planes.stl" + kRead);
-  expect_refused(folder, {"export", "design.toml", "x.stl", "--json", "planes.csv"}, "--json: planes.csv" + kRead);
+  expect_refused(folder, {"export", "design.toml", "design.stl"}, "--out");
+  expect_refused(folder, {"export", "design.toml", "planes.stl"}, "--out");
+  expect_refused(folder, {"export", "design.toml", "x.stl", "--json", "planes.csv"}, "--json");
   folder.write("mine.toml", read_text(std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml"));
   folder.write("cut.toml", read_text(std::string(RETRACE_SOURCE_DIR) + "/data/processes/paper-pmma.toml"));
   const Arguments job = {"job",       "plain.toml", "--tool-width-mm", "0.5",
                          "--machine", "mine.toml",  "--process",       "cut.toml"};
   for (const std::string file : {"plain.toml", "plain.stl", "mine.toml", "cut.toml"}) {
-    expect_refused(folder, with(job, {"-o", file}), "--out: " + file + kRead);
-    expect_refused(folder, with(job, {"--json", file}), "--json: " + file + kRead);
+    expect_refused(folder, with(job, {"-o", file}), "--out");
+    expect_refused(folder, with(job, {"--json", file}), "--json");
   }
   ASSERT_EQ(retrace(folder, with(job, {"-o", "job.toml"})).code, 0);
   ASSERT_EQ(retrace(folder, {"fabricate", "job.toml", "-o", "out"}).code, 0);
@@ -178,9 +174,9 @@ TEST(Inputs, CommandsThatWriteOneFileSpareWhatTheyRead) {
   const std::string program = "out/" + made["programs"][0].get<std::string>();
   for (const std::string& file : {std::string("job.toml"), std::string("mine.toml"), program})
     for (const std::string option : {"--map", "--as-machined", "--json"})
-      expect_refused(folder, {"verify", "job.toml", program, option, file}, option + ": " + file + kRead);
+      expect_refused(folder, {"verify", "job.toml", program, option, file}, option);
   for (const std::string file : {"job.toml", "mine.toml"})
-    expect_refused(folder, {"fabricate", "job.toml", "--json", file}, std::string("--json: ") + file + kRead);
+    expect_refused(folder, {"fabricate", "job.toml", "--json", file}, "--json");
 }
 
 TEST(Inputs, FilesOfStudiesAreNoOutputs) {
@@ -205,7 +201,7 @@ TEST(Inputs, ResultsAreNotReplacedByTheSummaryOfTheirPage) {
   folder.write("design.toml", kPrisms + kBody);
   ASSERT_EQ(retrace(folder, {"rre", "design.toml", "--samples=64", "-o", "out"}).code, 0);
   for (const std::string file : {"out/rre.json", "out/rre.svg"})
-    expect_refused(folder, {"report", "out", "--json", file}, "--json: " + file + kRead);
+    expect_refused(folder, {"report", "out", "--json", file}, "--json");
 }
 
 /// Returns the command that reads an example.
@@ -243,15 +239,11 @@ TEST(Inputs, WhatExamplesReadIsNotOverwritten) {
     add_named(folder.path(), name, named);
     const Arguments command = command_of(folder.read(name), name);
     if (command.front() == "turn") continue;  // names no files and takes long before it writes
-    for (const std::string& file : named) expect_refused(folder, with(command, {"--json", file}), file + kRead);
+    for (const std::string& file : named) expect_refused(folder, with(command, {"--json", file}), "--json");
     (command.front() == "sweep" ? studies : others) += named.size() - 1;
   }
   EXPECT_GE(studies, 5U);
   EXPECT_GE(others, 3U);
-}
-
-std::string most(std::size_t bytes) {
-  return ": must have at most " + std::to_string(bytes) + " bytes, got more";
 }
 
 constexpr std::size_t kDesign = std::size_t{1} << 20;
@@ -305,48 +297,41 @@ TEST(Inputs, LongFilesAreRefusedWithTheirLimit) {
     fs::resize_file(folder.path() / c.file, c.most_bytes + 1);
     Arguments arguments = with(c.command, {"--quiet", "--json", "r.json"});
     const Outcome outcome = retrace(folder, arguments);
-    EXPECT_EQ(outcome.code, 2) << c.file;
-    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
-    EXPECT_NE(outcome.err.find(c.file + most(c.most_bytes)), std::string::npos) << c.command.front() << outcome.err;
+    refused_at(outcome);
+    EXPECT_NE(outcome.err.find(c.file + ": "), std::string::npos) << c.command.front() << outcome.err;
+    EXPECT_NE(outcome.err.find(" " + std::to_string(c.most_bytes) + " "), std::string::npos) << outcome.err;
     EXPECT_FALSE(fs::exists(folder.path() / "r.json"));
     fs::remove(folder.path() / c.file);
     // A folder with the name of the file is refused as well.
     if (c.command.front() == "report") continue;
     fs::create_directory(folder.path() / c.file);
     const Outcome as_folder = retrace(folder, arguments);
-    EXPECT_EQ(as_folder.code, 2) << c.file;
-    EXPECT_EQ(lines_of(as_folder.err).size(), 1U) << as_folder.err;
-    EXPECT_NE(as_folder.err.find(c.file + ": cannot be read: it is "), std::string::npos)
-        << c.command.front() << as_folder.err;
+    refused_at(as_folder);
+    EXPECT_NE(as_folder.err.find(c.file + ": "), std::string::npos) << c.command.front() << as_folder.err;
     fs::remove(folder.path() / c.file);
   }
 }
 
 /// Expects that a shell command ends in time, with exit code 2 and one line.
-void expect_ends(const std::string& shell, const std::string& message) {
+void expect_ends(const std::string& shell, const std::string& place) {
   SCOPED_TRACE(shell);
   const TemporaryFolder folder;
   folder.write("plain.toml", kPrisms + kBody);
   Child child(folder.path(), {"/bin/sh", "-c", shell});
   const Outcome outcome = child.wait(patient(60));
-  EXPECT_EQ(outcome.code, 2) << outcome.out;
-  EXPECT_EQ(outcome.err, "retrace: " + message + "\n");
+  EXPECT_EQ(refused_at(outcome), place);
 }
-
-const std::string kNoFile = ": cannot be read: it is no regular file";
 
 TEST(Inputs, FilesWithoutEndAreRefused) {
   const std::string program = "'" + std::string(RETRACE_PROGRAM) + "' ";
   for (const std::string file : {"/dev/zero", "/dev/urandom"})
     for (const std::string command : {"rre ", "inspect ", "sweep ", "fabricate ", "turn ", "metrology "})
-      expect_ends(program + command + file, file + kNoFile);
-  expect_ends("yes | " + program + "rre -", "standard input" + most(kDesign));
-  expect_ends("yes | " + program + "sweep -", "standard input" + most(kDesign));
+      expect_ends(program + command + file, file);
+  expect_ends("yes | " + program + "rre -", "standard input");
+  expect_ends("yes | " + program + "sweep -", "standard input");
   // Nothing ever writes to this pipe.
-  for (const std::string command : {"rre ", "turn "})
-    expect_ends("mkfifo f; " + program + command + "f", "f" + kNoFile);
-  expect_ends("mkfifo f; " + program + "rre plain.toml --set array.mask=f",
-              "--set array.mask=f: array.mask: f" + kNoFile);
+  for (const std::string command : {"rre ", "turn "}) expect_ends("mkfifo f; " + program + command + "f", "f");
+  expect_ends("mkfifo f; " + program + "rre plain.toml --set array.mask=f", "--set array.mask=f: array.mask");
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST(LongRunOfTheProgram, NamesTheOptionThatShortensIt) {
   const Outcome outcome = interrupted(folder, {"rre", example("tail_lamp_100cm2.toml"), "--samples=68719476736"});
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_EQ(note_count(outcome.err), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find("--samples (now 68719476736)"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--samples"), std::string::npos) << outcome.err;
 }
 
 TEST(LongRunOfTheProgram, OfAStudyIsReportedBeforeItsFirstPointIsFinished) {
@@ -53,7 +53,7 @@ TEST(LongRunOfTheProgram, OfAStudyIsReportedBeforeItsFirstPointIsFinished) {
   const Outcome outcome = interrupted(folder, {"sweep", "study.toml"});
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_EQ(note_count(outcome.err), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find("analysis.samples (now 1000000000)"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("analysis.samples"), std::string::npos) << outcome.err;
 }
 
 // The program prints preliminary readings to standard error during the run. They do not change the standard output of

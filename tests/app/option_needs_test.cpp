@@ -134,8 +134,7 @@ TEST(OptionNeeds, AreCheckedForEveryOptionOfEveryCommand) {
         SCOPED_TRACE(text_of(line.arguments()));
         const Outcome outcome = retrace(folder, line.arguments());
         EXPECT_EQ(outcome.code, 2) << outcome.err;
-        EXPECT_EQ(outcome.err.starts_with("retrace: " + option + ": needs "), !violated.empty()) << outcome.err;
-        EXPECT_EQ(outcome.err.find(": needs ") != std::string::npos, !violated.empty()) << outcome.err;
+        EXPECT_EQ(outcome.err.starts_with("retrace: " + option + ": "), !violated.empty()) << outcome.err;
         EXPECT_EQ(folder.names(), std::vector<std::string>{}) << "something was written";
       };
       run(Json::array());
@@ -156,8 +155,7 @@ TEST(OptionNeeds, TheEngineAutoTakesTheOptionsOfAllEngines) {
            {"photometry", "--standard=r150", "--area-cm2=1", "--samples=5", "--cutoff=1e-3", "--window-power"},
            {"image", "--detector", "--samples=5", "--cutoff=1e-6"}}) {
     const Outcome outcome = retrace(folder, with(more, {"missing.toml", "--engine=auto"}));
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_NE(outcome.err.find("missing.toml"), std::string::npos) << outcome.err;
+    EXPECT_EQ(refused_at(outcome), "missing.toml");
   }
 }
 

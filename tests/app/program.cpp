@@ -19,6 +19,8 @@
 #include <string_view>
 #include <thread>
 
+#include "tests/support/refusals.h"
+
 namespace retrace::test {
 namespace fs = std::filesystem;
 namespace {
@@ -191,26 +193,31 @@ Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std:
   return Json::parse(outcome.out, nullptr, false);
 }
 
-void expect_refused_with(const Outcome& outcome, const std::string& words) {
-  EXPECT_EQ(outcome.code, 2) << words;
+std::string refused_at(const Outcome& outcome, int code) {
+  EXPECT_EQ(outcome.code, code) << outcome.err;
   EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err << " lacks: " << words;
+  const std::vector<std::string> lines = lines_of(outcome.err);
+  EXPECT_EQ(lines.size(), 1U) << outcome.err;
+  if (lines.empty()) return "";
+  EXPECT_TRUE(lines[0].starts_with("retrace: ")) << lines[0];
+  return recorded_place_of(lines[0].substr(std::min<std::size_t>(9, lines[0].size())));
 }
 
-void expect_refused(const Outcome& outcome, const std::string& begin, int code) {
-  EXPECT_EQ(outcome.code, code);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_TRUE(outcome.err.starts_with("retrace: " + begin)) << outcome.err << "should begin: " << begin;
+std::vector<std::string> warnings_of(const Outcome& outcome) {
+  constexpr std::string_view kBegin = "warning: ";
+  std::vector<std::string> warnings;
+  for (const std::string& line : lines_of(outcome.err))
+    if (line.starts_with(kBegin)) warnings.push_back(line.substr(kBegin.size()));
+  for (const std::string& warning : warnings) record_message(warning);
+  return warnings;
 }
 
 void expect_refused(const TemporaryFolder& folder, const std::vector<Refused>& cases, const Arguments& before,
                     const Arguments& after) {
   const std::vector<std::string> names = folder.names();
   for (const Refused& bad : cases) {
-    SCOPED_TRACE(bad.begin);
-    expect_refused(retrace(folder, with(with(before, bad.arguments), after)), bad.begin);
+    const Arguments arguments = with(with(before, bad.arguments), after);
+    EXPECT_EQ(refused_at(retrace(folder, arguments)), bad.place) << testing::PrintToString(arguments);
     EXPECT_EQ(folder.names(), names);
   }
 }

@@ -107,16 +107,17 @@ Outcome retrace(const TemporaryFolder& folder, Arguments arguments, const std::s
 /// Runs retrace and returns the JSON document that `--json -` prints. The exit code of the run must be 0.
 Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std::string& input = {});
 
-/// Expects that a run has the given exit code, an empty standard output and one line of error message.
-/// \param begin beginning of the message
-void expect_refused(const Outcome& outcome, const std::string& begin, int code = 2);
-/// Expects that a run was refused with a message that contains `words`.
-void expect_refused_with(const Outcome& outcome, const std::string& words);
+/// Returns `file:line: key` of the message of a refused run, without the parts that the message lacks. Expects the exit
+/// code, nothing on standard output, and one line on standard error, which is recorded in tests/messages.txt.
+std::string refused_at(const Outcome& outcome, int code = 2);
 
-/// Arguments that are refused, and the beginning of the message.
+/// Returns the warnings of a run, and records them in tests/messages.txt.
+std::vector<std::string> warnings_of(const Outcome& outcome);
+
+/// Arguments that are refused, and `file:line: key` of the message.
 struct Refused {
   Arguments arguments;
-  std::string begin;
+  std::string place;
 };
 
 /// Expects that runs in `folder` are refused and write nothing.

@@ -43,10 +43,7 @@ TEST(SchemaCommand, PrintsJsonSchema) {
 TEST(SchemaCommand, RefusesAnUnknownFormat) {
   const TemporaryFolder folder;
   const Outcome outcome = retrace(folder, {"schema", "procces"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err,
-            "retrace: schema: must be design, job, machine, materials, planed_part, process, study, turned_part, got "
-            "procces\n");
+  EXPECT_EQ(refused_at(outcome), "schema");
 }
 
 /// One line for each TOML file: its name, and whether the schema accepts it.

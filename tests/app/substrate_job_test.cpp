@@ -13,14 +13,12 @@ const char* const kExample = "fabrication/prisms_on_cylinder.toml";
 
 class SubstrateJob : public ::testing::Test {
  protected:
-  /// Expects that the arguments are refused with exit code 2 and one line, and that nothing is written.
-  void expect_refused(const Arguments& arguments, const std::string& what) {
+  /// Expects that the arguments are refused with exit code 2 and one line, and that nothing is written. Returns the place.
+  std::string refusal(const Arguments& arguments) {
     const auto before = folder_.names();
     const Outcome refused = retrace(folder_, arguments);
-    EXPECT_EQ(refused.code, 2) << refused.err;
-    EXPECT_NE(refused.err.find(what), std::string::npos) << refused.err;
-    EXPECT_EQ(refused.err.find('\n'), refused.err.size() - 1) << refused.err;
     EXPECT_EQ(folder_.names(), before);
+    return refused_at(refused);
   }
   Json verified(const std::string& dialect) {
     const Outcome made = retrace(folder_, {"fabricate", "job.toml", "--dialect", dialect, "-o", dialect, "--quiet"});
@@ -49,7 +47,7 @@ TEST_F(SubstrateJob, OfTheExampleVerifiesInEveryDialect) {
     // There are ten rows of prisms. Each facet of a row has its own angle A.
     EXPECT_EQ(json["poses"].size(), 20U);
   }
-  expect_refused({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}, "base: no map is drawn");
+  EXPECT_EQ(refusal({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}), "?");
 }
 
 /// The machined part has the RRE of the design, except for the effect of the surface texture.
@@ -83,7 +81,7 @@ TEST_F(SubstrateJob, AsMachinedReturnsWhatTheDesignDoes) {
     if (!(skips && line.find("call") != std::string::npos)) cut += line + "\n";
   }
   folder_.write("cut.ngc", cut);
-  expect_refused({"verify", "job.toml", "cut.ngc", "--as-machined", "other.toml"}, "must be cut all, 1 are not");
+  EXPECT_EQ(refusal({"verify", "job.toml", "cut.ngc", "--as-machined", "other.toml"}), "?");
 }
 
 TEST_F(SubstrateJob, OfCubeCornersOnASphere) {
@@ -98,19 +96,20 @@ TEST_F(SubstrateJob, OfCubeCornersOnASphere) {
   const Json json = verified("rs274ngc");
   EXPECT_EQ(json["verdict"], "pass") << json.dump().substr(0, 1000);
   EXPECT_LT(json["facet_distance_nm_max"].get<double>(), 1.0);
-  expect_refused(
-      {"job", "design.toml", "--strategy", "dmc", "--tool-width-mm", "0.6", "--workpiece", "direct", "-o", "d.toml"},
-      "--workpiece: must be mould for a design with [base], got \"direct\"");
+  EXPECT_EQ(refusal({"job", "design.toml", "--strategy", "dmc", "--tool-width-mm", "0.6", "--workpiece", "direct", "-o",
+                     "d.toml"}),
+            "?");
 }
 
 TEST_F(SubstrateJob, OfWhatCannotBeCutIsRefused) {
-  expect_refused({"job", example("pin_bundle.toml"), "--strategy", "dmc", "--tool-width-mm", "9", "-o", "pins.toml"},
-                 "pins are ground one by one and bundled, not cut");
+  EXPECT_EQ(
+      refusal({"job", example("pin_bundle.toml"), "--strategy", "dmc", "--tool-width-mm", "9", "-o", "pins.toml"}),
+      "?");
   ASSERT_EQ(retrace(folder_, {"job", example(kExample), "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet", "--set",
                               "base.axis=x"})
                 .code,
             0);
-  expect_refused({"fabricate", "job.toml", "-o", "program"}, "A and C cannot correct this angle");
+  EXPECT_EQ(refusal({"fabricate", "job.toml", "-o", "program"}), "?");
 }
 
 }  // namespace

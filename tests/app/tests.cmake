@@ -17,6 +17,7 @@ retrace_test(command_tests
     app/photometry_test.cpp
     app/plane_test.cpp
     app/program.cpp
+    support/refusals.cpp
     app/readme_test.cpp
     app/registry_test.cpp
     app/returned_light_test.cpp

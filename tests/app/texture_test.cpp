@@ -30,39 +30,32 @@ std::string stairs(int points, const std::string& step_nm) {
   return "pixel_um 0.2\nheight_unit nm\n" + repeated(row + "\n", points);
 }
 
-struct BadMap {
-  std::string content;
-  std::string message;
-};
-
 TEST(HeightMapOfADesign, BadFilesAreRefusedInOneLineThatNamesBoth) {
   const std::string row = "1 2 3 4 5 6 7 8 9\n";
   const std::string head = "pixel_um 0.2\nheight_unit nm\n";
-  const std::vector<BadMap> cases = {
-      {repeated(row, 9), ": the spacing along x is not known: give x_pixel_um in the file\n"},
-      {"pixel_um 0.2\n" + repeated(row, 9), ": the unit of heights is not known: give height_unit = UNIT in the file;"},
-      {head + repeated("nan nan nan nan nan nan nan nan nan\n", 9),
-       ": at least 8 points must be measured, got 0 of 81"},
-      {head + repeated(row, 8) + "1 2 3\n", ":11: every row must have the 9 values of the first (line 3), got 3"},
-      {"Gwyddion Simple Field 1.0\nXRes = 64\nYRes = 64\nXReal = 1e-5\nYReal = 1e-5\nZUnits = m\n" +
-           std::string(2, '\0'),
-       ""},
-      {"", ": the file is empty"},
-      {std::string("\x89PNG\r\n\x1a\n\0\0", 10), ": the format is not known"},
-      {head + repeated(row, 7), ": a height map that scatters light needs at least 8 x 8 points, got 9 x 7"},
-      {head + repeated("5\n", 40), ": a height map that scatters light needs at least 8 x 8 points, got 40 x 1"},
-      {stairs(64, "90000"), ": rms slope of the height map (is the unit of heights right?) must be at most 1 "},
+  const std::vector<std::string> cases = {
+      repeated(row, 9),
+      "pixel_um 0.2\n" + repeated(row, 9),
+      head + repeated("nan nan nan nan nan nan nan nan nan\n", 9),
+      head + repeated(row, 8) + "1 2 3\n",
+      "Gwyddion Simple Field 1.0\nXRes = 64\nYRes = 64\nXReal = 1e-5\nYReal = 1e-5\nZUnits = m\n" +
+          std::string(2, '\0'),
+      "",
+      std::string("\x89PNG\r\n\x1a\n\0\0", 10),
+      head + repeated(row, 7),
+      head + repeated("5\n", 40),
+      stairs(64, "90000"),
   };
-  for (const BadMap& bad : cases)
+  for (const std::string& content : cases)
     for (const std::string command : {"rre", "inspect"}) {
-      SCOPED_TRACE(command + bad.message);
+      SCOPED_TRACE(command + content.substr(0, 100));
       const TemporaryFolder folder;
       fs::create_directory(folder.path() / "parts");
       folder.write("parts/d.toml", kDesign + "height_map = \"m.txt\"\n");
-      folder.write("parts/m.txt", bad.content);
+      folder.write("parts/m.txt", content);
       const Arguments before = folder.names();
       const Outcome outcome = retrace(folder, {command, "parts/d.toml", "-o", "out", "--json", "r.json"});
-      expect_refused(outcome, "parts/d.toml:10: surface.height_map: parts/m.txt" + bad.message);
+      EXPECT_EQ(refused_at(outcome), "parts/d.toml:10: surface.height_map");
       EXPECT_EQ(folder.names(), before);
     }
 }
@@ -71,13 +64,9 @@ TEST(HeightMapOfADesign, MissingFilesAreRefused) {
   const TemporaryFolder folder;
   folder.write("d.toml", kDesign + "height_map = \"none.gwy\"\n");
   const Outcome outcome = retrace(folder, {"rre", "d.toml", "-o", "out"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(outcome.err.starts_with("retrace: d.toml:10: surface.height_map: none.gwy: cannot be read"))
-      << outcome.err;
+  EXPECT_EQ(refused_at(outcome), "d.toml:10: surface.height_map");
   const Outcome given = retrace(folder, {"inspect", "d.toml", "--set", "surface.height_map=other.gwy", "-o", "out"});
-  EXPECT_EQ(given.code, 2);
-  EXPECT_TRUE(given.err.starts_with("retrace: --set surface.height_map=other.gwy: surface.height_map: other.gwy: "))
-      << given.err;
+  EXPECT_EQ(refused_at(given), "--set surface.height_map=other.gwy: surface.height_map");
   EXPECT_EQ(folder.names(), Arguments{"d.toml"});
 }
 
@@ -111,31 +100,28 @@ TEST(HeightMapOfADesign, ExactEngineRefusesIt) {
   folder.write("d.toml", kDesign + "height_map = \"m.txt\"\n");
   folder.write("m.txt", stairs(16, "5"));
   const Outcome outcome = retrace(folder, {"rre", "d.toml", "--engine", "exact"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(outcome.err.starts_with("retrace: d.toml:10: surface.height_map: rough facets split a beam"))
-      << outcome.err;
+  EXPECT_EQ(refused_at(outcome), "d.toml:10: surface.height_map");
 }
 
 struct OutOfRange {
   std::string surface;
-  std::string warning;
+  std::string word;  ///< of its warning, no other has it
 };
 
 // Each model says what it is asked beyond its range, on standard error and in the JSON of both commands.
 TEST(TextureOfADesign, WarnsOutsideTheRangeOfEveryModel) {
   const std::vector<OutOfRange> cases = {
-      {"roughness_sq_nm = 10\ncorrelation_length_um = 0.2\n", "correlation length 0.2 um is below the wavelength"},
-      {"roughness_sq_nm = 400\ncorrelation_length_um = 2\n", "rms slope of the roughness 0.400 is above 0.3"},
-      {"roughness_sq_nm = 250\ncorrelation_length_um = 9\n", "roughness 250 nm is above half a wavelength"},
-      {"waviness_sq_nm = 300\nwaviness_length_um = 5\n", "rms slope of the waviness 0.37"},
-      {"model = \"abg\"\nabg_a = 0.01\nabg_b = 1e-4\nabg_g = 2\n", "up to 33.3 % of the light scatters by abg"},
-      {"model = \"microfacet\"\nwaviness_sq_nm = 30\nwaviness_length_um = 80\n",
-       "waviness of 30 nm is too low for facets"},
-      {"model = \"microfacet\"\nwaviness_sq_nm = 900\nwaviness_length_um = 10\n", "rms slope 0.56"},
-      {"height_map = \"steep.txt\"\n", "rms slope of the height map 0."},
-      {"height_map = \"coarse.txt\"\n", "points of the height map are 5 um apart"},
-      {"height_map = \"coarse.txt\"\n", "kurtosis of the heights is"},
-      {"height_map = \"coarse.txt\"\n", "coarse.txt: 12.5 % of the points are missing"},
+      {"roughness_sq_nm = 10\ncorrelation_length_um = 0.2\n", "correlation length"},
+      {"roughness_sq_nm = 400\ncorrelation_length_um = 2\n", "slope of the roughness"},
+      {"roughness_sq_nm = 250\ncorrelation_length_um = 9\n", "roughness 250 nm"},
+      {"waviness_sq_nm = 300\nwaviness_length_um = 5\n", "slope of the waviness"},
+      {"model = \"abg\"\nabg_a = 0.01\nabg_b = 1e-4\nabg_g = 2\n", "abg"},
+      {"model = \"microfacet\"\nwaviness_sq_nm = 30\nwaviness_length_um = 80\n", "waviness of 30 nm"},
+      {"model = \"microfacet\"\nwaviness_sq_nm = 900\nwaviness_length_um = 10\n", "slope"},
+      {"height_map = \"steep.txt\"\n", "slope of the height map"},
+      {"height_map = \"coarse.txt\"\n", "5 um"},
+      {"height_map = \"coarse.txt\"\n", "kurtosis"},
+      {"height_map = \"coarse.txt\"\n", "coarse.txt"},
   };
   const TemporaryFolder folder;
   folder.write("steep.txt", stairs(64, "700"));
@@ -148,11 +134,11 @@ TEST(TextureOfADesign, WarnsOutsideTheRangeOfEveryModel) {
       if (command == "rre") arguments.emplace_back("--samples=64");
       const Outcome outcome = retrace(folder, arguments);
       ASSERT_EQ(outcome.code, 0) << outcome.err;
-      EXPECT_NE(outcome.err.find("warning: d.toml: " + bad.warning), std::string::npos) << outcome.err;
-      const Json warnings = folder.json("r.json")["warnings"];
-      EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [&](const Json& text) {
-        return text.get<std::string>().find("d.toml: " + bad.warning) != std::string::npos;
-      })) << warnings;
+      const std::vector<std::string> warnings = warnings_of(outcome);
+      EXPECT_EQ(folder.json("r.json")["warnings"], Json(warnings));
+      EXPECT_TRUE(std::ranges::any_of(warnings, [&](const std::string& text) {
+        return text.starts_with("d.toml: ") && text.find(bad.word) != std::string::npos;
+      })) << outcome.err;
     }
 }
 
@@ -168,19 +154,17 @@ TEST(TextureOfADesign, InRangeIsSilent) {
 }
 
 TEST(TextureOfADesign, OutsideOfEveryModelIsRefused) {
-  const std::vector<OutOfRange> cases = {
-      {"roughness_sq_nm = 5000\ncorrelation_length_um = 2\n",
-       "10: surface.roughness_sq_nm: rms slope of the roughness"},
-      {"waviness_sq_nm = 5000\nwaviness_length_um = 2\n", "10: surface.waviness_sq_nm: rms slope of the waviness"},
-      {"model = \"microfacet\"\nwaviness_sq_nm = 5000\nwaviness_length_um = 2\n",
-       "10: surface.model: rms slope of the facets must be at most 1 "},
-      {"model = \"abg\"\nabg_a = 9\nabg_b = 1e-4\nabg_g = 2\n", "10: surface.model: a: must be <= "}};
-  for (const OutOfRange& bad : cases)
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"roughness_sq_nm = 5000\ncorrelation_length_um = 2\n", "surface.roughness_sq_nm"},
+      {"waviness_sq_nm = 5000\nwaviness_length_um = 2\n", "surface.waviness_sq_nm"},
+      {"model = \"microfacet\"\nwaviness_sq_nm = 5000\nwaviness_length_um = 2\n", "surface.model"},
+      {"model = \"abg\"\nabg_a = 9\nabg_b = 1e-4\nabg_g = 2\n", "surface.model"}};
+  for (const auto& [surface, key] : cases)
     for (const std::string command : {"rre", "inspect"}) {
       const TemporaryFolder folder;
-      folder.write("d.toml", kDesign + bad.surface);
+      folder.write("d.toml", kDesign + surface);
       const Outcome outcome = retrace(folder, {command, "d.toml", "-o", "out"});
-      expect_refused(outcome, "d.toml:" + bad.warning);
+      EXPECT_EQ(refused_at(outcome), "d.toml:10: " + key);
       EXPECT_EQ(folder.names(), Arguments{"d.toml"});
     }
 }

@@ -1,15 +1,22 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <regex>
 #include <set>
 
 #include "tests/app/program.h"
 
-// retrace validate: every figure is met, the page of the documentation is the one that it writes, and the document has
-// the shape that docs/commands.md says.
+// retrace validate: every figure is met, the page of the documentation has the numbers that it writes, and the document
+// has the shape that docs/commands.md says.
 
 namespace retrace::test::validate_test {
 namespace {
+
+/// Returns the numbers of a text in their order.
+std::vector<std::string> numbers_of(const std::string& text) {
+  static const std::regex number(R"(-?[0-9]+(\.[0-9]+)?(e-?[0-9]+)?)");
+  return {std::sregex_token_iterator(text.begin(), text.end(), number), std::sregex_token_iterator()};
+}
 
 TEST(Validate, MeetsEveryFigureAndWritesThePageOfTheDocumentation) {
   const TemporaryFolder folder;
@@ -18,7 +25,8 @@ TEST(Validate, MeetsEveryFigureAndWritesThePageOfTheDocumentation) {
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(outcome.out, "wrote validation.md\n");
   EXPECT_EQ(folder.names(), (Arguments{"validation.json", "validation.md"}));
-  EXPECT_EQ(folder.read("validation.md"), read_text(std::string(RETRACE_SOURCE_DIR) + "/docs/validation.md"))
+  EXPECT_EQ(numbers_of(folder.read("validation.md")),
+            numbers_of(read_text(std::string(RETRACE_SOURCE_DIR) + "/docs/validation.md")))
       << "retrace validate -o docs/validation.md";
 
   const Json json = folder.json("validation.json");
@@ -53,19 +61,15 @@ TEST(Validate, MeetsEveryFigureAndWritesThePageOfTheDocumentation) {
 
 TEST(Validate, RefusesWhatItDoesNotTake) {
   const TemporaryFolder folder;
-  const auto refused = [&](const Arguments& arguments) {
+  const auto refused = [&](const Arguments& arguments, int code = 2) {
     const Outcome outcome = retrace(folder, arguments);
-    EXPECT_EQ(outcome.code, outcome.err.find("cannot be written") == std::string::npos ? 2 : 3) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(lines_of(outcome.err).size(), 1U);
-    return outcome.err;
+    return refused_at(outcome, code);
   };
-  EXPECT_NE(refused({"validate", "--set", "element.base_mm=1"}).find("validate has designs of its own"),
-            std::string::npos);
-  refused({"validate", "all"});
-  refused({"validate", "--threads", "0"});
-  refused({"validate", "--json", "nowhere/v.json"});
-  EXPECT_NE(refused({"validate", "-o", "v.md", "--json", "v.md"}).find("--json: v.md"), std::string::npos);
+  EXPECT_EQ(refused({"validate", "--set", "element.base_mm=1"}), "--set");
+  EXPECT_EQ(refused({"validate", "all"}), "?");
+  EXPECT_EQ(refused({"validate", "--threads", "0"}), "--threads");
+  EXPECT_EQ(refused({"validate", "--json", "nowhere/v.json"}, 3), "nowhere/v.json");
+  EXPECT_EQ(refused({"validate", "-o", "v.md", "--json", "v.md"}), "--json");
   EXPECT_TRUE(folder.names().empty());
 }
 

@@ -101,32 +101,30 @@ TEST_F(VerifyParts, BadInputIsOneLine) {
                 "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"plane\"\n[tool]\nnose_radius_mm = "
                 "0.2\nclearance_deg = 15\n[path]\nradius_mm = 0.1\nfeed_um = 10\nspindle_rpm = 60\nservo = \"fast\"\n");
   folder_.write("strokes.csv", "c_deg,stroke_mm\n0,x\n");
-  const std::string allowed =
-      "schema: must be \"retrace.job/1\", \"retrace.planed_part/1\" or \"retrace.turned_part/1\", got ";
   const std::vector<std::pair<Arguments, std::string>> cases = {
-      {{"other.toml", "p.ngc"}, "other.toml:1: " + allowed + "\"retrace.design/1\""},
-      {{"newer.toml", "p.ngc"}, "newer.toml:2: " + allowed + "\"retrace.turned_part/2\""},
-      {{"broken.toml", "p.ngc"}, "broken.toml:"},
+      {{"other.toml", "p.ngc"}, "other.toml:1: schema"},
+      {{"newer.toml", "p.ngc"}, "newer.toml:2: schema"},
+      {{"broken.toml", "p.ngc"}, "broken.toml:1"},
       {{"missing.toml", "p.ngc"}, "missing.toml"},
       {{raster, "missing.ngc"}, "missing.ngc"},
-      {{raster, "wrong.ngc"}, "wrong.ngc:3: "},
-      {{lens, "wrong.ngc"}, "wrong.ngc:3: "},
+      {{raster, "wrong.ngc"}, "wrong.ngc:3"},
+      {{lens, "wrong.ngc"}, "wrong.ngc:3"},
       {{lens, "none.ngc"}, "none.ngc"},
-      {{lens, "p.ngc", "--dialect", "heidenhain"}, "--dialect: must be"},
-      {{lens, "p.ngc", "--tolerance-nm", "10"}, "--tolerance-nm: is for jobs"},
-      {{lens, "p.ngc", "--map", "m.png"}, "--map: is for jobs"},
-      {{raster, "p.ngc", "--as-machined", "m.toml"}, "--as-machined: is for jobs"},
-      {{lens, "p.ngc", "--servo", "strokes.csv"}, "--servo: is for turned parts"},
-      {{raster, "p.ngc", "--servo", "strokes.csv"}, "--servo: "},
-      {{"fast.toml", "p.ngc"}, "--servo: must name the table of strokes"},
-      {{"fast.toml", "p.ngc", "--servo", "strokes.csv"}, "strokes.csv:"},
-      {{raster, "p.ngc", "--json", "p.ngc"}, "--json: p.ngc is a file that is read"}};
+      {{lens, "p.ngc", "--dialect", "heidenhain"}, "--dialect"},
+      {{lens, "p.ngc", "--tolerance-nm", "10"}, "--tolerance-nm"},
+      {{lens, "p.ngc", "--map", "m.png"}, "--map"},
+      {{raster, "p.ngc", "--as-machined", "m.toml"}, "--as-machined"},
+      {{lens, "p.ngc", "--servo", "strokes.csv"}, "--servo"},
+      {{raster, "p.ngc", "--servo", "strokes.csv"}, "--servo"},
+      {{"fast.toml", "p.ngc"}, "--servo"},
+      {{"fast.toml", "p.ngc", "--servo", "strokes.csv"}, "strokes.csv:2"},
+      {{raster, "p.ngc", "--json", "p.ngc"}, "--json"}};
   const std::vector<std::string> before = folder_.names();
   for (const auto& [given, message] : cases) {
     Arguments arguments = given;
     arguments.insert(arguments.begin(), "verify");
     arguments.insert(arguments.end(), {"-o", "out"});
-    expect_refused_with(retrace(folder_, arguments), message);
+    EXPECT_EQ(refused_at(retrace(folder_, arguments)), message);
     EXPECT_EQ(folder_.names(), before);
   }
 }

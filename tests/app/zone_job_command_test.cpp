@@ -97,18 +97,15 @@ TEST_F(ZoneJobCommand, WhatCannotBeCutIsRefusedAndNothingWritten) {
   };
   const std::string good = zoned_design("hexagonal_icc");
   const std::vector<Case> cases = {
-      {"", "", {"--strategy", "two-step"}, "--strategy: must be dmc for a part of zones, got \"two-step\""},
-      {"", "", {"--workpiece", "direct"}, "--workpiece: must be mould for cube corners"},
-      {"", "", {"--tool-width-mm", "0.3"}, "--tool-width-mm: must be >="},
-      {"element.aperture_mm=0.4", "element.cant_deg=3", {}, "zone[3]: element.cant_deg must be 0 to be cut"},
-      {"element.aperture_mm=0.4",
-       "element.kind=\\\"triangular_icc\\\"\", \"element.aperture_mm=0.5",
-       {},
-       "zone[3]: must have the same kind of cube corners as the zones before it"},
+      {"", "", {"--strategy", "two-step"}, "--strategy"},
+      {"", "", {"--workpiece", "direct"}, "--workpiece"},
+      {"", "", {"--tool-width-mm", "0.3"}, "--tool-width-mm"},
+      {"element.aperture_mm=0.4", "element.cant_deg=3", {}, "zone[3]"},
+      {"element.aperture_mm=0.4", "element.kind=\\\"triangular_icc\\\"\", \"element.aperture_mm=0.5", {}, "zone[3]"},
       {"\"element.aperture_mm=0.4\"",
        "'element.kind=\"rtp\"', \"element.base_mm=0.5\", \"element.width_mm=0.5\"",
        {},
-       "zone[3]: must have cube corners to be cut, got prisms"},
+       "zone[3]"},
   };
   for (const Case& wrong : cases) {
     SCOPED_TRACE(wrong.message);
@@ -120,8 +117,7 @@ TEST_F(ZoneJobCommand, WhatCannotBeCutIsRefusedAndNothingWritten) {
     }
     folder_.write("design.toml", text);
     const Outcome made = job(wrong.more);
-    EXPECT_EQ(made.code, 2) << made.out;
-    EXPECT_NE(made.err.find(wrong.message), std::string::npos) << made.err;
+    EXPECT_EQ(refused_at(made), wrong.message);
     EXPECT_FALSE(exists("job.toml"));
   }
 }
@@ -148,8 +144,7 @@ TEST_F(ZoneJobCommand, EditedJobsComeBackAsTheyAreCut) {
        {std::pair("rotation_deg = 33", "rotation_deg = 33.01"), {"aperture_mm = 0.4", "aperture_mm = 0.39"}}) {
     edit(from, to);
     const Outcome run = retrace(folder_, {"verify", "job.toml", "nc/program.ngc", "--as-machined", "part.toml"});
-    EXPECT_EQ(run.code, 2);
-    EXPECT_NE(run.err.find("has another kind, size or rotation in the job's design"), std::string::npos) << run.err;
+    EXPECT_EQ(refused_at(run), "?");
     EXPECT_FALSE(exists("part.toml"));
   }
 }
@@ -162,9 +157,7 @@ TEST_F(ZoneJobCommand, AsMachinedNeedsTheDesignOfTheJob) {
   const std::string name = "design = \"design.toml\"";
   folder_.write("other.toml", text.replace(text.find(name), name.size(), "design = \"gone.toml\""));
   const Outcome gone = retrace(folder_, {"verify", "other.toml", "nc/program.ngc", "--as-machined", "part.toml"});
-  EXPECT_EQ(gone.code, 2);
-  EXPECT_NE(gone.err.find("--as-machined: the regions of the zones are taken from the job's design"), std::string::npos)
-      << gone.err;
+  EXPECT_EQ(refused_at(gone), "--as-machined");
   EXPECT_FALSE(exists("part.toml"));
 }
 

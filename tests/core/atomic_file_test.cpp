@@ -8,6 +8,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
@@ -39,7 +40,7 @@ class AtomicFile : public ::testing::Test {
       write_file_atomically(path, content);
       return {};
     } catch (const OutputError& error) {
-      return error.what();
+      return recorded_place_of(error);
     }
   }
 
@@ -78,26 +79,31 @@ TEST_F(AtomicFile, WritesAndReplacesAndLeavesNothingElse) {
 TEST_F(AtomicFile, FailureHalfWayLeavesTheOldFileAsItWas) {
   const fs::path file = folder_ / "a.txt";
   write_file_atomically(file, "old");
-  std::string error;
+  std::optional<OutputError> error;
   {
     const FileSizeLimit limit(1000);
-    error = complaint(file, std::string(5000, 'x'));
+    try {
+      write_file_atomically(file, std::string(5000, 'x'));
+    } catch (const OutputError& thrown) {
+      error = thrown;
+    }
   }
-  EXPECT_TRUE(error.starts_with(file.string() + ": cannot be written")) << error;
+  ASSERT_TRUE(error);
+  EXPECT_EQ(recorded_place_of(*error), "failed");
   EXPECT_EQ(read_file(file), "old");
   EXPECT_EQ(names(), std::set<std::string>{"a.txt"}) << "no half file may stay";
 }
 
 TEST_F(AtomicFile, FolderInTheWayOrMissingIsRefused) {
   fs::create_directory(folder_ / "a.txt");
-  EXPECT_NE(complaint(folder_ / "a.txt", "x").find("it is a folder"), std::string::npos);
-  EXPECT_NE(complaint(folder_ / "no/b.txt", "x").find("cannot be written"), std::string::npos);
+  EXPECT_EQ(complaint(folder_ / "a.txt", "x"), "failed");
+  EXPECT_EQ(complaint(folder_ / "no/b.txt", "x"), "failed");
   EXPECT_EQ(names(), std::set<std::string>{"a.txt"});
 }
 
 TEST_F(AtomicFile, DevicesAreWrittenThrough) {
   EXPECT_EQ(complaint("/dev/null", "x"), "");
-  EXPECT_EQ(complaint("/dev/full", "x"), "/dev/full: cannot be written");
+  EXPECT_EQ(complaint("/dev/full", "x"), "failed");
   EXPECT_TRUE(fs::is_character_file("/dev/null")) << "the device must not be replaced by a file";
 }
 
@@ -260,16 +266,15 @@ TEST_F(AtomicFile, NoMoreIsReadThanAFileMayHave) {
     write_file_atomically(file, std::string(most, 'x'));
     EXPECT_EQ(read_file(file, most).size(), most);
     write_file_atomically(file, std::string(most + 1, 'x'));
-    const std::string limit = ": must have at most " + std::to_string(most) + " bytes, got more";
-    EXPECT_EQ(complaint_of(file, most), file.string() + limit);
+    EXPECT_EQ(complaint_of(file, most), "TMP/file");
   }
 }
 
 TEST_F(AtomicFile, OnlyRegularFilesAreRead) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  for (const std::string& file : {std::string("/dev/zero"), std::string("/dev/null"), pipe.string()})
-    EXPECT_EQ(complaint_of(file, 1000), file + ": cannot be read: it is no regular file");
+  for (const std::string file : {"/dev/zero", "/dev/null"}) EXPECT_EQ(complaint_of(file, 1000), file);
+  EXPECT_EQ(complaint_of(pipe, 1000), "TMP/pipe");
 }
 
 TEST_F(AtomicFile, LibrariesAreGivenShortFilesOnly) {

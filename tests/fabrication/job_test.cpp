@@ -157,75 +157,60 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
 struct Wrong {
   std::string from;
   std::string to;
-  std::string message;
+  std::string place;
 };
 
 TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
   const std::string good = job_text(square_job(4));
   ASSERT_NO_THROW(parse_job(good, "j.toml"));
-  const auto line_of = [&](const std::string& text) {
-    return std::to_string(1 +
-                          std::count(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(good.find(text)), '\n'));
-  };
   const Wrong cases[] = {
-      {"roughing_depth_um = 15", "roughing_depth_um = 0", "process.roughing_depth_um: must be > 0 and <= 1000, got 0"},
-      {"\nwidth_mm = 0.451\nwedge", "\nwidth_mm = 0.46\nwedge",
-       "tool.width_mm: must be <= 0.451000, the element's width, got 0.46"},
-      {"wedge_deg = 50", "wedge_deg = 80", "tool.wedge_deg: with clearance_deg must be <= 77.500 for chips"},
-      {"wedge_deg = 50", "wedge_deg = 41",
-       "tool.wedge_deg: with clearance_deg must be >= 45, half the apex angle, or a fin of 2.000 degrees"},
-      {"side_clearance_deg = 2", "side_clearance_deg = 25", "tool.side_clearance_deg: must be > 0 and <= 20, got 25"},
+      {"roughing_depth_um = 15", "roughing_depth_um = 0", "j.toml:38: process.roughing_depth_um"},
+      {"\nwidth_mm = 0.451\nwedge", "\nwidth_mm = 0.46\nwedge", "j.toml:28: tool.width_mm"},
+      {"wedge_deg = 50", "wedge_deg = 80", "j.toml:29: tool.wedge_deg"},
+      {"wedge_deg = 50", "wedge_deg = 41", "j.toml:29: tool.wedge_deg"},
+      {"side_clearance_deg = 2", "side_clearance_deg = 25", "j.toml:32: tool.side_clearance_deg"},
       {"\nwidth_mm = 0.451\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 2",
        "\nwidth_mm = 0.1\nwedge_deg = 50\nclearance_deg = 3\nedge_radius_um = 0\nside_clearance_deg = 9",
-       "tool.side_clearance_deg: must be < 8.911, or the diamond ends in a point within its element, got 9"},
+       "j.toml:32: tool.side_clearance_deg"},
       {"side_clearance_deg = 2\n",
        "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 226\nwidth_um = 2\ndepth_um = 1\n",
-       "tool.edge_chips[1].position_um: must be >= -224.5 and <= 224.5, got 226"},
+       "j.toml:34: tool.edge_chips[1].position_um"},
       {"side_clearance_deg = 2\n",
        "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 1\nwidth_um = 2\ndepth_um = 1.1\n",
-       "tool.edge_chips[1].depth_um: must be > 0 and <= 1, got 1.1"},
+       "j.toml:36: tool.edge_chips[1].depth_um"},
       {"side_clearance_deg = 2\n",
        "side_clearance_deg = 2\n[[tool.edge_chips]]\nposition_um = 1\nwidth_um = 2\ndepth_um = 1\n"
        "[[tool.edge_chips]]\nposition_um = 2\nwidth_um = 2\ndepth_um = 1\n",
-       "tool.edge_chips[2].position_um: must keep clear of the other chips, got 2"},
-      {"side_clearance_deg = 2\n", "side_clearance_deg = 2\nedge_chips = 3\n", "tool.edge_chips: must be"},
-      {"\nclearance_deg = 3", "\nclearance_deg = 1", "tool.clearance_deg: must be >= 2 and <= 15, got 1"},
-      {"strategy = \"two-step\"", "strategy = \"two-steps\"", "strategy: must be"},
-      {"arrangement = \"offset\"", "arrangement = \"honeycomb\"", "array.arrangement: must be"},
-      {"x_gap_mm = 0", "x_gap_m = 0", "array.x_gap_m: unknown key, did you mean \"x_gap_mm\"?"},
-      {"x_length_mm = 1.804", "x_length_mm = 0.4", "array.x_length_mm: must hold one element"},
-      {"x_offset_mm = 0", "x_offset_mm = 0\npattern = [\"#\"]", "array.pattern: must have 4 rows"},
-      {"finishing_cuts = 2", "finishing_cuts = 1.5", "process.finishing_cuts: must be a whole number, got 1.5"},
-      {"plough_length_mm = 0.1", "plough_length_mm = 0.001", "process.plough_length_mm: must be at least"},
-      {"shortest_plough = false", "shortest_plough = 0", "process.shortest_plough: must be true or false, got 0"},
+       "j.toml:38: tool.edge_chips[2].position_um"},
+      {"side_clearance_deg = 2\n", "side_clearance_deg = 2\nedge_chips = 3\n", "j.toml:33: tool.edge_chips"},
+      {"\nclearance_deg = 3", "\nclearance_deg = 1", "j.toml:30: tool.clearance_deg"},
+      {"strategy = \"two-step\"", "strategy = \"two-steps\"", "j.toml:4: strategy"},
+      {"arrangement = \"offset\"", "arrangement = \"honeycomb\"", "j.toml:17: array.arrangement"},
+      {"x_gap_mm = 0", "x_gap_m = 0", "j.toml:22: array.x_gap_m"},
+      {"x_length_mm = 1.804", "x_length_mm = 0.4", "j.toml:20: array.x_length_mm"},
+      {"x_offset_mm = 0", "x_offset_mm = 0\npattern = [\"#\"]", "j.toml:25: array.pattern"},
+      {"finishing_cuts = 2", "finishing_cuts = 1.5", "j.toml:40: process.finishing_cuts"},
+      {"plough_length_mm = 0.1", "plough_length_mm = 0.001", "j.toml:41: process.plough_length_mm"},
+      {"shortest_plough = false", "shortest_plough = 0", "j.toml:46: process.shortest_plough"},
       {"roughing_feed_mm_per_min = 50", "roughing_feed_mm_per_min = 4.9e-4",
-       "process.roughing_feed_mm_per_min: must be >= 5e-04 and <= 1e+05, got 0.00049"},
+       "j.toml:43: process.roughing_feed_mm_per_min"},
       {"finishing_feed_mm_per_min = 20", "finishing_feed_mm_per_min = 4.9e-4",
-       "process.finishing_feed_mm_per_min: must be >= 5e-04 and <= 1e+05, got 0.00049"},
-      {"retract_feed_mm_per_min = 200", "retract_feed_mm_per_min = 0",
-       "process.retract_feed_mm_per_min: must be >= 5e-04 and <= 1e+05, got 0"},
-      {"machine = \"ideal\"", "machine = \"\"", "machine: must name a machine"},
-      {"machine = \"ideal\"", "machine = \"a\\u0000.toml\"", "machine: must name a machine"},
-      {"side_clearance_deg = 2\n", "side_clearance_deg = 2\nedge_life_mm = 0\n",
-       "tool.edge_life_mm: must be > 0 and <= 1e+09, got 0"},
+       "j.toml:44: process.finishing_feed_mm_per_min"},
+      {"retract_feed_mm_per_min = 200", "retract_feed_mm_per_min = 0", "j.toml:45: process.retract_feed_mm_per_min"},
+      {"machine = \"ideal\"", "machine = \"\"", "j.toml:3: machine"},
+      {"machine = \"ideal\"", "machine = \"a\\u0000.toml\"", "j.toml:3: machine"},
+      {"side_clearance_deg = 2\n", "side_clearance_deg = 2\nedge_life_mm = 0\n", "j.toml:33: tool.edge_life_mm"},
       {"side_clearance_deg = 2\n", "side_clearance_deg = 2\nedge_life_mm = 9\nnext_edge = \"tool\"\n",
-       "tool.next_edge: must be \"stop\" or \"program\", got \"tool\""},
-      {"mist = true", "stop_every_min = 0", "process.stop_every_min: must be > 0 and <= 1e+05, got 0"},
-      {"mist = true", "stop_before_finishing = 1", "process.stop_before_finishing: must be true or false, got 1"},
-      {"mist = true", "least_chip_um = 0", "process.least_chip_um: must be > 0 and <= 1000, got 0"},
-      {"mist = true", "least_chip_um = 2.6",
-       "process.least_chip_um: must be at most half of roughing_depth_um and finishing_depth_um, 2.5, got 2.6"},
-      {"base_mm = 0.451", "base_mm = nan", "element.base_mm: must be a finite number, got nan"},
+       "j.toml:34: tool.next_edge"},
+      {"mist = true", "stop_every_min = 0", "j.toml:50: process.stop_every_min"},
+      {"mist = true", "stop_before_finishing = 1", "j.toml:50: process.stop_before_finishing"},
+      {"mist = true", "least_chip_um = 0", "j.toml:50: process.least_chip_um"},
+      {"mist = true", "least_chip_um = 2.6", "j.toml:50: process.least_chip_um"},
+      {"base_mm = 0.451", "base_mm = nan", "j.toml:12: element.base_mm"},
   };
   for (const Wrong& wrong : cases) {
-    SCOPED_TRACE(wrong.message);
-    const std::string message =
-        refusal_of([&] { parse_job(with_replaced(good, wrong.from, wrong.to), "j.toml"); }, "not refused");
-    EXPECT_TRUE(message.starts_with("j.toml:")) << message;
-    EXPECT_NE(message.find(": " + wrong.message), std::string::npos) << message;
-    if (wrong.from.front() != '\n' && wrong.to.find('\n') == std::string::npos) {
-      EXPECT_TRUE(message.starts_with("j.toml:" + line_of(wrong.from) + ": ")) << message;
-    }
+    SCOPED_TRACE(wrong.to);
+    EXPECT_EQ(refusal_of([&] { parse_job(with_replaced(good, wrong.from, wrong.to), "j.toml"); }), wrong.place);
   }
 }
 
@@ -234,9 +219,7 @@ TEST(JobFile, OnlyWhatIsFinishedStopsBeforeFinishing) {
   job.process.stop_before_finishing = true;
   ASSERT_NO_THROW(parse_job(job_text(job), "j.toml"));
   job.strategy = Strategy::bidirectional;
-  EXPECT_TRUE(refusal_of([&] { parse_job(job_text(job), "j.toml"); })
-                  .ends_with(": process.stop_before_finishing: must be false where nothing is finished: strategy = "
-                             "\"two-step\" or \"dmc\" does, got \"bidirectional\""));
+  EXPECT_EQ(refusal_of([&] { parse_job(job_text(job), "j.toml"); }), "j.toml:50: process.stop_before_finishing");
 }
 
 TEST(JobFile, BasesReadBackEqual) {
@@ -263,35 +246,31 @@ TEST(JobFile, BasesThatCannotBeAreRefused) {
   const Job good = square_job(4);
   const std::string plane = "kind = \"plane\"\nincline_deg = 5\n";
   ASSERT_EQ(complaint(good, plane), "none");
-  const auto expect = [&](const Job& job, const std::string& substrate, const std::string& message) {
-    const std::string said = complaint(job, substrate);
-    EXPECT_TRUE(said.starts_with("j.toml:")) << said;
-    EXPECT_NE(said.find(": base" + message), std::string::npos) << said << "\nnot " << message;
-    EXPECT_EQ(said.find('\n'), std::string::npos);
+  const auto expect = [&](const Job& job, const std::string& substrate, const std::string& place) {
+    EXPECT_EQ(complaint(job, substrate), place) << substrate;
   };
-  expect(good, "kind = \"cone\"\n", ".kind: must be");
-  expect(good, "kind = \"plane\"\n", ".incline_deg: ");
-  expect(good, "kind = \"plane\"\nincline_deg = 61\n", ".incline_deg: must be >= 0 and <= 60, got 61");
-  expect(good, plane + "radius_mm = 3\n", ".radius_mm: only allowed for kind = \"cylinder\" or \"sphere\", got 3");
-  expect(good, plane + "elements = \"upright\"\n", ".elements: must be");
-  expect(good, "kind = \"sphere\"\nradius_mm = 0\n", ".radius_mm: must not be 0");
-  expect(good, "kind = \"cylinder\"\nradius_mm = 0.3\n", ".radius_mm: ");
-  expect(good, "kind = \"cylinder\"\nradius_mm = 9\naxis = \"z\"\n", ".axis: must be");
-  expect(good, "kind = \"formula\"\nsag_mm = \"x +\"\n", ".sag_mm: ");
-  expect(good, "kind = \"formula\"\nsag_mm = \"1/x\"\n", ".sag_mm: is not finite");
-  expect(good, "kind = \"plane\"\nincline_deg = 55\nelements = \"parallel\"\n",
-         ".incline_deg: must rise less over its elements for a tool to come out of its cuts");
+  expect(good, "kind = \"cone\"\n", "j.toml:56: base.kind");
+  expect(good, "kind = \"plane\"\n", "j.toml:55: base.incline_deg");
+  expect(good, "kind = \"plane\"\nincline_deg = 61\n", "j.toml:57: base.incline_deg");
+  expect(good, plane + "radius_mm = 3\n", "j.toml:58: base.radius_mm");
+  expect(good, plane + "elements = \"upright\"\n", "j.toml:58: base.elements");
+  expect(good, "kind = \"sphere\"\nradius_mm = 0\n", "j.toml:57: base.radius_mm");
+  expect(good, "kind = \"cylinder\"\nradius_mm = 0.3\n", "j.toml:57: base.radius_mm");
+  expect(good, "kind = \"cylinder\"\nradius_mm = 9\naxis = \"z\"\n", "j.toml:58: base.axis");
+  expect(good, "kind = \"formula\"\nsag_mm = \"x +\"\n", "j.toml:57: base.sag_mm");
+  expect(good, "kind = \"formula\"\nsag_mm = \"1/x\"\n", "j.toml:57: base.sag_mm");
+  expect(good, "kind = \"plane\"\nincline_deg = 55\nelements = \"parallel\"\n", "j.toml:57: base.incline_deg");
   Job direct = good;
   direct.workpiece.kind = WorkpieceKind::direct;
-  expect(direct, plane, ".incline_deg: needs a mould: workpiece.kind must be \"mould\"");
+  expect(direct, plane, "j.toml:57: base.incline_deg");
   Job offset = good;
   offset.array.x_offset_mm = 0.1;
-  expect(offset, plane, ".incline_deg: not allowed together with array.x_offset_mm");
+  expect(offset, plane, "j.toml:57: base.incline_deg");
   Job masked = good;
   masked.array.pattern = {"####", "###-", "####", "###-"};
-  expect(masked, plane, ".incline_deg: not allowed together with array.pattern");
-  expect(square_job(1), plane, ".incline_deg: not allowed for arrangement = \"single\"");
-  expect(good, "kind = \"plane\"\nincline_deg = 50\n", ".incline_deg: must keep all facets at most 88");
+  expect(masked, plane, "j.toml:63: base.incline_deg");
+  expect(square_job(1), plane, "j.toml:55: base.incline_deg");
+  expect(good, "kind = \"plane\"\nincline_deg = 50\n", "j.toml:57: base.incline_deg");
 }
 
 TEST(JobFile, APatternMustLeaveSomethingToCut) {

@@ -190,7 +190,8 @@ std::string refusal(const std::string& text, NcDialect dialect) {
   std::string taken;
   const std::string refused = refusal_of([&] {
     const Record record = record_of(text, dialect);
-    taken = record.end.is_complete ? "accepted" : fmt::format("cut off at {}: {}", record.end.line, record.end.reason);
+    taken = record.end.is_complete ? "accepted" : fmt::format("cut off at {}", record.end.line);
+    if (!record.end.is_complete) record_message(record.end.reason);
   });
   return refused + taken;
 }
@@ -199,34 +200,26 @@ TEST(NcReader, WhatIsNotUnderstoodIsAnErrorWithItsLine) {
   const auto rs274 = [](const std::string& from, const std::string& to) {
     return refusal(with_replaced(sample(NcDialect::rs274ngc), from, to), NcDialect::rs274ngc);
   };
-  EXPECT_EQ(rs274("G0 Z5.", "G2 Z5."), "p:14: \"G2\" is not understood, in \"G2 Z5.\"");
-  EXPECT_EQ(rs274("G0 Z5.", "G0 U5."), "p:14: \"U5.\" is not understood, in \"G0 U5.\"");
-  EXPECT_EQ(rs274("G0 Z5.", "G0 G1 Z5."), "p:14: has two G codes of one group, the second is G1, in \"G0 G1 Z5.\"");
-  EXPECT_EQ(rs274("G0 Z5.", "G0 Z5. Z6."), "p:14: has two words for Z, in \"G0 Z5. Z6.\"");
-  EXPECT_EQ(rs274("G0 Z5.", "G0 Z"), "p:14: \"Z\" is not understood, in \"G0 Z\"");
-  EXPECT_EQ(rs274("G0 Z5.", "G0 Z#1"), "p:14: \"Z\" is not understood, in \"G0 Z#1\"");
-  EXPECT_EQ(rs274("G0 Z5.", "/G0 Z5."), "p:14: a line with block delete (/) is not understood, in \"/G0 Z5.\"");
-  EXPECT_EQ(rs274("G0 Z5.", "G53 G0 Z5."), "p:14: \"G53\" is not understood, in \"G53 G0 Z5.\"");
-  EXPECT_EQ(rs274("M7", "M6"), "p:13: \"M6\" is not understood, in \"M6\"");
-  EXPECT_EQ(rs274("(a sample)", "(a sample"),
-            "p:2: has a comment that does not end, or a nested one, in \"(a sample\"");
-  EXPECT_EQ(rs274("G4 P0.100", "G4"), "p:6: G4 needs a time, in \"G4\"");
-  EXPECT_EQ(rs274("o101 call", "o101 while [1]"),
-            "p:19: o101 must be followed by sub, endsub or call, in \"o101 while [1]\"");
-  EXPECT_EQ(rs274("G0 Z5.", "Z5."), "p:14: axes move before G0 or G1 says how");
-  EXPECT_EQ(rs274("G90 G94\n", "G91 G94\n"), "p:14: Z moves by an increment before its position is known");
-  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::fanuc), "X1.5", "X1500"), NcDialect::fanuc),
-            "p:9: X needs a decimal point: without one it counts least increments, in \"G0 X1500 Y-2.25\"");
-  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::fanuc), "M98 P0101", "M99"), NcDialect::fanuc),
-            "p:11: M99 outside of a subprogram would run the program again without end, in \"M99\"");
-  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::sinumerik), "TRAFOOF", "TRAORI"), NcDialect::sinumerik),
-            "p:4: \"TRAORI\" is not understood, in \"TRAORI\"");
-  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::sinumerik), "D0", "D1"), NcDialect::sinumerik),
-            "p:3: D must be 0: offsets of the tool are not understood, in \"D1\"");
-  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::pmac), "frax(X,Y,Z)", "frax(X,Y)"), NcDialect::pmac),
-            "p:13: frax must name X, Y and Z, in \"frax(X,Y)\"");
-  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::pmac), "rapid Z5.", "spline Z5."), NcDialect::pmac),
-            "p:17: \"spline\" is not understood, in \"spline Z5.\"");
+  EXPECT_EQ(rs274("G0 Z5.", "G2 Z5."), "p:14");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 U5."), "p:14");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 G1 Z5."), "p:14");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 Z5. Z6."), "p:14");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 Z"), "p:14");
+  EXPECT_EQ(rs274("G0 Z5.", "G0 Z#1"), "p:14");
+  EXPECT_EQ(rs274("G0 Z5.", "/G0 Z5."), "p:14");
+  EXPECT_EQ(rs274("G0 Z5.", "G53 G0 Z5."), "p:14");
+  EXPECT_EQ(rs274("M7", "M6"), "p:13");
+  EXPECT_EQ(rs274("(a sample)", "(a sample"), "p:2");
+  EXPECT_EQ(rs274("G4 P0.100", "G4"), "p:6");
+  EXPECT_EQ(rs274("o101 call", "o101 while [1]"), "p:19");
+  EXPECT_EQ(rs274("G0 Z5.", "Z5."), "p:14");
+  EXPECT_EQ(rs274("G90 G94\n", "G91 G94\n"), "p:14");
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::fanuc), "X1.5", "X1500"), NcDialect::fanuc), "p:9");
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::fanuc), "M98 P0101", "M99"), NcDialect::fanuc), "p:11");
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::sinumerik), "TRAFOOF", "TRAORI"), NcDialect::sinumerik), "p:4");
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::sinumerik), "D0", "D1"), NcDialect::sinumerik), "p:3");
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::pmac), "frax(X,Y,Z)", "frax(X,Y)"), NcDialect::pmac), "p:13");
+  EXPECT_EQ(refusal(with_replaced(sample(NcDialect::pmac), "rapid Z5.", "spline Z5."), NcDialect::pmac), "p:17");
 }
 
 TEST(NcReader, WhatIsNotUnderstoodOfAnA3200) {
@@ -234,22 +227,22 @@ TEST(NcReader, WhatIsNotUnderstoodOfAnA3200) {
     return refusal(with_replaced(with_replaced(sample(NcDialect::a3200), "M107\n", ""), from, to), NcDialect::a3200);
   };
   EXPECT_EQ(read("M5", "M5"), "accepted");
-  EXPECT_EQ(read("INPOS", "NOWAIT"), "p:8: must be WAIT MODE INPOS, in \"WAIT MODE NOWAIT\"");
-  EXPECT_EQ(read("G94", "G93"), "p:6: \"G93\" is not understood, in \"G93 G40 G149\"");
-  EXPECT_EQ(read("M5", "M7"), "p:9: \"M7\" is not understood, in \"M7\"");
-  EXPECT_EQ(read("RAPID Z5.", "CW X1. Y1. R1."), "p:10: \"CW\" is not understood, in \"CW X1. Y1. R1.\"");
-  EXPECT_EQ(read("RAPID Z5.", "RAPID Z5. ZF25"), "p:10: \"ZF25\" is not understood, in \"RAPID Z5. ZF25\"");
-  EXPECT_EQ(read("RAPID Z5.", "G1 Z5. E10"), "p:10: \"E10\" is not understood, in \"G1 Z5. E10\"");
-  EXPECT_EQ(read("DWELL 0.1", "G4"), "p:24: G4 needs a time, in \"G4\"");
-  EXPECT_EQ(read("DWELL 0.1", "G1 P0.1"), "p:24: has a dwell time without G4, in \"G1 P0.1\"");
-  EXPECT_EQ(read("END PROGRAM\n", ""), "p:20: a subroutine must follow END PROGRAM, in \"DFS PLUNGE\"");
+  EXPECT_EQ(read("INPOS", "NOWAIT"), "p:8");
+  EXPECT_EQ(read("G94", "G93"), "p:6");
+  EXPECT_EQ(read("M5", "M7"), "p:9");
+  EXPECT_EQ(read("RAPID Z5.", "CW X1. Y1. R1."), "p:10");
+  EXPECT_EQ(read("RAPID Z5.", "RAPID Z5. ZF25"), "p:10");
+  EXPECT_EQ(read("RAPID Z5.", "G1 Z5. E10"), "p:10");
+  EXPECT_EQ(read("DWELL 0.1", "G4"), "p:24");
+  EXPECT_EQ(read("DWELL 0.1", "G1 P0.1"), "p:24");
+  EXPECT_EQ(read("END PROGRAM\n", ""), "p:20");
   EXPECT_EQ(read("END PROGRAM\n", "M2\nEND PROGRAM\n"), "accepted");
-  EXPECT_EQ(read("ENDDFS\n", "ENDDFS\nG0 Z9.\n"), "p:29: a line must not follow the end of the program, in \"G0 Z9.\"");
-  EXPECT_EQ(read("ENDDFS\n", ""), "cut off at 15: the file does not hold the whole of subroutine PLUNGE");
-  EXPECT_EQ(refusal("G90\nG0 Z5.\n", NcDialect::a3200), "cut off at 2: END PROGRAM is missing");
-  EXPECT_EQ(refusal("END PROGRAM\nDFS A\n", NcDialect::a3200), "cut off at 2: a subroutine has no ENDDFS");
-  EXPECT_EQ(read("DFS PLUNGE", "DFS 101"), "p:21: needs the name of a subroutine, got \"101\", in \"DFS 101\"");
-  EXPECT_EQ(read("CALL plunge", "CALL other"), "cut off at 15: the file does not hold the whole of subroutine OTHER");
+  EXPECT_EQ(read("ENDDFS\n", "ENDDFS\nG0 Z9.\n"), "p:29");
+  EXPECT_EQ(read("ENDDFS\n", ""), "cut off at 15");
+  EXPECT_EQ(refusal("G90\nG0 Z5.\n", NcDialect::a3200), "cut off at 2");
+  EXPECT_EQ(refusal("END PROGRAM\nDFS A\n", NcDialect::a3200), "cut off at 2");
+  EXPECT_EQ(read("DFS PLUNGE", "DFS 101"), "p:21");
+  EXPECT_EQ(read("CALL plunge", "CALL other"), "cut off at 15");
 }
 
 TEST(NcReader, WhatIsNotUnderstoodOfAeroScript) {
@@ -258,33 +251,21 @@ TEST(NcReader, WhatIsNotUnderstoodOfAeroScript) {
     return refusal(with_replaced(text, from, to), NcDialect::automation1);
   };
   EXPECT_EQ(read("M5", "M5"), "accepted");
-  EXPECT_EQ(read("InPosition", "Auto"),
-            "p:7: \"SetupTaskWaitMode(WaitMode.Auto)\" is not understood, in \"SetupTaskWaitMode(WaitMode.Auto)\"");
-  EXPECT_EQ(read("DistanceUnits.Primary", "DistanceUnits.Secondary"),
-            "p:3: \"SetupTaskDistanceUnits(DistanceUnits.Secondary)\" is not understood, in "
-            "\"SetupTaskDistanceUnits(DistanceUnits.Secondary)\"");
-  EXPECT_EQ(read("g90", "g90 G71"),
-            "p:5: units must be set by SetupTaskDistanceUnits(), not by G70 or G71, in \"g90 G71 G94 G40 G149 G109\"");
-  EXPECT_EQ(read("G0 Y0.", "G0 y0."), "p:15: names of axes are capitals, got y, in \"G0 y0.\"");
-  EXPECT_EQ(read("MoveLinear([Z], [-0.25])", "MoveLinear([Z], [-0.25], 5)"),
-            "p:22: \"MoveLinear([Z],[-0.25],5)\" is not understood, in \"MoveLinear([Z], [-0.25], 5)\"");
-  EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([Z, Y], [0.2])"),
-            "p:12: needs a list of axes and a list of as many positions, in \"MoveRapid([Z, Y], [0.2])\"");
-  EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([S], [0.2])"),
-            "p:12: has an axis that is not understood, \"S\", in \"MoveRapid([S], [0.2])\"");
-  EXPECT_EQ(read("Plunge()\n  N10", "Plunge(1)\n  N10"), "p:13: \"Plunge(1)\" is not understood, in \"Plunge(1)\"");
-  EXPECT_EQ(read("Plunge()\n  N10", "Plunge(\n  N10"), "p:13: has a ( that does not end, in \"Plunge(\"");
-  EXPECT_EQ(read("Plunge()\n  N10", "plunge()\n  N10"),
-            "cut off at 13: the file does not hold the whole of subroutine plunge");
-  EXPECT_EQ(read("function Plunge()", "function Plunge($z as real)"),
-            "p:19: must be function NAME(), without arguments, in \"function Plunge($z as real)\"");
-  EXPECT_EQ(read("program\n", ""),
-            "p:2: a line must be inside of program ... end or function ... end, in "
-            "\"SetupTaskDistanceUnits(DistanceUnits.Primary)\"");
-  EXPECT_EQ(read("// half way", "/* half way */"),
-            "p:11: a comment /* ... */ is not understood, in \"G0 X 1.5 Y-2.25 /* half way */\"");
-  EXPECT_EQ(refusal("program\nG90\n", NcDialect::automation1), "cut off at 2: end is missing");
-  EXPECT_EQ(read("G90\nend\n", "G90\n"), "cut off at 13: the file does not hold the whole of subroutine Plunge");
+  EXPECT_EQ(read("InPosition", "Auto"), "p:7");
+  EXPECT_EQ(read("DistanceUnits.Primary", "DistanceUnits.Secondary"), "p:3");
+  EXPECT_EQ(read("g90", "g90 G71"), "p:5");
+  EXPECT_EQ(read("G0 Y0.", "G0 y0."), "p:15");
+  EXPECT_EQ(read("MoveLinear([Z], [-0.25])", "MoveLinear([Z], [-0.25], 5)"), "p:22");
+  EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([Z, Y], [0.2])"), "p:12");
+  EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([S], [0.2])"), "p:12");
+  EXPECT_EQ(read("Plunge()\n  N10", "Plunge(1)\n  N10"), "p:13");
+  EXPECT_EQ(read("Plunge()\n  N10", "Plunge(\n  N10"), "p:13");
+  EXPECT_EQ(read("Plunge()\n  N10", "plunge()\n  N10"), "cut off at 13");
+  EXPECT_EQ(read("function Plunge()", "function Plunge($z as real)"), "p:19");
+  EXPECT_EQ(read("program\n", ""), "p:2");
+  EXPECT_EQ(read("// half way", "/* half way */"), "p:11");
+  EXPECT_EQ(refusal("program\nG90\n", NcDialect::automation1), "cut off at 2");
+  EXPECT_EQ(read("G90\nend\n", "G90\n"), "cut off at 13");
 }
 
 /// The feed of an Aerotech control is the speed along the common path of all axes. It therefore determines the time of
@@ -321,9 +302,10 @@ TEST(NcReader, WhatTheSpindleDoes) {
     EXPECT_EQ(settings_after(text, dialect).spindle_rpm, 900.5) << word_of(dialect);
     EXPECT_EQ(settings_after(with_replaced(text, "M3", "M4"), dialect).spindle, NcSpindle::counterclockwise);
     EXPECT_EQ(settings_after(with_replaced(text, "S900.5", "M5"), dialect).spindle, NcSpindle::stopped);
-    EXPECT_NE(refusal(with_replaced(text, "S900.5", "S1 S2"), dialect).find(": has two words S"), std::string::npos);
-    EXPECT_NE(refusal(with_replaced(text, "S900.5", "S-1"), dialect).find(": S must be >= 0, got -1"),
-              std::string::npos);
+    const std::string before = std::string(text).substr(0, std::string(text).find("S900.5"));
+    const std::string place = fmt::format("p:{}", 1 + std::count(before.begin(), before.end(), '\n'));
+    EXPECT_EQ(refusal(with_replaced(text, "S900.5", "S1 S2"), dialect), place);
+    EXPECT_EQ(refusal(with_replaced(text, "S900.5", "S-1"), dialect), place);
   }
 }
 
@@ -352,28 +334,23 @@ TEST(NcReader, BlendingOfLinuxCncIsPAndQ) {
   EXPECT_DOUBLE_EQ(blend_mm("G64 P0.5 Q0.25").value(), 0.75);
   EXPECT_DOUBLE_EQ(blend_mm("G20 G64 P0.5 Q0").value(), 12.7);
   for (const char* words : {"G64 P-0.5", "G64 P0.5 Q-0.25", "G64 P-1 Q2"})
-    EXPECT_EQ(refusal(std::string(words) + "\nM2\n", NcDialect::rs274ngc),
-              fmt::format("p:1: P and Q of G64 must be >= 0, in \"{}\"", words));
+    EXPECT_EQ(refusal(std::string(words) + "\nM2\n", NcDialect::rs274ngc), fmt::format("p:1", words));
 }
 
 TEST(NcReader, EndlessRecursionIsRefused) {
   EXPECT_EQ(refusal("o1 sub\no2 call\no1 endsub\no2 sub\no1 call\no2 endsub\no1 call\nM2\n", NcDialect::rs274ngc),
-            "p:2: calls are nested more than 9 deep; subroutine 2 may call itself");
-  EXPECT_EQ(refusal("%\nO1\nM98 P2\nM30\nO2\nM98 P2\nM99\n%\n", NcDialect::fanuc),
-            "p:6: calls are nested more than 10 deep; subroutine 2 may call itself");
-  EXPECT_EQ(refusal("open subprog 1\ncall 1\nclose\nopen prog 1\ncall 1\nclose\n", NcDialect::pmac),
-            "p:2: calls are nested more than 16 deep; subroutine 1 may call itself");
-  EXPECT_EQ(refusal("A1:\nCALL BLOCK A1 TO E1\nE1:\nM30\n", NcDialect::sinumerik),
-            "p:2: calls are nested more than 16 deep; subroutine A1 TO E1 may call itself");
+            "p:2");
+  EXPECT_EQ(refusal("%\nO1\nM98 P2\nM30\nO2\nM98 P2\nM99\n%\n", NcDialect::fanuc), "p:6");
+  EXPECT_EQ(refusal("open subprog 1\ncall 1\nclose\nopen prog 1\ncall 1\nclose\n", NcDialect::pmac), "p:2");
+  EXPECT_EQ(refusal("A1:\nCALL BLOCK A1 TO E1\nE1:\nM30\n", NcDialect::sinumerik), "p:2");
 }
 
 TEST(NcReader, TextThatIsNoProgram) {
-  EXPECT_EQ(refusal("", NcDialect::rs274ngc), "p: must be an NC program, is empty");
-  EXPECT_EQ(refusal(" \n\n", NcDialect::pmac), "p: must be an NC program, is empty");
-  EXPECT_EQ(refusal("%\nG0 \x01Z5\n", NcDialect::rs274ngc), "p:2: must be text, got a byte 1");
-  EXPECT_EQ(refusal(std::string("%\n\0\0", 4), NcDialect::fanuc), "p:2: must be text, got a byte 0");
-  EXPECT_EQ(refusal("%\n" + std::string(100000, 'G'), NcDialect::rs274ngc),
-            "p:2: a line may have at most 1024 characters");
+  EXPECT_EQ(refusal("", NcDialect::rs274ngc), "p");
+  EXPECT_EQ(refusal(" \n\n", NcDialect::pmac), "p");
+  EXPECT_EQ(refusal("%\nG0 \x01Z5\n", NcDialect::rs274ngc), "p:2");
+  EXPECT_EQ(refusal(std::string("%\n\0\0", 4), NcDialect::fanuc), "p:2");
+  EXPECT_EQ(refusal("%\n" + std::string(100000, 'G'), NcDialect::rs274ngc), "p:2");
   EXPECT_THROW(recognise_dialect("hello world\n", "p"), InputError);
 }
 
@@ -384,8 +361,10 @@ TEST(NcReader, EveryCutOffFileIsRecognised) {
     const std::string whole = sample(dialect);
     // A missing last line end makes no difference to a controller.
     for (std::size_t length = 1; length + 1 < whole.size(); ++length) {
-      const std::string outcome = refusal(whole.substr(0, length), dialect);
-      EXPECT_NE(outcome, "accepted") << word_of(dialect) << " cut to " << length;
+      bool is_complete = false;
+      const std::string refused =
+          unrecorded_refusal_of([&] { is_complete = record_of(whole.substr(0, length), dialect).end.is_complete; });
+      EXPECT_FALSE(is_complete) << word_of(dialect) << " cut to " << length << ' ' << refused;
     }
   }
 }
@@ -395,7 +374,7 @@ TEST(NcReader, EveryCutOffFileIsRecognised) {
 TEST(NcReader, AFileThatStopsInTheLineOfALabelLacksItsSubroutine) {
   const std::string text = "G0 A45. C=-0.1\nCALL BLOCK RT101 TO RE101\nM30\nRT101:\nG91\nG1 F50. Z-0.25\nRE101:1.5 Y";
   const std::string outcome = refusal(text, NcDialect::sinumerik);
-  EXPECT_NE(outcome.find("does not hold the whole of subroutine RT101 TO RE101"), std::string::npos) << outcome;
+  EXPECT_EQ(outcome, "cut off at 2");
 }
 
 }  // namespace

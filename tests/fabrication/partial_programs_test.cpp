@@ -15,6 +15,7 @@
 #include "tests/fabrication/controls.h"
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/jobs.h"
+#include "tests/support/refusals.h"
 
 // Programs that make a part of a job: phases, restarts behind a line, and splits, with what stands before them.
 
@@ -163,7 +164,7 @@ TEST_P(PartialPrograms, EveryLineStopsTheProgramOrIsRefused) {
     try {
       verdict = verified(c, {program(text, line)}).verdict();
     } catch (const InputError& error) {
-      EXPECT_TRUE(std::string(error.what()).starts_with(fmt::format("p:{}: ", line))) << error.what();
+      EXPECT_EQ(recorded_place_of(error), fmt::format("p:{}", line));
       ++refused;
     }
     // Behind the last call nothing is left to be cut.

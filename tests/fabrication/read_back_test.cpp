@@ -125,15 +125,13 @@ TEST(ReadBack, WhatAnIncrementSystemCannotSayIsRefused) {
   Move far;
   far.to[kZ] = 1'000'000'000;
   program.items = {far};
-  EXPECT_EQ(refusal_of([&] { nc_text(program, "fanuc"); }),
-            "--dialect: fanuc cannot say Z1000.000000 in increment system IS-E, which has nine digits");
+  EXPECT_EQ(refusal_of([&] { nc_text(program, "fanuc"); }), "--dialect");
   program.control.increment_system = IncrementSystem::d;
   EXPECT_NE(nc_text(program, "fanuc").find("G0 Z1000.00000\n"), std::string::npos);
   far.motion = Motion::plunge;
   far.feed_mm_per_min = 10000.0;
   program.items = {far};
-  EXPECT_EQ(refusal_of([&] { nc_text(program, "fanuc"); }),
-            "--dialect: fanuc cannot say F10000.000 in increment system IS-D, which has nine digits");
+  EXPECT_EQ(refusal_of([&] { nc_text(program, "fanuc"); }), "--dialect");
 }
 
 /// Words of a modulo axis lie within a turn, and the axis goes the shortest way; in paths it goes by increments.
@@ -178,9 +176,7 @@ TEST(ReadBack, TimesOfAnAerotechsPathAreThoseOfItsWays) {
     EXPECT_DOUBLE_EQ(record_of(text, dialect).motions.back().duration_s, 2.0) << text;
   }
   program.items.emplace_back(Path{{cut}, {}});
-  EXPECT_EQ(refusal_of([&] { nc_text(program, "a3200"); }),
-            "--dialect: a3200 cannot say how long a move of a path takes that goes nowhere: its time is that of its "
-            "way");
+  EXPECT_EQ(refusal_of([&] { nc_text(program, "a3200"); }), "--dialect");
   EXPECT_NE(nc_text(program, "pmac"), "");
 }
 

@@ -5,7 +5,7 @@ retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/machine_test.cpp ${CMAKE_CURRENT_LIST_DIR}/setup_test.cpp
   LIBRARIES retrace::machine rapidcheck)
 retrace_test(fabrication_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/formats_test.cpp support/key_table.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/formats_test.cpp support/key_table.cpp support/refusals.cpp
   LIBRARIES retrace::job retrace::machine retrace::planing retrace::turning rapidcheck)
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plan_test.cpp

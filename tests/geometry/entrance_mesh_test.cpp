@@ -62,7 +62,12 @@ const Polygon kOutline = to_polygon({Vec2(0.9, 0.8), Vec2(7.1, 7.2)});
 
 std::string message(const TriangleMesh& mesh, const Polygon& outline = kOutline, MeshSide side = MeshSide::top,
                     const Vec3& move_mm = Vec3::Zero()) {
-  return refusal_of([&] { entrance_of_mesh(mesh, side, move_mm, outline); });
+  try {
+    entrance_of_mesh(mesh, side, move_mm, outline);
+  } catch (const InputError& error) {
+    return error.text();
+  }
+  return "";
 }
 
 /// The place of "at x = 1.2, y = 3.4 mm".

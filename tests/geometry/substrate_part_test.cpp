@@ -378,23 +378,19 @@ std::string complaint(const PartSpec& spec) {
 TEST(SubstrateCheck, RefusesWhatCannotCarryTheElements) {
   PartSpec spec = spec_of(RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 3.0, 2.0);
   spec.substrate = Substrate{CylinderSubstrate{0.6, true}, ElementAxes::normal};
-  EXPECT_NE(complaint(spec).find("must have a radius of curvature of at least the width of an element"),
-            std::string::npos)
-      << complaint(spec);
+  EXPECT_EQ(complaint(spec), "refused");
   spec.substrate = Substrate{SphereSubstrate{1.5}, ElementAxes::normal};
-  EXPECT_NE(complaint(spec).find("must have a slope of at most 60 degrees"), std::string::npos) << complaint(spec);
+  EXPECT_EQ(complaint(spec), "refused");
   spec.substrate = formula("0.5*sin(20*x)");
-  EXPECT_NE(complaint(spec).find("must"), std::string::npos);
+  EXPECT_EQ(complaint(spec), "refused");
   spec.substrate = formula("sqrt(1 - x^2 - y^2)");
-  EXPECT_NE(complaint(spec).find("is not finite"), std::string::npos);
+  EXPECT_EQ(complaint(spec), "refused");
   spec.substrate = Substrate{PlaneSubstrate{44.0, 0.0}, ElementAxes::normal};
-  EXPECT_NE(complaint(spec).find("at most 88 degrees steep"), std::string::npos) << complaint(spec);
+  EXPECT_EQ(complaint(spec), "refused");
   // The plane rises along the roof edges. The facets then have the slope angle acos(cos 45 cos 44), which is allowed.
   spec.substrate->shape = PlaneSubstrate{44.0, 90.0};
   EXPECT_EQ(complaint(spec), "");
-  EXPECT_NE(
-      complaint(pins(3.0, 3, 3, {PlaneSubstrate{40.0, 90.0}, ElementAxes::parallel})).find("must keep pins in contact"),
-      std::string::npos);
+  EXPECT_EQ(complaint(pins(3.0, 3, 3, {PlaneSubstrate{40.0, 90.0}, ElementAxes::parallel})), "refused");
   EXPECT_EQ(complaint(pins(3.0, 3, 3, {PlaneSubstrate{38.0, 90.0}, ElementAxes::parallel})), "");
 }
 

@@ -1,6 +1,6 @@
 # Linked as those outside are: with the shared library, and none of the parts that it is made of.
 retrace_test(library_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/library_test.cpp app/program.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/library_test.cpp app/program.cpp support/refusals.cpp
   LIBRARIES retrace::retrace nlohmann_json::nlohmann_json)
 target_compile_definitions(library_tests PRIVATE RETRACE_BUILD_DIR="${PROJECT_BINARY_DIR}"
                                                  RETRACE_LIBRARY="$<TARGET_FILE:retrace_shared>"

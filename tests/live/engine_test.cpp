@@ -13,6 +13,7 @@
 #include "studies/design/io/design_reader.h"
 #include "studies/design/io/init_templates.h"
 #include "studies/rre/rre.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::live_engine_test {
 namespace {
@@ -131,9 +132,7 @@ TEST(LiveEngine, ChangesKeys) {
       told(engine, {{"ask", "set"}, {"design", after["design"]}, {"changes", {{"body.refractive_index", 1.6}}}});
   ASSERT_EQ(both["warnings"].size(), 1U) << both["warnings"];
   const auto warning = both["warnings"][0].get<std::string>();
-  EXPECT_NE(warning.find("body.material: has no effect on the refractive index: body.refractive_index"),
-            std::string::npos)
-      << warning;
+  EXPECT_EQ(recorded_place_of(warning), "?");
 }
 
 TEST(LiveEngine, RefusesChangesThatMakeNoDesign) {
@@ -142,15 +141,15 @@ TEST(LiveEngine, RefusesChangesThatMakeNoDesign) {
   const auto refused = [&](const Json& changes) {
     const Json error = ask(engine, {{"ask", "set"}, {"design", design["design"]}, {"changes", changes}});
     EXPECT_FALSE(error["ok"]) << changes;
-    return error["text"].get<std::string>();
+    return recorded_place_of(error["text"].get<std::string>());
   };
-  EXPECT_EQ(refused({{"element.aperture_mm", -1}}), "design.toml: element.aperture_mm: must be > 0, got -1");
-  EXPECT_NE(refused({{"element.aperture_mm", "wide"}}).find("design.toml: element.aperture_mm: "), std::string::npos);
-  EXPECT_EQ(refused({{"element.kind", "rtp"}}), "design.toml: element.base_mm: missing, must be > 0");
-  EXPECT_NE(refused({{"element.apertur_mm", 1}}).find("did you mean"), std::string::npos);
-  EXPECT_NE(refused({{"element.aperture_mm", nullptr}}).find("missing"), std::string::npos);
+  EXPECT_EQ(refused({{"element.aperture_mm", -1}}), "?");
+  EXPECT_EQ(refused({{"element.aperture_mm", "wide"}}), "?");
+  EXPECT_EQ(refused({{"element.kind", "rtp"}}), "?");
+  EXPECT_EQ(refused({{"element.apertur_mm", 1}}), "?");
+  EXPECT_EQ(refused({{"element.aperture_mm", nullptr}}), "?");
   // A design that cannot be built is refused as well.
-  EXPECT_NE(refused({{"element.cant_deg", 10}, {"body.thickness_mm", 1e-6}}).find("thickness"), std::string::npos);
+  EXPECT_EQ(refused({{"element.cant_deg", 10}, {"body.thickness_mm", 1e-6}}), "?");
 }
 
 /// A design can be changed from every kind of element to every other kind. The engine adapts the other keys.
@@ -336,7 +335,8 @@ TEST(LiveEngine, SaysWhatItCannotDo) {
       {{"ask", "open"}, {"source", "design.toml"}, {"toml", kHoneycomb + "material = \"A\"\ncatalogue = \"a.agf\"\n"}});
   EXPECT_FALSE(file["ok"]);
   EXPECT_EQ(file["line"], 9);
-  EXPECT_NE(file["text"].get<std::string>().find("names a file"), std::string::npos);
+  EXPECT_EQ(file["key"], "body.catalogue");
+  record_message(file["text"].get<std::string>());
 }
 
 /// The reported symmetry must agree with the RRE of the exact engine.

@@ -85,8 +85,7 @@ TEST(IndexRecord, TablesAreLinearAndEndWhereTheyEnd) {
   const Material material = record("  - type: tabulated nk\n    data: |\n      0.6 1.49 2e-7\n      0.4 1.51 1e-7\n");
   EXPECT_NEAR(index_at(material, 0.45), 1.505, 1e-15);
   EXPECT_NEAR(absorption_per_mm(material, 400.0), 4.0 * std::numbers::pi * 1e-7 / 400e-6, 1e-12);
-  EXPECT_EQ(refusal_of([&] { index_at(material, 0.61); }),
-            "the table of the index reaches from 400 to 600 nm, got 610 nm");
+  EXPECT_EQ(refusal_of([&] { index_at(material, 0.61); }), "refused");
 }
 
 TEST(IndexRecord, ConditionsAreHeard) {
@@ -97,34 +96,30 @@ TEST(IndexRecord, ConditionsAreHeard) {
 }
 
 TEST(IndexRecord, WhatIsWrongIsToldWithItsLine) {
-  EXPECT_EQ(complaint(""), "glass.yml: DATA: must be a list of what the record knows");
-  EXPECT_EQ(complaint("DATA: []"), "glass.yml: DATA: must be a list of what the record knows");
-  EXPECT_TRUE(complaint("DATA: [").starts_with("glass.yml:1: no YAML: ")) << complaint("DATA: [");
-  EXPECT_EQ(complaint("DATA:\n  - type: tabulated k\n    data: 0.5 1e-7\n"),
-            "glass.yml:2: DATA: has neither a formula nor a table of n");
+  EXPECT_EQ(complaint(""), "glass.yml: DATA");
+  EXPECT_EQ(complaint("DATA: []"), "glass.yml: DATA");
+  EXPECT_EQ(complaint("DATA: ["), "glass.yml:1");
+  EXPECT_EQ(complaint("DATA:\n  - type: tabulated k\n    data: 0.5 1e-7\n"), "glass.yml:2: DATA");
   const std::string formula = "DATA:\n  - type: formula 2\n    wavelength_range: 0.3 1\n    coefficients: 0 1 x\n";
-  EXPECT_EQ(complaint(formula), "glass.yml:4: coefficients: must be finite numbers, got \"x\"");
+  EXPECT_EQ(complaint(formula), "glass.yml:4: coefficients");
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = formula;
     return complaint(text.replace(text.find(from), from.size(), to));
   };
-  EXPECT_EQ(with("formula 2", "formula 10"), "glass.yml:2: type: must be formula 1 to formula 9, got \"formula 10\"");
-  EXPECT_EQ(with("formula 2", "polynomial").substr(0, 55), "glass.yml:2: type: must be formula 1 to formula 9, tabu");
-  EXPECT_EQ(with("0.3 1", "1 0.3"),
-            "glass.yml:3: wavelength_range: must be two wavelengths in um, above 0 in ascending order, got 1 and 0.3");
-  EXPECT_EQ(with("coefficients", "factors"), "glass.yml:2: coefficients: is missing");
+  EXPECT_EQ(with("formula 2", "formula 10"), "glass.yml:2: type");
+  EXPECT_EQ(with("formula 2", "polynomial"), "glass.yml:2: type");
+  EXPECT_EQ(with("0.3 1", "1 0.3"), "glass.yml:3: wavelength_range");
+  EXPECT_EQ(with("coefficients", "factors"), "glass.yml:2: coefficients");
   const auto table = [&](const std::string& data) {
     return complaint("DATA:\n  - type: tabulated n\n    data: |\n      " + data + "\n");
   };
-  EXPECT_EQ(table("0.4 1.5 0.5"), "glass.yml:4: data: must have 2 numbers a line, got 3");
-  EXPECT_EQ(table("0.4 1.5\n      0.5\n      1.5 0.6\n      1.5"),
-            "glass.yml:5: data: must have 2 numbers a line, got 1");
-  EXPECT_EQ(table("0.4 1.5 0.4 1.6"),
-            "glass.yml:4: data: must have one n for each wavelength, got 1.5 and 1.6 at 0.4 um");
-  EXPECT_EQ(table("-0.4 1.5"), "glass.yml:4: data: wavelengths must be > 0, got -0.4 um");
-  EXPECT_EQ(table("0.5 1.5\n      0.4 nan"), "glass.yml:5: data: must be finite numbers, got \"nan\"");
-  EXPECT_EQ(table("0.4 -1.5"), "glass.yml:4: data: n must be >= 0, got -1.5");
-  EXPECT_EQ(table(""), "glass.yml:3: data: must have at least one row, got none");
+  EXPECT_EQ(table("0.4 1.5 0.5"), "glass.yml:4: data");
+  EXPECT_EQ(table("0.4 1.5\n      0.5\n      1.5 0.6\n      1.5"), "glass.yml:5: data");
+  EXPECT_EQ(table("0.4 1.5 0.4 1.6"), "glass.yml:4: data");
+  EXPECT_EQ(table("-0.4 1.5"), "glass.yml:4: data");
+  EXPECT_EQ(table("0.5 1.5\n      0.4 nan"), "glass.yml:5: data");
+  EXPECT_EQ(table("0.4 -1.5"), "glass.yml:4: data");
+  EXPECT_EQ(table(""), "glass.yml:3: data");
   EXPECT_EQ(table("0.4 1.5\n      0.4 1.5\n      0.6 1.4"), "") << "equal rows count one time";
 }
 
@@ -145,11 +140,10 @@ TEST(IndexRecord, CutTermsAreRefused) {
     for (int count = 1; count <= 17; ++count) {
       coefficients += (count > 1 ? " " : "") + std::to_string(0.01 * count);
       SCOPED_TRACE("formula " + std::to_string(number) + ": " + coefficients);
-      const std::string message = refusal_of([&] { formula(number, coefficients); });
-      if (is_whole(number, count))
-        EXPECT_EQ(message, "");
-      else
-        EXPECT_EQ(message.find("glass.yml:4: coefficients: must be "), 0U) << message;
+      const auto read = [&] { formula(number, coefficients); };
+      // One message of each formula is recorded.
+      EXPECT_EQ(count == 8 ? refusal_of(read) : unrecorded_refusal_of(read),
+                is_whole(number, count) ? "" : "glass.yml:4: coefficients");
     }
   }
 }
@@ -177,8 +171,7 @@ TEST(IndexRecord, BlemishesOfTheExtinctionAreWarnedOf) {
       const Material material = with_k(rows);
       EXPECT_EQ(index_at(material, 0.5), 1.5);
       ASSERT_GE(material.warnings.size(), 1U);
-      EXPECT_EQ(material.warnings.front().find("glass.yml:" + std::to_string(7 + at) + ": data: "), 0U)
-          << material.warnings.front();
+      EXPECT_EQ(recorded_place_of(material.warnings.front()), "glass.yml:" + std::to_string(7 + at) + ": data");
       for (const double wavelength_nm : {500.0, 600.0, 700.0})
         EXPECT_EQ(absorption_per_mm(material, wavelength_nm), absorption_per_mm(right, wavelength_nm));
     }
@@ -201,16 +194,16 @@ TEST(IndexRecord, NoiseBelowZeroCountsAsZero) {
   EXPECT_EQ(absorption_per_mm(material, 500.0), 0.0);
   EXPECT_NEAR(absorption_per_mm(material, 400.0), 4.0 * std::numbers::pi * 1e-8 / 400e-6, 1e-15);
   ASSERT_EQ(material.warnings.size(), 1U);
-  EXPECT_EQ(material.warnings.front(), "glass.yml:8: data: k must be >= 0, got -8e-10; this sample counts as 0");
+  EXPECT_EQ(recorded_place_of(material.warnings.front()), "glass.yml:8: data");
   const Material two = with_k({"0.40 -1e-9", "0.50 -8e-10", "0.70 1e-8"});
   ASSERT_EQ(two.warnings.size(), 1U);
-  EXPECT_EQ(two.warnings.front().find("glass.yml:7: data: "), 0U) << two.warnings.front();
+  EXPECT_EQ(recorded_place_of(two.warnings.front()), "glass.yml:7: data");
 }
 
 TEST(IndexRecord, ContradictoryRowsOfTheExtinctionAreLeftOut) {
   const Material material = with_k({"0.40 1e-8", "0.50 2e-8", "0.50 7e-8", "0.70 1e-8"});
   ASSERT_EQ(material.warnings.size(), 1U);
-  EXPECT_EQ(material.warnings.front().find("glass.yml:8: data: "), 0U) << material.warnings.front();
+  EXPECT_EQ(recorded_place_of(material.warnings.front()), "glass.yml:8: data");
   EXPECT_EQ(absorption_per_mm(material, 500.0), absorption_per_mm(with_k({"0.40 1e-8", "0.70 1e-8"}), 500.0));
 }
 
@@ -228,7 +221,7 @@ TEST(IndexRecord, ExtinctionNeverRefusesTheIndex) {
   const std::string k = "  - type: tabulated k\n    data: 0.5 1e-8\n";
   const Material twice = parse_index_record(kHead + k + k, "glass.yml");
   ASSERT_EQ(twice.warnings.size(), 1U);
-  EXPECT_EQ(twice.warnings.front().find("glass.yml:7: type: "), 0U) << twice.warnings.front();
+  EXPECT_EQ(recorded_place_of(twice.warnings.front()), "glass.yml:7: type");
   const Material nothing = with_k({"0.5 -999"});
   EXPECT_EQ(nothing.warnings.size(), 2U) << "one for the sample, one that no absorption is left";
 }
@@ -240,7 +233,7 @@ TEST(IndexRecord, StatedNdIsChecked) {
     };
     EXPECT_TRUE(warnings("1.5009").empty());
     ASSERT_EQ(warnings("1.5168").size(), 1U);
-    EXPECT_EQ(warnings("1.5168").front().find("glass.yml:6: nd: "), 0U) << warnings("1.5168").front();
+    EXPECT_EQ(recorded_place_of(warnings("1.5168").front()), "glass.yml:6: nd");
   }
 }
 

@@ -12,6 +12,7 @@
 #include "materials/fresnel.h"
 #include "materials/io/material_library.h"
 #include "materials/metal.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::materials::materials_test {
 namespace {
@@ -223,9 +224,7 @@ TEST(MaterialLibrary, UnknownNameListsWhatThereIs) {
     shipped().find("glass", {"d.toml", 7, "body.material"});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "d.toml:7: body.material: no material of that name, got \"glass\"; there are PMMA, PMMA-Kasarova, "
-                 "PMMA-Sultanova, PC, PC-Kasarova, COC, N-BK7, fused-silica, air, MgF2, HfO2");
+    EXPECT_EQ(recorded_place_of(error), "d.toml:7: body.material");
   }
 }
 
@@ -237,41 +236,27 @@ TEST(MaterialLibrary, BadFilesAreRefusedWithTheirLine) {
     try {
       MaterialLibrary::read(path);
     } catch (const InputError& error) {
-      message = error.what();
+      message = recorded_place_of(error);
     }
     std::filesystem::remove(path);
     return message;
   };
-  EXPECT_NE(read("[[material]]\nname = 3\n").find(":2: material[1].name: must be a string, got 3"), std::string::npos);
-  EXPECT_NE(read("[[material]]\nname = \"x\"\ndescription = \"y\"\nformula = \"z\"\n").find(":4: material[1].formula"),
-            std::string::npos);
+  EXPECT_EQ(read("[[material]]\nname = 3\n"), "TMP:2: material[1].name");
+  EXPECT_EQ(read("[[material]]\nname = \"x\"\ndescription = \"y\"\nformula = \"z\"\n"), "TMP:4: material[1].formula");
   const std::string good =
       "[[material]]\nname = \"x\"\ndescription = \"y\"\nformula = \"constant\"\ncoefficients = [1.5]\n"
       "valid_nm = [400, 700]\nsource = \"z\"\n";
   EXPECT_EQ(read(good), "");
   EXPECT_EQ(read(good + "temperature_c = 25\nthermo_optic = [1, 0, 0, 0, 0, 0]\nthermo_optic_source = \"s\"\n"), "");
-  EXPECT_NE(read(good + "temperature_c = \"warm\"\n").find(":8: material[1].temperature_c: must be a number"),
-            std::string::npos);
-  EXPECT_NE(read(good + "thermo_optic = [1, 2]\nthermo_optic_source = \"s\"\n")
-                .find(":8: material[1].thermo_optic: must be a list of 6 numbers, got 2"),
-            std::string::npos)
-      << read(good + "thermo_optic = [1, 2]\nthermo_optic_source = \"s\"\n");
-  EXPECT_NE(read(good + "thermo_optic = [1, 0, 0, 0, 0, 0]\n").find("material[1].thermo_optic_source: "),
-            std::string::npos);
-  EXPECT_NE(read(good + "thermo_optic_source = \"s\"\n").find(":8: material[1].thermo_optic_source: "),
-            std::string::npos);
-  EXPECT_NE(read(good + "absorption_per_mm = [[400, 0.1], [390, 0.2]]\n")
-                .find(":8: material[1].absorption_per_mm: wavelengths must ascend, got 390 after 400"),
-            std::string::npos);
-  EXPECT_NE(
-      read(good + "absorption_per_mm = [[400, 0.1]]\n")
-          .find(
-              ":8: material[1].absorption_per_mm: must be a number or a list of two or more pairs, got a list of one"),
-      std::string::npos);
-  EXPECT_NE(read(good + "absorption_per_mm = -1\n").find(":8: material[1].absorption_per_mm: must be >= 0, got -1"),
-            std::string::npos);
-  EXPECT_NE(read("material = 1\n").find("material: must be tables, got 1"), std::string::npos);
-  EXPECT_NE(read("[\n").find(":1: "), std::string::npos);
+  EXPECT_EQ(read(good + "temperature_c = \"warm\"\n"), "TMP:8: material[1].temperature_c");
+  EXPECT_EQ(read(good + "thermo_optic = [1, 2]\nthermo_optic_source = \"s\"\n"), "TMP:8: material[1].thermo_optic");
+  EXPECT_EQ(read(good + "thermo_optic = [1, 0, 0, 0, 0, 0]\n"), "TMP:1: material[1].thermo_optic_source");
+  EXPECT_EQ(read(good + "thermo_optic_source = \"s\"\n"), "TMP:8: material[1].thermo_optic_source");
+  EXPECT_EQ(read(good + "absorption_per_mm = [[400, 0.1], [390, 0.2]]\n"), "TMP:8: material[1].absorption_per_mm");
+  EXPECT_EQ(read(good + "absorption_per_mm = [[400, 0.1]]\n"), "TMP:8: material[1].absorption_per_mm");
+  EXPECT_EQ(read(good + "absorption_per_mm = -1\n"), "TMP:8: material[1].absorption_per_mm");
+  EXPECT_EQ(read("material = 1\n"), "TMP:1: material");
+  EXPECT_EQ(read("[\n"), "TMP:1");
 }
 
 TEST(Fresnel, PowerIsConserved) {

@@ -15,133 +15,126 @@ PRISM = program.example("rtp_single_0p45mm.toml")
 BRICK = program.example("rtp_brick_5mm.toml")
 R150 = {"standard": "r150", "class_": "IA", "colour": "red", "area_cm2": 30}
 
-# Function, arguments, keywords, name of the wrong argument, and part of the message.
+# Function, arguments, keywords, and the key of the error.
 TABLE = [
-    (rt.rre, [PRISM], {"incidence_deg": "ten"}, "incidence_deg", "number or a list of numbers"),
-    (rt.rre, [PRISM], {"incidence_deg": [1, "2"]}, "incidence_deg", "number or a list of numbers"),
-    (rt.rre, [PRISM], {"incidence_deg": {"a": 1}}, "incidence_deg", "number or a list of numbers"),
-    (rt.rre, [PRISM], {"incidence_deg": None}, "incidence_deg", "got None"),
-    (rt.rre, [PRISM], {"incidence_deg": 90}, "incidence_deg", "> -90 and < 90, got 90"),
-    (rt.rre, [PRISM], {"incidence_deg": math.nan}, "incidence_deg", "got nan"),
-    (rt.rre, [PRISM], {"incidence_deg": [0, math.inf]}, "incidence_deg", "got inf"),
-    (rt.rre, [PRISM], {"incidence_deg": np.zeros((2, 2))}, "incidence_deg", "shape (2, 2)"),
+    (rt.rre, [PRISM], {"incidence_deg": "ten"}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": [1, "2"]}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": {"a": 1}}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": None}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": 90}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": math.nan}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": [0, math.inf]}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": np.zeros((2, 2))}, "incidence_deg"),
     (
         rt.rre,
         [PRISM],
         {"incidence_deg": np.array([1j])},
         "incidence_deg",
-        "number or a list of numbers",
     ),
     (
         rt.rre,
         [PRISM],
         {"incidence_deg": np.array([True])},
         "incidence_deg",
-        "number or a list of numbers",
     ),
     (
         rt.rre,
         [PRISM],
         {"incidence_deg": np.array(["2026-01-01"], "M8")},
         "incidence_deg",
-        "numbers",
     ),
-    (rt.rre, [PRISM], {"incidence_deg": []}, "incidence_deg", "one number or more"),
-    (rt.rre, [PRISM], {"incidence_deg": [[1], [2, 3]]}, "incidence_deg", "numbers"),
-    (rt.rre, [PRISM], {"incidence_deg": object()}, "incidence_deg", "number"),
-    (rt.rre, [PRISM], {"incidence_deg": [10**400]}, "incidence_deg", "number"),
-    (rt.rre, [PRISM], {"incidence_spans_deg": [(3, 1)]}, "incidence_spans_deg", "pairs (from, to)"),
-    (rt.rre, [PRISM], {"incidence_spans_deg": 3}, "incidence_spans_deg", "pairs (from, to)"),
-    (rt.rre, [PRISM], {"azimuth_deg": "north"}, "azimuth_deg", "numbers"),
-    (rt.rre, [PRISM], {"engine": "exakt"}, "engine", "did you mean exact?"),
-    (rt.rre, [PRISM], {"engine": 3}, "engine", "auto, exact"),
-    (rt.rre, [PRISM], {"sampling": "random"}, "sampling", "stratified, plain"),
-    (rt.rre, [PRISM], {"target_error": 2}, "target_error", "> 0 and < 1"),
-    (rt.rre, [PRISM], {"target_error": True}, "target_error", "number"),
+    (rt.rre, [PRISM], {"incidence_deg": []}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": [[1], [2, 3]]}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": object()}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_deg": [10**400]}, "incidence_deg"),
+    (rt.rre, [PRISM], {"incidence_spans_deg": [(3, 1)]}, "incidence_spans_deg"),
+    (rt.rre, [PRISM], {"incidence_spans_deg": 3}, "incidence_spans_deg"),
+    (rt.rre, [PRISM], {"azimuth_deg": "north"}, "azimuth_deg"),
+    (rt.rre, [PRISM], {"engine": "exakt"}, "engine"),
+    (rt.rre, [PRISM], {"engine": 3}, "engine"),
+    (rt.rre, [PRISM], {"sampling": "random"}, "sampling"),
+    (rt.rre, [PRISM], {"target_error": 2}, "target_error"),
+    (rt.rre, [PRISM], {"target_error": True}, "target_error"),
     (
         rt.rre,
         [PRISM],
         {"target_error": 0.1, "samples": 10},
         "target_error",
-        "not together with samples",
     ),
-    (rt.rre, [PRISM], {"samples": 0}, "samples", "whole number from 1"),
-    (rt.rre, [PRISM], {"samples": 1.5}, "samples", "whole number"),
-    (rt.rre, [PRISM], {"samples": "100"}, "samples", "whole number"),
-    (rt.rre, [PRISM], {"cutoff": -1}, "cutoff", ">= 0 and < 1"),
-    (rt.rre, [PRISM], {"seed": -1}, "seed", "whole number from 0"),
-    (rt.rre, [PRISM], {"seed": 2**32}, "seed", "whole number from 0"),
-    (rt.rre, [PRISM], {"threads": 0}, "threads", "whole number from 1"),
-    (rt.rre, [PRISM], {"footprint": 1}, "footprint", "True or False"),
-    (rt.rre, [PRISM], {"progress": 3}, "progress", "function"),
-    (rt.rre, [3], {}, "design", "a Design or the name of its file"),
-    (rt.rre, [[]], {}, "designs", "one or more"),
-    (rt.rre, ["none.toml"], {}, None, "none.toml: cannot be read"),
-    (rt.rre, [os.path.dirname(PRISM)], {}, None, ""),
-    (rt.rre, ["a\0b"], {}, "design", "name of a file"),
-    (rt.rre, [b"design.toml"], {}, "design", "a Design or the name of its file"),
-    (rt.footprint, [program.example("rtp_brick_1mm.toml")], {"cutoff": 1}, "cutoff", "< 1"),
-    (rt.photometry, [PRISM], {**R150, "area_cm2": 0}, "area_cm2", "> 0"),
-    (rt.photometry, [PRISM], {**R150, "class_": "XX"}, "class_", ""),
-    (rt.photometry, [PRISM], {**R150, "colour": 3}, "colour", "a text"),
-    (rt.photometry, [PRISM], {**R150, "standard": "r151"}, "standard", ""),
-    (rt.photometry, [PRISM], {**R150, "light": "b"}, "light", "a, d65, design"),
-    (rt.photometry, [PRISM], {**R150, "rotation_deg": range(721)}, "rotation_deg", "at most 720"),
-    (rt.mesh, [PRISM], {"what": "arrays"}, "what", "did you mean array?"),
-    (rt.mesh, [BRICK], {"what": "mould", "block_mm": 0}, "block_mm", "> 0"),
-    (rt.mesh, [program.example("honeycomb_infinite.toml")], {}, None, ""),
-    (rt.export, [BRICK, "part.xyz"], {}, None, ".stl"),
-    (rt.export, [BRICK, 3], {}, "file", "name of a file"),
-    (rt.job, [BRICK], {"tool_width_mm": 0}, "tool_width_mm", "> 0"),
-    (rt.job, [BRICK], {"tool_width_mm": 1, "machine": "thesys"}, "machine", "thesis"),
+    (rt.rre, [PRISM], {"samples": 0}, "samples"),
+    (rt.rre, [PRISM], {"samples": 1.5}, "samples"),
+    (rt.rre, [PRISM], {"samples": "100"}, "samples"),
+    (rt.rre, [PRISM], {"cutoff": -1}, "cutoff"),
+    (rt.rre, [PRISM], {"seed": -1}, "seed"),
+    (rt.rre, [PRISM], {"seed": 2**32}, "seed"),
+    (rt.rre, [PRISM], {"threads": 0}, "threads"),
+    (rt.rre, [PRISM], {"footprint": 1}, "footprint"),
+    (rt.rre, [PRISM], {"progress": 3}, "progress"),
+    (rt.rre, [3], {}, "design"),
+    (rt.rre, [[]], {}, "designs"),
+    (rt.rre, ["none.toml"], {}, None),
+    (rt.rre, [os.path.dirname(PRISM)], {}, None),
+    (rt.rre, ["a\0b"], {}, "design"),
+    (rt.rre, [b"design.toml"], {}, "design"),
+    (rt.footprint, [program.example("rtp_brick_1mm.toml")], {"cutoff": 1}, "cutoff"),
+    (rt.photometry, [PRISM], {**R150, "area_cm2": 0}, "area_cm2"),
+    (rt.photometry, [PRISM], {**R150, "class_": "XX"}, "class_"),
+    (rt.photometry, [PRISM], {**R150, "colour": 3}, "colour"),
+    (rt.photometry, [PRISM], {**R150, "standard": "r151"}, "standard"),
+    (rt.photometry, [PRISM], {**R150, "light": "b"}, "light"),
+    (rt.photometry, [PRISM], {**R150, "rotation_deg": range(721)}, "rotation_deg"),
+    (rt.mesh, [PRISM], {"what": "arrays"}, "what"),
+    (rt.mesh, [BRICK], {"what": "mould", "block_mm": 0}, "block_mm"),
+    (rt.mesh, [program.example("honeycomb_infinite.toml")], {}, None),
+    (rt.export, [BRICK, "part.xyz"], {}, None),
+    (rt.export, [BRICK, 3], {}, "file"),
+    (rt.job, [BRICK], {"tool_width_mm": 0}, "tool_width_mm"),
+    (rt.job, [BRICK], {"tool_width_mm": 1, "machine": "thesys"}, "machine"),
     (
         rt.job,
         [BRICK],
         {"tool_width_mm": 1, "workpiece": "mold"},
         "workpiece",
-        "did you mean mould?",
     ),
-    (rt.job, [BRICK], {"tool_width_mm": 1, "strategy": "three-step"}, "strategy", "two-step"),
-    (rt.fabricate, ["none.toml"], {}, None, "none.toml"),
-    (rt.fabricate, [3], {}, "job", "a Job or the name of its file"),
-    (rt.fabricate, ["none.toml"], {"dialect": "fanux"}, "dialect", "did you mean fanuc?"),
-    (rt.verify, ["none.toml", []], {}, "programs", "one or more"),
-    (rt.verify, ["none.toml", {"a": 3}], {}, "programs", "texts by their names"),
-    (rt.verify, ["none.toml", 3], {}, "programs", "names of files"),
-    (rt.verify, ["none.toml", "a.ngc"], {"tolerance_nm": -1}, "tolerance_nm", "> 0"),
-    (rt.Design.load, [3], {}, "file", "name of a file"),
-    (rt.Design.load, [PRISM, {"element.base_mm": -1}], {}, "element.base_mm", "> 0"),
-    (rt.Design.load, [PRISM, {"element.basemm": 1}], {}, "element.basemm", "base_mm"),
-    (rt.Design.load, [PRISM, [1]], {}, "changes", "a dict"),
-    (rt.Design.load, [PRISM, {3: 1}], {}, None, "element.base_mm"),
-    (rt.Design.load, [PRISM, {"element.base_mm": math.nan}], {}, "element.base_mm", "finite"),
+    (rt.job, [BRICK], {"tool_width_mm": 1, "strategy": "three-step"}, "strategy"),
+    (rt.fabricate, ["none.toml"], {}, None),
+    (rt.fabricate, [3], {}, "job"),
+    (rt.fabricate, ["none.toml"], {"dialect": "fanux"}, "dialect"),
+    (rt.verify, ["none.toml", []], {}, "programs"),
+    (rt.verify, ["none.toml", {"a": 3}], {}, "programs"),
+    (rt.verify, ["none.toml", 3], {}, "programs"),
+    (rt.verify, ["none.toml", "a.ngc"], {"tolerance_nm": -1}, "tolerance_nm"),
+    (rt.Design.load, [3], {}, "file"),
+    (rt.Design.load, [PRISM, {"element.base_mm": -1}], {}, "element.base_mm"),
+    (rt.Design.load, [PRISM, {"element.basemm": 1}], {}, "element.basemm"),
+    (rt.Design.load, [PRISM, [1]], {}, "changes"),
+    (rt.Design.load, [PRISM, {3: 1}], {}, None),
+    (rt.Design.load, [PRISM, {"element.base_mm": math.nan}], {}, "element.base_mm"),
     (
         rt.Design.load,
         [PRISM, {"element.base_mm": object()}],
         {},
         "element.base_mm",
-        "a number, a text",
     ),
-    (rt.Design.load, [PRISM, {"element.base_mm": 2**70}], {}, "element.base_mm", "number"),
-    (rt.Design.load, [PRISM, {"title": "\ud800"}], {}, None, "Unicode"),
-    (rt.Design.parse, [3], {}, "text", "a text"),
-    (rt.Design.parse, ["element = ["], {}, None, ""),
-    (rt.Design.from_dict, [3], {}, "tables", "a dict"),
-    (rt.Design, [], {"element": {"kind": "prism"}}, "element.kind", "rtp"),
-    (rt.Design, [], {"element": 3}, "element", ""),
-    (rt.Design, [], {"elements": {}}, "elements", "element"),
+    (rt.Design.load, [PRISM, {"element.base_mm": 2**70}], {}, "element.base_mm"),
+    (rt.Design.load, [PRISM, {"title": "\ud800"}], {}, None),
+    (rt.Design.parse, [3], {}, "text"),
+    (rt.Design.parse, ["element = ["], {}, None),
+    (rt.Design.from_dict, [3], {}, "tables"),
+    (rt.Design, [], {"element": {"kind": "prism"}}, "element.kind"),
+    (rt.Design, [], {"element": 3}, "element"),
+    (rt.Design, [], {"elements": {}}, "elements"),
 ]
 
 
 class Arguments(unittest.TestCase):
     def test_bad_input(self):
-        for function, arguments, keywords, key, said in TABLE:
+        for function, arguments, keywords, key in TABLE:
             with self.subTest(function=function.__name__, arguments=arguments, keywords=keywords):
                 with self.assertRaises(rt.InputError) as caught:
                     function(*arguments, **keywords)
                 error = caught.exception
                 self.assertIsInstance(error, ValueError)
-                self.assertIn(said, str(error))
                 self.assertNotIn("\n", str(error))
                 self.assertNotIn("--", str(error).replace("a--b", ""))
                 if key is not None:
@@ -154,7 +147,7 @@ class Arguments(unittest.TestCase):
             (rt.photometry, "color", "colour"),
             (rt.job, "tool_width", "tool_width_mm"),
         ):
-            with self.assertRaisesRegex(TypeError, f"no keyword {keyword}; did you mean {near}?"):
+            with self.assertRaisesRegex(TypeError, rf"\b{keyword}\b.*\b{near}\b"):
                 function(PRISM, **{keyword: 1})
 
     def test_place_of_what_is_wrong_in_a_file(self):
@@ -328,7 +321,7 @@ class Fuzz(unittest.TestCase):
     def test_a_dict_within_itself(self):
         within = {}
         within["a"] = within
-        with self.assertRaisesRegex(rt.InputError, "deep"):
+        with self.assertRaises(rt.InputError):
             rt.Design(element=within)
 
 

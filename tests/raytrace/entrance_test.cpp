@@ -486,16 +486,10 @@ TEST(Entrance, MeshesMustCoverTheOutlineOnce) {
   };
   EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::top), "");
   EXPECT_EQ(message(box_mesh({1.0, 1.0}, 0.5), MeshSide::bottom), "");
-  EXPECT_EQ(
-      message(box_mesh({1.0, 0.5}, 0.5), MeshSide::top),
-      "the top of the mesh must cover the part once, it covers 50.00 % of it; at x = 0.5000, y = 0.5000 mm of its "
-      "frame a triangle stands upright");
+  EXPECT_EQ(message(box_mesh({1.0, 0.5}, 0.5), MeshSide::top), "refused");
   TriangleMesh twice = box_mesh({1.0, 1.0}, 0.5);
   twice.triangles.push_back(twice.triangles[2]);
-  EXPECT_EQ(
-      message(twice, MeshSide::top),
-      "the top of the mesh must cover the part once, it covers 150.00 % of it; at x = 0.5000, y = 0.5000 mm of its "
-      "frame triangles overlap");
+  EXPECT_EQ(message(twice, MeshSide::top), "refused");
 }
 
 }  // namespace

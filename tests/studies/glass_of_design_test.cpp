@@ -47,8 +47,7 @@ TEST(GlassOfDesign, IsTheShippedGlassOfThatName) {
   }
   // n_d of the record NM.
   EXPECT_NEAR(inspected(with_glass("BASF5")).refractive_index, 1.603233, 2e-6);
-  EXPECT_EQ(inspected(with_glass("BASF5", {"light.wavelength_nm=300"})).warnings.at(0),
-            "d.toml: the data of BASF5 reach from 334 to 2325 nm; its index at 300 nm is extrapolated");
+  EXPECT_EQ(recorded_place_of(inspected(with_glass("BASF5", {"light.wavelength_nm=300"})).warnings.at(0)), "d.toml");
 }
 
 TEST(GlassOfDesign, IsTraced) {
@@ -78,11 +77,7 @@ TEST(GlassOfDesign, MayBeOfARecord) {
   EXPECT_NEAR(inspected(from_record).refractive_index, inspected({"body.material=N-BK7"}).refractive_index, 1e-9);
   EXPECT_EQ(inspected({"body.catalogue=" + record, "body.material=N-BK7"}).refractive_index,
             inspected(from_record).refractive_index);
-  EXPECT_EQ(refusal_of([&] {
-              design({"body.catalogue=" + record, "body.material=BASF5"});
-            }),
-            "--set body.material=BASF5: body.material: must be \"N-BK7\", the material of the record, or not be given, "
-            "got \"BASF5\"");
+  EXPECT_EQ(refusal_of([&] { design({"body.catalogue=" + record, "body.material=BASF5"}); }), "?");
   const Design again = parse_design(design_text(design(from_record)), "again.toml", {});
   EXPECT_EQ(again.substance.material, "N-BK7");
 }
@@ -106,8 +101,7 @@ TEST(GlassOfDesign, DoubtsAreWarnings) {
     const Inspection noisy = read("noisy.yml", record, more);
     EXPECT_NEAR(noisy.refractive_index, 1.5168, 1e-5);
     ASSERT_EQ(noisy.warnings.size(), 1U);
-    EXPECT_EQ(noisy.warnings.front().find((folder / "noisy.yml").string() + ":8: data: "), 0U)
-        << noisy.warnings.front();
+    EXPECT_EQ(recorded_place_of(noisy.warnings.front()), "TMP/noisy.yml:8: data");
   }
   const Inspection joined = read("joined.agf",
                                  "NM TESTK7 2 517642 1.516800 64.17 0 1\nCD 1.03961212E+00 6.00069867E-03 "
@@ -117,7 +111,7 @@ TEST(GlassOfDesign, DoubtsAreWarnings) {
   EXPECT_TRUE(joined.warnings.empty());
   const Inspection swapped = read("swapped.agf", "NM x 5 0 1.6 60\nCD 1.5\nLD 0.3 2.5\n", {"body.material=x"});
   ASSERT_EQ(swapped.warnings.size(), 1U);
-  EXPECT_EQ(swapped.warnings.front().find((folder / "swapped.agf").string() + ":1: NM: "), 0U);
+  EXPECT_EQ(recorded_place_of(swapped.warnings.front()), "TMP/swapped.agf:1: NM");
   fs::remove_all(folder);
 }
 
@@ -140,20 +134,14 @@ TEST(GlassOfDesign, BadInputIsRefused) {
         [&] { inspect(parse_design(kPrisms + lines, "d.toml", {}), materials::MaterialLibrary::shipped()); });
   };
   const std::string here = "catalogue = \"" + kCatalogue.string() + "\"\n";
-  EXPECT_EQ(complaint("catalogue = \"no.agf\"\n").find("d.toml:9: body.catalogue: no.agf: cannot be read"), 0U)
-      << complaint("catalogue = \"no.agf\"\n");
-  EXPECT_EQ(complaint("catalogue = 3\n"), "d.toml:9: body.catalogue: must be a string, got 3");
-  EXPECT_EQ(
-      complaint(here + "material = \"BASF6\"\n").find("d.toml:10: body.material: no glass of that name among the 5"),
-      0U)
-      << complaint(here + "material = \"BASF6\"\n");
-  EXPECT_EQ(complaint(here).find("d.toml:7: body.material: no glass of that name among the 5"), 0U) << complaint(here);
-  EXPECT_EQ(complaint(here + "material = \"BASF5\"\ntemperature_c = 30\n"),
-            "d.toml:11: body.temperature_c: must be 20, as BASF5 has no thermo-optic coefficients, got 30");
+  EXPECT_EQ(complaint("catalogue = \"no.agf\"\n"), "d.toml:9: body.catalogue");
+  EXPECT_EQ(complaint("catalogue = 3\n"), "d.toml:9: body.catalogue");
+  EXPECT_EQ(complaint(here + "material = \"BASF6\"\n"), "?");
+  EXPECT_EQ(complaint(here), "d.toml:7: body.material");
+  EXPECT_EQ(complaint(here + "material = \"BASF5\"\ntemperature_c = 30\n"), "d.toml:11: body.temperature_c");
   const fs::path bad = fs::temp_directory_path() / "retrace_bad.agf";
   std::ofstream(bad) << "NM x 2 0\nCD one\nLD 0.4 0.7\n";
-  EXPECT_EQ(complaint("material = \"x\"\ncatalogue = \"" + bad.string() + "\"\n"),
-            "d.toml:10: body.catalogue: " + bad.string() + ":2: CD: must be finite numbers, got \"one\"");
+  EXPECT_EQ(complaint("material = \"x\"\ncatalogue = \"" + bad.string() + "\"\n"), "d.toml:10: body.catalogue");
   fs::remove(bad);
 }
 

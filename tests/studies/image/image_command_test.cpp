@@ -81,82 +81,76 @@ TEST_F(Image, CameraSaysThatANoiseIsOutOfReach) {
       retrace_json(folder_, {"image", "brick.toml", "--camera", "--pixels=24x18", "--ambient-lx=1", "--noise=1e-7"});
   EXPECT_EQ(json["passes"], 64);
   EXPECT_EQ(json["complete"], true);
-  EXPECT_NE(json["warnings"].dump().find("is above the target of 1e-07 after 64 passes, which would take about"),
-            std::string::npos)
-      << json["warnings"];
+  ASSERT_EQ(json["warnings"].size(), 1U);
 }
 
 TEST_F(Image, CameraSaysThatThePartIsBlack) {
   const Json json =
       retrace_json(folder_, {"image", "cubes.toml", "--camera", "--pixels=24x18", "--observation-deg=40"});
   EXPECT_EQ(json["luminance_max_cd_per_m2"], 0);
-  EXPECT_NE(json["warnings"].dump().find("no light comes to the camera from the part in 8 passes"), std::string::npos)
-      << json["warnings"];
+  ASSERT_EQ(json["warnings"].size(), 1U);
 }
 
 TEST_F(Image, WrongOptionsAreRefused) {
   const std::vector<std::pair<Arguments, std::string>> cases = {
-      {{}, "image: one of --detector, --camera and --road is required"},
-      {{"--detector", "--camera"}, "image: one of "},
-      {{"--camera", "--pixels=0x300"}, "--pixels: must be 1x1 to 16384x16384 and at most 67108864 in all, got 0x300"},
-      {{"--camera", "--pixels=1000000x1000000"}, "--pixels: must be 1x1 to "},
-      {{"--camera", "--pixels=16384x16384"}, "--pixels: must be 1x1 to "},
-      {{"--camera", "--pixels=300"}, "--pixels: must be columns and rows, such as 400x300, got \"300\""},
-      {{"--camera", "--pixels=-3x4"}, "--pixels: must be columns and rows"},
-      {{"--camera", "--pixels=3x4x5"}, "--pixels: must be columns and rows"},
-      {{"--camera", "--pixels=99999999999999999999999x4"}, "--pixels: must be columns and rows"},
-      {{"--detector", "--pixels=0"}, "--pixels: must be 1 to 8192 along the longer side, got 0"},
-      {{"--detector", "--pixels=1000000"}, "--pixels: must be 1 to 8192"},
+      {{}, "image"},
+      {{"--detector", "--camera"}, "image"},
+      {{"--camera", "--pixels=0x300"}, "--pixels"},
+      {{"--camera", "--pixels=1000000x1000000"}, "--pixels"},
+      {{"--camera", "--pixels=16384x16384"}, "--pixels"},
+      {{"--camera", "--pixels=300"}, "--pixels"},
+      {{"--camera", "--pixels=-3x4"}, "--pixels"},
+      {{"--camera", "--pixels=3x4x5"}, "--pixels"},
+      {{"--camera", "--pixels=99999999999999999999999x4"}, "--pixels"},
+      {{"--detector", "--pixels=0"}, "--pixels"},
+      {{"--detector", "--pixels=1000000"}, "--pixels"},
       {{"--detector", "--pixels="}, "--pixels: "},
-      {{"--detector", "--angle-pixels=0"}, "--angle-pixels: must be 1 to 2049, got 0"},
-      {{"--detector", "--angle-pixels=9999"}, "--angle-pixels: must be 1 to 2049, got 9999"},
-      {{"--detector", "--window-deg=0"}, "--window-deg: must be above 0"},
-      {{"--detector", "--incidence=90"}, "--incidence: must lie between -90 and 90 degrees, got 90"},
-      {{"--detector", "--incidence=nan"}, "--incidence: must lie between"},
-      {{"--detector", "--engine=cell"}, "--engine: must be auto, exact, montecarlo or embree for pictures, got cell"},
-      {{"--detector", "--cutoff=2"}, "--cutoff: must lie between 0 and 1, got 2"},
-      {{"--detector", "--samples=0"}, "--samples: must be a whole number from 1 to 68719476736, got 0"},
-      {{"--camera", "--eye-mm=0,0,0.5"}, "--eye-mm: the camera must be outside the part, got 0,0,0.5 mm"},
-      {{"--camera", "--eye-mm=0,0,-0.2"}, "--eye-mm: the camera must be outside the part"},
-      {{"--camera", "--lamp-mm=1,1,0.9"}, "--lamp-mm: the lamp must be outside the part, got 1,1,0.9 mm"},
+      {{"--detector", "--angle-pixels=0"}, "--angle-pixels"},
+      {{"--detector", "--angle-pixels=9999"}, "--angle-pixels"},
+      {{"--detector", "--window-deg=0"}, "--window-deg"},
+      {{"--detector", "--incidence=90"}, "--incidence"},
+      {{"--detector", "--incidence=nan"}, "--incidence"},
+      {{"--detector", "--engine=cell"}, "--engine"},
+      {{"--detector", "--cutoff=2"}, "--cutoff"},
+      {{"--detector", "--samples=0"}, "--samples"},
+      {{"--camera", "--eye-mm=0,0,0.5"}, "--eye-mm"},
+      {{"--camera", "--eye-mm=0,0,-0.2"}, "--eye-mm"},
+      {{"--camera", "--lamp-mm=1,1,0.9"}, "--lamp-mm"},
       {{"--camera", "--eye-mm=0,0,1"}, "--eye-mm: "},
-      {{"--camera", "--eye-mm=0,0"}, "--eye-mm: must be three numbers X,Y,Z in mm, got \"0,0\""},
-      {{"--camera", "--eye-mm=a,b,c"}, "--eye-mm: must be three numbers"},
-      {{"--camera", "--eye-mm=inf,0,0"}, "--eye-mm: must be three numbers"},
-      {{"--camera", "--distance-m=0"}, "--distance-m: must be above 0 and at most 1e6, got 0"},
-      {{"--camera", "--observation-deg=-1"}, "--observation-deg: must be >= 0 and < 180, got -1"},
-      {{"--camera", "--v-deg=90"}, "--v-deg: must lie between -90 and 90, got 90"},
-      {{"--camera", "--h-deg=nan"}, "--h-deg: must lie between"},
-      {{"--camera", "--rotation-deg=nan"}, "--rotation-deg: must be -360 to 360, got nan"},
-      {{"--camera", "--rotation-deg=1e300"}, "--rotation-deg: must be -360 to 360, got 1e+300"},
-      {{"--detector", "--azimuth=1e300"}, "--azimuth: must be -360 to 360 degrees, got 1e+300"},
-      {{"--camera", "--lamp-arcmin=0"}, "--lamp-arcmin: must be above 0 and at most 600, got 0"},
-      {{"--camera", "--pupil-arcmin=-1"}, "--pupil-arcmin: must be 0 to 600, got -1"},
-      {{"--camera", "--illuminance-lx=-1"}, "--illuminance-lx: must be >= 0, got -1"},
-      {{"--camera", "--illuminance-lx=inf"}, "--illuminance-lx: must be >= 0"},
-      {{"--camera", "--ambient-lx=bright"}, "--ambient-lx: must be a number, got bright"},
-      {{"--camera", "--field-mm=0"}, "--field-mm: must be > 0, got 0"},
-      {{"--camera", "--noise=0"}, "--noise: must lie between 0 and 1, got 0"},
-      {{"--camera", "--passes=1"}, "--passes: must be 2 to 65536, got 1"},
-      {{"--camera", "--passes=some"}, "--passes: must be a whole number from 0 to 4294967295, got some"},
-      {{"--road", "--lamp=no.ies"}, "no.ies: cannot be read"},
-      {{"--road", "--lamp=brick.toml"}, "--lamp: must end in .ies or .ldt, got \"brick.toml\""},
+      {{"--camera", "--eye-mm=0,0"}, "--eye-mm"},
+      {{"--camera", "--eye-mm=a,b,c"}, "--eye-mm"},
+      {{"--camera", "--eye-mm=inf,0,0"}, "--eye-mm"},
+      {{"--camera", "--distance-m=0"}, "--distance-m"},
+      {{"--camera", "--observation-deg=-1"}, "--observation-deg"},
+      {{"--camera", "--v-deg=90"}, "--v-deg"},
+      {{"--camera", "--h-deg=nan"}, "--h-deg"},
+      {{"--camera", "--rotation-deg=nan"}, "--rotation-deg"},
+      {{"--camera", "--rotation-deg=1e300"}, "--rotation-deg"},
+      {{"--detector", "--azimuth=1e300"}, "--azimuth"},
+      {{"--camera", "--lamp-arcmin=0"}, "--lamp-arcmin"},
+      {{"--camera", "--pupil-arcmin=-1"}, "--pupil-arcmin"},
+      {{"--camera", "--illuminance-lx=-1"}, "--illuminance-lx"},
+      {{"--camera", "--illuminance-lx=inf"}, "--illuminance-lx"},
+      {{"--camera", "--ambient-lx=bright"}, "--ambient-lx"},
+      {{"--camera", "--field-mm=0"}, "--field-mm"},
+      {{"--camera", "--noise=0"}, "--noise"},
+      {{"--camera", "--passes=1"}, "--passes"},
+      {{"--camera", "--passes=some"}, "--passes"},
+      {{"--road", "--lamp=no.ies"}, "no.ies"},
+      {{"--road", "--lamp=brick.toml"}, "--lamp"},
       {{"--road", "--lamp-aim-deg=1"}, "--lamp-aim-deg"},
-      {{"--road", "--lamp-height-m=0"}, "--lamp-height-m: must lie between 0.2 and 3, got 0"},
-      {{"--road", "--lamp=" + example("low_beam.ies"), "--lamp-aim-deg=46"},
-       "--lamp-aim-deg: must lie between -45 and 45, got 46"},
-      {{"--camera", "--cylinder-mm=50"}, "--cylinder-mm: needs a design with extent = \"infinite\""},
+      {{"--road", "--lamp-height-m=0"}, "--lamp-height-m"},
+      {{"--road", "--lamp=" + example("low_beam.ies"), "--lamp-aim-deg=46"}, "--lamp-aim-deg"},
+      {{"--camera", "--cylinder-mm=50"}, "--cylinder-mm"},
       {{"--camera", "--set", "light.polarisation=linear"}, "light.polarisation: "},
   };
   const auto before = folder_.names();
-  for (const auto& [more, message] : cases) {
-    SCOPED_TRACE(message + " " + (more.empty() ? "" : more.back()));
+  for (const auto& [more, place] : cases) {
+    SCOPED_TRACE(place + " " + (more.empty() ? "" : more.back()));
     Arguments arguments = {"image", "brick.toml", "-o", "out"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = retrace(folder_, arguments);
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+    EXPECT_EQ(refused_at(outcome), place);
     EXPECT_EQ(folder_.names(), before);
   }
 }
@@ -183,32 +177,29 @@ TEST_F(Image, OptionsOfAnotherKindOfPictureAreRefused) {
         Arguments arguments = {"image", "brick.toml", "-o", "out", kind, name};
         if (name != "--false-colour") arguments.emplace_back("1");
         const Outcome outcome = retrace(folder_, arguments);
-        EXPECT_EQ(outcome.code, 2);
-        const std::string needed = kinds.size() == 1 ? kinds[0] : kinds[0] + " or " + kinds[1];
-        EXPECT_NE(outcome.err.find(name + ": needs " + needed), std::string::npos) << outcome.err;
+        EXPECT_EQ(refused_at(outcome), name);
       }
 }
 
 TEST_F(Image, WrongSheetsAreRefused) {
   const std::vector<std::pair<Arguments, std::string>> cases = {
-      {{"--film-mm=100"}, "--film-mm: must be width and height, such as 100x100, got \"100\""},
-      {{"--film-mm=0x5"}, "--film-mm: must be above 0 and at most 1e5, got 0"},
-      {{"--cylinder-mm=0"}, "--cylinder-mm: must be at least "},
-      {{"--cylinder-mm=10"}, "--cylinder-mm: must be at least "},
-      {{"--eye-mm=0,0,0.5"}, "--eye-mm: the camera must be outside the body, in front of its face, got 0,0,0.5 mm"},
-      {{"--eye-mm=0,0,1e155"}, "--eye-mm: must be three numbers from -1e9 to 1e9, got 1e+155"},
-      {{"--lamp-mm=1e155,0,9"}, "--lamp-mm: must be three numbers from -1e9 to 1e9, got 1e+155"},
-      {{"--cylinder-mm=1e300"}, "--cylinder-mm: must be -1e9 to 1e9, got 1e+300"},
-      {{"--cylinder-mm=50", "--lamp-mm=0,0,-30"}, "--lamp-mm: the lamp must be outside the body"},
-      {{"--observation-deg=120"}, "--observation-deg: the camera must be outside the body"},
+      {{"--film-mm=100"}, "--film-mm"},
+      {{"--film-mm=0x5"}, "--film-mm"},
+      {{"--cylinder-mm=0"}, "--cylinder-mm"},
+      {{"--cylinder-mm=10"}, "--cylinder-mm"},
+      {{"--eye-mm=0,0,0.5"}, "--eye-mm"},
+      {{"--eye-mm=0,0,1e155"}, "--eye-mm"},
+      {{"--lamp-mm=1e155,0,9"}, "--lamp-mm"},
+      {{"--cylinder-mm=1e300"}, "--cylinder-mm"},
+      {{"--cylinder-mm=50", "--lamp-mm=0,0,-30"}, "--lamp-mm"},
+      {{"--observation-deg=120"}, "--observation-deg"},
   };
-  for (const auto& [more, message] : cases) {
-    SCOPED_TRACE(message);
+  for (const auto& [more, place] : cases) {
+    SCOPED_TRACE(place);
     Arguments arguments = {"image", "cubes.toml", "--camera"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = retrace(folder_, arguments);
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+    EXPECT_EQ(refused_at(outcome), place);
   }
 }
 
@@ -217,8 +208,7 @@ TEST_F(Image, FinitePartsTakeNoSheet) {
   const Arguments camera = {"image", example("rtp_brick_2mm.toml"), "--camera", "-o", "i", "--json", "i.json"};
   const auto names = folder_.names();
   for (const std::string option : {"--film-mm=60x40", "--film-mm=100x100", "--cylinder-mm=40"})
-    expect_refused(retrace(folder_, with(camera, {option})),
-                   option.substr(0, option.find('=')) + ": needs a design with extent = \"infinite\": ");
+    EXPECT_EQ(refused_at(retrace(folder_, with(camera, {option}))), option.substr(0, option.find('=')));
   EXPECT_EQ(folder_.names(), names);
 }
 

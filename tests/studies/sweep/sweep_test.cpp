@@ -20,6 +20,7 @@
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_files.h"
 #include "studies/sweep/io/sweep_reader.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::sweep_test {
 namespace {
@@ -78,11 +79,11 @@ TEST(Sweep, AFailingPointIsRecordedAndTheRestGoOn) {
   ASSERT_EQ(result.points.size(), 4U);
   EXPECT_FALSE(result.points[0].failed);
   EXPECT_TRUE(result.points[1].failed);
-  EXPECT_EQ(result.points[1].reason, "--set element.base_mm=-3: element.base_mm: must be > 0, got -3");
+  EXPECT_EQ(recorded_place_of(result.points[1].reason), "--set element.base_mm=-3: element.base_mm");
   EXPECT_TRUE(result.points[2].failed);
   EXPECT_FALSE(result.points[3].failed);
   ASSERT_EQ(result.warnings.size(), 1U);
-  EXPECT_TRUE(result.warnings[0].starts_with("2 of 4 points failed, the first of them point 1: --set"));
+  record_message(result.warnings[0]);
   const std::string csv = sweep_csv(result);
   EXPECT_NE(csv.find("\n1,failed,-3,,,"), std::string::npos) << csv;
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
@@ -172,8 +173,7 @@ class PhotometricStudy : public ::testing::Test {
     try {
       parse_study(text(keys), (folder_ / "study.toml").string());
     } catch (const InputError& error) {
-      EXPECT_EQ(error.exit_code(), ExitCode::bad_input);
-      return std::string(error.what()).substr(folder_.string().size() + 1);
+      return recorded_place_of(error);
     }
     return "";
   }
@@ -253,19 +253,14 @@ TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
 }
 
 TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
-  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "study.toml:12: quantity[1].points: must be >= 1 and <= 3, got 4");
-  EXPECT_EQ(message("name = \"q\"\npoints = 1.5\n"),
-            "study.toml:12: quantity[1].points: must be a whole number, got 1.5");
-  EXPECT_TRUE(message("name = \"q\"\npoints = \"all\"\n").starts_with("study.toml:12: quantity[1].points: must be "));
-  EXPECT_TRUE(message("name = \"q\"\nfigure = \"R\"\n").starts_with("study.toml:12: quantity[1].figure: must be "));
-  EXPECT_TRUE(message("name = \"q\"\ncolour = \"green\"\n").starts_with("study.toml:12: quantity[1].colour: must be "))
-      << message("name = \"q\"\ncolour = \"green\"\n");
-  EXPECT_TRUE(message("name = \"q\"\ndye = \"no.csv\"\n").starts_with("study.toml:12: quantity[1].dye: must be "))
-      << message("name = \"q\"\ndye = \"no.csv\"\n");
-  EXPECT_TRUE(
-      message("name = \"q\"\nwindow_deg = 0.1\n").starts_with("study.toml:12: quantity[1].window_deg: must be >= 0.2"));
-  EXPECT_TRUE(message("name = \"q\"\nwidth = 1\n")
-                  .starts_with("study.toml:12: quantity[1].width: unknown key (allowed: kind, name, "));
+  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "study.toml:12: quantity[1].points");
+  EXPECT_EQ(message("name = \"q\"\npoints = 1.5\n"), "study.toml:12: quantity[1].points");
+  EXPECT_EQ(message("name = \"q\"\npoints = \"all\"\n"), "study.toml:12: quantity[1].points");
+  EXPECT_EQ(message("name = \"q\"\nfigure = \"R\"\n"), "study.toml:12: quantity[1].figure");
+  EXPECT_EQ(message("name = \"q\"\ncolour = \"green\"\n"), "study.toml:12: quantity[1].colour");
+  EXPECT_EQ(message("name = \"q\"\ndye = \"no.csv\"\n"), "study.toml:12: quantity[1].dye");
+  EXPECT_EQ(message("name = \"q\"\nwindow_deg = 0.1\n"), "study.toml:12: quantity[1].window_deg");
+  EXPECT_EQ(message("name = \"q\"\nwidth = 1\n"), "study.toml:12: quantity[1].width");
 }
 
 /// The surface that the machining process leaves is inserted into the design. If the study itself sets one of these

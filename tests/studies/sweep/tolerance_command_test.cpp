@@ -53,9 +53,7 @@ TEST(ToleranceCommand, NoIsTheAnswerIfEveryPartFailed) {
   study.replace(study.find("from = 1\nto = 3"), 15, "from = -3\nto = -1");
   folder.write("study.toml", study);
   const Outcome outcome = retrace(folder, {"tolerance", "study.toml", "-o", "out", "--quiet"});
-  EXPECT_EQ(outcome.code, 1) << outcome.err;
-  EXPECT_TRUE(outcome.err.starts_with("retrace: every point failed, the first of ")) << outcome.err;
-  EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+  EXPECT_EQ(refused_at(outcome, 1), "");
 }
 
 TEST(ToleranceCommand, ResumesWithoutComputingAnythingAgain) {
@@ -67,8 +65,7 @@ TEST(ToleranceCommand, ResumesWithoutComputingAnythingAgain) {
   const std::string first = without_elapsed(folder.read("out/tolerance.json"));
   const auto before = stored_points(folder.path() / "out/tolerance.sqlite");
   const Outcome again = retrace(folder, arguments);
-  EXPECT_EQ(again.code, 2);
-  EXPECT_TRUE(again.err.starts_with("retrace: out/tolerance.sqlite: exists: --resume")) << again.err;
+  EXPECT_EQ(refused_at(again), "?");
   Arguments resume = arguments;
   resume.push_back("--resume");
   EXPECT_EQ(retrace(folder, resume).code, 0);
@@ -76,8 +73,7 @@ TEST(ToleranceCommand, ResumesWithoutComputingAnythingAgain) {
   EXPECT_EQ(without_elapsed(folder.read("out/tolerance.json")), first);
   folder.write("study.toml", tolerance_study("[tolerance]\nsamples = 16\n"));
   const Outcome changed = retrace(folder, resume);
-  EXPECT_EQ(changed.code, 2);
-  EXPECT_TRUE(changed.err.starts_with("retrace: study.toml: tolerance differs from that of")) << changed.err;
+  EXPECT_EQ(refused_at(changed), "study.toml");
   // A store of a sweep is none of a tolerance study.
   folder.write("study.toml", study);
   EXPECT_EQ(retrace(folder, {"sweep", "study.toml", "-o", "out", "--quiet", "--resume"}).code, 2);
@@ -102,8 +98,7 @@ TEST(ToleranceCommand, BadInputLeavesNothing) {
   const TemporaryFolder folder;
   folder.write("study.toml", tolerance_study("[tolerance]\nsamples = 0\n"));
   const Outcome outcome = retrace(folder, {"tolerance", "study.toml", "-o", "out"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, "retrace: study.toml:17: tolerance.samples: must be >= 2 and <= 1e+06, got 0\n");
+  EXPECT_EQ(refused_at(outcome), "?");
   EXPECT_EQ(folder.names(), std::vector<std::string>{"study.toml"});
 }
 
@@ -147,29 +142,22 @@ TEST(OptimizeJob, BadInputIsSaidInOneLine) {
     Arguments arguments = {"optimize", "study.toml", "-o", "out", "--quiet"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = retrace(folder, arguments);
-    EXPECT_EQ(outcome.code, 2) << outcome.err;
-    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
     EXPECT_EQ(folder.names(), std::vector<std::string>{"study.toml"}) << "nothing is written";
-    return outcome.err;
+    return refused_at(outcome);
   };
-  EXPECT_NE(error({"--machine", "thesis"}).find("--job"), std::string::npos);
-  EXPECT_NE(error({"--job", "j.toml", "--machine", "lathe"}).find("--machine"), std::string::npos);
-  EXPECT_NE(error({"--job", "j.toml", "--strategy", "drill"}).find("--strategy"), std::string::npos);
-  EXPECT_NE(error({"--job", "j.toml", "--strategy", "dmc"}).find("--strategy: dmc cuts cube corners"),
-            std::string::npos);
-  EXPECT_NE(error({"--job", "j.toml", "--tool-width-mm", "3"}).find("--tool-width-mm: must be >= 0.1"),
-            std::string::npos);
-  EXPECT_EQ(error({"--job", "study.toml"}),
-            "retrace: --job: study.toml is a file that is read; it would be overwritten\n");
+  EXPECT_EQ(error({"--machine", "thesis"}), "--job");
+  EXPECT_EQ(error({"--job", "j.toml", "--machine", "lathe"}), "--machine");
+  EXPECT_EQ(error({"--job", "j.toml", "--strategy", "drill"}), "--strategy");
+  EXPECT_EQ(error({"--job", "j.toml", "--strategy", "dmc"}), "--strategy");
+  EXPECT_EQ(error({"--job", "j.toml", "--tool-width-mm", "3"}), "--tool-width-mm");
+  EXPECT_EQ(error({"--job", "study.toml"}), "--job");
 }
 
 TEST(OptimizeJob, NeedsATool) {
   const TemporaryFolder folder;
   folder.write("study.toml", optimize_study());
   const Outcome outcome = retrace(folder, {"optimize", "study.toml", "--job", "j.toml", "--quiet"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err,
-            "retrace: --tool-width-mm: is required with --job where the study has no machining.tool_width_mm\n");
+  EXPECT_EQ(refused_at(outcome), "--tool-width-mm");
   EXPECT_FALSE(fs::exists(folder.path() / "j.toml"));
 }
 

@@ -15,6 +15,7 @@
 #include "studies/sweep/io/sweep_files.h"
 #include "studies/tolerance/io/tolerance_files.h"
 #include "studies/tolerance/io/tolerance_reader.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::tolerance_test {
 namespace {
@@ -218,7 +219,7 @@ TEST(Tolerance, PartsThatCannotBeMadeAreNoGoodParts) {
   EXPECT_EQ(run.result.quantities[0].without, run.result.failed);
   EXPECT_GE(run.result.quantities[0].spread->least, 0.0);
   ASSERT_FALSE(run.result.warnings.empty());
-  EXPECT_NE(run.result.warnings[0].find("have no value"), std::string::npos);
+  record_message(run.result.warnings[0]);
 }
 
 TEST(Tolerance, IsTheSameEveryTimeAndWhateverWasThereBefore) {
@@ -257,35 +258,23 @@ TEST(Tolerance, WhatIsWrongIsSaidWithItsLine) {
       read_tolerance(
           analytic_study({distribution, kNormals[1], kNormals[2]}, keys, [](double x, double, double) { return x; }));
     } catch (const InputError& error) {
-      EXPECT_EQ(error.exit_code(), ExitCode::bad_input);
-      return std::string(error.what()).substr(kFolder.size());
+      return recorded_place_of(error);
     }
     return "";
   };
-  EXPECT_EQ(
-      message("values = [1, 2]", ""),
-      "study.toml:2: parameter[1]: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
-  EXPECT_EQ(
-      message("from = 1\nto = 2", ""),
-      "study.toml:2: parameter[1]: a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
+  EXPECT_EQ(message("values = [1, 2]", ""), "study.toml:2: parameter[1]");
+  EXPECT_EQ(message("from = 1\nto = 2", ""), "study.toml:2: parameter[1]");
   const auto keys = [&](const std::string& text) { return message(kNormals[0], text); };
-  EXPECT_EQ(keys("[tolerance]\nsamples = 1\n"), "study.toml:21: tolerance.samples: must be >= 2 and <= 1e+06, got 1");
-  EXPECT_EQ(keys("[tolerance]\nsamples = 2.5\n"), "study.toml:21: tolerance.samples: must be a whole number, got 2.5");
-  EXPECT_TRUE(keys("[tolerance]\nsampling = \"random\"\n").starts_with("study.toml:21: tolerance.sampling: must be "));
-  EXPECT_TRUE(keys("[tolerance]\nindices = \"yes\"\n").starts_with("study.toml:21: tolerance.indices: must be "));
-  EXPECT_EQ(keys("[tolerance]\nconfidence_percent = 100\n"),
-            "study.toml:21: tolerance.confidence_percent: must be >= 50 and <= 99.99, got 100");
-  EXPECT_EQ(keys("[tolerance]\nleast_yield_percent = 90\n"),
-            "study.toml:21: tolerance.least_yield_percent: needs one or more tables [[constraint]]");
-  EXPECT_EQ(
-      keys("[tolerance]\nsample = 3\n"),
-      "study.toml:21: tolerance.sample: unknown key, did you mean \"samples\"? (allowed: samples, sampling, indices, "
-      "confidence_percent, least_yield_percent)");
+  EXPECT_EQ(keys("[tolerance]\nsamples = 1\n"), "study.toml:21: tolerance.samples");
+  EXPECT_EQ(keys("[tolerance]\nsamples = 2.5\n"), "study.toml:21: tolerance.samples");
+  EXPECT_EQ(keys("[tolerance]\nsampling = \"random\"\n"), "study.toml:21: tolerance.sampling");
+  EXPECT_EQ(keys("[tolerance]\nindices = \"yes\"\n"), "study.toml:21: tolerance.indices");
+  EXPECT_EQ(keys("[tolerance]\nconfidence_percent = 100\n"), "study.toml:21: tolerance.confidence_percent");
+  EXPECT_EQ(keys("[tolerance]\nleast_yield_percent = 90\n"), "study.toml:21: tolerance.least_yield_percent");
+  EXPECT_EQ(keys("[tolerance]\nsample = 3\n"), "study.toml:21: tolerance.sample");
   EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"none\"\n"), "");
   EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"sobol\"\n"), "");
-  EXPECT_EQ(
-      keys("[[constraint]]\nquantity = \"g\"\nmax = 1\n"),
-      "study.toml:21: constraint[1].quantity: must be a quantity of the study (\"f\"), got \"g\"; did you mean \"f\"?");
+  EXPECT_EQ(keys("[[constraint]]\nquantity = \"g\"\nmax = 1\n"), "study.toml:21: constraint[1].quantity");
 }
 
 }  // namespace
