@@ -29,18 +29,18 @@ constexpr Table kTables[] = {
     {.name = "part", .meaning = "A part.", .rows = kPartRows, .rules = kPartRules, .presence = Presence::list}};
 constexpr Format kThing = {"thing", "retrace.thing/1", "Thing", {"", "A thing.", {}, kTables}, true};
 
-std::vector<std::string> warnings(const std::string& text, const std::vector<std::string>& overrides = {}) {
+Warnings warnings(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const Document document = read_document(kThing, text, "f.toml", kMostTextBytes, overrides);
   return superseded_keys(document);
 }
 
 TEST(Precedence, WarningsNameBothKeys) {
-  using Lines = std::vector<std::string>;
-  EXPECT_EQ(warnings("[[part]]\ndye = 'x'\n"), Lines{});
-  const Lines of_dye = warnings("[[part]]\n[[part]]\ndye = 'x'\ncolour = 'any'\n");
+  EXPECT_EQ(warnings("[[part]]\ndye = 'x'\n"), Warnings{});
+  const Warnings of_dye = warnings("[[part]]\n[[part]]\ndye = 'x'\ncolour = 'any'\n");
   ASSERT_EQ(of_dye.size(), 1U);
-  EXPECT_EQ(recorded_place_of(of_dye[0]), "f.toml:3: part[2].dye");
-  EXPECT_EQ(warnings("[[part]]\nsize_mm = 2\nlength_mm = 3\n"), Lines{}) << "a file may give both keys of a refinement";
+  EXPECT_EQ(facts_of(of_dye[0]), "superseded_key at f.toml:3: part[2].dye");
+  EXPECT_EQ(warnings("[[part]]\nsize_mm = 2\nlength_mm = 3\n"), Warnings{})
+      << "a file may give both keys of a refinement";
 }
 
 TEST(Precedence, IsSaidWithItsKeys) {

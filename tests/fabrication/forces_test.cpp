@@ -75,11 +75,7 @@ TEST(Forces, ProfileOverTheEventsOfTheThesis) {
 
 TEST(Forces, WarnsWhereTheLinearLawIsNotShown) {
   const ForceModel model = calibrate(table());
-  const auto warnings_at = [&](double depth) {
-    const std::vector<std::string> warnings = force_warnings(model, experiment_1(depth));
-    for (const std::string& warning : warnings) record_message(warning);
-    return warnings.size();
-  };
+  const auto warnings_at = [&](double depth) { return facts_of(force_warnings(model, experiment_1(depth))).size(); };
   EXPECT_EQ(warnings_at(4.9), 2U);
   EXPECT_EQ(warnings_at(5.0), 1U);
   EXPECT_EQ(warnings_at(15.0), 2U);

@@ -397,7 +397,7 @@ TEST(Library, APageReadsNamedFilesOnly) {
                                file + R"("}, "body": {"refractive_index": 1.5}}]})";
   const ReportPage without = report_page({{"rre.json", document}});
   ASSERT_EQ(without.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(without.warnings[0]), "part.mesh");
+  EXPECT_EQ(without.warnings[0].id, "result_outside_folder");
   for (const std::string& readable : {file, folder.path().string()})
     EXPECT_TRUE(report_page({{"rre.json", document}}, {}, {readable}).warnings.empty()) << readable;
   EXPECT_THROW(report_page({{"rre.json", document}}, {}, {file + "x"}), InputError);

@@ -171,7 +171,8 @@ TEST(IndexRecord, BlemishesOfTheExtinctionAreWarnedOf) {
       const Material material = with_k(rows);
       EXPECT_EQ(index_at(material, 0.5), 1.5);
       ASSERT_GE(material.warnings.size(), 1U);
-      EXPECT_EQ(recorded_place_of(material.warnings.front()), "glass.yml:" + std::to_string(7 + at) + ": data");
+      EXPECT_EQ(facts_of(material.warnings.front()),
+                "absorption_sample_ignored at glass.yml:" + std::to_string(7 + at) + ": data");
       for (const double wavelength_nm : {500.0, 600.0, 700.0})
         EXPECT_EQ(absorption_per_mm(material, wavelength_nm), absorption_per_mm(right, wavelength_nm));
     }
@@ -194,16 +195,16 @@ TEST(IndexRecord, NoiseBelowZeroCountsAsZero) {
   EXPECT_EQ(absorption_per_mm(material, 500.0), 0.0);
   EXPECT_NEAR(absorption_per_mm(material, 400.0), 4.0 * std::numbers::pi * 1e-8 / 400e-6, 1e-15);
   ASSERT_EQ(material.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(material.warnings.front()), "glass.yml:8: data");
+  EXPECT_EQ(facts_of(material.warnings.front()), "absorption_sample_ignored at glass.yml:8: data");
   const Material two = with_k({"0.40 -1e-9", "0.50 -8e-10", "0.70 1e-8"});
   ASSERT_EQ(two.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(two.warnings.front()), "glass.yml:7: data");
+  EXPECT_EQ(facts_of(two.warnings.front()), "absorption_sample_ignored at glass.yml:7: data");
 }
 
 TEST(IndexRecord, ContradictoryRowsOfTheExtinctionAreLeftOut) {
   const Material material = with_k({"0.40 1e-8", "0.50 2e-8", "0.50 7e-8", "0.70 1e-8"});
   ASSERT_EQ(material.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(material.warnings.front()), "glass.yml:8: data");
+  EXPECT_EQ(facts_of(material.warnings.front()), "absorption_sample_ignored at glass.yml:8: data");
   EXPECT_EQ(absorption_per_mm(material, 500.0), absorption_per_mm(with_k({"0.40 1e-8", "0.70 1e-8"}), 500.0));
 }
 
@@ -221,7 +222,7 @@ TEST(IndexRecord, ExtinctionNeverRefusesTheIndex) {
   const std::string k = "  - type: tabulated k\n    data: 0.5 1e-8\n";
   const Material twice = parse_index_record(kHead + k + k, "glass.yml");
   ASSERT_EQ(twice.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(twice.warnings.front()), "glass.yml:7: type");
+  EXPECT_EQ(facts_of(twice.warnings.front()), "absorption_table_ignored at glass.yml:7: type");
   const Material nothing = with_k({"0.5 -999"});
   EXPECT_EQ(nothing.warnings.size(), 2U) << "one for the sample, one that no absorption is left";
 }
@@ -233,7 +234,7 @@ TEST(IndexRecord, StatedNdIsChecked) {
     };
     EXPECT_TRUE(warnings("1.5009").empty());
     ASSERT_EQ(warnings("1.5168").size(), 1U);
-    EXPECT_EQ(recorded_place_of(warnings("1.5168").front()), "glass.yml:6: nd");
+    EXPECT_EQ(facts_of(warnings("1.5168").front()), "index_disagrees at glass.yml:6: nd");
   }
 }
 

@@ -163,7 +163,7 @@ TEST(Coating, SpectraOfThinAndThickLayers) {
         materials::fresnel_layers(optics.entrance_layers, materials::StackSide::outside, 1.0, optics.index, 1.0).r_s);
   };
   const OpticalModel thin = make_light_model(read(kCoated, {"light.spectrum=D65"}), library());
-  EXPECT_TRUE(thin.warnings.empty()) << thin.warnings.front();
+  EXPECT_TRUE(thin.warnings.empty()) << thin.warnings.front().text;
   double mean = 0.0;
   for (const SpectralOptics& at : thin.spectral) mean += at.weight * reflectance(at.optics);
   const materials::CieTable cie = materials::shipped_cie_table();
@@ -177,7 +177,7 @@ TEST(Coating, SpectraOfThinAndThickLayers) {
   const OpticalModel thick = make_light_model(
       read("entrance = [{ refractive_index = 1.55, thickness_nm = 5000 }]", {"light.spectrum=D65"}), library());
   ASSERT_EQ(thick.warnings.size(), 1U);
-  record_message(thick.warnings[0]);
+  EXPECT_EQ(facts_of(thick.warnings[0]), "unresolved_fringes at d.toml");
 }
 
 TEST(Coating, ExtrapolatedLayersAreTold) {
@@ -186,7 +186,7 @@ TEST(Coating, ExtrapolatedLayersAreTold) {
            {"light.wavelength_nm=200", "body.refractive_index=1.5"}),
       library());
   ASSERT_EQ(model.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(model.warnings[0]), "d.toml");
+  EXPECT_EQ(facts_of(model.warnings[0]), "index_extrapolated at d.toml");
 }
 
 TEST(Coating, InspectionTellsTheStack) {

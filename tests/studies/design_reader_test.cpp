@@ -305,31 +305,24 @@ TEST(DesignReader, KeysAreUnset) {
   EXPECT_EQ(set_complaint({"body.refractve_index="}), "?");
 }
 
-using Warnings = std::vector<std::string>;
-
-/// Records warnings and returns their places.
-Warnings places_of(const Warnings& warnings) {
-  Warnings places;
-  for (const std::string& warning : warnings) places.push_back(recorded_place_of(warning));
-  return places;
-}
+using Facts = std::vector<std::string>;
 
 // If a key has no effect because another key takes precedence, a warning reports both keys.
 TEST(DesignReader, KeysWithoutEffectAreTold) {
   const std::string index = joined(kLines) + "refractive_index = 1.6\n";  // line 11
   const auto warnings = [](const std::string& text, const std::vector<std::string>& overrides) {
-    return places_of(parse_design(text, "d.toml", overrides).warnings());
+    return facts_of(parse_design(text, "d.toml", overrides).warnings());
   };
-  EXPECT_EQ(warnings(index, {}), Warnings{});
-  EXPECT_EQ(warnings(index, {"body.material=PC"}), Warnings{"--set body.material=PC: body.material"});
-  EXPECT_EQ(warnings(index + "material = \"PC\"\n", {}), Warnings{"d.toml:12: body.material"});
-  EXPECT_EQ(warnings(index, {"body.refractive_index=", "body.material=PC"}), Warnings{});
-  EXPECT_EQ(warnings(index, {"body.material=PMMA"}), Warnings{}) << "an override by the default";
+  EXPECT_EQ(warnings(index, {}), Facts{});
+  EXPECT_EQ(warnings(index, {"body.material=PC"}), Facts{"superseded_key at --set body.material=PC: body.material"});
+  EXPECT_EQ(warnings(index + "material = \"PC\"\n", {}), Facts{"superseded_key at d.toml:12: body.material"});
+  EXPECT_EQ(warnings(index, {"body.refractive_index=", "body.material=PC"}), Facts{});
+  EXPECT_EQ(warnings(index, {"body.material=PMMA"}), Facts{}) << "an override by the default";
   // If an override sets the key that takes precedence, the user intends this effect, and no warning is given. A file
   // may give both an absorption and a material without a warning.
   const std::string plastic = joined(kLines) + "material = \"PC\"\n";
-  EXPECT_EQ(warnings(plastic, {"body.refractive_index=1.6"}), Warnings{});
-  EXPECT_EQ(warnings(plastic + "absorption_per_mm = 0.1\n", {}), Warnings{});
+  EXPECT_EQ(warnings(plastic, {"body.refractive_index=1.6"}), Facts{});
+  EXPECT_EQ(warnings(plastic + "absorption_per_mm = 0.1\n", {}), Facts{});
   EXPECT_EQ(warnings(joined(kLines) + "absorption_per_mm = 0.1\n", {"body.material=PC"}).size(), 1U);
   EXPECT_EQ(warnings(joined(kLines), {"idealisation.facets=mirror", "body.facet_coating=aluminium"}).size(), 1U);
 }
@@ -338,15 +331,16 @@ TEST(DesignReader, KeysWithoutEffectAreTold) {
 TEST(DesignReader, LengthsWithoutHeightsCauseAWarning) {
   const std::string text = joined(kLines);
   const auto warnings = [&](const std::string& more) {
-    return places_of(parse_design(text + more, "d.toml").warnings());
+    return facts_of(parse_design(text + more, "d.toml").warnings());
   };
-  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 5\n"), Warnings{"d.toml:12: surface.correlation_length_um"});
+  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 5\n"),
+            Facts{"key_without_effect at d.toml:12: surface.correlation_length_um"});
   EXPECT_EQ(warnings("[surface]\ncorrelation_length_down_um = 5\n").size(), 1U);
   EXPECT_EQ(warnings("[surface]\nwaviness_length_um = 5\n").size(), 1U);
   EXPECT_EQ(warnings("[entrance]\ncorrelation_length_um = 5\n").size(), 1U);
-  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 0\n"), Warnings{}) << "the default";
-  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 5\nroughness_sq_nm = 3\n"), Warnings{});
-  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 5\nroughness_sq_nm = 0\n"), Warnings{})
+  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 0\n"), Facts{}) << "the default";
+  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 5\nroughness_sq_nm = 3\n"), Facts{});
+  EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 5\nroughness_sq_nm = 0\n"), Facts{})
       << "a study may vary the height from 0 on";
 }
 

@@ -47,7 +47,8 @@ TEST(GlassOfDesign, IsTheShippedGlassOfThatName) {
   }
   // n_d of the record NM.
   EXPECT_NEAR(inspected(with_glass("BASF5")).refractive_index, 1.603233, 2e-6);
-  EXPECT_EQ(recorded_place_of(inspected(with_glass("BASF5", {"light.wavelength_nm=300"})).warnings.at(0)), "d.toml");
+  EXPECT_EQ(facts_of(inspected(with_glass("BASF5", {"light.wavelength_nm=300"})).warnings.at(0)),
+            "index_extrapolated at d.toml");
 }
 
 TEST(GlassOfDesign, IsTraced) {
@@ -101,7 +102,7 @@ TEST(GlassOfDesign, DoubtsAreWarnings) {
     const Inspection noisy = read("noisy.yml", record, more);
     EXPECT_NEAR(noisy.refractive_index, 1.5168, 1e-5);
     ASSERT_EQ(noisy.warnings.size(), 1U);
-    EXPECT_EQ(recorded_place_of(noisy.warnings.front()), "TMP/noisy.yml:8: data");
+    EXPECT_EQ(facts_of(noisy.warnings.front()), "absorption_sample_ignored at TMP/noisy.yml:8: data");
   }
   const Inspection joined = read("joined.agf",
                                  "NM TESTK7 2 517642 1.516800 64.17 0 1\nCD 1.03961212E+00 6.00069867E-03 "
@@ -111,7 +112,7 @@ TEST(GlassOfDesign, DoubtsAreWarnings) {
   EXPECT_TRUE(joined.warnings.empty());
   const Inspection swapped = read("swapped.agf", "NM x 5 0 1.6 60\nCD 1.5\nLD 0.3 2.5\n", {"body.material=x"});
   ASSERT_EQ(swapped.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(swapped.warnings.front()), "TMP/swapped.agf:1: NM");
+  EXPECT_EQ(facts_of(swapped.warnings.front()), "index_disagrees at TMP/swapped.agf:1: NM");
   fs::remove_all(folder);
 }
 

@@ -34,7 +34,7 @@ RreResult some_result() {
   result.seed = 4294967295;
   result.rays = std::uint64_t{1} << 60;
   result.elapsed_s = 1.5;
-  result.warnings = {"b.toml: a \"warning\""};
+  result.warnings = {{"some_id", "b.toml: a \"warning\""}};
   for (std::size_t d = 0; d < 2; ++d) {
     RrePoint point{d,        -10.0, 0.1 + 0.2, 587.56, 0.5, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(),
                    "embree", {},    {}};
@@ -53,7 +53,7 @@ TEST(RreFiles, JsonHoldsTheResultExactly) {
   EXPECT_EQ(json["seed"], 4294967295U);
   EXPECT_EQ(json["rays"], std::uint64_t{1} << 60);
   EXPECT_EQ(json["version"], kVersion);
-  EXPECT_EQ(json["warnings"], Json(result.warnings));
+  EXPECT_EQ(json["warnings"], Json(texts_of(result.warnings)));
   EXPECT_EQ(json["complete"], true);
   EXPECT_EQ(json["designs"][1]["source"], "b.toml");
   EXPECT_EQ(json["designs"][1]["title"], result.designs[1].title);

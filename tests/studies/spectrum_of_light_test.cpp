@@ -333,7 +333,7 @@ TEST(SpectrumOfLight, ExtrapolatedIndicesAreTold) {
       RreStudy({design({"light.spectrum=[[405, 1], [410, 1], [500, 2]]", "light.weighting=radiant"})}, exactly(0.0))
           .run();
   ASSERT_EQ(lines.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(lines.warnings[0]), "d.toml");
+  EXPECT_EQ(facts_of(lines.warnings[0]), "index_extrapolated at d.toml");
 }
 
 // A warning is given if the data of aluminium are extrapolated. The data of the material of the body are not used,
@@ -343,7 +343,7 @@ TEST(SpectrumOfLight, ExtrapolatedMetalsAreTold) {
                                           "light.wavelength_nm=50"};
   const RreResult result = RreStudy({design(metal)}, exactly(0.0)).run();
   ASSERT_EQ(result.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(result.warnings[0]), "d.toml");
+  EXPECT_EQ(facts_of(result.warnings[0]), "index_extrapolated at d.toml");
 }
 
 TEST(SpectrumOfLight, JsonHoldsWavelengthsAndWhatEachBringsBack) {
@@ -388,7 +388,7 @@ TEST(InspectSpectrum, WarnsWherePartOfTheLightIsNotTotallyReflected) {
       inspect(design({"light.spectrum=A", "body.back_index=" + shortest(index / std::sqrt(2.0))}), library);
   EXPECT_FALSE(lit.tir_limit_deg);
   ASSERT_EQ(lit.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(lit.warnings[0]), "d.toml");
+  EXPECT_EQ(facts_of(lit.warnings[0]), "no_total_reflection at d.toml");
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ TEST(Temperature, BeyondTheDataIsAWarning) {
   EXPECT_TRUE(inspected({"body.material=N-BK7", "body.temperature_c=140"}).warnings.empty());
   const Inspection hot = inspected({"body.material=N-BK7", "body.temperature_c=150"});
   ASSERT_EQ(hot.warnings.size(), 1U);
-  EXPECT_EQ(recorded_place_of(hot.warnings[0]), "d.toml");
+  EXPECT_EQ(facts_of(hot.warnings[0]), "thermo_optic_extrapolated at d.toml");
 }
 
 TEST(Temperature, BadInputIsRefused) {

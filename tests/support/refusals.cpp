@@ -91,6 +91,17 @@ void record_message(std::string_view message) {
   recorded_place_of(message);
 }
 
+std::string facts_of(const Warning& warning) {
+  const std::string place = recorded_place_of(warning.text);
+  return std::string(warning.id) + (place.empty() ? "" : " at " + place);
+}
+
+std::vector<std::string> facts_of(const Warnings& warnings) {
+  std::vector<std::string> facts;
+  for (const Warning& warning : warnings) facts.push_back(facts_of(warning));
+  return facts;
+}
+
 std::string place_of(const Error& error) {
   const auto* refused = dynamic_cast<const InputError*>(&error);
   EXPECT_EQ(error.exit_code(), refused == nullptr ? ExitCode::failed : ExitCode::bad_input) << error.what();

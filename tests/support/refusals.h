@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/warning.h"
 
 // Tests assert where an input is refused, not the wording. Each wording is a line of tests/messages.txt.
 
@@ -28,6 +29,10 @@ std::string place_of(const Error& error);
 
 /// Records the message of an error and returns place_of(error).
 std::string recorded_place_of(const Error& error);
+
+/// Records the text of a warning and returns `id at file:line: key`, without the parts of the place that are unknown.
+std::string facts_of(const Warning& warning);
+std::vector<std::string> facts_of(const Warnings& warnings);
 
 /// Returns place_of() the error that `read` throws. For tests of random inputs, whose messages are not recorded.
 /// \param taken the answer if it throws none

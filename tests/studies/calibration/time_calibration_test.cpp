@@ -216,7 +216,7 @@ TEST(TimeCalibration, NamesTheRowThatContradictsTheOthers) {
   const TimeCalibration found = timed().calibrate(table);
   ASSERT_FALSE(found.warnings.empty());
   EXPECT_TRUE(std::any_of(found.warnings.begin(), found.warnings.end(),
-                          [](const std::string& warning) { return warning.starts_with("line 10: "); }));
+                          [](const Warning& warning) { return warning.text.starts_with("line 10: "); }));
   EXPECT_GT(found.scatter, 10.0);
 }
 
@@ -225,7 +225,8 @@ TEST(TimeCalibration, NamesATimeThatNoMachineTakes) {
     const TimeCalibration found =
         timed().calibrate(std::string("program,seconds,uncertainty\ntimes-ways.ngc,") + seconds + ",1\n");
     ASSERT_EQ(found.warnings.size(), 1U) << seconds;
-    EXPECT_TRUE(found.warnings[0].starts_with("line 2: "));
+    EXPECT_EQ(found.warnings[0].id, "outlier");
+    EXPECT_TRUE(found.warnings[0].text.starts_with("line 2: "));
     EXPECT_NO_THROW(parse_machine(machine_text(found.machine), "machine.toml")) << "it can be read all the same";
   }
 }

@@ -83,7 +83,7 @@ TEST(Sweep, AFailingPointIsRecordedAndTheRestGoOn) {
   EXPECT_TRUE(result.points[2].failed);
   EXPECT_FALSE(result.points[3].failed);
   ASSERT_EQ(result.warnings.size(), 1U);
-  record_message(result.warnings[0]);
+  EXPECT_EQ(facts_of(result.warnings[0]), "points_failed");
   const std::string csv = sweep_csv(result);
   EXPECT_NE(csv.find("\n1,failed,-3,,,"), std::string::npos) << csv;
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
