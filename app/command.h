@@ -58,7 +58,8 @@ std::string text_of(const Need& need);
 struct Traits {
   /// Function that returns possible values for shell completion. A word that ends with "=" is continued by the user.
   std::function<Words()> words = {};
-  /// Extension of allowed files. "": any file; "/": folders; none: the value is not a file.
+  /// Extension of allowed files. "" allows any file, and "/" allows folders. If there is no extension, the argument is
+  /// not a file.
   std::optional<std::string> files = {};
   std::uint64_t least = 0;                      ///< minimum of a whole number
   std::uint64_t most = std::uint64_t{1} << 36;  ///< maximum of a whole number
@@ -68,7 +69,7 @@ struct Traits {
 };
 
 /// Returns the traits of an argument that is one of a set of words.
-/// \param files extension of files that are allowed as well; none: files are not allowed
+/// \param files extension of files that are allowed as well; no value: files are not allowed
 Traits one_of(std::function<Words()> words, std::optional<std::string> files = {});
 Traits one_of(Words words, std::optional<std::string> files = {});
 /// Returns the traits of an argument that is a file.
@@ -123,7 +124,8 @@ struct Command {
 };
 
 /// Returns the function Command::begin of a command that has its own options.
-/// \param arguments function that returns the arguments, which store their values in its parameter
+/// \param arguments function that returns the arguments. The parser stores their values in the parameter of this
+/// function.
 /// \param run function that runs the command and returns the exit code or throws retrace::Error
 template <class Options>
 std::function<Invocation()> begins(std::vector<Argument> (*arguments)(Options&),

@@ -103,7 +103,7 @@ void add(CLI::App& app, const std::vector<Argument>& arguments) {
 /// Values of the options after the command line has been parsed.
 class GivenOptions {
  public:
-  /// \param command parser of the command; options of all commands belong to its parent
+  /// \param command parser of the command; the options that all commands have belong to its parent parser
   /// \param arguments arguments of the command, without the options of all commands
   GivenOptions(const CLI::App& command, const std::vector<Argument>& arguments)
       : command_(command), arguments_(arguments) {}
@@ -186,7 +186,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
          ": there are " + in_words(commands());
 }
 
-/// Returns an error message of CLI11 as one line, in which long words are cut.
+/// Returns an error message of CLI11 as one line, in which long words are shortened.
 std::string one_line(const std::string& text) {
   std::string line;
   for (const std::string_view word : words_in(text)) line += (line.empty() ? "" : " ") + printable(word);

@@ -20,7 +20,8 @@ struct MakingOptions {
 };
 
 /// Returns the arguments that set MakingOptions.
-/// \param needs option that each of them requires, such as "--job"; empty: none, and --tool-width-mm is required
+/// \param needs option that each of the arguments requires, such as "--job". If it is empty, the arguments require no
+/// other option, and --tool-width-mm must be given.
 std::vector<Argument> making_arguments(MakingOptions& options, const std::string& needs);
 
 /// Returns the request for a fabrication job that the options describe.

@@ -45,7 +45,8 @@ class ResultFiles {
   using Content = std::function<std::string()>;
 
   /// \param inputs every file that the command reads
-  /// \param document name of the file in the output folder with the same content as --json; empty: none
+  /// \param document name of the file in the output folder with the same content as --json; empty: there is no such
+  /// file
   ResultFiles(CommonOptions options, std::vector<std::string> inputs, const std::string& document = {});
 
   /// Adds a file in the output folder.

@@ -46,7 +46,7 @@ class ProgressBar : public Progress {
 
   /// Sets a function that is called after the notice about a long run. The function must not use the bar, because the
   /// mutex of the bar is locked during the call.
-  /// \param action function with the estimated remaining time in seconds as its parameter; empty: none
+  /// \param action function with the estimated remaining time in seconds as its parameter; empty: no function is called
   void after_notice(std::function<void(double)> action);
   /// Writes lines to standard error. Removes the bar first; the next update draws it again. Control characters are
   /// printed as escapes.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Arguments that several commands share: design, job and part files, engine, dye, and the options of studies for an
-// existing store.
+// Arguments that several commands share: design, job and part files, engine, dye, and the options for a store that
+// exists already.
 
 #include <optional>
 #include <span>

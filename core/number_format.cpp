@@ -62,7 +62,7 @@ std::string shortest_of(double magnitude) {
   return plain.size() > text.size() ? text : plain;
 }
 
-/// Returns the decimal text without the zeros at its end that say nothing.
+/// Returns the decimal text without the zeros at the end of its fractional part.
 std::string without_trailing_zeros(std::string text) {
   if (text.find('.') == std::string::npos) return text;
   text.erase(text.find_last_not_of('0') + 1);

@@ -61,7 +61,7 @@ class TomlTable {
   /// Returns a list of one or more texts.
   std::optional<std::vector<std::string>> texts(std::string_view key);
   /// Returns the index of the value in `words`.
-  /// \param or_else text in messages for other allowed values
+  /// \param or_else text for messages that describes further allowed values
   std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words,
                                     std::string_view or_else = {});
   std::size_t required_choice(std::string_view key, std::span<const std::string_view> words);
@@ -90,7 +90,7 @@ class TomlTable {
   std::vector<std::string> names() const;
   /// Returns the names of all keys and tables, sorted by name.
   std::vector<std::string> sorted_names() const;
-  /// Position of a value in the input. Positions are ordered as the values were written.
+  /// Position of a value in the input. Positions compare in the order in which the values were written.
   struct Position {
     std::size_t source = 0;  ///< 0: the file; otherwise the number of the override, from 1
     std::size_t line = 0;

@@ -52,7 +52,7 @@ studies::CameraRequest to_study(const CameraRequest& request) {
   of_study.columns = request.columns;
   of_study.rows = request.rows;
   of_study.field_mm = request.field_mm;
-  // The default size of the sheet is not passed on, because a given size is an error for finite parts.
+  // The default size of the sheet is not passed to the study, because an explicit size is an error for finite parts.
   if (request.film_mm != studies::kUsualFilmMm) of_study.film_mm = request.film_mm;
   of_study.cylinder_mm = request.cylinder_mm;
   of_study.noise = request.noise;

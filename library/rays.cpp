@@ -33,7 +33,7 @@ studies::EmitterRequest emitter_of(const RaysRequest& request) {
           request.power};
 }
 
-/// Copies the members that results of ray files and results in memory have in common.
+/// Fills the members that the results of rays() and trace() have in common.
 template <class Result>
 void tell(const studies::RayResult& found, Result& result) {
   const double whole = found.ledger.incident > 0.0 ? found.ledger.incident : 1.0;

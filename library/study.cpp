@@ -38,7 +38,7 @@ studies::IfExists if_exists_of(const StudyRequest& request) {
   throw InputError({"", 0, "if_exists"}, "must be refuse, resume or overwrite, got " + in_quotes(request.if_exists));
 }
 
-/// Reports the progress of a sweep to a Progress. Values that decrease are not reported.
+/// Reports the progress of a sweep to a Progress object. Values that decrease are not reported.
 class Share : public studies::SweepObserver {
  public:
   explicit Share(Progress* progress) : progress_(progress) {}
@@ -56,7 +56,7 @@ class Share : public studies::SweepObserver {
   double reported_ = 0.0;
 };
 
-/// Holds a sweep, to which its results refer.
+/// Owns a sweep. The results of the sweep refer to it.
 struct Swept {
   explicit Swept(studies::Sweep of) : sweep(std::move(of)) {}
   studies::Sweep sweep;

@@ -64,8 +64,8 @@ std::vector<std::string> characters(std::string_view text) {
   return result;
 }
 
-/// Removes the ids of surfaces, which nothing refers to. Cairo counts surfaces over the life of the process, so that
-/// equal plots would otherwise be different files.
+/// Removes the ids of surfaces, to which nothing in the SVG refers. Cairo numbers the surfaces of the whole process, so
+/// equal plots would otherwise give different files.
 std::string without_surface_ids(std::string svg) {
   constexpr std::string_view start = " id=\"surface";
   for (std::size_t at = svg.find(start); at != std::string::npos; at = svg.find(start, at)) {
@@ -76,8 +76,8 @@ std::string without_surface_ids(std::string svg) {
   return svg;
 }
 
-/// Renumbers the ids of images, and the references to them, from 1. Cairo counts images over the life of the process,
-/// so that equal plots would otherwise be different files.
+/// Renumbers the ids of images, and the references to them, from 1. Cairo numbers the images of the whole process, so
+/// equal plots would otherwise give different files.
 std::string with_own_image_ids(std::string svg) {
   std::vector<std::string> known;
   for (const std::string_view mark : {" id=\"image", "\"#image"})

@@ -45,7 +45,7 @@ std::vector<std::string> inputs_of(const CalibrateOptions& options, const studie
   return inputs;
 }
 
-/// Writes NC programs that are to be timed on the machine, and a table for their times.
+/// Writes NC programs that are to be timed on the machine, and a table in which the user enters the measured times.
 ExitCode write_time_programs(const CalibrateOptions& options, const CommonOptions& common,
                              const fabrication::Machine& machine) {
   if (common.out.empty())

@@ -33,7 +33,8 @@ std::vector<Argument> arguments(ReportOptions& options) {
 
 constexpr const char* kPageName = "report.html";
 
-/// Returns the output file. It is the file of --out, or report.html in the folder of --out or in the result folder.
+/// Returns the output file: the file that --out names, or report.html in the folder that --out names. Without --out, it
+/// is report.html in the result folder.
 fs::path page_file(const ReportOptions& options, const CommonOptions& common) {
   if (common.out.empty()) return fs::path(options.folder) / kPageName;
   const fs::path out = common.out;

@@ -55,7 +55,7 @@ class Document {
   std::optional<double> number_if(std::string_view path) const;
   /// Returns the value if it is a text, and an empty text otherwise.
   std::string text_if(std::string_view path) const;
-  /// Returns the index of the word in the list of words of its key.
+  /// Returns the value of a key as an index into the list of words that the key allows.
   std::size_t index(std::string_view path) const;
   template <class Enum>
   Enum choice(std::string_view path) const {
@@ -70,7 +70,7 @@ class Document {
   std::filesystem::path file(std::string_view path) const;
   /// Returns the paths of all keys that name a file, sorted.
   std::vector<std::string> keys_of_files() const;
-  /// Returns the files that these keys name, in the same order.
+  /// Returns the files that the keys of keys_of_files() name, in the same order.
   std::vector<std::filesystem::path> files() const;
 
   /// Returns the name of the file in messages.

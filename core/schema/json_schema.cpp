@@ -150,7 +150,7 @@ bool holds_by_default(const Condition& condition, const Table& table, std::strin
                                     : std::ranges::any_of(table.rows, is_other);
 }
 
-/// Returns the schema that the value of a condition's key must match.
+/// Returns the schema that the value of a condition's key must match for the condition to hold.
 Json met_value(const Condition& condition) {
   using Is = Condition::Is;
   if (condition.is == Is::given) return Json::object();

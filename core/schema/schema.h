@@ -16,7 +16,7 @@
 
 namespace retrace::schema {
 
-/// Table of numbers or words, whose names are chosen freely by the file.
+/// Table of named numbers or words. The author of the file chooses the names.
 using Named = std::map<std::string, std::variant<double, std::string>>;
 
 /// Value of a key. Words are stored as std::string and whole numbers as double. std::monostate: the key is not given.
@@ -127,7 +127,7 @@ inline constexpr Required kRequired;
 inline constexpr None kNone;
 
 /// Condition on another key, under which a key is allowed. The other key is searched in the same table first, and then
-/// in the tables that contain this table. It may also be a key of a table there, such as "element.kind".
+/// in the tables that contain this table. It may also be in an inner table, such as "element.kind".
 struct Condition {
   enum class Is { one_of, none_of, given, absent };
   std::string_view key;  ///< path of the other key

@@ -48,23 +48,23 @@ struct CameraRequest {
   double backlight_lx = 0.0;            ///< uniform light from behind and around the part
   std::size_t columns = 400;            ///< width of the picture in pixels
   std::size_t rows = 300;               ///< height of the picture in pixels
-  std::optional<double> field_mm = {};  ///< width at the part that the picture shows
+  std::optional<double> field_mm = {};  ///< width of the picture, measured at the part; empty: the part and a margin
   std::array<double, 2> film_mm = {100.0, 100.0};  ///< width and height of the sheet that shows an infinite design
   std::optional<double> cylinder_mm = {};    ///< radius of the cylinder around which the sheet is bent; < 0: inside it
   double noise = 0.02;                       ///< intended relative noise of pixels
   std::optional<std::uint32_t> passes = {};  ///< number of passes, instead of `noise`
   std::filesystem::path lamp = {};           ///< photometric file of the lamp (.ies, .ldt), instead of illuminance_lx
-  double lamp_aim_deg = 0.0;                 ///< downward tilt of the axis of a lamp from a file
+  double lamp_aim_deg = 0.0;                 ///< downward tilt of the axis of the lamp in `lamp`, in degrees
   std::uint32_t seed = 1;
 };
 
-/// Settings for the view from a car at night of two reflectors on a car ahead, as in `retrace image --road`.
+/// Settings for a driver's view of two reflectors on a car ahead at night, as in `retrace image --road`.
 struct RoadRequest {
   std::vector<double> distance_m = {10.0, 30.0, 100.0};  ///< distances of the car ahead
   double lamp_cd = 10'000.0;                             ///< luminous intensity of each headlamp towards the reflectors
   std::filesystem::path lamp = {};  ///< photometric file of each headlamp (.ies, .ldt), instead of lamp_cd
   double lamp_height_m = 0.65;      ///< height of the centers of the headlamps above the road
-  double lamp_aim_deg = 0.0;        ///< downward tilt of the axes of headlamps from a file
+  double lamp_aim_deg = 0.0;        ///< downward tilt of the axes of the headlamps in `lamp`, in degrees
   std::string dye = "none";         ///< none, red, amber or a file
   std::uint32_t seed = 1;
 };
@@ -87,7 +87,7 @@ struct ImageResult {
   std::string table;  ///< summary as text
 };
 
-/// Computes maps of the returned light on the entrance face and in angle.
+/// Computes maps of the returned light over the entrance face and over the directions.
 /// \throw InputError
 /// \throw BudgetError if the ray tracer lost power
 RETRACE_API ImageResult detector(const Design& design, const DetectorRequest& request = {},

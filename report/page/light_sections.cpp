@@ -46,8 +46,8 @@ PageChart rre_chart(const ResultDocument& document, const DesignNames& names) {
   return chart;
 }
 
-/// Returns a table with one row for each point. Its columns are the accounts of the ledger, in percent of the incident
-/// power.
+/// Returns a table with one row for each point. Its columns are the accounts of the ledger (the terms of the energy
+/// balance), in percent of the incident power.
 PageTable ledger_table(const ResultDocument& document, const DesignNames& names) {
   const Json& points = list(document.json, "points");
   PageTable table;

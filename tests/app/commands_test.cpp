@@ -59,8 +59,8 @@ TEST(Inspect, OddRowsShiftedGiveTheCountOfThePaper) {
   EXPECT_EQ(json["warnings"].size(), 1U) << "elements that the border cuts";
 }
 
-/// A fillet of radius r in a root of 90 degrees touches both facets at the distance r from the root. It therefore takes
-/// a strip of width sqrt(2) r of each base, even if this is a large fraction of the base.
+/// A fillet of radius r in a root of 90 degrees touches both facets at the distance r from the root. The fillet
+/// therefore removes a strip of width sqrt(2) r of each base, even if this is a large fraction of the base.
 TEST(Inspect, ReportsTheFractionThatARootTakesOfPrisms) {
   for (const double fraction : {0.01, 0.1, 0.3}) {
     const double radius_um = 1e3 * fraction / std::sqrt(2.0);
@@ -72,9 +72,11 @@ TEST(Inspect, ReportsTheFractionThatARootTakesOfPrisms) {
   }
 }
 
-// A rounded edge of radius r makes strips of the aperture ineffective. The strips are r / sqrt(2) wide on either side
-// of three roots of length a sqrt(2/3), and along the six rims of a hexagon. Along the three rims of a triangle, they
-// are sqrt(2/3) r wide. The overlap of strips is of second order in r.
+// Rounded edges of radius r make strips of the aperture ineffective. The roots are the edges between two facets. Each
+// of the three roots has the length a sqrt(2/3), where a is the edge length of the cube, and a strip r / sqrt(2) wide
+// on either side. The rims are the edges between two elements. The strips along the six rims of a hexagon are r /
+// sqrt(2) wide. Those along the three rims of a triangle are sqrt(2/3) r wide. The overlap of strips is of second order
+// in r.
 TEST(Inspect, TellsWhatEdgesTakeOfCubeCorners) {
   const auto share = [](const std::string& kind, const std::string& key, double radius_um) {
     return inspect(infinite_cubes(kind, 1.5) + "[surface]\n" + key + " = " +
@@ -308,8 +310,8 @@ TEST(Help, ShowsEveryOptionWithItsDefault) {
 TEST(Interrupt, WritesTheFinishedPointsAndEndsWith130) {
   const std::string design = example("rtp_brick_2mm.toml");
   Arguments arguments = {RETRACE_PROGRAM, "rre", design, "--samples=65536", "--incidence=-80:80:0.01", "-o", "r"};
-  // The complete run takes far longer than any wait. The wait is doubled until at least one point is finished, also on
-  // a slow machine.
+  // The complete run takes far longer than any wait. The wait is doubled until at least one point is finished, so that
+  // the test also passes on a slow machine.
   for (auto wait = 1s;; wait *= 2) {
     ASSERT_LE(wait, 64s) << "no point was finished";
     const TemporaryFolder folder;
@@ -339,7 +341,7 @@ TEST(Interrupt, WritesTheFinishedPointsAndEndsWith130) {
 }
 
 TEST(Interrupt, BeforeAPointIsFinishedWritesAValidDocumentWithoutPoints) {
-  // The wait is doubled until the run has something to write, also on a slow machine.
+  // The wait is doubled until the run has something to write, so that the test also passes on a slow machine.
   for (auto wait = 3s;; wait *= 2) {
     ASSERT_LE(wait, 48s) << "nothing was begun";
     const TemporaryFolder folder;

@@ -145,8 +145,8 @@ TEST_F(Entrance, CapOverAMirrorReturnsWhatRaysByHandReturn) {
   }
 }
 
-// The mesh of the machined surface that `retrace turn` writes must act as the design, except for its cusps and the size
-// of its triangles.
+// The mesh of the machined surface that `retrace turn` writes must act as the design, except for the effects of its
+// cusps and of the finite size of its triangles.
 TEST_F(Entrance, MachinedMeshActsAsTheDesign) {
   folder_.write("lens.toml", turned(kCap, {}, 0.7, "feed_um = 4\nspindle_rpm = 60\npoints_per_turn = 720\n") +
                                  "[inspect]\nmesh_thickness_mm = 0.3\nmesh_rings = 100\n");

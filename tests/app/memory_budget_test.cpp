@@ -54,7 +54,8 @@ const std::string kInfiniteCubes =
     "2\nrefractive_index = 1.49\n";
 
 // Tracing beams requires a list of all elements, but tracing rays does not. With very many elements, making this list
-// takes longer than tracing the rays. The engine `auto` may need at most 1.5 times the processor time of rays.
+// takes longer than tracing the rays. The engine `auto` may need at most 1.5 times the processor time of an engine that
+// traces rays.
 TEST(MemoryBudget, AutoCostsNoMoreThanHalfAgainOfTheEngineThatItTakes) {
   const TemporaryFolder folder;
   folder.write("cubes.toml", small_cubes(9.87));

@@ -38,7 +38,7 @@ class Line {
                                                 : "1";
   }
 
-  /// Adds options that violate the requirement. satisfy() does not meet this requirement afterwards.
+  /// Adds options that violate the requirement. satisfy() must not make this requirement hold again.
   void violate(const Json& need) {
     for (const Json& condition : need) {
       const std::string option = condition["option"];
@@ -54,7 +54,7 @@ class Line {
   }
 
   /// Adds options until the requirements of all given options are met.
-  /// \param but requirement to leave violated; null: none
+  /// \param but requirement that remains violated; null: all requirements are met
   void satisfy(const Json& but) {
     for (bool changed = true; changed;) {
       changed = false;

@@ -145,7 +145,7 @@ std::optional<Example> example_of(const std::string& command) {
   return example;
 }
 
-/// Output folders of the examples of a page, by their command. A page may show an example twice.
+/// Output folders of examples that have been run, found by their command. A page may show the same example twice.
 class Written {
  public:
   /// Copies the output of an example into `folder`.
@@ -261,7 +261,7 @@ bool is_line_like(const std::string& shown, const std::string& printed) {
 }
 
 /// Executes all steps of a tutorial. Each line of output that the tutorial shows must occur in the output of the
-/// commands since the last lines that it showed.
+/// commands that ran after the previously shown lines.
 void follow(const fs::path& page) {
   const TemporaryFolder folder;
   make_like_the_project(folder);
@@ -289,7 +289,7 @@ void follow(const fs::path& page) {
   }
 }
 
-/// Sets the environment so that mpirun runs in any test environment as a tutorial calls it.
+/// Sets the environment so that the mpirun commands of a tutorial work in any test environment.
 void let_mpirun_run_here() {
   for (const char* name :
        {"OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "OMPI_MCA_rmaps_base_oversubscribe"})

@@ -237,10 +237,10 @@ TEST_F(VerifyCommand, TheAsMachinedPartIsTraced) {
   EXPECT_LT(textured["points"][1]["rre"].get<double>(), right.second);
 }
 
-/// A part that is planned for its machine has the RRE of the design. If plunges finish both facets, they equal the
-/// facets of the design. If one facet is ploughed, it is rotated by delta about the normal of the other facet. The
-/// angle between the facets remains exact, but the root is tilted. The returned light then deviates by 2 n delta sin(45
-/// degrees).
+/// A part that is planned for the machine on which it is cut has the RRE of the design. A facet that is finished by
+/// plunges (cuts down the facet) equals the facet of the design. A facet that is finished by a plough (a cut along the
+/// facet, from the root) is rotated by delta about the normal of the other facet. The angle between the facets remains
+/// exact, but the root is tilted. The returned light then deviates by 2 n delta sin(45 degrees).
 TEST_F(VerifyCommand, WhatMachinesAndStrategiesCostInLight) {
   constexpr double index = 1.4917;
   for (const std::string machine : {"ideal", "paper", "thesis"})
@@ -328,9 +328,9 @@ TEST_F(VerifyCommand, TheTextureIsTheProcesses) {
   EXPECT_NEAR(1e3 / value("waviness_length_um"), 42.4, 0.05);
 }
 
-// A chip of 9.02 um in an edge of 451 um leaves a scratch on both facets. If facet 2 is ploughed, both scratches are at
-// the same position along the roof edge and take 2 % of the returned light. If facet 2 is plunged from the other side,
-// they are at different positions and take twice as much.
+// A chip of 9.02 um in a tool edge of 451 um leaves a scratch on both facets. If facet 2 is ploughed (cut along its
+// length from the root), both scratches are at the same position along the roof edge and deflect 2 % of the returned
+// light. If facet 2 is plunged from the other side, the scratches are at different positions and deflect twice as much.
 TEST_F(VerifyCommand, ChipsOfTheEdgeBecomeScratches) {
   for (const auto& [strategy, kept] : {std::pair{"unidirectional", 0.98}, {"two-step", 0.96}}) {
     make("ideal", strategy);

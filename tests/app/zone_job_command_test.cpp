@@ -9,7 +9,8 @@
 
 #include "tests/app/program.h"
 
-// Tests of parts with zones: from the design to a job and NC text, and back to a part with zones that is traced.
+// Tests of parts with zones (groups of elements with the same size, rotation and angle errors): from the design to a
+// job and NC text, and back to a part with zones that is traced.
 
 namespace retrace::test::zone_job_command_test {
 namespace {

@@ -255,7 +255,7 @@ TEST_F(AtomicFile, NothingIsLeftOfAGrowingFileThatIsNotFinished) {
   EXPECT_THROW(growing.finish(), OutputError);
 }
 
-/// Returns the message with which a file is refused, or an empty text.
+/// Returns the message of the error for a file that is refused, or an empty text if the file is accepted.
 std::string complaint_of(const fs::path& file, std::size_t most_bytes) {
   return refusal_of([&] { read_file(file, most_bytes); });
 }

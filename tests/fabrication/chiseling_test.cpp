@@ -264,7 +264,8 @@ TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
     for (std::size_t column = 0; column < field.columns; ++column) {
       const double x = (2.0 * (static_cast<double>(column) + 0.5) / static_cast<double>(field.columns) - 1.0) * reach;
       const double y = (2.0 * (static_cast<double>(row) + 0.5) / static_cast<double>(field.rows) - 1.0) * reach;
-      // Height of the staircase of cubes at (x, y): the minimum of the octants that begin at the cells.
+      // Height of the staircase of cubes at (x, y). Each element removes the octant above its apex. The height is the
+      // minimum of the lower boundaries of all octants.
       double stair_mm = 0.0;
       for (const CutElement& element : elements) {
         const Vec3 from(x - element.centre_mm.x(), y - element.centre_mm.y(), 0.0);
@@ -369,8 +370,8 @@ TEST_F(ChiselingFaults, EveryCallIsNeeded) {
   EXPECT_GE(tried, 30);
 }
 
-/// A program fails verification if C is wrong in any pose. The smallest layers are above the apex. Even a cut at an
-/// angle that matches no facet removes material of these layers.
+/// A program fails verification if the angle of C is wrong in any pose (a pair of angles B and C at which a facet is
+/// cut). This holds even for the poses of small layers above the apex.
 TEST_F(ChiselingFaults, EveryPoseIsNeeded) {
   int tried = 0;
   for (std::size_t at = text_.find("\nG0 B"); at != std::string::npos; at = text_.find("\nG0 B", at + 1)) {

@@ -50,8 +50,8 @@ void expect_planned(const Plan& plan, const std::string& what) {
     for (std::size_t k = 0; k < moves.size(); ++k) {
       const Words& to = planned[k].at;
       ASSERT_EQ(moves[k].rapid, planned[k].is_rapid()) << "move " << k;
-      // After a stop, the program does not know the positions of the axes. The interpreter does know them, so unknown
-      // axes are not compared.
+      // After a stop, the program does not know the positions of the axes. The interpreter always knows them. Axes that
+      // are unknown to the program are therefore not compared.
       for (const Axis axis : {kX, kY, kZ}) {
         const double at_mm = to[axis] ? millimetres(*to[axis]) : moves[k].at[axis];
         ASSERT_NEAR(moves[k].at[axis], at_mm, kPrinted);

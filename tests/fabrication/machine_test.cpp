@@ -58,7 +58,7 @@ RC_GTEST_PROP(Machine, ForwardUndoesInverse, ()) {
 }
 
 /// For random directions of the axes, the solved pose moves the facet into the plane in which the tool plunges. In this
-/// plane, the root is rotated by the returned tilt.
+/// plane, the root (the line in which both facets of a prism meet) is rotated by the returned tilt.
 RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
   Machine machine = shipped("ideal");
   machine.a.direction.value = (Vec3(1, 0, 0) + 1e-2 * point_within(1)).normalized();
@@ -77,8 +77,8 @@ RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
   const Vec3 edge = tool_turn(machine) * Vec3(1, 0, 0);
   const Vec3 plunged = edge.cross(Vec3(0, 0, 1)).normalized();
   RC_ASSERT((motion.direction(normal) - plunged).norm() < 1e-14);
-  // The root remains in the plane of the facet. Its rotation is measured from the projection of the edge onto this
-  // plane.
+  // The root remains in the plane of the facet. Its rotation is measured from the projection of the tool's edge onto
+  // this plane.
   const Vec3 level = (edge - plunged * plunged.dot(edge)).normalized();
   const Vec3 expected_root = rotation_about(plunged, solved.root_tilt) * level;
   RC_ASSERT((motion.direction(root) - expected_root).norm() < 1e-14);

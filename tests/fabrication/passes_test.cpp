@@ -44,7 +44,7 @@ Verification verified(const Job& job, const Machine& machine, const Program& pro
                          {parse_nc(nc_text(program, "rs274ngc"), "p", NcDialect::rs274ngc, control_texts())}, {}, {});
 }
 
-/// Returns the indices of the program items that visit the element.
+/// Returns the indices of the program items that are visits: calls of a cutting subroutine at an element.
 std::vector<std::size_t> visits_of(const Program& program) {
   std::vector<std::size_t> visits;
   for (std::size_t i = 0; i < program.items.size(); ++i)

@@ -279,8 +279,8 @@ TEST(Order, CTurnsOnlyTwicePerFinishingCut) {
 }
 
 TEST(Order, TravelBetweenElementsIsShort) {
-  // Rows are visited in alternating directions. The mean travel is hardly longer than one pitch, the minimum of any
-  // order.
+  // Rows are visited in alternating directions. The mean travel is hardly longer than one pitch, which is the minimum
+  // for any order.
   const Machine m = machine("ideal");
   for (const Arrangement arrangement : {Arrangement::aligned, Arrangement::offset, Arrangement::checker}) {
     const Job job = square_job(20, arrangement);
@@ -296,8 +296,8 @@ TEST(Order, TravelBetweenElementsIsShort) {
       last = at;
       ++lines;
     }
-    // The prisms of one orientation of a checker have diagonal neighbours only. Along a line, the distance between them
-    // is two pitches.
+    // In a checker, the neighbours of prisms with the same orientation are diagonal. Along a line, the distance between
+    // them is two pitches.
     const double pitches = arrangement == Arrangement::checker ? 2.0 : arrangement == Arrangement::offset ? 1.15 : 1.0;
     EXPECT_LT(travel_mm, 1.05 * pitches * 0.451 * lines);
   }

@@ -22,7 +22,8 @@
 #include "tests/support/refusals.h"
 
 // Tests of jobs with rarely used keys. Programs are planned for different machines, read back and simulated. The result
-// must match the design.
+// must match the design. A plunge cuts down one facet of a prism, the wall. A plough cuts from the root along the other
+// facet, the floor.
 
 namespace retrace::fabrication::test::planned_jobs_test {
 namespace {
@@ -181,8 +182,8 @@ TEST(PlannedJobs, AnEdgeThatTheProgramForgotIsFound) {
       EXPECT_TRUE(has_kind(v, kind)) << name << " " << apex_deg << "\n" << listed(v);
       const double apex = Angle::from_deg(apex_deg).rad();
       const double missed_nm = 1e3 * (1.0 - std::sin(apex) + std::cos(apex));
-      // Use the smallest deviation, which belongs to the floor. Lines normal to the wall intersect the floor at a small
-      // angle close to the root and give larger deviations.
+      // Use the smallest deviation, which belongs to the floor, the facet along which the tool ploughs. Lines normal to
+      // the wall intersect the floor at a small angle close to the root and give larger deviations.
       double found_nm = 1e9;
       for (const Finding& f : v.findings)
         if (f.kind == kind) found_nm = std::min(found_nm, std::abs(f.value));
@@ -191,8 +192,8 @@ TEST(PlannedJobs, AnEdgeThatTheProgramForgotIsFound) {
   }
 }
 
-/// The heights of floors that are ploughed in several passes are predicted to 1 nm. The verifier must find one that is
-/// 15 nm too high or too low.
+/// The heights of floors that are ploughed in several passes are predicted to 1 nm. The verifier must find a floor that
+/// is 15 nm too high or too low.
 TEST(PlannedJobs, PassesAtAnotherHeightAreFound) {
   for (const double wider_mm : {2e-5, 3e-4, 4e-3, 0.1}) {
     Job job = square_job(2, Arrangement::aligned);
@@ -220,8 +221,8 @@ Job wide_job() {
 }
 
 /// On machine `paper`, the ploughed facet rises by 596.9 nm along the edge of the tool. The tip of one cut ends 0.894
-/// um below the rim. Half-way from there to the rim, the face of the blank is only 446.8 nm above the design facet. The
-/// ploughed facet therefore leaves the blank below the rim, which is not a gouge.
+/// um below the rim, the upper end of the facet. Half-way from there to the rim, the face of the blank is only 446.8 nm
+/// above the design facet. The ploughed facet therefore leaves the blank below the rim, which is not a gouge.
 TEST(PlannedJobs, APloughedFacetThatLeavesTheBlankBelowItsRimIsNoGouge) {
   const Job job = wide_job();
   const Machine paper = machine("paper");
@@ -295,8 +296,8 @@ Machine with_root_slope(const Job& job, double slope) {
 
 /// A tilted edge leaves a strip at the root. A plunge separates its chip only if this strip is narrower than the depth
 /// of cut, so that jobs with wider strips are refused. A plough separates its chip for any width of the strip.
-/// Unidirectional jobs are therefore refused only if the ploughed facet deviates by more than acos 0.985 = 9.94
-/// degrees. The programs of all other jobs pass verification.
+/// Unidirectional jobs are therefore refused only if the direction of the ploughed facet deviates by more than acos
+/// 0.985 = 9.94 degrees. The programs of all other jobs pass verification.
 TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
   for (const Strategy strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step})
     for (const double share : {0.3, 0.9, 0.99, 1.01, 1.3, 2.5, 3.5, 5.0, 10.0}) {
@@ -320,9 +321,9 @@ TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
     }
 }
 
-/// The floor that a plough leaves at an oblique root is predicted exactly, also for slides that are not square and for
-/// several passes. Correct programs pass. Programs that are 30 nm too high or too low fail. Terms of third order are up
-/// to 0.4 um here.
+/// The floor that a plough leaves at an oblique root is predicted exactly, also for slides that are not perpendicular
+/// to each other and for several passes. Correct programs pass. Programs that are 30 nm too high or too low fail. Terms
+/// of third order are up to 0.4 um here.
 TEST(PlannedJobs, PloughedFloorsOfObliqueRootsAreAsDerived) {
   for (const double slope : {0.01, 0.05, 0.1, 0.15})
     for (const double lean : {0.0, 0.002})

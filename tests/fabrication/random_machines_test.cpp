@@ -64,11 +64,11 @@ struct Lean {
   double least_share;  ///< minimum ratio of the simulated to the predicted cut into a wall
 };
 
-/// If a slide or the edge is tilted, the tool cuts into a wall. The depth of this cut is the tilt of the slide times
-/// its travel: Z moves up facet 1, and Y moves along facet 2. A tilted edge tilts the side of the tool towards the wall
-/// by the same angle. The simulated depth is smaller than the prediction in two cases. First, roughing cuts begin below
-/// the rim, which shortens the travel of Y. Second, the clearance face is at 3 degrees to the wall, so that only cos 3
-/// sin 45 / sin 48 = 0.95 of its length is in the blank.
+/// If a slide or the edge is tilted, the tool cuts into a wall at one end of its edge. The depth of this cut is the
+/// tilt of the slide times its travel: Z moves up facet 1, and Y moves along facet 2. A tilted edge tilts the side of
+/// the tool towards the wall by the same angle. The simulated depth is smaller than the prediction in two cases. First,
+/// roughing cuts begin below the rim, which shortens the travel of Y. Second, the clearance face is at 3 degrees to the
+/// wall, so that only cos 3 sin 45 / sin 48 = 0.95 of its length is in the blank.
 TEST(RandomMachines, WhatGoesIntoWallsIsTheDirectionOfTravel) {
   const double facet_nm = 1e6 * 0.451 / std::numbers::sqrt2;
   for (const auto& [key, strategy, least_share] :

@@ -158,7 +158,8 @@ TEST(RoundedCuts, PeaksAreWhereTheFormulaHasThem) {
   EXPECT_GE(peaks, 20);
 }
 
-/// Displaces the tips by random rounding errors. No remaining material is higher than the bound above two facets.
+/// Displaces the tips by random rounding errors. The cuts must remove every point whose heights above two of the facets
+/// exceed the bound.
 TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
   std::mt19937 bits(7);
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(bits); };
@@ -176,8 +177,8 @@ TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
         along = (along - along.dot(normal) * normal).normalized();
         tips[f] = std::copysign(rounded_across_mm(1.0), uniform(-1, 1)) * normal + rounded_along_mm(1.0) * along;
       }
-      // The samples are higher than the bound above two facets. Above the third facet, their height is random. Material
-      // that is lower above two facets may belong to the fin along the edge between these facets.
+      // The height of each sample exceeds the bound above two of the facets, and is random above the third facet. A
+      // point that is lower than this may belong to the fin along the edge between these facets.
       geometry::Vec3 heights(uniform(0, 2), uniform(0, 2), uniform(0, 2));
       heights = (heights * bound).cwiseMax(3.0 * rounded_along_mm(1.0));
       for (const int facet : {k % 3, (k + 1) % 3}) heights[facet] = std::max(heights[facet], bound * 1.0001);

@@ -92,8 +92,8 @@ std::string default_words(const Default& otherwise) {
                     otherwise);
 }
 
-/// Returns "required", "one of these" for a table of which one alternative is required, or the meaning of a missing
-/// table.
+/// Returns "required" for a required table, "one of these" if the file must contain one of several tables, and
+/// otherwise the meaning of a missing table.
 std::string presence_words(const Table& inner, const Table& table) {
   for (const Rule& rule : table.rules) {
     const auto* const one_of = std::get_if<OneOf>(&rule);

@@ -1,6 +1,6 @@
 // Tests of the check of planed and turned lenses, which shares no code with the planner. Its profile is compared with
-// the profile of the planner. Its simulation of a round nose is compared with closed forms. It must find plans for
-// other lenses and tools.
+// the profile of the planner. Its simulation of a round nose is compared with closed forms. It must report findings for
+// plans that were made for another lens or tool.
 
 #include <gtest/gtest.h>
 

@@ -385,8 +385,8 @@ TEST(TurningCheck, StrokesOfAFastServoBelongToTheirPoints) {
   EXPECT_THROW(found("c_deg,stroke_mm\nx,1\n"), InputError);
 }
 
-// The verifier does not check the surface within one feed of the axis, where the part rotates under a nearly fixed
-// edge.
+// The verifier does not check the surface closer to the axis than one feed per revolution, where the part rotates under
+// a nearly fixed edge.
 TEST(TurningCheck, PartsOfFewTurnsAreNotJudgedAtTheirAxis) {
   for (const double radius_mm : {0.04, 0.08, 0.12, 0.135, 0.15, 0.2}) {
     const Planned plan = planned(fmt::format(

@@ -150,7 +150,7 @@ TEST(Report, ShowsBasesAndScratches) {
     triangles[name] = scene["triangles"].size();
   }
   EXPECT_NEAR(lowest["flat"], -0.5, 1e-6);
-  // The roof edges run across the slope. The centre of the last one is 3.5 mm from the highest position.
+  // The roof edges run across the slope. The centre of the last roof edge is 3.5 mm from the highest position.
   EXPECT_NEAR(lowest["inclined"], -0.5 - 3.5 * std::tan(20.0 * std::numbers::pi / 180.0), 1e-6);
   EXPECT_GT(triangles["scratched"], triangles["flat"] + 16);
 }
