@@ -51,7 +51,7 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
   all.back().traits.needs = {any_given({"--design"})};
   all.push_back(
       {"--for-worst",
-       "write the zones that are best for the worst parts, whose fraction is compose.worst_share of the study",
+       "write the zones that are best for the worst parts; compose.worst_share of the study is their fraction",
        &options.for_worst,
        {.needs = {any_given({"--out", "--design"})}}});
   for (const auto& [name, help, length] :
@@ -189,7 +189,7 @@ ExitCode run_compose(const ComposeOptions& options, const CommonOptions& common)
 
 Command compose_command() {
   return {.name = "compose",
-          .summary = "the best part of several zones of cells, as a study file says",
+          .summary = "the best part of several zones of cells, as defined in a study file",
           .manual =
               "Searches for the cells, and their fractions of the area, for which the worst of all goals is best, by "
               "linear programming. Reports the active constraints and their prices. Evaluated cells are kept in "

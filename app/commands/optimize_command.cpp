@@ -123,16 +123,17 @@ ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command optimize_command() {
-  return {.name = "optimize",
-          .summary = "the best design within constraints, as a study file says",
-          .manual =
-              "Searches for the best design within constraints, and reports why others lost. Evaluated designs "
-              "are kept in `optimum.sqlite` in the output folder. Exits with 1 if no design is feasible, and with 3 "
-              "if no design is feasible and some were not evaluated because the memory or beam budget ran out. With "
-              "`--job` the fabrication job of the chosen design is written, with the options of `job`.",
-          .reads = {"retrace.study/1", "retrace.design/1"},
-          .writes = {"retrace.optimum/1", "retrace.job/1"},
-          .begin = begins<OptimizeOptions>(arguments, run)};
+  return {
+      .name = "optimize",
+      .summary = "the best design within constraints, as defined in a study file",
+      .manual =
+          "Searches for the best design within constraints, and reports why other designs were rejected. Evaluated "
+          "designs are kept in `optimum.sqlite` in the output folder. Exits with 1 if no design is feasible, and with "
+          "3 if no design is feasible and some were not evaluated because the memory or beam budget ran out. With "
+          "`--job` the fabrication job of the chosen design is written, with the options of `job`.",
+      .reads = {"retrace.study/1", "retrace.design/1"},
+      .writes = {"retrace.optimum/1", "retrace.job/1"},
+      .begin = begins<OptimizeOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

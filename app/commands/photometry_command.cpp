@@ -92,7 +92,7 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
       {"--source-arcmin D", "diameter of the source [the standard's]", &options.source_arcmin},
       {"--receiver-arcmin D", "diameter of the receiver [the standard's]", &options.receiver_arcmin},
       {"--window-deg W", "half angle of the far field that is computed", &options.window_deg},
-      {"--light LIGHT", "a, d65: a CIE illuminant as the eye sees it; design: what the design says", &options.light,
+      {"--light LIGHT", "a, d65: a CIE illuminant as the eye sees it; design: the light of the design", &options.light,
        one_of(Words{"a", "d65", "design"})},
       engine_argument(options.engine, "exact, montecarlo (embree), or auto: beams where they are possible"),
       {"--samples N", fmt::format("number of Monte Carlo rays for each direction [{}]", studies::kUsualRaysOfDirection),

@@ -59,7 +59,7 @@ std::vector<Argument> arguments(RreOptions& options) {
        &request.cutoff,
        {.needs = {engine_need(studies::kCutoffEngines)}}},
       {"--derivatives",
-       "compute the derivatives of RRE by the parameters of the design (--engine exact)",
+       "compute the derivatives of RRE with respect to the parameters of the design (--engine exact)",
        &request.derivatives,
        {.needs = {of_beams}}},
       {"--footprint", "write the regions of the entrance face that return light, as polygons (--engine exact, --out)",

@@ -34,7 +34,7 @@ ExitCode run_sweep(const StudyOptions& options, const CommonOptions& common) {
 
 Command sweep_command() {
   return {.name = "sweep",
-          .summary = "designs and directions over ranges, as a study file says",
+          .summary = "designs and directions over ranges, as defined in a study file",
           .manual =
               "Computes every point of a study file: keys of a design over lists, ranges and samples. Finished "
               "points are kept in `sweep.sqlite` in the output folder, so that work can go on after an end. "

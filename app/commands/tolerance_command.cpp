@@ -41,7 +41,7 @@ ExitCode run_tolerance(const StudyOptions& options, const CommonOptions& common)
 
 Command tolerance_command() {
   return {.name = "tolerance",
-          .summary = "what becomes of a design in manufacture, as a study file says",
+          .summary = "effect of manufacturing errors on a design, as defined in a study file",
           .manual =
               "Makes parts with the errors of manufacture that a study gives its parameters: how quantities are "
               "spread, the yield, and the main contributors. Points are kept in `tolerance.sqlite` in the output "

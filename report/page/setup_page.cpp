@@ -144,10 +144,10 @@ PageSection tool_section(const FabricationResult& result, const SetupSheet& shee
   if (sheet.tool.free_length_mm) s.facts.push_back({"Free below the holder", mm(*sheet.tool.free_length_mm, 2), ""});
   const ToolMount& mount = result.machine.mount;
   if (mount.offset_mm.value != Vec3::Zero() || mount.turn_deg.value != Vec3::Zero())
-    s.paragraphs.push_back(
-        fmt::format("Programs are made for a tool that stands {} mm off along X, Y, Z and is turned by {} "
-                    "degrees about them as it is mounted ({}).",
-                    triple(mount.offset_mm.value, 6), triple(mount.turn_deg.value, 6), mount.turn_deg.source));
+    s.paragraphs.push_back(fmt::format(
+        "Programs compensate a tool that is mounted {} mm off its nominal position along X, Y, Z and is rotated "
+        "by {} degrees about these axes ({}).",
+        triple(mount.offset_mm.value, 6), triple(mount.turn_deg.value, 6), mount.turn_deg.source));
   s.steps = tool_steps(result, sheet);
   return s;
 }
