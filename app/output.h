@@ -31,7 +31,7 @@ std::vector<std::string> files_read(const std::vector<studies::Design>& designs)
 /// Returns the options without --out, for commands in which --out is a file instead of a folder.
 CommonOptions without_folder(CommonOptions options);
 
-/// State of a command at its end, from which the exit code and the last message follow.
+/// State of a command when it ends. It determines the exit code and the last message.
 struct Ending {
   bool complete = true;  ///< false if the command was interrupted
   /// Text after "interrupted; " in the message about an interrupt.

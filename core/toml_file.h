@@ -18,7 +18,7 @@
 
 namespace retrace {
 
-/// Entry of a list of any type.
+/// Entry of a list. The entry may have any type.
 struct TomlItem {
   std::optional<double> number;
   std::optional<std::string> text;
@@ -66,7 +66,7 @@ class TomlTable {
                                     std::string_view or_else = {});
   std::size_t required_choice(std::string_view key, std::span<const std::string_view> words);
 
-  /// Returns the entries of a list of any type. Returns nothing if the key was not given or is not a list.
+  /// Returns the entries of a list, which may have any type. Returns nothing if the key was not given or is not a list.
   std::optional<std::vector<TomlItem>> items(std::string_view key);
   /// Returns the value of a key as the JSON object `{"value": ...}`. Returns an empty text if the key was not given.
   std::string as_json(std::string_view key) const;

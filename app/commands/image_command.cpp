@@ -31,7 +31,8 @@ namespace {
 
 // Minimum time between two previews of an unfinished camera picture.
 constexpr std::chrono::seconds kPreview{10};
-// Number of passes that each MPI rank computes at a time. One pass uses all threads of the rank.
+// Number of passes that each MPI rank computes at a time. A pass traces four light paths per pixel and uses all threads
+// of the rank.
 constexpr std::size_t kPassesAtATime = 1;
 // Name of the camera picture. Previews are written to the same file.
 constexpr const char* kCameraPng = "camera.png";

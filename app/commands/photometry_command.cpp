@@ -152,8 +152,8 @@ Words what_shortens_photometry(const PhotometryOptions& options, const studies::
   return advice;
 }
 
-/// Computes preliminary readings, which takes some seconds, and returns them as a table. Returns an empty text if the
-/// computation is cancelled.
+/// Computes preliminary readings (rough photometric values at the test points) and returns them as a table. The
+/// computation takes some seconds. Returns an empty text if the computation is cancelled.
 /// \param remaining_s estimated remaining time of the main computation, in seconds
 std::string first_answer_of(const studies::PhotometryStudy& study, double remaining_s, const Cancellation* cancel) {
   // Intended tracing time of the preliminary readings in seconds. It is about twice as long while the main computation

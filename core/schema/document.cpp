@@ -18,7 +18,8 @@ Form form_of(const Value& value) {
   return std::holds_alternative<Named>(value) ? Form::table : Form::list;
 }
 
-/// Returns true if the type of the value is allowed by the row, or if the value has not been read yet.
+/// Returns true if a row (the description of a key) allows the type of the value, or if the value has not been read
+/// yet.
 bool may_have(const Row& row, const Value& value) {
   return std::holds_alternative<std::monostate>(value) || takes(row.kind, form_of(value));
 }

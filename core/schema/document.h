@@ -82,7 +82,8 @@ class Document {
   InputLocation where(std::string_view path) const;
   [[noreturn]] void fail(std::string_view path, std::string_view text) const { throw InputError(where(path), text); }
 
-  /// Returns the row of a key whose conditions hold, or null if the conditions of no row hold.
+  /// Returns the row (the description of a key) that applies to a key because its conditions hold. Returns null if no
+  /// row applies.
   const Row* row(std::string_view path) const;
   /// Returns true if all conditions of a key or table hold.
   /// \param around path of the table that contains the key or table

@@ -35,7 +35,7 @@ std::string column_name(const std::string& key);
 /// Returns a table with one row for each object of a list. Its columns are those of `keys` that occur in the objects.
 PageTable table_of(const Json& rows, const std::vector<std::string>& keys, const std::string& caption,
                    const std::string& csv_name);
-/// Returns a table with one row for each member of an object that is not an object or a list.
+/// Returns a table with one row for each member of a JSON object. Members that are objects or lists are omitted.
 PageTable figures_of(const Json& json, const std::string& caption, const std::string& csv_name);
 std::string csv_name(const ResultDocument& document, const char* what);
 

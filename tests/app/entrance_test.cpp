@@ -1,5 +1,5 @@
-// Tests of curved fronts with the program: turned parts and meshes in front of plates and prisms, commands that refuse
-// a curved front, and invalid files.
+// Tests of curved fronts (entrance surfaces) with the program: turned parts and meshes in front of plates and prisms,
+// commands that refuse a curved front, and invalid files.
 
 #include <gtest/gtest.h>
 
@@ -70,8 +70,8 @@ TEST_F(Entrance, FlatTurnedFrontIsThePlaneEntranceFace) {
   }
 }
 
-// The formula -r^2 / 6 has no derivative at its centre, where the sampling grid has a point. The conic describes the
-// same paraboloid and must give the same result.
+// Automatic differentiation of r = sqrt(x^2 + y^2) fails at the centre of the formula -r^2 / 6, where the sampling grid
+// has a point. The conic describes the same paraboloid and must give the same result.
 TEST_F(Entrance, FormulaOfTheRadiusIsItsConic) {
   const std::string body = kBody + "[detector]\nacceptance_half_angle_deg = 10\n[idealisation]\nfacets = \"mirror\"\n";
   const Arguments how = {"--samples", "2048", "--incidence=0,5"};

@@ -80,7 +80,7 @@ class Child {
   Outcome wait();
   /// Waits for a child that must end within `limit`. Otherwise the test fails, and the child is killed.
   Outcome wait(std::chrono::seconds limit);
-  /// Returns true if the child has ended. wait() still returns its result afterwards.
+  /// Returns true if the child has ended. wait() still returns the result of the child afterwards.
   bool has_ended() const;
   /// Returns the text that the child has written to standard error so far.
   std::string err_so_far() const;

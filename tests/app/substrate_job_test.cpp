@@ -51,7 +51,8 @@ TEST_F(SubstrateJob, OfTheExampleVerifiesInEveryDialect) {
   EXPECT_EQ(refusal({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}), "?");
 }
 
-/// The machined part has the RRE of the design, except for the effect of the surface texture.
+/// The machined part has the RRE (retroreflective efficiency) of the design, except for the effect of the surface
+/// texture.
 TEST_F(SubstrateJob, AsMachinedReturnsWhatTheDesignDoes) {
   std::string design = read_text(example(kExample));
   design.replace(design.find("x_length_mm = 5"), 15, "x_length_mm = 2");

@@ -199,9 +199,9 @@ std::string without_texture(const std::string& design) {
   return text;
 }
 
-/// Complete cycle: design, job, NC text, machined part and its RRE. The program is planned for ideal axes and runs on
-/// the machine of the paper. The facet normals are therefore wrong by 5.06 and 5.42 arcmin, and the apex angle by 3.32
-/// arcmin. This reduces the RRE for an acceptance of 0.05 degrees, but not for 0.5 degrees.
+/// Complete cycle: design, job, NC text, machined part and its RRE (retroreflective efficiency). The program is planned
+/// for ideal axes and runs on the machine of the paper. The facet normals are therefore wrong by 5.06 and 5.42 arcmin,
+/// and the apex angle by 3.32 arcmin. This reduces the RRE for an acceptance of 0.05 degrees, but not for 0.5 degrees.
 TEST_F(VerifyCommand, TheAsMachinedPartIsTraced) {
   make("ideal", "two-step");
   const std::string file = program("rs274ngc");

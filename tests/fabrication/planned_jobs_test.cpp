@@ -46,7 +46,7 @@ Verification verified(const Job& planned, const Job& job, const Machine& m) {
   return verified(make_plan(planned, m).programs, job, m);
 }
 
-/// Returns the programs with visits of an element moved along Z.
+/// Returns the programs with the visits of one element (calls of cutting subroutines) moved along Z.
 /// \param title first words of the titles of the subroutines whose visits are moved; empty: all subroutines
 std::vector<Program> raised(std::vector<Program> programs, std::int32_t element, Nanometres by_nm,
                             const std::string& title = "") {

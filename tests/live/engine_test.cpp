@@ -339,7 +339,7 @@ TEST(LiveEngine, SaysWhatItCannotDo) {
   record_message(file["text"].get<std::string>());
 }
 
-/// The reported symmetry must agree with the RRE of the exact engine.
+/// The reported symmetry must agree with the RRE (retroreflective efficiency) of the exact engine.
 TEST(AzimuthSymmetry, IsThatOfRre) {
   const std::string prism =
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[body]\nthickness_mm = 1\n[array]\nextent = "

@@ -1,5 +1,6 @@
 // Tests of correct and changed programs of planing mills and lathes. Correct programs of random parts must pass in
-// every dialect. The verifier must find every small change of a small program that an independent rule calls a fault.
+// every dialect. The verifier must find every small change that an independent rule calls a fault. The changed programs
+// are small.
 
 #include <gtest/gtest.h>
 
@@ -132,7 +133,7 @@ struct Tally {
   int tried = 0;
   int faults = 0;
   int missed = 0;
-  int found_besides = 0;  ///< found changes that the rule does not call a fault
+  int found_besides = 0;  ///< number of changes that were found although the rule does not call them a fault
 };
 
 Tally judge_all(const PlanedPart& part, const std::vector<PlaningText>& texts,

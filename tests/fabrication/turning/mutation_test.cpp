@@ -1,5 +1,5 @@
 // Tests of correct and changed programs of turned parts. Correct programs of random parts must pass in every dialect.
-// The verifier must find every small change of a small program that an independent rule calls a fault.
+// The verifier must find every small change that an independent rule calls a fault. The changed programs are small.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -306,7 +306,8 @@ TEST(TurningKinematics, AShortSpiralNeverReachesItsSpeed) {
   }
 }
 
-/// Returns a program with the moves of another program from line `from` to line `to`, between its first and last lines.
+/// Returns a program with the moves in lines `from` to `to` of another program. It begins at the start position of
+/// these moves and has opening and closing lines.
 std::string part_of(const std::vector<std::string>& lines, std::size_t from, std::size_t to) {
   std::size_t begin = 0;
   while (!lines[begin].starts_with("G93")) ++begin;
