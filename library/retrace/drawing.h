@@ -9,15 +9,17 @@
 
 namespace retrace {
 
-/// A drawing of a result, made when it is asked for. Copies share what is drawn.
+/// A drawing of a result. It is drawn when svg() or png() is called. Copies share their data.
 class RETRACE_API Drawing {
  public:
-  Drawing() = default;  ///< none
+  Drawing() = default;  ///< an empty object without a drawing
 
   explicit operator bool() const { return content_ != nullptr; }
-  /// As an SVG document; empty if there is none, or it is a picture of pixels alone. \throw OutputError
+  /// Returns the drawing as an SVG document. Returns an empty text if there is no drawing or it has only a PNG file.
+  /// \throw OutputError if the drawing fails
   std::string svg() const;
-  /// As a PNG file; empty if there is none. \throw OutputError
+  /// Returns the drawing as the content of a PNG file. Returns an empty text if there is no drawing.
+  /// \throw OutputError if the drawing fails
   std::string png() const;
 
   struct Content;

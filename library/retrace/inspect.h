@@ -1,6 +1,6 @@
 #pragma once
 
-// What a design is, before any light is traced, and its drawings.
+// Computes properties of a design without tracing light, and makes drawings of the design.
 
 #include <string>
 #include <vector>
@@ -13,14 +13,15 @@ namespace retrace {
 
 struct Inspection {
   Warnings warnings;
-  std::string json;   ///< document retrace.inspect/1
-  std::string table;  ///< for people
-  Drawing plan;       ///< SVG, as all but the view; drawings that a design has not are none or empty
+  std::string json;   ///< JSON document retrace.inspect/1
+  std::string table;  ///< summary as text
+  Drawing plan;       ///< SVG, like `section` and `front`; drawings that do not apply to the design are empty
   Drawing section;
   Drawing front;  ///< profile of a curved entrance face
-  Drawing view;   ///< in three dimensions; PNG
+  Drawing view;   ///< view in three dimensions; PNG
 };
 
+/// Computes the properties of a design.
 /// \throw InputError for an unknown material
 RETRACE_API Inspection inspect(const Design& design);
 

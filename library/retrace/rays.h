@@ -1,6 +1,6 @@
 #pragma once
 
-// Rays through a part: those of files or an emitter, and those of memory.
+// Traces rays through a part. The rays come from a file, from an emitter or from arrays in memory.
 
 #include <array>
 #include <cstddef>
@@ -17,10 +17,10 @@
 
 namespace retrace {
 
-/// What is asked, as the options of `retrace rays` (docs/commands.md).
+/// Settings of a ray trace. They correspond to the options of `retrace rays` (docs/commands.md).
 struct RaysRequest {
-  std::filesystem::path source = {};  ///< .tm25ray or .csv; empty: the emitter
-  std::string emitter = {};           ///< lambertian, gaussian or collimated; in place of a file
+  std::filesystem::path source = {};  ///< file of rays (.tm25ray, .csv); empty: the rays come from `emitter`
+  std::string emitter = {};           ///< lambertian, gaussian or collimated, instead of `source`
   std::optional<double> disc_mm = {};
   std::optional<double> half_angle_deg = {};
   std::uint64_t rays = 1'000'000;
@@ -34,47 +34,51 @@ struct RaysRequest {
   double cutoff = 1e-10;
   bool stokes = false;
   bool keep_missed = false;
-  std::filesystem::path out = {};  ///< .tm25ray or .csv; empty: rays are counted alone
+  std::filesystem::path out = {};  ///< output file (.tm25ray, .csv); empty: rays are not written
   std::uint32_t seed = 1;
 };
 
 struct RaysResult {
-  std::map<std::string, double> ledger;  ///< shares of the power of all rays by account; they add up to 1
-  double power = 0.0;                    ///< of all rays
+  std::map<std::string, double> ledger;  ///< fraction of the incident power by account (fate of the light)
+  double power = 0.0;                    ///< incident power of all rays
   Warnings warnings;
   bool complete = true;
-  std::string json;   ///< document retrace.rays/1
-  std::string table;  ///< for people
+  std::string json;   ///< JSON document retrace.rays/1
+  std::string table;  ///< summary as text
 };
 
+/// Traces the rays of a file or an emitter.
 /// \throw InputError, OutputError, BudgetError
 RETRACE_API RaysResult rays(const Design& design, const RaysRequest& request, const Running& running = {});
 
-/// Rays in memory, in the part's frame: numbers of one ray after those of another.
+/// Rays in memory, in the frame of the part. Each array contains the numbers of ray 0, then those of ray 1, and so on.
 struct RayArrays {
-  std::vector<double> origins_mm;      ///< three a ray
-  std::vector<double> directions;      ///< three a ray, of any length above 0
-  std::vector<double> stokes;          ///< four a ray, the first its power; or four for all
-  std::vector<double> axes;            ///< of the Stokes parameters, three a ray; empty: +x across each direction
-  std::vector<double> wavelengths_nm;  ///< one a ray, or one for all; empty: those of the design's light
+  std::vector<double> origins_mm;  ///< three numbers per ray
+  std::vector<double> directions;  ///< three numbers per ray; vectors of any length > 0
+  std::vector<double> stokes;      ///< four per ray, of which the first is the power; or four for all rays
+  /// Reference axes of the Stokes parameters, three numbers per ray. If it is empty, each axis is +x, projected normal
+  /// to the direction of the ray.
+  std::vector<double> axes;
+  std::vector<double> wavelengths_nm;  ///< one per ray, or one for all rays; empty: wavelengths of the design
 };
 
+/// Settings of trace(). They have the same meaning as in RaysRequest.
 struct TraceRequest {
-  double split = 1.0;  ///< as RaysRequest
+  double split = 1.0;
   double cutoff = 1e-10;
   bool keep_missed = false;
   std::uint32_t seed = 1;
 };
 
-/// Every ray that leaves.
+/// All rays that leave the part.
 struct TracedRays {
-  std::vector<double> origins_mm;       ///< where, three a ray
-  std::vector<double> directions;       ///< three a ray, unit vectors
-  std::vector<double> stokes;           ///< four a ray, the first its power
-  std::vector<double> axes;             ///< three a ray: along the long axis of the polarisation ellipse
-  std::vector<double> wavelengths_nm;   ///< one a ray
-  std::vector<std::uint8_t> accounts;   ///< one a ray: a number of ray_accounts()
-  std::vector<std::uint64_t> incident;  ///< one a ray: which ray it comes from, from 0
+  std::vector<double> origins_mm;       ///< points at which the rays leave, three numbers per ray
+  std::vector<double> directions;       ///< unit vectors, three numbers per ray
+  std::vector<double> stokes;           ///< four per ray, of which the first is the power
+  std::vector<double> axes;             ///< long axes of the polarisation ellipses, three numbers per ray
+  std::vector<double> wavelengths_nm;   ///< one per ray
+  std::vector<std::uint8_t> accounts;   ///< one per ray: index in ray_accounts()
+  std::vector<std::uint64_t> incident;  ///< one per ray: index of the incident ray, from 0
   std::map<std::string, double> ledger;
   double power = 0.0;
   Warnings warnings;
@@ -83,10 +87,11 @@ struct TracedRays {
   std::string table;
 };
 
-/// The names of accounts, by number.
+/// Returns the names of all accounts (fates of the light). TracedRays::accounts contains indices in this list.
 RETRACE_API std::vector<std::string> ray_accounts();
 
-/// \throw InputError naming the array where it is at fault, BudgetError
+/// Traces rays in memory and returns the rays that leave the part.
+/// \throw InputError with the name of the array that is invalid, BudgetError
 RETRACE_API TracedRays trace(const Design& design, const RayArrays& rays, const TraceRequest& request = {},
                              const Running& running = {});
 

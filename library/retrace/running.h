@@ -1,20 +1,20 @@
 #pragma once
 
-// How long work is watched, stopped and spread over cores.
+// Settings for running long computations: progress reports, cancellation and number of threads.
 
 #include "core/error.h"
 #include "core/progress.h"
 
 namespace retrace {
 
-/// How work is done. What comes out does not depend on it.
+/// Settings for running a computation. They do not change its result.
 struct Running {
-  Progress* progress = nullptr;                ///< told how far it has come
-  const Cancellation* cancellation = nullptr;  ///< asked whether to stop
-  unsigned threads = 0;                        ///< at most; 0: as many as there are cores
+  Progress* progress = nullptr;                ///< receives the finished fraction; null: no reports
+  const Cancellation* cancellation = nullptr;  ///< request to stop, which is checked regularly; null: none
+  unsigned threads = 0;                        ///< maximum number of threads; 0: number of cores
 };
 
-/// Of the library that runs, such as "0.1.0".
+/// Returns the version of the loaded library, such as "0.1.0".
 RETRACE_API const char* version();
 
 }  // namespace retrace

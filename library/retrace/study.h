@@ -1,6 +1,6 @@
 #pragma once
 
-// Studies: sweeps, tolerances, optima, as study files tell them (docs/studies.md).
+// Studies that are defined in study files: sweeps, tolerances and optimisation (docs/studies.md).
 
 #include <cstdint>
 #include <filesystem>
@@ -16,42 +16,46 @@
 
 namespace retrace {
 
-/// A study file, read and not yet checked.
+/// Content of a study file. It is checked when the study is carried out.
 struct Study {
   std::string text;
-  std::string source;  ///< file, or what stands for it; files that the text names are sought from its folder
-  std::map<std::string, std::string> designs;  ///< texts of design files by name, in place of files
+  std::string source;  ///< path of the file in messages; file names in the text are relative to its folder
+  std::map<std::string, std::string> designs;  ///< texts of design files by file name, used instead of the files
 
-  /// \throw InputError if it cannot be read
+  /// Reads a study file.
+  /// \throw InputError if the file cannot be read
   RETRACE_API static Study load(const std::filesystem::path& file);
 };
 
-/// How a study is carried out, as the options of `retrace sweep`.
+/// Settings for carrying out a study. They correspond to the options of `retrace sweep`.
 struct StudyRequest {
-  std::vector<std::string> overrides = {};  ///< `key=value`, of designs, [analysis] and [machining]
+  std::vector<std::string> overrides = {};  ///< texts `key=value` for keys of designs, [analysis] and [machining]
   std::uint32_t seed = 1;
-  std::filesystem::path store = {};  ///< SQLite file in which finished points are kept; empty: none
-  std::string if_exists = "refuse";  ///< what is done with a store that is there: refuse, resume or overwrite
+  std::filesystem::path store = {};  ///< SQLite file in which finished points are kept; empty: there is no such file
+  std::string if_exists = "refuse";  ///< action if the store exists already: refuse, resume or overwrite
 };
 
 struct StudyResult {
-  bool complete = true;
-  bool is_yes = true;  ///< the answer to what was asked: yield is enough, a design is feasible
+  bool complete = true;  ///< false if the computation was cancelled
+  /// False if the yield of a tolerance study is too low, or if an optimisation has found no feasible design.
+  bool is_yes = true;
   Warnings warnings;
-  std::string json;   ///< document retrace.sweep/1, retrace.tolerance/1 or retrace.optimum/1
-  std::string csv;    ///< one line a point; of an optimum, its front
-  std::string table;  ///< for people
-  Drawing drawing;    ///< of a tolerance study: the share of parts below a value
+  std::string json;   ///< JSON document retrace.sweep/1, retrace.tolerance/1 or retrace.optimum/1
+  std::string csv;    ///< one line per point; after an optimisation, the Pareto front
+  std::string table;  ///< summary as text
+  Drawing drawing;    ///< after a tolerance study: fraction of parts below a value
 };
 
-/// Designs and directions over ranges. \throw InputError with its place in the study or its design, OutputError
+/// Computes designs and directions over ranges of parameters.
+/// \throw InputError with the position in the study or in its design
+/// \throw OutputError
 RETRACE_API StudyResult sweep(const Study& study, const StudyRequest& request = {}, const Running& running = {});
 
-/// What becomes of a design in manufacture. \throw likewise
+/// Computes the effect of manufacturing errors on a design. Throws like sweep().
 RETRACE_API StudyResult tolerance(const Study& study, const StudyRequest& request = {}, const Running& running = {});
 
-/// The best design within constraints. Progress is not told: nobody knows how many designs will be looked at.
-/// \throw likewise
+/// Searches for the best design within constraints. Progress is not reported, because the number of designs that will
+/// be computed is unknown. Throws like sweep().
 RETRACE_API StudyResult optimize(const Study& study, const StudyRequest& request = {}, const Running& running = {});
 
 }  // namespace retrace

@@ -1,6 +1,6 @@
 #pragma once
 
-// What NC programs really cut, against their fabrication job.
+// Verifies what NC programs cut against their fabrication job.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,28 +16,28 @@
 
 namespace retrace {
 
-/// As the options of `retrace verify`.
+/// Settings of a verification. They correspond to the options of `retrace verify`.
 struct VerificationRequest {
-  std::filesystem::path job = {};  ///< file
+  std::filesystem::path job = {};  ///< job file
   std::vector<std::string> programs =
-      {};                        ///< files in the order in which they run; FILE@LINE: stopped behind that line
-  std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or told from the text
-  /// That facet planes may differ from the design by. By default 10, or what a Fanuc's increments leave if that is
-  /// more.
+      {};  ///< files in the order in which they run; FILE@LINE: the program was stopped after this line
+  std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto
+  /// Maximum deviation of facet planes from the design. The default is 10, or the deviation that the increments of a
+  /// Fanuc control cause if it is larger.
   std::optional<double> tolerance_nm = {};
-  std::string standing = {};                      ///< stage before which all has been cut; empty: the blank stands
-  std::filesystem::path as_machined = {};         ///< design file to write of the part that is left; empty: none
-  std::map<std::string, std::string> texts = {};  ///< of job and programs, by name, in place of files
+  std::string standing = {};  ///< stage that comes next: all stages before it have been cut; empty: the blank is uncut
+  std::filesystem::path as_machined = {};  ///< output file for the design of the machined part; empty: not written
+  std::map<std::string, std::string> texts = {};  ///< texts of job and programs by file name, used instead of files
 };
 
-/// Something that a program does and should not, or does not and should.
+/// A fault of a program.
 struct Finding {
-  std::string kind;     ///< such as "gouge"; docs/commands.md lists them
-  std::string program;  ///< file; empty: of none, or of all together
-  int line = 0;         ///< of the NC text; 0: of no line
+  std::string kind;     ///< kind of fault, such as "gouge"; docs/commands.md lists all kinds
+  std::string program;  ///< program file; empty: the finding concerns no file or all files together
+  int line = 0;         ///< line of the NC text; 0: the finding concerns no line
   std::string message;
-  double value = 0.0;  ///< in the unit that the message names
-  double limit = 0.0;
+  double value = 0.0;  ///< measured value, in the unit that the message contains
+  double limit = 0.0;  ///< limit of the value, in the same unit
 };
 
 struct Verification {
@@ -45,19 +45,23 @@ struct Verification {
   std::string verdict;  ///< pass, incomplete or fail
   std::vector<Finding> findings;
   Warnings warnings;
-  std::string json;   ///< document retrace.verification/1
-  std::string table;  ///< for people
-  Drawing map;        ///< the array from above, coloured by what the programs leave
+  std::string json;   ///< JSON document retrace.verification/1
+  std::string table;  ///< summary as text
+  Drawing map;        ///< plan of the array, coloured by the deviation of the machined surface
 
   struct Content;
-  std::shared_ptr<Content> content;  ///< the run itself
+  std::shared_ptr<Content> content;  ///< data of the verification, for write_as_machined()
 };
 
-/// \throw InputError for a file that cannot be read or understood, with its line; OutputError
+/// Verifies NC programs.
+/// \throw InputError with file and line if a file cannot be read or contains an error
+/// \throw OutputError
 RETRACE_API Verification verify(const VerificationRequest& request, const Running& running = {});
 
-/// Writes the part that programs leave as a design file and, where its facets have planes of their own, a table of them
-/// beside it: part.toml and part_facets.csv. \throw InputError if none could be measured, OutputError
+/// Writes the machined part as a design file, such as part.toml. If its facets have individual planes, the table of
+/// these planes is written to the same folder, such as part_facets.csv.
+/// \throw InputError if no facet could be measured
+/// \throw OutputError
 RETRACE_API void write_as_machined(const Verification& verification, const std::filesystem::path& design);
 
 }  // namespace retrace
