@@ -1,6 +1,6 @@
 #pragma once
 
-// Angles that know their unit, degrees at borders and radians inside, and the constants to convert between them.
+// Angles that store their value in radians and convert from and to degrees, and constants for these conversions.
 
 #include <numbers>
 
@@ -9,7 +9,7 @@ namespace retrace {
 inline constexpr double kTurn = 2.0 * std::numbers::pi;      ///< rad
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< rad
 
-/// An angle that knows its unit: degrees at every file and command boundary, radians inside.
+/// An angle, stored in radians. Files and commands use degrees; computations use radians.
 class Angle {
  public:
   constexpr Angle() = default;

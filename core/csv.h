@@ -1,6 +1,7 @@
 #pragma once
 
-// Tables of comma-separated values, read with messages that name line and column, and written with full precision.
+// Reads tables of comma-separated values, with error messages that contain line and column. Writes tables with full
+// precision.
 
 #include <fmt/format.h>
 
@@ -17,39 +18,44 @@
 
 namespace retrace {
 
-/// Reads a table row by row: a line of column names, then lines of as many values, with commas between. Blanks round
-/// them, a byte order mark, empty lines and lines that begin with # mean nothing. Whatever is wrong is refused by an
-/// InputError that names file, line and column.
+/// Reads a table row by row. The first line contains the column names, separated by commas. Each following line
+/// contains one value for each column. Blanks around values, a byte order mark, empty lines and lines that begin with #
+/// are ignored. Errors are reported by an InputError with file, line and column.
 class CsvReader {
  public:
-  /// Reads the column names. \param text must outlive the reader \param file its name, for messages
-  /// \param columns what the names must be; none: whatever they are
-  /// \throw InputError also if the text is longer than `most_bytes`
+  /// Reads the column names.
+  /// \param text text of the table; it must outlive the reader
+  /// \param file name of the file in messages
+  /// \param columns required column names; empty: any names are allowed
+  /// \throw InputError if the column names are invalid or the text is longer than `most_bytes`
   CsvReader(std::string_view text, std::string file, std::size_t most_bytes,
             std::span<const std::string_view> columns = {});
 
-  /// The column of that name. \throw InputError if there are two \pre no row was read
+  /// Returns the index of the column with the given name, or nothing if there is no such column.
+  /// \throw InputError if there are two such columns
+  /// \pre no row has been read
   std::optional<std::size_t> find(std::string_view column) const;
 
-  /// Goes on to the next row; false behind the last.
+  /// Reads the next row. Returns false after the last row.
   bool next();
-  /// Of the row, or of the column names; 0 behind the last.
+  /// Returns the line number of the current row, or of the column names before the first row. Returns 0 after the last
+  /// row.
   int line() const { return line_; }
-  /// How many were read.
+  /// Returns the number of rows that have been read.
   std::size_t rows() const { return rows_; }
 
-  // Values of the row.
+  // The following functions return values of the current row.
 
   std::string_view operator[](std::size_t column) const { return values_[column]; }
   double number(std::size_t column, const NumberRange& range = {}) const;
-  /// None where nothing stands.
+  /// Returns the number, or nothing if the value is empty.
   std::optional<double> number_or_none(std::size_t column) const;
-  /// The place of a value among the words that it may be.
+  /// Returns the index of the value in `words`.
   std::size_t one_of(std::size_t column, std::span<const std::string_view> words) const;
 
-  /// Refuses the row; behind the last, the file.
+  /// Throws an InputError about the current row. After the last row, the error is about the file.
   [[noreturn]] void fail(std::string_view text) const;
-  /// Refuses a value.
+  /// Throws an InputError about a value of the current row.
   [[noreturn]] void fail(std::size_t column, std::string_view text) const;
 
  private:
@@ -63,21 +69,21 @@ class CsvReader {
   std::size_t rows_ = 0;
 };
 
-/// Writes a table: numbers as the shortest text that reads back equal, nothing where they are not finite, texts in
-/// quotes where they need them (RFC 4180).
+/// Writes a table. Numbers are written as the shortest text that reads back as the same number, or as nothing if they
+/// are not finite. Texts are quoted if necessary (RFC 4180).
 class CsvWriter {
  public:
   CsvWriter() = default;
-  /// \param columns their names, with commas between
+  /// \param columns names of the columns, separated by commas
   explicit CsvWriter(std::string_view columns) : text_(std::string(columns) + '\n') {}
 
   void add(double value);
   void add(const std::optional<double>& value);
   void add(std::string_view text);
   void add(std::integral auto value) { add_plain(fmt::format("{}", value)); }
-  /// A text that is always in quotes.
+  /// Adds a text that is always quoted.
   void add_quoted(std::string_view text);
-  /// One value after another.
+  /// Adds all values of a range, each in a column of its own.
   template <std::ranges::range Values>
   requires(!std::convertible_to<const Values&, std::string_view>) void add(const Values& values) {
     for (const auto& value : values) add(value);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where the data that retrace ships lies: materials, machines, processes, limits, and the JSON Schemas of its file
+// Finds the data that is shipped with retrace: materials, machines, processes, limits, and the JSON Schemas of its file
 // formats.
 
 #include <filesystem>
@@ -9,14 +9,17 @@
 
 namespace retrace {
 
-/// The folder of shipped data: $RETRACE_DATA_DIR if set, else share/retrace of installation_folder().
+/// Returns the folder of shipped data: $RETRACE_DATA_DIR if this variable is set, and otherwise share/retrace of
+/// installation_folder().
 /// \throw InputError if there is no such folder
 std::filesystem::path data_directory();
 
-/// The JSON Schema of a file format, which lies beside that folder. \throw InputError if it is not there
+/// Returns the file with the JSON Schema of a file format. It is in share/retrace_schemas of installation_folder().
+/// \throw InputError if the file does not exist
 std::filesystem::path schema_file(std::string_view format);
 
-/// The TOML files of one of its folders, by name. \throw InputError if it cannot be read
+/// Returns the TOML files in a folder of data_directory(), sorted by name.
+/// \throw InputError if the folder cannot be read
 std::vector<std::filesystem::path> shipped_files(std::string_view folder);
 
 }  // namespace retrace

@@ -1,6 +1,6 @@
 #pragma once
 
-// The exceptions of retrace and the exit codes of the process that they lead to.
+// Exceptions of retrace, and the exit codes that they cause.
 
 #include <stdexcept>
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace retrace {
 
-/// What the process returns to the shell. The numbers are part of the contract with scripts.
+/// Exit code of the process. Scripts depend on these numbers, so they must not change.
 enum class ExitCode : int {
-  done = 0,          ///< what was asked is done
-  answer_is_no = 1,  ///< done, and the answer to what was asked is no
-  bad_input = 2,     ///< usage, or an input that cannot be opened, read or understood
-  failed = 3,        ///< an output that cannot be written, memory, or a budget that ran out
-  interrupted = 130  ///< stopped by the user; what is finished is valid
+  done = 0,          ///< success
+  answer_is_no = 1,  ///< success with a negative result, such as a failed test
+  bad_input = 2,     ///< usage error, or an input that cannot be opened, read or understood
+  failed = 3,        ///< an output cannot be written, or a budget of memory or time is exhausted
+  interrupted = 130  ///< stopped by the user; finished results are valid
 };
 
-/// Base of every error that retrace throws on purpose: one line of text and the exit code it leads to.
+/// Base class of all errors that retrace throws. An error has a message of one line and an exit code.
 class RETRACE_API Error : public std::runtime_error {
  public:
   Error(ExitCode exit_code, const std::string& message) : std::runtime_error(message), exit_code_(exit_code) {}
@@ -29,21 +29,22 @@ class RETRACE_API Error : public std::runtime_error {
   ExitCode exit_code_;
 };
 
-/// Where in an input something was found. An empty file or key and a line of 0 mean "not known" and are left out.
+/// Position in an input. An empty file, an empty key or the line 0 means that this part is unknown; it is omitted in
+/// messages.
 struct InputLocation {
   std::string file;
   int line = 0;
   std::string key;
 };
 
-/// An input that cannot be used. The message reads `file:line: key: text` (exit code 2).
+/// Error in an input. The message has the form `file:line: key: text` (exit code 2).
 class RETRACE_API InputError : public Error {
  public:
   InputError(const InputLocation& where, std::string_view text);
   explicit InputError(std::string_view text) : InputError(InputLocation{}, text) {}
 
   const InputLocation& where() const noexcept { return where_; }
-  /// The message without the location.
+  /// Returns the message without the position.
   const std::string& text() const noexcept { return text_; }
 
  private:
@@ -57,7 +58,7 @@ class RETRACE_API OutputError : public Error {
   explicit OutputError(const std::string& message) : Error(ExitCode::failed, message) {}
 };
 
-/// A limit on time, memory or accuracy that was reached before the answer was (exit code 3).
+/// Error that a limit on time, memory or accuracy was reached before the result was computed (exit code 3).
 class RETRACE_API BudgetError : public Error {
  public:
   explicit BudgetError(const std::string& message) : Error(ExitCode::failed, message) {}

@@ -1,6 +1,6 @@
 #pragma once
 
-// Texts that stand for files: who has a file's content in memory hands it on under a name.
+// Texts that are used instead of the contents of files, for callers that have the contents in memory.
 
 #include <map>
 #include <string>
@@ -9,10 +9,11 @@
 
 namespace retrace {
 
-/// Contents by the names of the files that they stand for, which are then not read.
+/// Contents of files by file name. Files with these names are not read.
 using FileTexts = std::map<std::string, std::string>;
 
-/// The content of a file, given or read. \throw InputError as read_file()
+/// Returns the content of a file, from `texts` if it contains the file, and otherwise from the file system.
+/// \throw InputError like read_file()
 inline std::string text_of_file(const std::string& file, const FileTexts& texts,
                                 std::size_t most_bytes = kMostTextBytes) {
   const auto given = texts.find(file);

@@ -8,11 +8,11 @@ namespace retrace {
 namespace fs = std::filesystem;
 namespace {
 
-/// The file of the program or library that this code is in.
+/// Returns the file of the program or library that contains this code.
 fs::path own_file() {
   std::error_code ignored;
   Dl_info found = {};
-  // Of a program the loader tells the name it was called by, which may be relative or a link.
+  // For a program, dladdr() returns the name with which it was called. This name may be relative or a symbolic link.
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   if (::dladdr(reinterpret_cast<const void*>(&installation_folder), &found) == 0 || found.dli_fname == nullptr)
     return program;

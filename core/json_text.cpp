@@ -16,7 +16,7 @@ bool is_written(const Json& value) {
   return !value.is_number_float() || std::isfinite(value.get<double>());
 }
 
-/// Numbers, and arrays of numbers in any depth, such as coordinates.
+/// Returns true for a number and for an array of numbers of any depth, such as coordinates.
 bool is_numeric(const Json& value) {
   return value.is_number() || (value.is_array() && std::all_of(value.begin(), value.end(), is_numeric));
 }

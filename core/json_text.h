@@ -11,13 +11,14 @@
 
 namespace retrace {
 
-/// A JSON document as text: keys in the order they were set, numbers as the shortest text that reads back equal, and
-/// keys whose value is NaN or infinite left out. Objects of numbers and texts alone stand on one line, and so do
-/// numbers in arrays, nested or not. Ends with a newline.
+/// Returns a JSON document as text. Keys are in the order in which they were set, and keys with the value NaN or
+/// infinity are omitted. Numbers are written as the shortest text that reads back as the same number. An object that
+/// contains only numbers and texts is written on one line, as is an array of numbers, also a nested one. The text ends
+/// with a newline.
 std::string to_text(const nlohmann::ordered_json& document);
 
-/// The document of a result: its schema, what it holds, and what every result says of itself at its end: the program's
-/// version, warnings, and whether all that was requested is there.
+/// Returns the JSON document of a result: the schema, the content, the version of the program, the warnings, and
+/// whether the result is complete.
 std::string result_text(std::string_view schema, nlohmann::ordered_json content, const Warnings& warnings,
                         bool complete = true);
 

@@ -1,13 +1,13 @@
 #pragma once
 
-// The range of values that a number of a file may have, and its words for messages.
+// Range of allowed values of a number in a file, and its description in messages.
 
 #include <limits>
 #include <string>
 
 namespace retrace {
 
-/// What a number of a file may be. Infinite bounds are not named in messages.
+/// Range of allowed values of a number. Infinite bounds are omitted in messages.
 struct NumberRange {
   double low = -std::numeric_limits<double>::infinity();
   bool low_included = true;
@@ -15,7 +15,7 @@ struct NumberRange {
   bool high_included = true;
 
   bool contains(double value) const;
-  /// "> 0", ">= 60 and <= 120"; "any number" without bounds
+  /// Returns the range as text, such as "> 0" or ">= 60 and <= 120". Returns "any number" for a range without bounds.
   std::string text() const;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Pictures of bytes or floats, and the interface to the module that reads every format OpenImageIO knows and writes PNG
-// and OpenEXR.
+// Pictures of bytes or floats, and the interface to the module that reads all formats of OpenImageIO and writes PNG and
+// OpenEXR.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,26 +12,26 @@
 
 namespace retrace {
 
-/// A picture of 8-bit values, row by row from above, the channels of a pixel side by side.
+/// A picture of 8-bit values, row by row from the top. The channels of a pixel are stored next to each other.
 struct BytePicture {
   std::size_t columns = 0;
   std::size_t rows = 0;
   std::size_t channels = 0;
-  int alpha_channel = -1;  ///< -1: none; other channels are multiplied by it already
+  int alpha_channel = -1;  ///< index of the alpha channel; -1: none. The other channels are premultiplied by alpha
   std::vector<std::uint8_t> values;
 };
 
-/// A picture of numbers, row by row from above.
+/// A picture of floating-point numbers, row by row from the top.
 struct FloatPicture {
   std::size_t columns = 0;
   std::size_t rows = 0;
-  std::vector<std::pair<std::string, std::vector<double>>> channels;  ///< name, one value a pixel
+  std::vector<std::pair<std::string, std::vector<double>>> channels;  ///< name of the channel, and one value per pixel
   std::vector<std::pair<std::string, std::string>> texts;             ///< metadata, such as units
-  std::vector<std::pair<std::string, double>> numbers;                ///< likewise
+  std::vector<std::pair<std::string, double>> numbers;                ///< metadata that are numbers
 };
 
-/// Reads and writes files of pictures. Every function throws std::runtime_error, with what the library says, for a file
-/// that cannot be read or made.
+/// Reads and writes picture files. If a file cannot be read or created, all functions throw std::runtime_error with the
+/// message of the library.
 class PictureFiles {
  public:
   struct Size {
@@ -42,17 +42,18 @@ class PictureFiles {
   virtual ~PictureFiles() = default;
   virtual Size size(const std::filesystem::path& file) const = 0;
   virtual BytePicture read(const std::filesystem::path& file) const = 0;
-  /// 32-bit floats, ZIP compressed, channels in alphabetical order of their names. The same picture gives the same
-  /// bytes.
+  /// Returns the content of an OpenEXR file with 32-bit floats and ZIP compression. The channels are in alphabetical
+  /// order. Equal pictures give equal bytes.
   virtual std::string exr(const FloatPicture& picture) const = 0;
-  /// sRGB. \pre three channels
+  /// Returns the content of a PNG file in sRGB.
+  /// \pre the picture has three channels
   virtual std::string png(const BytePicture& picture) const = 0;
 };
 
-/// The library behind PictureFiles, OpenImageIO, brings some 250 others with it, whose loading would take a quarter of
-/// a second and 120 MiB of every run. So it is a module of its own, lib/retrace/retrace_pictures.so beside the
-/// program's bin/ folder, loaded at its first use. \throw OutputError if the module cannot be loaded, as in a build
-/// without OpenImageIO
+/// Returns the functions for picture files. They use OpenImageIO, which loads about 250 other libraries. Loading them
+/// would cost a quarter of a second and 120 MiB in every run. Therefore they are in a module,
+/// lib/retrace/retrace_pictures.so, which is loaded at its first use.
+/// \throw OutputError if the module cannot be loaded, for example in a build without OpenImageIO
 const PictureFiles& picture_files();
 
 }  // namespace retrace

@@ -17,7 +17,7 @@ void run_with_threads(unsigned threads, const std::function<void()>& work) {
     return;
   }
   const unsigned useful = std::min(threads, std::max(8U, 4 * std::thread::hardware_concurrency()));
-  // TBB's own limit is the number of cores; asking for more is allowed.
+  // The default limit of TBB is the number of cores. A larger number is allowed.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, useful);
   tbb::task_arena arena(static_cast<int>(useful));
   arena.execute(work);
@@ -25,8 +25,9 @@ void run_with_threads(unsigned threads, const std::function<void()>& work) {
 
 namespace {
 
-/// ThreadSanitizer cannot see how TBB, which is built without it, hands work out and back. Two atomics say it in our
-/// own code, so that it finds what is really shared.
+/// A parallel loop. TBB is built without ThreadSanitizer, which therefore does not see how TBB passes work to threads
+/// and waits for them. Two atomics make this synchronisation visible, so that ThreadSanitizer reports only real data
+/// races.
 struct Loop {
   explicit Loop(const std::function<void(std::size_t)>& its_work) : work(its_work) {
     handed_out.fetch_add(1, std::memory_order_release);
@@ -40,7 +41,7 @@ struct Loop {
   std::atomic<unsigned> handed_back{0};
 };
 
-/// A part of a loop on the thread that has it, until it is done or throws.
+/// A part of a loop that one thread executes, until it is finished or throws.
 class Piece {
  public:
   explicit Piece(Loop& loop) : loop_(loop) { static_cast<void>(loop_.handed_out.load(std::memory_order_acquire)); }
@@ -56,11 +57,11 @@ class Piece {
 
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
   Loop loop(work);
-  // A thread that waits for the others takes pieces of this loop alone, not of an outer parallel loop around it.
+  // A thread that waits for other threads may execute parts of this loop, but not of an enclosing parallel loop.
   tbb::this_task_arena::isolate([&loop, count] {
     using Range = tbb::blocked_range<std::size_t>;
-    // What TBB copies is one pointer: copies of more are calls of memcpy, which tests/tsan.supp cannot tell from
-    // others.
+    // The lambda captures one pointer, which TBB copies without memcpy. Larger captures would cause calls of memcpy,
+    // which tests/tsan.supp could not distinguish from other calls.
     tbb::parallel_for(Range(0, count), [&loop](const Range& range) {
       const Piece piece(loop);
       for (std::size_t k = range.begin(); k < range.end(); ++k) loop.work(k);

@@ -1,17 +1,17 @@
 #pragma once
 
-// Runs work on a limited number of threads, and loops in parallel.
+// Runs work with a limited number of threads, and runs loops in parallel.
 
 #include <cstddef>
 #include <functional>
 
 namespace retrace {
 
-/// Runs `work` with at most `threads` threads (0: all that the process may use; many more than there are cores are not
-/// made, they would only cost). What is computed does not depend on it.
+/// Runs `work` with at most `threads` threads. 0 means all threads that the process may use. The number is limited to 8
+/// or to 4 times the number of cores, whichever is larger. Results do not depend on the number of threads.
 void run_with_threads(unsigned threads, const std::function<void()>& work);
 
-/// Calls work(0) .. work(count - 1) in any order, on the threads at hand.
+/// Calls work(0), ..., work(count - 1) in any order, with all available threads.
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace retrace

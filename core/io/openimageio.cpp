@@ -1,4 +1,4 @@
-// The module that is loaded for pictures. The one place that names OpenImageIO.
+// Module for picture files, which is loaded at its first use. Only this file uses OpenImageIO.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -12,7 +12,8 @@
 namespace retrace {
 namespace {
 
-/// \param why what the library says, which may be nothing
+/// Throws an error with the message of the library.
+/// \param why message of the library, which may be empty
 [[noreturn]] void fail(const std::string& why) {
   throw std::runtime_error(why.empty() ? "it ends early or is damaged" : why);
 }
@@ -26,7 +27,8 @@ std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
   return input;
 }
 
-/// The file of a format as bytes. \param pixels interleaved, of type `type`
+/// Returns the content of a picture file of the format `name`.
+/// \param pixels values of type `type`, with the channels of a pixel next to each other
 std::string encoded(const char* name, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
@@ -65,7 +67,7 @@ class OpenImageIo final : public PictureFiles {
     spec.channelnames.clear();
     for (const auto& [name, values] : channels) spec.channelnames.push_back(name);
     spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "");  // otherwise the time of day, and no two files are alike
+    spec.attribute("DateTime", "");  // the default is the current time, which would make equal pictures different files
     for (const auto& [key, value] : picture.texts) spec.attribute(key, value);
     for (const auto& [key, value] : picture.numbers) spec.attribute(key, static_cast<float>(value));
     const std::size_t pixels = picture.columns * picture.rows;

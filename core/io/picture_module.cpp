@@ -1,4 +1,4 @@
-// What the rest of the program sees of pictures.
+// Loads the module for picture files.
 #include "core/module.h"
 #include "core/pictures.h"
 

@@ -9,14 +9,15 @@ namespace retrace {
 namespace {
 
 constexpr int kRows = 12;
-constexpr int kLeastRows = 4;  ///< before which agreement may be chance
-/// Errors below this (relative) are good enough to stop at.
+constexpr int kLeastRows = 4;  ///< minimum number of rows; entries of fewer rows may agree by chance
+/// Relative error at which the extrapolation stops.
 constexpr double kGoal = 1e-5;
 
-/// Richardson's extrapolation of difference quotients to step 0 for steps that are halved from row to row.
+/// Richardson extrapolation of difference quotients to step 0. The step is halved from row to row.
 class Tableau {
  public:
-  /// \param order by which the error's power of the step grows from column to column: 2 for central differences, else 1
+  /// \param order increase of the error's power of the step from column to column: 2 for central differences, 1 for
+  /// one-sided differences
   explicit Tableau(int order) : ratio_(order == 2 ? 4.0 : 2.0) {}
 
   void add(const Sample& quotient) {
@@ -51,7 +52,7 @@ Sample quotient_of(const Sample& from, const Sample& to, double distance) {
   return {(to.value - from.value) / distance, (to.noise + from.noise) / std::abs(distance)};
 }
 
-/// Central and one-sided differences of the same samples.
+/// Central and one-sided differences that are computed from the same samples.
 class BothSides {
  public:
   explicit BothSides(const Sample& middle) : middle_(middle) {}
@@ -66,7 +67,7 @@ class BothSides {
     Derivative best = central_.best();
     const Derivative& above = above_.best();
     const Derivative& below = below_.best();
-    // Across a kink central differences agree with each other on the mean of two slopes, which is none.
+    // At a kink, central differences converge to the mean of the two slopes, which is not a derivative.
     const double apart = std::abs(above.value - below.value) - above.error - below.error;
     if (apart > 0.0) best.error = std::max(best.error, 0.5 * apart);
     return best;
@@ -90,10 +91,10 @@ class OneSide {
   Tableau differences_{1};
 };
 
-/// Tells when smaller steps have nothing to add.
+/// Decides when smaller steps cannot improve the result.
 class Patience {
  public:
-  /// \param noise of the next quotient
+  /// \param noise noise of the next difference quotient
   bool ends_after(int row, const Derivative& best, double noise) {
     constexpr int kIdleRows = 2;
     idle_rows_ = best.error > 0.5 * error_ ? idle_rows_ + 1 : 0;
@@ -121,7 +122,8 @@ Derivative extrapolate(Differences differences, double step, double noise, const
 }  // namespace
 
 Derivative differentiate(const std::function<Sample(double)>& f, double x, const DifferenceRange& range) {
-  // Of two sides, the narrower may cost a few halvings of the step; below that one side is better.
+  // Minimum room on the narrower side, relative to the first step, for central differences. With less room, differences
+  // on the wider side are better.
   constexpr double kNarrow = 1.0 / 8.0;
   const double room_below = x - range.lower;
   const double room_above = range.upper - x;

@@ -9,34 +9,37 @@
 
 namespace retrace {
 
-/// The value of a function that is computed with an error, such as that of leaving out what is small.
+/// Value of a function with a bound on its error, such as the error of neglecting small terms.
 struct Sample {
   double value = 0.0;
-  double noise = 0.0;  ///< bound on the error of `value` that has nothing to do with its neighbours'; >= 0
+  double noise = 0.0;  ///< bound on the part of the error that is independent of errors at neighbouring arguments; >= 0
 };
 
-/// Where a function may be evaluated to find its derivative, in units of its argument.
+/// Range in which a function may be evaluated to compute its derivative, in units of its argument.
 struct DifferenceRange {
-  double first_step = 0.0;  ///< over which the function is expected to be smooth; > 0
+  double first_step = 0.0;  ///< distance over which the function is expected to be smooth; > 0
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
 };
 
 struct Derivative {
   double value = 0.0;
-  double error = std::numeric_limits<double>::infinity();  ///< estimated bound on the error of `value`, noise included
-  double noise = 0.0;                                      ///< share of `error` that noise has
+  double error = std::numeric_limits<double>::infinity();  ///< estimated bound on the error, including `noise`
+  double noise = 0.0;                                      ///< part of `error` due to the noise of the samples
 
   bool converged() const { return error <= 1e-3 * std::abs(value) + 1e-6; }
 };
 
-/// The derivative of `f` at `x` by central differences with steps halved from `range.first_step`, extrapolated to step
-/// 0 in a Neville tableau whose entries are compared to estimate the error (Ridders, Adv. Eng. Software 4, 75, 1982).
-/// Differences to one side alone are extrapolated as well: where they disagree by more than their errors `f` has a
-/// kink, and half their distance is the error. Where `range` leaves no room on one side, the other serves alone.
+/// Computes the derivative of `f` at `x` by central differences. The steps are halved, beginning with
+/// `range.first_step`, and the differences are extrapolated to step 0 in a Neville tableau. The error is estimated by
+/// comparing entries of the tableau (Ridders, Adv. Eng. Software 4, 75, 1982). One-sided differences are extrapolated
+/// as well. If they differ by more than their errors, `f` has a kink, and half of their difference is the error. If
+/// `range` has too little room on one side of x, only the differences on the other side are used.
 ///
-/// A kink or jump as near as the least step, 1/2048 of the first, is not resolved: the result has not converged then.
-/// \pre range.lower <= x <= range.upper. `f` is called for values within the range only, at most 25 times.
+/// A kink or jump that is closer to x than the smallest step, 1/2048 of the first, is not resolved. The result has then
+/// not converged.
+/// \pre range.lower <= x <= range.upper
+/// \pre `f` can be called for all values within the range; it is called at most 25 times
 Derivative differentiate(const std::function<Sample(double)>& f, double x, const DifferenceRange& range);
 
 }  // namespace retrace

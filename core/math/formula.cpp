@@ -16,8 +16,9 @@ namespace {
 
 using Step = Formula::Step;
 
-/// muParser reads, and this writes down what it would compute: its values are indices of nodes. Thus the grammar is
-/// the library's and the derivatives, which it has none of, are ours.
+/// Records the operations of a formula while muParser evaluates it. The values that muParser computes with are indices
+/// of nodes. The grammar is thus that of muParser, and derivatives, which muParser does not support, can be computed
+/// from the nodes.
 struct Recorder {
   std::vector<Formula::Node> nodes;
 
@@ -27,7 +28,8 @@ struct Recorder {
   }
 };
 
-/// Callbacks of the library's operators take no data of ours.
+/// Recorder of the formula that is being parsed. It is global because the callbacks of muParser's operators have no
+/// parameter for user data.
 thread_local Recorder* recorder = nullptr;
 
 template <Step step>
@@ -42,12 +44,13 @@ double same(double a) {
   return a;
 }
 
-/// A number at the front of `text`: recorded, and skipped.
+/// Callback of muParser that reads a number at the beginning of `text` and records it as a constant.
+/// \return 1 if there is a number, which is then skipped; 0 otherwise
 int number_at(const char* text, int* position, double* value) {
   if (*text != '.' && std::isdigit(static_cast<unsigned char>(*text)) == 0) return 0;
   const std::string_view rest(text);
   const std::optional<LeadingNumber> number = leading_number(rest);
-  // Left to the library's own reader it would become a number that is taken for a step.
+  // muParser must not read the number itself, because its value would be used as the index of a node.
   if (!number) throw mu::Parser::exception_type("a number too large or too small");
   *position += static_cast<int>(number->length);
   *value = recorder->add(Step::constant, 0.0, 0.0, number->value);
@@ -66,7 +69,7 @@ void set_grammar(mu::Parser& parser) {
   parser.DefineOprt("*", binary<Step::multiply>, mu::prMUL_DIV, mu::oaLEFT, false);
   parser.DefineOprt("/", binary<Step::divide>, mu::prMUL_DIV, mu::oaLEFT, false);
   parser.DefineOprt("^", binary<Step::power>, mu::prPOW, mu::oaRIGHT, false);
-  // -x^2 is -(x^2): the sign binds as a product does.
+  // -x^2 is -(x^2): the sign has the precedence of a product.
   parser.DefineInfixOprt("-", unary<Step::negate>, mu::prMUL_DIV, false);
   parser.DefineInfixOprt("+", same, mu::prMUL_DIV, false);
   parser.DefineFun("sqrt", unary<Step::sqrt>, false);
@@ -85,7 +88,7 @@ void set_grammar(mu::Parser& parser) {
   parser.DefineFun("atan2", binary<Step::atan2>, false);
 }
 
-/// Works out what is constant, and leaves out what the value does not need.
+/// Evaluates constant subexpressions and removes nodes that the result does not need.
 std::vector<Formula::Node> simplified(std::vector<Formula::Node> nodes, std::size_t result) {
   const auto index = [](int i) { return static_cast<std::size_t>(i); };
   const auto is_leaf = [](const Formula::Node& n) { return n.step == Step::constant || n.step == Step::variable; };
@@ -131,7 +134,7 @@ Formula parse_formula(const std::string& text, const std::vector<std::string>& v
       at != text.end())
     throw InputError(where, fmt::format("does not parse at character {}: it is none that shows, got {}",
                                         at - text.begin() + 1, in_quotes(text)));
-  // The library takes conditions whatever its operators are; they would have no derivatives.
+  // muParser always accepts conditions (a ? b : c). They cannot be differentiated here and are refused.
   if (const std::size_t at = text.find_first_of("?:"); at != std::string::npos)
     throw InputError(where, fmt::format("does not parse at character {}: conditions are not allowed, got {}", at + 1,
                                         in_quotes(text)));
@@ -153,7 +156,7 @@ Formula parse_formula(const std::string& text, const std::vector<std::string>& v
     if (results != 1) throw InputError(where, "must be one formula, got several: " + in_quotes(text));
     result = static_cast<std::size_t>(values[0]);
   } catch (const mu::Parser::exception_type& error) {
-    // At the end of the text the library counts one more.
+    // For an error at the end of the text, muParser returns a position that is too large by one.
     const std::size_t place = std::min(static_cast<std::size_t>(error.GetPos()), text.size()) + 1;
     throw InputError(where, fmt::format("does not parse at character {}: {}, got {}", place,
                                         printable(error.GetMsg(), 120), in_quotes(text)));

@@ -1,7 +1,7 @@
 #pragma once
 
-// Formulas that users write into files, such as a sag z(x, y): parsed once, then evaluated on numbers or on jets with
-// exact derivatives.
+// Formulas in files of users, such as a sag z(x, y). They are parsed one time and then evaluated for numbers or for
+// jets, which carry exact derivatives.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace retrace {
 
-/// A formula of a file as a list of elementary steps, so that it can be evaluated on numbers and on jets alike.
+/// A formula as a list of elementary operations, which can be evaluated for numbers and for jets.
 class Formula {
  public:
   enum class Step {
@@ -45,26 +45,29 @@ class Formula {
   };
 
   std::string text;
-  std::vector<Node> nodes;  ///< operands stand before what uses them; all that are needed, the value last
+  std::vector<Node> nodes;  ///< operations; operands precede the operations that use them, and the last node is the
+                            ///< value of the formula
 
-  /// The value for those values of the variables, which are numbers or jets (core/math/jets.h,
-  /// core/math/partials.h). Not finite where the formula is not. core/math/formula_evaluation.h defines it.
+  /// Returns the value of the formula for the given values of its variables, which are numbers or jets
+  /// (core/math/jets.h, core/math/partials.h). The result is not finite where the formula is undefined. The function is
+  /// defined in core/math/formula_evaluation.h.
   template <class T>
   T evaluate(const T* variables) const;
 
   bool uses(int variable) const;
 };
 
-/// Whether a step has two operands; constants and variables have none.
+/// Returns true if an operation has two operands.
 bool is_binary(Formula::Step step);
 
-/// Longest formula that is read, in characters.
+/// Maximum length of a formula, in characters.
 inline constexpr std::size_t kLongestFormula = 2000;
 
-/// Reads a formula: numbers, pi, the variables, + - * / ^, brackets and sqrt exp log sin cos tan asin acos atan atan2
-/// sinh cosh tanh abs. Powers bind first and to the right, signs next: -x^2 is -(x^2). Angles are in radians. What is
-/// constant is worked out.
-/// \throw InputError at `where` with the place in the formula where it does not parse
+/// Parses a formula. It may contain numbers, pi, the variables, + - * / ^, brackets and the functions sqrt exp log sin
+/// cos tan asin acos atan atan2 sinh cosh tanh abs. Powers have the highest precedence and associate to the right,
+/// followed by signs: -x^2 is -(x^2). Angles are in radians. Constant subexpressions are evaluated.
+/// \param where position of the formula in the input, for messages
+/// \throw InputError with the position in the formula at which parsing failed
 Formula parse_formula(const std::string& text, const std::vector<std::string>& variables, const InputLocation& where);
 
 }  // namespace retrace

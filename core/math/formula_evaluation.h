@@ -1,6 +1,6 @@
 #pragma once
 
-// How formulas are evaluated, for the .cpp files that do so with their own number types.
+// Evaluates formulas. Include this header only in .cpp files that evaluate formulas for their own number types.
 
 #include <array>
 #include <cmath>
@@ -38,7 +38,7 @@ T hyperbolic_cosine(const T& a) {
   using std::exp;
   return (exp(a) + exp(-a)) * 0.5;
 }
-/// By the exponential that does not overflow.
+/// Computes the hyperbolic tangent from the exponential that does not overflow.
 template <class T>
 T hyperbolic_tangent(const T& a) {
   using std::exp;
@@ -48,7 +48,7 @@ T hyperbolic_tangent(const T& a) {
   return (is_negative ? e - one : one - e) / (one + e);
 }
 
-/// a to a power that is not whole. Numbers overload it that have a better way.
+/// Returns a to a power that is not an integer. Number types with a better method overload this function.
 template <class T>
 T constant_power(const T& a, double exponent) {
   using std::exp;
@@ -60,7 +60,7 @@ inline double constant_power(double a, double exponent) {
   return std::pow(a, exponent);
 }
 
-/// Whole exponents are products, which also exist where the base is not positive.
+/// Returns a^b. Integer exponents are computed as products, which are also defined if a is not positive.
 template <class T>
 T to_the_power(const T& a, const T& b, const Formula::Node& exponent) {
   using std::exp;
@@ -124,7 +124,7 @@ T Formula::evaluate(const T* variables) const {
       values[i] = formula_steps::one_step(nodes[i], values, variables, nodes);
     return values[nodes.size() - 1];
   };
-  // Short formulas of short numbers need no memory.
+  // Short formulas for small number types are evaluated on the stack, without allocation.
   constexpr std::size_t kFew = 32;
   if constexpr (sizeof(T) <= 64) {
     if (nodes.size() <= kFew) {

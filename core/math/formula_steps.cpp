@@ -1,4 +1,4 @@
-// What formulas are made of, whoever has read them.
+// Properties of formulas that do not depend on the parser.
 #include "core/math/formula.h"
 
 namespace retrace {

@@ -2,7 +2,8 @@
 
 // Interval arithmetic from Boost, for proofs that a function keeps within a bound over a whole region.
 
-// All of <boost/numeric/interval.hpp> but the rounding modes of processors, which not every one has.
+// These are the headers of <boost/numeric/interval.hpp> without the rounding modes of processors, which are not
+// available on every processor.
 #include <boost/limits.hpp>
 #include <boost/numeric/interval/arith.hpp>
 #include <boost/numeric/interval/arith2.hpp>
@@ -19,8 +20,8 @@
 
 namespace retrace {
 
-/// Enclosures of real numbers, for proofs. Their ends are not rounded outwards: what rounding adds, below 1e-9 of the
-/// figures at hand, is left to the margins of what is proved with them. Only for .cpp files.
+/// Intervals that enclose real numbers, for proofs. Their bounds are not rounded outwards. The rounding errors, below
+/// 1e-9 of typical values here, must be covered by the margins of the proofs. Only for .cpp files.
 using Interval = boost::numeric::interval<
     double, boost::numeric::interval_lib::policies<boost::numeric::interval_lib::save_state_nothing<
                                                        boost::numeric::interval_lib::rounded_transc_exact<double>>,

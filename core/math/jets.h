@@ -1,9 +1,9 @@
 #pragma once
 
-// Automatic differentiation along a line: truncated Taylor series in one variable over the elementary functions of
-// formulas (A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, tables 13.1 and 13.2). Coefficients
-// are doubles, intervals for proofs, or numbers that carry derivatives of their own: they nest. partials.h has the
-// derivatives by two variables.
+// Automatic differentiation along a line: truncated Taylor series in one variable for the elementary functions of
+// formulas (A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, tables 13.1 and 13.2). The
+// coefficients are doubles, intervals for proofs, or numbers that carry derivatives themselves, so series can be
+// nested. Derivatives with respect to two variables are in partials.h.
 
 #include <algorithm>
 #include <array>
@@ -14,12 +14,12 @@
 
 namespace retrace::jets {
 
-/// Most derivatives that a series carries.
+/// Maximum order of the derivatives of a series.
 inline constexpr int kMostOrder = 9;
-/// Of a series: the order is known when it runs only.
+/// Template argument for a series whose order is known only at run time.
 inline constexpr int kAnyOrder = -1;
 
-/// How many derivatives a series has.
+/// Order of a series, fixed by the type (N >= 0) or stored in the object (kAnyOrder).
 template <int N>
 struct Length {
   static constexpr int order = N;
@@ -35,12 +35,14 @@ struct Length<kAnyOrder> {
   explicit Length(int length) : order(length) {}
 };
 
-/// The start of a Taylor series: c[0] + c[1] t + ... + c[order] t^order. Results are as long as the shorter operand.
-/// Of an order that the type fixes it is quicker, as the compiler writes the loops out; order 2, where paths and proofs
-/// spend their time, is written out here, which leaves it in registers.
+/// Truncated Taylor series c[0] + c[1] t + ... + c[order] t^order. The result of an operation has the smaller order of
+/// its operands. A series whose order is fixed by its type is faster, because the compiler unrolls the loops. Order 2
+/// is used most by path computations and proofs. It is therefore implemented without loops, which keeps it in
+/// registers.
 template <class T, int N = kAnyOrder>
 struct Series : Length<N> {
-  std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMostOrder : N) + 1> c{};  ///< the first order + 1 count
+  std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMostOrder : N) + 1> c{};  ///< coefficients; the first order
+                                                                                     ///< + 1 are used
 
   Series() = default;
   explicit Series(int length) : Length<N>(length) {}
@@ -49,10 +51,10 @@ struct Series : Length<N> {
   const T& operator[](int k) const { return c[static_cast<std::size_t>(k)]; }
 };
 
-/// A path's look at a surface: height, slope and bend along a line.
+/// Height, slope and half of the second derivative of a surface along a line.
 using Jet2 = Series<double, 2>;
 
-/// A constant that is as long as `like`.
+/// Returns a constant as a series of the same order as `like`.
 template <std::constructible_from<double> T>
 T constant_like(const T&, double value) {
   return T(value);
@@ -65,7 +67,7 @@ Series<T, N> constant_like(const Series<T, N>& like, double value) {
   return s;
 }
 
-/// value + slope t, to that order.
+/// Returns the series value + slope t of the given order.
 template <class T, int N = kAnyOrder>
 Series<T, N> line_series(const T& value, const T& slope, int order) {
   Series<T, N> s(order);
@@ -167,7 +169,10 @@ Series<T, N> operator/(double a, const Series<T, N>& b) {
   return constant_like(b, a) / b;
 }
 
-/// f(a) with the first and the second derivative of f there.
+/// Returns f(a) by the chain rule.
+/// \param value f at a[0]
+/// \param first first derivative of f at a[0]
+/// \param second second derivative of f at a[0]
 template <class T>
 Series<T, 2> chained(const Series<T, 2>& a, const T& value, const T& first, const T& second) {
   return {value, first * a[1], first * a[2] + 0.5 * second * (a[1] * a[1])};
@@ -205,16 +210,16 @@ Series<T, N> exp(const Series<T, N>& a) {
   }
   return r;
 }
-/// The antiderivative of `slope` that is `start` at t = 0; one order longer than needed orders are cut.
+/// Returns the antiderivative of `slope` with the value `start` at t = 0. Coefficients beyond `order` are dropped.
 template <class T, int N>
 Series<T, N> integral(const T& start, const Series<T, N>& slope, int order) {
   Series<T, N> r(order);
   r[0] = start;
-  const int last = std::min(r.order, static_cast<int>(r.c.size()) - 1);  // which the compiler cannot know
+  const int last = std::min(r.order, static_cast<int>(r.c.size()) - 1);  // a bound that the compiler cannot derive
   for (int k = 1; k <= last; ++k) r[k] = slope[k - 1] / static_cast<double>(k);
   return r;
 }
-/// The derivative, whose last coefficient, which is not known, is 0.
+/// Returns the derivative. Its last coefficient is unknown and set to 0.
 template <class T, int N>
 Series<T, N> derivative(const Series<T, N>& a) {
   Series<T, N> r(a.order);
@@ -227,7 +232,7 @@ Series<T, N> log(const Series<T, N>& a) {
   using std::log;
   return integral(log(a[0]), derivative(a) / a, a.order);
 }
-/// Sine and cosine together, as their recurrences need each other.
+/// Computes sine and cosine together, because their recurrences depend on each other.
 template <class T, int N>
 void sin_cos(const Series<T, N>& a, Series<T, N>& s, Series<T, N>& c) {
   using std::cos;
@@ -286,7 +291,7 @@ inline double binomial(int n, int k) {
   return b;
 }
 
-/// a to a whole power >= 0, exact where a is 0.
+/// Returns a to an integer power >= 0. The result is exact even if a is 0.
 template <class T>
 T power(const T& a, int exponent) {
   T result = constant_like(a, 1.0);
@@ -298,7 +303,7 @@ T power(const T& a, int exponent) {
   return result;
 }
 
-/// Horner's rule from the highest of `count` coefficients down.
+/// Evaluates a polynomial with `count` coefficients by Horner's rule.
 template <class T>
 T horner(const double* coefficients, int count, const T& x) {
   T sum = constant_like(x, count > 0 ? coefficients[count - 1] : 0.0);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Automatic differentiation by two variables: a value with its first, or first and second, partial derivatives over the
-// elementary functions of formulas. jets.h has derivatives along a line.
+// Automatic differentiation with respect to two variables: values with first, or first and second, partial derivatives
+// for the elementary functions of formulas. Derivatives along a line are in jets.h.
 
 #include <cmath>
 #include <type_traits>
@@ -15,7 +15,7 @@ struct SecondPartials {
   double yy = 0.0;
 };
 
-/// A value with its derivatives by x and y up to an order, which is 1 or 2.
+/// A value with its partial derivatives with respect to x and y up to an order of 1 or 2.
 template <int Order>
 struct Partials : std::conditional_t<Order == 2, SecondPartials, NoSecondPartials> {
   double value = 0.0;
@@ -34,7 +34,7 @@ struct Partials : std::conditional_t<Order == 2, SecondPartials, NoSecondPartial
   }
 };
 
-/// Height and slopes.
+/// Height and slopes of a surface.
 using Gradient = Partials<1>;
 
 template <int Order>
@@ -42,7 +42,7 @@ double value_of(const Partials<Order>& a) {
   return a.value;
 }
 
-/// f of each number of both.
+/// Applies f component-wise to both arguments.
 template <int Order, class F>
 Partials<Order> number_by_number(const Partials<Order>& a, const Partials<Order>& b, const F& f) {
   Partials<Order> r(f(a.value, b.value), f(a.x, b.x), f(a.y, b.y));
@@ -115,7 +115,10 @@ Partials<Order> operator/(double a, const Partials<Order>& b) {
   return Partials<Order>(a) / b;
 }
 
-/// f(a) with the first and the second derivative of f there.
+/// Returns f(a) by the chain rule.
+/// \param f value of f at a.value
+/// \param f1 first derivative of f at a.value
+/// \param f2 second derivative of f at a.value
 template <int Order>
 Partials<Order> chained(const Partials<Order>& a, double f, double f1, double f2) {
   Partials<Order> r(f, f1 * a.x, f1 * a.y);
@@ -150,7 +153,8 @@ Partials<Order> cos(const Partials<Order>& a) {
 }
 template <int Order>
 Partials<Order> atan2(const Partials<Order>& y, const Partials<Order>& x) {
-  // The slopes of the angle are x y' - y x' over the square of the radius: a quotient, differentiated once more.
+  // The derivative of the angle is (x y' - y x') / (x^2 + y^2). The second derivatives are derivatives of this
+  // quotient.
   const double square = x.value * x.value + y.value * y.value;
   Partials<Order> r(std::atan2(y.value, x.value), (x.value * y.x - y.value * x.x) / square,
                     (x.value * y.y - y.value * x.y) / square);
@@ -164,7 +168,7 @@ Partials<Order> atan2(const Partials<Order>& y, const Partials<Order>& x) {
   }
   return r;
 }
-/// a^n, whose derivatives exist at 0 where those of exp(n log a) do not.
+/// Returns a^n. At a = 0, it gives derivatives where those of exp(n log a) do not exist.
 template <int Order>
 Partials<Order> constant_power(const Partials<Order>& a, double n) {
   const auto term = [&](double factor, double exponent) {

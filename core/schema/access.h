@@ -1,7 +1,7 @@
 #pragma once
 
-// Makes the functions by which rows and tables of a format get and set members of C++ objects, from pointers to members
-// or from functions of the object's type.
+// Makes the functions with which the rows and tables of a format read and set members of C++ objects. They are made
+// from pointers to members, or from functions of the object's type.
 
 #include <type_traits>
 
@@ -45,11 +45,13 @@ void set_member(void* object, const Value& value) {
     target = std::get<typename Types::Type>(value);
 }
 
-/// A data member: a number, a flag, a text, a list of them, or an enumerator whose number is that of its word.
+/// Access to a data member: a number, a flag, a text, a list of these, or an enumerator. The value of an enumerator is
+/// the index of its word.
 template <auto member>
 inline constexpr Access access = {get_member<member>, set_member<member>};
 
-/// The same of a member of the alternative that a member of the object has, a variant.
+/// Access to a member of a variant's alternative. `variant` is the variant, a member of the object, and `member` is a
+/// member of the alternative that it holds.
 template <auto variant, auto member>
 inline constexpr Access access_in = {
     [](const void* object) {
@@ -69,12 +71,13 @@ template <auto set>
 void set_by(void* object, const Value& value) {
   set(*static_cast<typename FirstOf<decltype(set)>::Type*>(object), value);
 }
-/// `Value get(const Object&)` and `void set(Object&, const Value&)`.
+/// Access through the functions `Value get(const Object&)` and `void set(Object&, const Value&)`.
 template <auto get, auto set>
 inline constexpr Access access_by = {get_by<get>, set_by<set>};
 
-/// A function of a rule's object: `void (const Object&, const Refuse&)`, `void (const Object&)`, which throws itself,
-/// or `std::string (const Object&)`, which returns what is wrong and nothing if it holds.
+/// Calls the function of a rule with an object. The function has the form `void (const Object&, const Refuse&)`, or
+/// `void (const Object&)` if it throws itself, or `std::string (const Object&)` if it returns a message, which is empty
+/// if the rule holds.
 template <auto function>
 void check_by(const void* object, const Refuse& refuse) {
   const auto& typed = *static_cast<const typename FirstOf<decltype(function)>::Type*>(object);
@@ -94,16 +97,16 @@ template <auto member>
 void* child_of(void* parent) {
   return &(static_cast<typename MemberTypes<decltype(member)>::Object*>(parent)->*member);
 }
-/// A member that is always there.
+/// Access to an inner table that is a member of the object. It always exists.
 template <auto member>
 inline constexpr Child child = {[](const void*) -> std::size_t { return 1; }, child_at<member>, child_of<member>};
 
-/// The same, of a member that is written under another name.
+/// Access to an inner table that is read but never written, because its member is written as another table.
 template <auto member>
 inline constexpr Child child_only_read = {[](const void*) -> std::size_t { return 0; }, child_at<member>,
                                           child_of<member>};
 
-/// A member that is a vector of objects.
+/// Access to a list of tables that is a vector of objects.
 template <auto member>
 inline constexpr Child children = {
     [](const void* parent) {

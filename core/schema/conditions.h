@@ -1,7 +1,7 @@
 #pragma once
 
-// Short names for the conditions under which a key or table of a format means something. `refusal` is the
-// message for one that was given although its condition does not hold; empty: a message made from the condition.
+// Short functions that make the conditions under which a key or table of a format has an effect. `refusal` is the
+// message if a key is given although its condition does not hold. If it is empty, a message is made from the condition.
 
 #include <algorithm>
 
@@ -11,7 +11,8 @@ namespace retrace::schema {
 
 using Words = std::string_view[];
 
-/// Of some words one, or those from one to another. \pre they are among them, or it does not compile
+/// Returns one word of a list, or the words from `first` to `last`.
+/// \pre the list contains these words; otherwise the code does not compile
 constexpr std::span<const std::string_view> only(std::span<const std::string_view> words, std::string_view first,
                                                  std::string_view last = {}) {
   const auto begin = std::ranges::find(words, first);

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// TOML texts as JSON.
+/// Converts the TOML texts of a list's entries to a JSON array.
 Json anything_json(const std::vector<std::string>& texts) {
   Json json = Json::array();
   for (const std::string& text : texts)

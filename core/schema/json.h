@@ -1,6 +1,6 @@
 #pragma once
 
-// Documents as JSON, as results quote the files they were made from, and back to TOML text.
+// Converts documents to JSON, as result files contain them, and JSON to TOML text.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace retrace::schema {
 
-/// What a document gives, with its keys in the order of the format.
+/// Returns the keys that are given in a document as JSON, in the order of the format.
 nlohmann::ordered_json to_json(const Document& document);
 
-/// The text of a file of the format, of what its keys and tables are in `json`; what is not of the format is left out.
+/// Returns a TOML text with the keys and tables of `json` that belong to the format. All others are omitted.
 std::string toml_of_json(const Format& format, const nlohmann::ordered_json& json);
 
 }  // namespace retrace::schema

@@ -8,8 +8,9 @@
 
 namespace retrace::schema {
 
-/// The format as JSON Schema (draft-07, which editors of TOML know): tables are closed, conditions are `if` and `then`
-/// of the table that has the word, what a schema cannot say of values together stands in descriptions.
+/// Returns the format as JSON Schema (draft-07, which TOML editors support). Tables do not allow unknown keys.
+/// Conditions become `if` and `then` in the table that contains the key of the condition. Rules on several values that
+/// a schema cannot express are written into the descriptions.
 nlohmann::ordered_json json_schema(const Format& format);
 
 }  // namespace retrace::schema

@@ -23,7 +23,7 @@ std::string numbers_text(const std::vector<double>& numbers) {
   return list_text(numbers, shortest);
 }
 
-/// One text a line.
+/// Returns a TOML array with one text per line.
 std::string lines_text(const std::vector<std::string>& texts) {
   std::string result = "[\n";
   for (const std::string& text : texts) result += "  " + toml_text(text) + ",\n";
@@ -58,7 +58,7 @@ std::string value_text(const Kind& kind, const Value& value) {
   return fmt::format("[{}]", fmt::join(*texts, ", "));
 }
 
-/// Writes a table and those in it.
+/// Writes a table and its inner tables.
 class Writer {
  public:
   explicit Writer(const Document& document) : document_(document) {}
@@ -71,7 +71,7 @@ class Writer {
     return text;
   }
 
-  /// With their heads.
+  /// Returns a table, or all tables of a list, with their headers.
   std::string tables(const Table& inner, const std::string& path) const {
     const bool is_list = inner.presence == Presence::list;
     std::string text;
@@ -83,7 +83,7 @@ class Writer {
   }
 
  private:
-  /// Each `key = value`.
+  /// Returns the texts `key = value` of all given keys of a table.
   std::vector<std::string> keys(const Table& table, const std::string& path) const {
     std::vector<std::string> texts;
     for (const Row& row : table.rows)
@@ -109,7 +109,8 @@ class Writer {
   const Document& document_;
 };
 
-/// An empty text or list stands for a key that is not given, if that means nothing else.
+/// Returns true if a key need not be written because the object has no value for it. If the key has no default, an
+/// empty text or list also counts as no value.
 bool is_left_out(const Row& row, const Value& value) {
   if (value.index() == 0) return true;
   if (!std::holds_alternative<None>(row.otherwise)) return false;
@@ -147,7 +148,8 @@ void add_values(Document& document, const Table& table, const std::string& path,
 
 namespace {
 
-/// A number stands for a list of such numbers.
+/// Returns true if the value equals the default. A list equals a single default number if all its numbers are equal to
+/// this number.
 bool is_default(const Value& value, const Row& row) {
   const Value otherwise = default_value(row);
   const auto* const numbers = std::get_if<std::vector<double>>(&value);
@@ -156,10 +158,11 @@ bool is_default(const Value& value, const Row& row) {
   return std::ranges::count(*numbers, *number) == std::ranges::ssize(*numbers);
 }
 
-/// \return whether anything is left of the table
+/// Removes all keys of a table that have their default value.
+/// \return true if the table still has content
 bool drop_defaults(Document& document, const Table& table, const std::string& path) {
   bool is_left = false;
-  // From the last key to the first: what a key means may depend on keys before it.
+  // Iterate from the last key to the first, because the meaning of a key may depend on keys before it.
   for (auto row = table.rows.rbegin(); row != table.rows.rend(); ++row) {
     const std::string key = path_in(path, row->key);
     if (!document.has(key) || document.row(key) != &*row) continue;

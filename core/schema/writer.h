@@ -1,6 +1,6 @@
 #pragma once
 
-// Writes documents and C++ objects as TOML files of their format; the way back from core/schema/reader.h.
+// Writes documents and C++ objects as TOML files of their format. This is the inverse of core/schema/reader.h.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -10,19 +10,22 @@
 
 namespace retrace::schema {
 
-/// KEY=VALUE, which gives a key that value where a document is read. \pre the value is one of a key, on one line
+/// Returns the override KEY=VALUE, which sets a key when a document is read.
+/// \pre the value is that of a single key and fits on one line
 std::string override_text(std::string_view path, const Value& value);
 
-/// A document as its file: what was given alone. Read again it is the same.
+/// Returns the text of a document's file, which contains only the given keys. Reading this text gives the same
+/// document.
 std::string document_text(const Format& format, const Document& document);
 
-/// What of a document is not what would hold without it; tables of which nothing is left are gone too.
+/// Returns the document without keys that have their default value, and without tables that become empty.
 Document without_defaults(Document document);
 
-/// An object of the format's root as a document of its file. \pre the format's rows have access
+/// Returns the document of an object of the format's root table.
+/// \pre the rows of the format have access functions
 Document document_of(const Format& format, const void* object);
 
-/// The text of an object's file, which reads back to the same object.
+/// Returns the text of an object's file. Reading this text gives an equal object.
 std::string object_text(const Format& format, const void* object);
 
 }  // namespace retrace::schema
