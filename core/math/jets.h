@@ -37,12 +37,10 @@ struct Length<kAnyOrder> {
 
 /// Truncated Taylor series c[0] + c[1] t + ... + c[order] t^order. The result of an operation has the smaller order of
 /// its operands. A series whose order is fixed by its type is faster, because the compiler unrolls the loops. Order 2
-/// is used most by path computations and proofs. It is therefore implemented without loops, which keeps it in
-/// registers.
+/// is used most, by tool paths and proofs. It is therefore implemented without loops, which keeps it in registers.
 template <class T, int N = kAnyOrder>
 struct Series : Length<N> {
-  std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMostOrder : N) + 1> c{};  ///< coefficients; the first order
-                                                                                     ///< + 1 are used
+  std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMostOrder : N) + 1> c{};  ///< coefficients up to `order`
 
   Series() = default;
   explicit Series(int length) : Length<N>(length) {}
