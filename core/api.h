@@ -1,5 +1,6 @@
 #pragma once
 
-// What libretrace.so shows of itself. All else is hidden, so that it cannot collide with what else a process has.
+// Marks symbols that libretrace.so exports. All other symbols are hidden, so that they cannot collide with symbols of
+// other libraries in the process.
 
 #define RETRACE_API __attribute__((visibility("default")))

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "api.h"  // of this folder: these headers are installed with the library
+#include "api.h"  // without a folder, because these headers are installed together with the library
 
 namespace retrace {
 
@@ -52,7 +52,7 @@ class RETRACE_API InputError : public Error {
   std::string text_;
 };
 
-/// An output that cannot be written (exit code 3).
+/// Error that an output cannot be written (exit code 3).
 class RETRACE_API OutputError : public Error {
  public:
   explicit OutputError(const std::string& message) : Error(ExitCode::failed, message) {}

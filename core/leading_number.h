@@ -11,11 +11,12 @@ namespace retrace {
 /// A number at the beginning of a text.
 struct LeadingNumber {
   double value = 0.0;
-  std::size_t length = 0;  ///< of its text
+  std::size_t length = 0;  ///< length of the number's text
 };
 
-/// The number that a text begins with, as std::from_chars reads it: no blank or plus before it, a decimal point
-/// whatever the locale; inf and nan are numbers. None for another beginning, and beyond the range of doubles.
+/// Returns the number at the beginning of a text, like std::from_chars: without leading blanks or plus sign, and with a
+/// decimal point in every locale. "inf" and "nan" are numbers. Returns nothing if the text does not begin with a
+/// number, or if the number is beyond the range of doubles.
 std::optional<LeadingNumber> leading_number(std::string_view text);
 
 }  // namespace retrace

@@ -1,6 +1,6 @@
 #pragma once
 
-// One function object of several, for std::visit.
+// Combines several function objects into one, for std::visit.
 
 namespace retrace {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to library/: what a Design of the library holds.
+// Internal to library/: data of a Design.
 
 #include <string>
 #include <utility>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to library/: what a Drawing of the library holds.
+// Internal to library/: data of a Drawing.
 
 #include <functional>
 #include <memory>
@@ -17,14 +17,17 @@ struct Drawing::Content {
   std::function<std::string()> png;
 };
 
-/// The drawing of a plot. \param plot makes the plot, and owns what it is of
+/// Returns the drawing of a plot.
+/// \param plot function that makes the plot and owns the data of the plot
 template <class Plot>
 Drawing drawing_of(Plot plot) {
   return Drawing(std::make_shared<const Drawing::Content>(
       Drawing::Content{[plot] { return report::render_svg(plot()); }, [plot] { return report::render_png(plot()); }}));
 }
 
-/// A drawing that is one text or picture. \param is_svg else a PNG file
+/// Returns a drawing that consists of one file.
+/// \param text function that returns the content of the file
+/// \param is_svg true: the file is an SVG document; false: a PNG file
 inline Drawing drawing_of_text(std::function<std::string()> text, bool is_svg) {
   const auto none = [] { return std::string(); };
   Drawing::Content content{none, none};

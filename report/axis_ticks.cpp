@@ -10,15 +10,15 @@
 namespace retrace::report {
 namespace {
 
-/// Beyond this, differences of two values would overflow.
+/// Largest magnitude of values. The difference of two larger values could overflow.
 constexpr double kLargest = 1e300;
-/// The narrowest range that is drawn, relative to its values: narrower ones are rounding noise.
+/// Minimum width of a range, relative to its values. Narrower ranges are rounding noise.
 constexpr double kNarrowest = 1e-9;
-/// How far a value may lie beyond a tick, in steps, and still count as on it.
+/// Maximum distance between a value and a tick, in steps, at which the value counts as being on the tick.
 constexpr double kOnTick = 1e-6;
 
-/// 1, 2 or 5 times ten to a whole power. Kept as integers so that multiples come out as the nearest double: 0.3, not
-/// 0.30000000000000004.
+/// A step of 1, 2 or 5 times an integer power of ten. It is stored as integers, so that its multiples are the nearest
+/// doubles: 0.3, not 0.30000000000000004.
 struct NiceStep {
   int mantissa = 1;
   int exponent = 0;
@@ -39,7 +39,7 @@ struct NiceStep {
   }
 };
 
-/// The smallest nice step that divides `span` into at most `most` intervals.
+/// Returns the smallest nice step that divides `span` into at most `most` intervals.
 NiceStep nice_step(double span, int most) {
   const double wanted = span / most;
   NiceStep step{1, static_cast<int>(std::floor(std::log10(wanted))) - 1};
@@ -52,8 +52,8 @@ std::string with_true_minus(std::string text) {
   return text;
 }
 
-/// Digits as the step needs them. Very large and very small axes are written with an exponent, the same for every
-/// label.
+/// Returns the labels of ticks, with the number of digits that the step requires. Labels of very large and very small
+/// values have an exponent, which is the same for all labels.
 std::vector<std::string> tick_labels(const std::vector<double>& positions, NiceStep step) {
   double largest = 0.0;
   for (const double position : positions) largest = std::max(largest, std::abs(position));
@@ -103,14 +103,14 @@ Range drawable(Range range) {
 Ticks make_ticks(Range range, int most) {
   range = drawable(range);
   NiceStep step = nice_step(range.span(), most);
-  // A step wider than the range might leave it without any tick.
+  // A step that is larger than the range could give no tick at all.
   if (step.times(1.0) > range.span()) step = step.previous();
   Ticks ticks;
   ticks.step = step.times(1.0);
   const double first = std::ceil(range.low / ticks.step - kOnTick);
   const double last = std::floor(range.high / ticks.step + kOnTick);
   for (double count = first; count <= last; count += 1.0) {
-    // Adding 0 turns the -0 of a negative count's end into 0.
+    // Adding 0 converts -0 to 0.
     ticks.positions.push_back(step.times(count) + 0.0);
   }
   ticks.labels = tick_labels(ticks.positions, step);

@@ -9,7 +9,7 @@
 
 namespace retrace::report {
 
-/// An interval of an axis, low < high once it is drawn.
+/// An interval of an axis. low < high is required when it is drawn.
 struct Range {
   double low = 0.0;
   double high = 0.0;
@@ -18,15 +18,15 @@ struct Range {
   bool contains(double value) const { return value >= low && value <= high; }
 };
 
-/// The marks of an axis: multiples of `step` (1, 2 or 5 times a power of ten) inside a range, with what is written
-/// there.
+/// The ticks of an axis and their labels. Ticks are multiples of `step` (1, 2 or 5 times a power of ten) within a
+/// range.
 struct Ticks {
   double step = 0.0;
-  std::vector<double> positions;    ///< rising
+  std::vector<double> positions;    ///< in ascending order
   std::vector<std::string> labels;  ///< as many as positions; a true minus sign (U+2212), never "-0"
 };
 
-/// Maps values to drawing units along one axis; `first` belongs to the low end.
+/// Maps values to drawing units along one axis. The low end of the range is mapped to `first`.
 struct AxisScale {
   Range values;
   double first = 0.0;
@@ -35,18 +35,22 @@ struct AxisScale {
   double at(double value) const { return first + (value - values.low) / values.span() * (last - first); }
 };
 
-/// The smallest interval that holds every finite number in `values`; nothing if there is none.
+/// Returns the smallest interval that contains all finite numbers in `values`, or nothing if there are none.
 std::optional<Range> extent_of(std::span<const double> values);
 
-/// `range` in order, within what can be drawn, and widened about its middle if it is (nearly) a single point.
+/// Returns a range that can be drawn: ordered, limited to allowed values, and widened if its width is (nearly) zero.
 Range drawable(Range range);
 
-/// The ticks inside `range` (made drawable first): at most about `most` intervals. \pre most >= 1
+/// Returns the ticks within `range`, which is made drawable first.
+/// \param most approximate maximum number of intervals
+/// \pre most >= 1
 Ticks make_ticks(Range range, int most);
 
-/// A range for values that spread over `data` and whose error bars reach over `with_errors`: its ends lie on ticks for
-/// `most` intervals. Starts at 0 when the values are positive and spread over more than half of their largest, so that
-/// heights compare; otherwise it is snug. Error bars that stick out by less than a twentieth of a step change nothing.
+/// Returns an axis range whose ends are on ticks for `most` intervals. If the values are positive and their spread
+/// exceeds half of the maximum, the range starts at 0, so that heights can be compared. Otherwise the range fits
+/// closely. Error bars that extend beyond the range by less than a twentieth of a step are ignored.
+/// \param data range of the values
+/// \param with_errors range of the values with their error bars
 Range rounded_range(Range data, Range with_errors, int most);
 
 }  // namespace retrace::report

@@ -8,10 +8,10 @@ namespace retrace::report {
 namespace {
 
 constexpr double kWhiteShare = 0.999;
-// Below this share of the brightest pixel a place counts as dark when the mean is taken.
+// Luminance, as a fraction of the maximum, below which a pixel counts as dark and is ignored in the mean.
 constexpr double kDark = 1e-5;
 
-/// The value that a share of all lie below.
+/// Returns the value below which the given fraction of all values is located.
 double percentile(std::vector<double> values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());

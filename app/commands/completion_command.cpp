@@ -34,7 +34,8 @@ std::string bash_value(const std::string& pattern, const Argument& argument) {
   return fmt::format("    {}){} ;;\n", pattern, settings);
 }
 
-/// The cases of the arguments of a command; "*" for all of them.
+/// Returns the cases of a bash `case` statement for the arguments of a command.
+/// \param command name of the command; "*": the arguments that all commands have
 std::string bash_values(const std::string& command, const std::vector<Argument>& arguments) {
   std::string cases;
   int place = 0;
@@ -148,7 +149,7 @@ std::string single_quoted(const std::string& text) {
   return "'" + replaced(text, '\'', "'\\''") + "'";
 }
 
-/// What zsh does where a value is to be completed.
+/// Returns the action of zsh for the completion of an argument's value.
 std::string zsh_action(const Argument& argument) {
   const auto& ending = argument.traits.files;
   const std::string files = !ending           ? ""
@@ -162,7 +163,7 @@ std::string zsh_action(const Argument& argument) {
                      files.empty() ? "" : "; " + files);
 }
 
-/// The specification of an argument for _arguments.
+/// Returns the specification of an argument for the zsh function _arguments.
 std::string zsh_argument(const Argument& argument, int& place) {
   const std::string value = value_word(argument);
   const Words names = option_names(argument);
@@ -224,7 +225,8 @@ std::string zsh_script() {
                      fmt::arg("commands", all), fmt::arg("arguments", arguments));
 }
 
-/// A line for every way to complete an argument. \param condition of fish; empty: none
+/// Returns the fish `complete` lines of an argument.
+/// \param condition condition of fish under which the lines apply; empty: always
 std::string fish_argument(const std::string& condition, const Argument& argument) {
   const auto quoted = [](const std::string& text) {
     return "'" + replaced(replaced(text, '\\', "\\\\"), '\'', "\\'") + "'";

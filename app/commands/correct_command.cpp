@@ -42,7 +42,8 @@ std::vector<Argument> arguments(CorrectOptions& options) {
                    "must say where its middle lies, as in facets.txt@0.25,-0.5, got " + in_quotes(text));
 }
 
-/// A map without its heights. \param text FILE@X,Y or FILE@X,Y,TURN
+/// Returns a facet map without heights, with the file and position from a text.
+/// \param text FILE@X,Y or FILE@X,Y,TURN
 studies::FacetMap place_of(const std::string& text) {
   constexpr double kFarthestMm = 1e4;
   const std::size_t at = text.rfind('@');
@@ -61,7 +62,8 @@ studies::FacetMap place_of(const std::string& text) {
   return map;
 }
 
-/// The job for the corrected machine beside it. Its design stays where it is, and is named as seen from there.
+/// Returns the job for the corrected machine file, which is in the same folder. The design is not moved. Its path is
+/// made relative to this folder.
 fabrication::Job corrected_job(fabrication::Job job, const fs::path& file, const fs::path& folder) {
   job.machine = "machine.toml";
   std::error_code error;

@@ -28,7 +28,7 @@ std::vector<Argument> arguments(InitOptions& options) {
            &options.editor}};
 }
 
-/// A file as a URL (RFC 3986): other bytes than letters, digits and "/-._~" as %XX.
+/// Returns the URL of a file (RFC 3986). Bytes other than letters, digits and "/-._~" are written as %XX.
 std::string url_of(const std::filesystem::path& file) {
   std::string url = "file://";
   for (const char c : file.string()) {
@@ -39,7 +39,8 @@ std::string url_of(const std::filesystem::path& file) {
   return url;
 }
 
-/// What Taplo and editors that use it read, such as Even Better TOML.
+/// Returns the comment line with the JSON Schema of the file. It is read by Taplo and by editors that use it, such as
+/// Even Better TOML.
 std::string schema_line(const std::string& kind) {
   const schema::Format& format =
       kind == "round_zone_lens" ? fabrication::planed_part_format() : studies::design_format();
@@ -49,7 +50,7 @@ std::string schema_line(const std::string& kind) {
 ExitCode run(const InitOptions& options, const CommonOptions& common) {
   std::string text = studies::design_template(options.kind);
   if (options.editor) text = schema_line(options.kind) + text;
-  // Never overwrites: the file that is there may be a design that was worked on.
+  // An existing file is never overwritten, because it may be a design on which the user has worked.
   if (!common.out.empty() &&
       std::filesystem::symlink_status(common.out).type() != std::filesystem::file_type::not_found)
     throw OutputError(common.out + ": is there already; not overwritten");

@@ -10,7 +10,7 @@
 namespace retrace::app {
 namespace {
 
-/// Text as roff has it; what stands in backticks is bold. An empty line begins a paragraph.
+/// Converts a text to roff. Text in backticks becomes bold, and an empty line begins a paragraph.
 std::string roff(const std::string& text) {
   std::string all;
   bool is_bold = false;
@@ -29,7 +29,7 @@ std::string roff(const std::string& text) {
   return all;
 }
 
-/// An argument with its help, its default and the words it may be.
+/// Returns the roff text of an argument with its help, its default and its allowed words.
 std::string item(const Argument& argument) {
   Words names = option_names(argument);
   for (std::string& name : names) name = "\\fB" + roff(name) + "\\fR";

@@ -20,7 +20,7 @@
 namespace retrace::app {
 namespace {
 
-/// The formats of files that have a schema, by name.
+/// Returns the file formats that have a schema, sorted by name.
 std::vector<const schema::Format*> formats() {
   return {&studies::design_format(),          &fabrication::job_format(),
           &fabrication::machine_format(),     &materials::materials_format(),

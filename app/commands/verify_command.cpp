@@ -30,9 +30,9 @@ namespace {
 
 struct VerifyOptions {
   studies::VerificationRequest request;
-  std::string as_machined;  ///< design file to write; empty: none
-  std::string map;          ///< PNG to write; empty: none
-  std::string servo;        ///< table of strokes to read; empty: none
+  std::string as_machined;  ///< output file for the design of the machined part; empty: not written
+  std::string map;          ///< output file for the error map (PNG); empty: not written
+  std::string servo;        ///< input file with a table of strokes; empty: no file
 };
 
 Words dialects() {
@@ -61,7 +61,7 @@ std::vector<Argument> arguments(VerifyOptions& options) {
            files(".csv")}};
 }
 
-/// What a run of `study` gives, and how long it takes.
+/// Runs a study and measures its time.
 template <class Study>
 auto timed(const CommonOptions& common, double& elapsed_s, const Study& study) {
   std::optional<decltype(study())> run;
@@ -71,7 +71,8 @@ auto timed(const CommonOptions& common, double& elapsed_s, const Study& study) {
   return *std::move(run);
 }
 
-/// What programs may be held to. A file without a schema is told by the tables of its machine.
+/// Kinds of files against which programs can be verified. If a file has no schema, its kind is determined by the tables
+/// of its machine.
 enum class Kind { job, planed_part, turned_part };
 constexpr std::string_view kSchemas[] = {"retrace.job/1", "retrace.planed_part/1", "retrace.turned_part/1"};
 
@@ -85,7 +86,7 @@ Kind kind_of(const std::string& file) {
   return static_cast<Kind>(found - std::begin(kSchemas));
 }
 
-/// Refuses options that a kind does not take.
+/// Refuses options that do not apply to this kind.
 void refuse_others(const VerifyOptions& options, Kind kind) {
   const auto refuse = [&](const char* option, const char* whom) {
     throw InputError({"", 0, option}, fmt::format("is for {}; {} is none", whom, options.request.job));
@@ -100,7 +101,7 @@ void refuse_others(const VerifyOptions& options, Kind kind) {
     if (is_given) refuse(option, "jobs");
 }
 
-/// The programs and the file of the job or part.
+/// Returns the files of the programs and the file of the job or part.
 std::vector<std::string> program_files(const studies::VerificationRequest& request) {
   std::vector<std::string> files;
   for (const std::string& program : request.programs) files.push_back(fabrication::program_name(program).file);
@@ -108,7 +109,7 @@ std::vector<std::string> program_files(const studies::VerificationRequest& reque
   return files;
 }
 
-/// Of a part: the run of a study, and what is said of it.
+/// Verifies programs of a turned or planed part with a study, and writes the results.
 template <class Study>
 ExitCode run_part(const VerifyOptions& options, const CommonOptions& common, const Study& study) {
   std::vector<std::string> inputs = program_files(options.request);
@@ -129,7 +130,7 @@ std::vector<std::string> inputs_of(const studies::VerificationRequest& request) 
   return files;
 }
 
-/// The table of planes that goes with an as-machined design: part.toml -> part_facets.csv.
+/// Returns the file of the table of facet planes for an as-machined design: part_facets.csv for part.toml.
 fs::path facets_file_of(const fs::path& design) {
   return design.empty() ? fs::path() : design.parent_path() / (design.stem().string() + "_facets.csv");
 }

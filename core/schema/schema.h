@@ -39,7 +39,8 @@ struct Number {
   /// outside of it.
   NumberRange sane = {};
 };
-/// \pre the range's ends are whole and within 2^53
+/// An integer.
+/// \pre the bounds of the range are integers of a magnitude up to 2^53
 struct Whole {
   NumberRange range;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// The drawings of `retrace inspect`.
+// Makes the drawings of `retrace inspect`.
 
 #include <string>
 #include <vector>
@@ -10,17 +10,18 @@
 
 namespace retrace::report {
 
-/// Contents of the drawings; those that a design has not are empty.
+/// Contents of the drawings. Drawings that do not apply to the design are empty.
 struct DesignDrawings {
   std::string plan = {};      ///< SVG
   std::string section = {};   ///< SVG
   std::string view = {};      ///< PNG
-  std::string entrance = {};  ///< SVG: the profile of a curved front
+  std::string entrance = {};  ///< SVG: profile of a curved front
   Warnings warnings = {};
 };
 
-/// Plan, section and view of the design; of a curved front its profile in place of section and view, which know plane
-/// entrance faces alone; none of balls; of elements on a base the view alone, as their lengths lie in no plane.
+/// Returns the plan, the section and the view of a design. A design with a curved front has a profile instead of
+/// section and view, which require a plane entrance face. A design with balls has no drawings. A design with elements
+/// on a substrate has only the view, because its lengths are not in a plane.
 DesignDrawings design_drawings(const studies::Inspection& inspection);
 
 }  // namespace retrace::report

@@ -1,6 +1,6 @@
 #pragma once
 
-// The three-dimensional picture of a design as PNG.
+// Draws a three-dimensional picture of a design as PNG.
 
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace retrace::report {
 
-/// The part in three dimensions as a PNG file: its back with the elements, as seen from below. \throw
-/// OutputError if it cannot be drawn
+/// Returns a PNG file of the part in three dimensions: its back with the elements, seen from below.
+/// \throw OutputError if the picture cannot be drawn
 std::string view_png(const studies::DesignView& view);
 
 }  // namespace retrace::report

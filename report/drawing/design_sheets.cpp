@@ -16,13 +16,13 @@ namespace {
 using geometry::Polygon, geometry::Rectangle, geometry::Vec2, studies::DesignDrawing, studies::PlanPanel,
     studies::SectionPanel;
 
-constexpr double kWholeWidth = 520.0;  ///< most room of a panel's figure
+constexpr double kWholeWidth = 520.0;  ///< maximum width of the figure of a panel
 constexpr double kWholeHeight = 460.0;
 constexpr double kSheetMargin = 26.0, kPanelGap = 44.0;
 constexpr double kArrowLength = 8.0, kArrowHalf = 2.6;
-/// Elements' lines closer than this are drawn finer, in units.
+/// Distance between lines of elements, in units, below which the lines are drawn finer.
 constexpr double kFineLines = 14.0;
-/// A plate more than this many times as thick as the elements are deep is drawn interrupted.
+/// Ratio of plate thickness to element depth above which the plate is drawn interrupted.
 constexpr double kThickPlate = 3.2;
 constexpr double kBreakGap = 12.0;
 
@@ -90,7 +90,8 @@ void draw_faces(SvgGroup& group, const studies::PlanView& view, const ToPaper& a
   group.lines("rim", on_paper(view.rims_mm, at));
 }
 
-/// How near the lines of the plan lie: units of the shortest of many rims.
+/// Returns true if the lines of the plan are so close together that they are drawn finer. The distance is estimated
+/// from the lengths of the rims.
 bool has_fine_lines(const studies::PlanView& view, double units_per_mm) {
   if (view.rims_mm.size() < 200) return false;
   double sum = 0.0;
@@ -145,17 +146,17 @@ Panel plan_panel(const PlanPanel& panel) {
   }
   if (panel.section_y_mm)
     draw_section_marks(group, {lower.x, at({0.0, *panel.section_y_mm}).y}, {upper.x, at({0.0, *panel.section_y_mm}).y});
-  // The marks of the section stay within the first dimension lines.
+  // The marks of the section are placed between the figure and the first dimension lines.
   const double marks = panel.section_y_mm ? 12.0 : 0.0;
   draw_dimensions(group, panel.dimensions, at, {lower.x - marks, lower.y}, {upper.x + marks, upper.y});
   return result;
 }
 
-/// Heights on paper, where a thick plate has its middle left out.
+/// Converts heights to drawing coordinates. The central part of a thick plate may be omitted.
 struct HeightScale {
   double scale = 1.0;
   double top_mm = 0.0;
-  double break_from_mm = 0.0;  ///< what is left out; equal: nothing
+  double break_from_mm = 0.0;  ///< range that is omitted; nothing is omitted if both ends are equal
   double break_to_mm = 0.0;
 
   bool is_interrupted() const { return break_to_mm > break_from_mm; }
@@ -180,7 +181,7 @@ HeightScale height_scale(const SectionPanel& panel, double scale, double deepest
   return z;
 }
 
-/// A line of the kind that says that something goes on, from one point to another.
+/// Returns a break line, which indicates that a body continues, from one point to another.
 std::vector<Point> broken_line(Point from, Point to) {
   const Point middle{0.5 * (from.x + to.x), 0.5 * (from.y + to.y)};
   const double length = std::hypot(to.x - from.x, to.y - from.y);
@@ -211,7 +212,7 @@ void draw_angle(SvgGroup& group, const studies::AngleDimension& angle, const ToP
   group.arc("dim", apex, radius, std::atan2(angle.right.y(), angle.right.x()),
             std::atan2(angle.left.y(), angle.left.x()));
   const std::string text = fmt::format("{:.6g}°", angle.deg);
-  // In the material above the root, inside the arc where there is room.
+  // The text is placed in the material above the root, inside the arc if there is enough room.
   const double half = 0.5 * sheet_text_width(text, kSheetTextSize);
   group.text("value", {apex.x, apex.y - radius - 5.0}, text, Align::centre);
   group.reserve({apex.x - half, apex.y - radius - 5.0 - kSheetTextSize}, {2.0 * half, kSheetTextSize});
@@ -253,7 +254,7 @@ Panel section_panel(const SectionPanel& panel) {
   return result;
 }
 
-/// Panels side by side under a title.
+/// Returns a sheet with panels next to each other under a title.
 std::string sheet_of(const DesignDrawing& drawing, const std::vector<Panel>& panels,
                      const std::vector<std::string>& titles, const char* id, const std::string& description) {
   SvgGroup head;

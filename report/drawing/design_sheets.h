@@ -1,6 +1,6 @@
 #pragma once
 
-// The drawing sheets of a design as SVG: plan and section with dimension lines.
+// Makes drawing sheets of a design as SVG: plan and section with dimension lines.
 
 #include <string>
 
@@ -8,16 +8,18 @@
 
 namespace retrace::report {
 
-/// The plan as an SVG document: the whole and, where elements are small in it, a detail, with dimension lines. Groups
-/// `plan-0`, `plan-1` say where their origin lies and how many units a mm has (`data-x-mm`, `data-y-mm`,
-/// `data-units-per-mm`); y of the page runs down. The same drawing gives the same bytes.
+/// Returns the plan as an SVG document with dimension lines: the whole part and, if the elements are small in it, a
+/// detail. The groups `plan-0` and `plan-1` have attributes with the position of their origin and the number of units
+/// per mm (`data-x-mm`, `data-y-mm`, `data-units-per-mm`). The y axis of the page points down. Equal drawings give
+/// equal bytes.
 std::string plan_svg(const studies::DesignDrawing& drawing);
 
-/// The section likewise (`section-0`, with z in place of y). A plate that is thick beside the elements is drawn
-/// interrupted. \pre drawing.section
+/// Returns the section as an SVG document, like plan_svg(). Its group is `section-0`, with z instead of y. A plate that
+/// is much thicker than the elements is drawn interrupted.
+/// \pre drawing.section has a value
 std::string section_svg(const studies::DesignDrawing& drawing);
 
-/// A dimension's text: its name and its value, six digits.
+/// Returns the text of a dimension: its name and its value with six digits.
 std::string dimension_text(const studies::Dimension& dimension);
 
 }  // namespace retrace::report

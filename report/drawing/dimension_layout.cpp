@@ -7,15 +7,15 @@
 namespace retrace::report {
 namespace {
 
-constexpr double kFirst = 26.0;  ///< from the figure to the first dimension line
-constexpr double kStep = 24.0;   ///< between dimension lines
+constexpr double kFirst = 26.0;  ///< distance from the figure to the first dimension line
+constexpr double kStep = 24.0;   ///< distance between dimension lines
 constexpr double kArrow = 8.0;
-constexpr double kGap = 3.0;   ///< from what is measured to its extension line
-constexpr double kOver = 4.0;  ///< of an extension line beyond the dimension line
+constexpr double kGap = 3.0;   ///< distance from the measured point to its extension line
+constexpr double kOver = 4.0;  ///< length of an extension line beyond the dimension line
 constexpr double kClear = 3.0, kTextGap = 4.0;
 constexpr int kMostLevels = 16;
 
-/// Coordinates of one side: along the dimension line, and away from the figure.
+/// Interval of a coordinate of one side: along the dimension line, or away from the figure.
 struct Span {
   double from = 0.0, to = 0.0;
 };
@@ -30,7 +30,7 @@ bool meet(const Block& a, const Block& b, double clear) {
   return meet(a.along, b.along, clear) && meet(a.away, b.away, clear);
 }
 
-/// One side of the figure and what is there already.
+/// Layout of one side of the figure, with the dimensions that have been placed there.
 class SideLayout {
  public:
   SideLayout(DimensionSide side, Point lower, Point upper) : side_(side), lower_(lower), upper_(upper) {}
@@ -56,7 +56,7 @@ class SideLayout {
     double from = 0.0;
     double to = 0.0;
     double line = 0.0;  ///< away
-    double text = 0.0;  ///< middle, along
+    double text = 0.0;  ///< centre of the text along the dimension line
     Block text_block;
     Block line_block;
     std::array<Block, 2> extensions;
@@ -82,10 +82,12 @@ class SideLayout {
     }
     return {};
   }
-  /// Texts stand above level lines and to the left of upright ones.
+  /// Returns true if texts are on the outer side of their lines. Texts are above horizontal lines and to the left of
+  /// vertical lines.
   bool text_is_outside() const { return side_ == DimensionSide::above || side_ == DimensionSide::left; }
 
-  /// \param position of the text: 0 between the arrows, 1 after, 2 before
+  /// Returns a candidate for the position of a dimension.
+  /// \param position position of the text: 0 between the arrows, 1 after them, 2 before them
   Candidate candidate(const PaperDimension& d, int level, int position) const {
     Candidate c;
     c.from = std::min(along_of(d.from), along_of(d.to));
@@ -141,7 +143,7 @@ class SideLayout {
       placed.tips[k] = point(e.along.from, c.line);
     }
     placed.line = {point(c.line_block.along.from, c.line), point(c.line_block.along.to, c.line)};
-    // Baselines lie below level texts and to the right of upright ones.
+    // Baselines are below horizontal texts and to the right of vertical texts.
     const double baseline = text_is_outside() ? c.text_block.away.from : c.text_block.away.to;
     placed.text_at = point(c.text, baseline);
     return placed;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Places dimension lines round a figure so that no text collides with a line or another text.
+// Places dimension lines around a figure so that texts collide neither with lines nor with other texts.
 
 #include <array>
 #include <string>
@@ -13,7 +13,7 @@ namespace retrace::report {
 
 enum class DimensionSide { below, left, above, right };
 
-/// A dimension of something on paper, y down.
+/// A dimension in drawing coordinates, with y down.
 struct PaperDimension {
   DimensionSide side = DimensionSide::below;
   Point from;
@@ -22,19 +22,21 @@ struct PaperDimension {
   double text_width = 0.0;
 };
 
-/// Where a dimension goes: lines from what is measured, the dimension line, its arrows' tips, and the text.
+/// Position of a dimension: its extension lines, the dimension line, the tips of its arrows, and the text.
 struct PlacedDimension {
   std::array<std::pair<Point, Point>, 2> extensions;
   std::pair<Point, Point> line;
   std::array<Point, 2> tips;
-  bool arrows_point_inward = false;  ///< from outside, where there is no room between
-  Point text_at;                     ///< middle of its baseline
+  bool arrows_point_inward = false;  ///< true if the arrows are outside because there is no room between the lines
+  Point text_at;                     ///< centre of the text's baseline
   bool upwards = false;
   std::string text;
 };
 
-/// Places dimensions on the four sides of a figure, in the order given from the inside out, so that no text lies on a
-/// line or another text. \param lower, upper corners of the figure, y down
+/// Places dimensions on the four sides of a figure, from the inside out in the given order. Texts overlap neither lines
+/// nor other texts.
+/// \param lower corner of the figure with the smallest coordinates, y down
+/// \param upper corner of the figure with the largest coordinates
 std::vector<PlacedDimension> place_dimensions(const std::vector<PaperDimension>& dimensions, Point lower, Point upper);
 
 }  // namespace retrace::report

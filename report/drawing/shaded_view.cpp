@@ -10,10 +10,11 @@ namespace {
 
 using geometry::BoundaryMesh, geometry::FacetRole, geometry::Vec2, geometry::Vec3;
 
-constexpr std::size_t kFiner = 3;      ///< points of a pixel along either side
-constexpr double kMarginShare = 0.04;  ///< left free on every side
+constexpr std::size_t kFiner = 3;      ///< number of sample points along each side of a pixel
+constexpr double kMarginShare = 0.04;  ///< margin on every side, as a fraction of the picture
 constexpr double kEdgeWidth = 1.1;     ///< pixels
-/// Edges lie on the surface: they are drawn up to this share of the scene's depth behind it.
+/// Depth tolerance for edges, as a fraction of the depth of the scene. Edges are on the surface, so they are drawn up
+/// to this depth behind it.
 constexpr double kBias = 2e-3;
 
 constexpr Colour kBackground{247.0 / 255.0, 249.0 / 255.0, 252.0 / 255.0};
@@ -31,7 +32,8 @@ Colour colour_of(FacetRole role) {
   return kEdge;
 }
 
-/// Points in the picture: x to the right, y down, both in fine pixels; z towards the eye, in mm.
+/// Projects points into the picture. x points to the right and y down, both in sample points; z points towards the eye,
+/// in mm.
 class Projection {
  public:
   Projection(const BoundaryMesh& mesh, const ViewDirection& direction, std::size_t columns, std::size_t rows) {
@@ -64,7 +66,7 @@ class Projection {
   double depth_mm() const { return depth_mm_; }
   const Vec3& forward() const { return forward_; }
 
-  /// Light that a face sends to the eye, over that of a white one which faces it.
+  /// Returns the light that a face reflects to the eye, relative to a white face that faces the eye.
   double shade(const Vec3& normal) const {
     const Vec3 lamp = (0.7 * forward_ - 0.8 * right_ + 0.6 * up_).normalized();
     return 0.45 + 0.12 * std::abs(normal.dot(forward_)) + 0.52 * std::max(0.0, normal.dot(lamp));
@@ -88,7 +90,7 @@ class DepthBuffer {
         depth_(columns * rows, -std::numeric_limits<float>::infinity()),
         colour_(columns * rows, kNothing) {}
 
-  /// A flat triangle: every point whose middle it holds.
+  /// Fills a triangle: all sample points whose centres are inside it.
   void fill(const std::array<Vec3, 3>& p, std::uint32_t colour) {
     const Vec2 a = p[0].head<2>();
     const Vec2 ab = p[1].head<2>() - a;
@@ -111,7 +113,7 @@ class DepthBuffer {
       }
   }
 
-  /// A line where it is not hidden.
+  /// Draws the visible parts of a line.
   void stroke(const Vec3& from, const Vec3& to, double width, double bias_mm) {
     const Vec2 along = (to - from).head<2>();
     const double length = along.norm();
@@ -139,7 +141,7 @@ class DepthBuffer {
     std::size_t from = 0;
     std::size_t to = 0;
   };
-  /// The points whose middles lie between two places.
+  /// Returns the sample points whose centres are between two coordinates.
   static Span span(double low, double high, std::size_t count) {
     const double most = static_cast<double>(count);
     const double from = std::clamp(std::ceil(low - 0.5), 0.0, most);

@@ -1,6 +1,6 @@
 #pragma once
 
-// A small software renderer: a triangle mesh, shaded, with its edges, by a depth buffer.
+// A small software renderer, which draws a shaded triangle mesh with its edges by means of a depth buffer.
 
 #include <array>
 #include <cstddef>
@@ -12,23 +12,24 @@
 
 namespace retrace::report {
 
-/// How a mesh is looked at: along parallel lines, from afar.
+/// Direction of view on a mesh, in parallel projection.
 struct ViewDirection {
-  geometry::Vec3 from = geometry::Vec3::UnitZ();  ///< unit, from the mesh to the eye
-  geometry::Vec3 up = geometry::Vec3::UnitY();    ///< not along it
+  geometry::Vec3 from = geometry::Vec3::UnitZ();  ///< unit vector from the mesh to the eye
+  geometry::Vec3 up = geometry::Vec3::UnitY();    ///< vector that points up in the picture; not parallel to `from`
 };
 
-/// A picture by a depth buffer.
+/// Picture of a mesh.
 struct ShadedView {
   std::size_t columns = 0;
   std::size_t rows = 0;
-  std::vector<Colour> colours;  ///< row by row from above
+  std::vector<Colour> colours;  ///< colours of the pixels, row by row from the top
   double mm_per_pixel = 1.0;
-  double covered = 0.0;  ///< pixels that show the mesh; parts of pixels count
+  double covered = 0.0;  ///< number of pixels that show the mesh, including fractions of pixels
 };
 
-/// The mesh in ambient light and that of a lamp beside the eye, its edges drawn over it, on a background. Every pixel
-/// is the mean of nine points. \pre columns and rows from 1 to 8192, a triangle
+/// Draws a mesh and its edges on a background. The light comes from the surroundings and from a lamp next to the eye.
+/// Every pixel is the mean of nine sample points.
+/// \pre columns and rows are from 1 to 8192, and the mesh has at least one triangle
 ShadedView shaded_view(const geometry::BoundaryMesh& mesh, const std::vector<std::array<std::uint32_t, 2>>& edges,
                        const ViewDirection& direction, std::size_t columns, std::size_t rows);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Builds SVG drawings from groups of lines, faces and texts that know the room they take on the sheet.
+// Builds SVG drawings from groups of lines, faces and texts. The groups record their bounding boxes.
 
 #include <string>
 #include <string_view>
@@ -11,7 +11,7 @@
 
 namespace retrace::report {
 
-/// Lower and upper bounds of what is drawn, y down.
+/// Bounding box in drawing coordinates, y down.
 struct PaperBox {
   Point lower{1e300, 1e300};
   Point upper{-1e300, -1e300};
@@ -20,8 +20,8 @@ struct PaperBox {
   Size size() const { return {upper.x - lower.x, upper.y - lower.y}; }
 };
 
-/// Elements of an SVG document, each in a class of the sheet's style, in units of 1/96 inch, y down. It knows how much
-/// room they take.
+/// Elements of an SVG document, each in a style class of the sheet, in units of 1/96 inch, y down. The group records
+/// its bounding box.
 class SvgGroup {
  public:
   void faces(std::string_view style, const std::vector<std::vector<Point>>& polygons);
@@ -29,10 +29,10 @@ class SvgGroup {
   void outline(std::string_view style, const std::vector<Point>& polygon);
   void path(std::string_view style, const std::vector<Point>& points);
   void circle(std::string_view style, Point centre, double radius);
-  /// A piece of a circle, from one direction to another, angles counter-clockwise from +x in radians.
+  /// Draws an arc of a circle. Angles are counter-clockwise from +x in radians.
   void arc(std::string_view style, Point centre, double radius, double from_rad, double to_rad);
   void text(std::string_view style, Point baseline, std::string_view text, Align align, bool upwards = false);
-  /// Room that a text of this width takes as well.
+  /// Extends the bounding box by a rectangle, such as that of a text.
   void reserve(Point corner, Size size);
 
   const PaperBox& box() const { return box_; }
@@ -45,19 +45,21 @@ class SvgGroup {
   PaperBox box_;
 };
 
-/// A sheet of groups. The same groups give the same bytes.
+/// A sheet of groups. Equal groups give equal bytes.
 class SvgSheet {
  public:
-  /// Puts the group's origin at a place of the sheet. \param attributes of its element, such as "data-x-mm=\"0\""
+  /// Adds a group with its origin at a point of the sheet.
+  /// \param attributes attributes of the group's element, such as "data-x-mm=\"0\""
   void add(const SvgGroup& group, Point origin, std::string_view id, std::string_view attributes = "");
-  /// \param description of what is drawn, for screen readers
+  /// Returns the SVG document.
+  /// \param description description of the drawing, for screen readers
   std::string finish(Size size, std::string_view title, std::string_view description) const;
 
  private:
   std::string markup_;
 };
 
-/// Width of a text on such sheets.
+/// Returns the width of a text on a sheet.
 double sheet_text_width(std::string_view text, double font_size);
 
 inline constexpr double kSheetTextSize = 12.0;
