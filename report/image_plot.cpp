@@ -16,16 +16,16 @@ constexpr Font kImageLabelFont{11.5, false};
 constexpr Font kImageTickFont{10.5, false};
 
 constexpr double kRemarkHeight = 17.0;
-constexpr double kPicture = 340.0;    ///< longer side of a picture
-constexpr double kPanelTop = 30.0;    ///< for its title
-constexpr double kImageBelow = 40.0;  ///< for its scale bar
+constexpr double kPicture = 340.0;    ///< length of the longer side of a picture
+constexpr double kPanelTop = 30.0;    ///< space for the title of a panel
+constexpr double kImageBelow = 40.0;  ///< space for the scale bar
 constexpr double kImageBarGap = 14.0;
 constexpr double kImageBarWidth = 14.0;
 constexpr double kBarTexts = 86.0;
 constexpr int kBarSteps = 128;
 constexpr double kImageDecades = 4.0;
 
-/// How values become shares of the colour scale.
+/// Maps values to fractions of the colour scale.
 struct ValueScale {
   double full = 1.0;
   bool is_logarithmic = false;
@@ -49,7 +49,7 @@ Colour colour_of(double share) {
 
 Size picture_size(const ImagePanel& panel) {
   const double aspect = static_cast<double>(panel.columns) / static_cast<double>(panel.rows);
-  // A strip keeps a visible width.
+  // Narrow pictures are drawn with a minimum width.
   return aspect >= 1.0 ? Size{kPicture, std::max(8.0, kPicture / aspect)}
                        : Size{std::max(8.0, kPicture * aspect), kPicture};
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Plots of pictures: irradiance and luminance maps with scale bars and colour bars, side by side.
+// Plots of pictures: irradiance and luminance maps with scale bars and colour bars, next to each other.
 
 #include <cstddef>
 #include <string>
@@ -13,27 +13,28 @@ namespace retrace::report {
 /// A picture of values with a scale bar for lengths or angles and a colour bar for values.
 struct ImagePanel {
   std::string title;
-  std::string value_label;  ///< with its unit: "relative irradiance"
+  std::string value_label;  ///< name of the values with their unit, such as "relative irradiance"
   std::size_t columns = 1;
   std::size_t rows = 1;
-  std::vector<double> values;   ///< row by row from above, each >= 0
-  double width = 1.0;           ///< of the picture, in `length_unit`
+  std::vector<double> values;   ///< row by row from the top, each >= 0
+  double width = 1.0;           ///< width of the picture, in `length_unit`
   std::string length_unit;      ///< "mm", "°"; empty: no scale bar
-  double full_value = 0.0;      ///< upper end of the colours; 0: the largest value
-  bool is_logarithmic = false;  ///< colours over four decades below the upper end
+  double full_value = 0.0;      ///< value at the upper end of the colour scale; 0: the largest value
+  bool is_logarithmic = false;  ///< true: the colour scale is logarithmic, with four decades below its upper end
 };
 
-/// Panels side by side under one title, with lines of remarks.
+/// Panels next to each other under one title, with lines of remarks.
 struct ImagePlot {
   std::string title;
   std::vector<std::string> remarks;
   std::vector<ImagePanel> panels;
 };
 
-/// What render_svg() and render_png() call.
+/// Draws the plot. render_svg() and render_png() call this function.
 std::string render(const ImagePlot& plot, PlotFormat format, double scale);
 
-/// The length of a scale bar: 1, 2 or 5 times a power of ten, near a quarter of `width`. \pre width > 0
+/// Returns the length of a scale bar. It is 1, 2 or 5 times a power of ten and about a quarter of `width`.
+/// \pre width > 0
 double scale_bar_length(double width);
 
 }  // namespace retrace::report

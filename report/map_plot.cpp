@@ -16,9 +16,10 @@ using geometry::Polygon, geometry::Rectangle, geometry::Vec2;
 
 constexpr Colour kRest{0.945, 0.945, 0.945};
 constexpr Colour kHatch{0.80, 0.80, 0.80};
-constexpr Colour kLine{0.55, 0.55, 0.55};  ///< seen on the palest and the darkest region
+constexpr Colour kLine{0.55, 0.55, 0.55};  ///< visible on the palest and on the darkest region
 
-// YlGnBu of ColorBrewer (Harrower and Brewer 2003): sequential in lightness, safe with any kind of colour vision.
+// Colour scale YlGnBu of ColorBrewer (Harrower and Brewer 2003). Its lightness changes monotonically, and it is
+// suitable for colour-blind readers.
 constexpr ColourScale kMapScale = {{{1.000, 1.000, 0.851},
                                     {0.929, 0.973, 0.694},
                                     {0.780, 0.914, 0.706},
@@ -40,32 +41,34 @@ constexpr AxisLook kMapAxis{.font = kMapTickFont,
                             .below = kMapTickLength + 3.0 + kMapTickFont.size,
                             .beside = kMapTickLength + 3.0,
                             .baseline = 0.36 * kMapTickFont.size};
-constexpr double kPlanLeft = 40.0;  ///< in its cell: room for the labels of the axis
+constexpr double kPlanLeft = 40.0;  ///< distance of the plan from the left end of its cell, for the labels of the axis
 constexpr double kMapBarWidth = 16.0, kHatchSpacing = 6.0;
-/// Smoothed edges of neighbours would leave some of what is below.
+/// Distance by which regions are enlarged. Without it, the background would be visible between the anti-aliased edges
+/// of adjacent regions.
 constexpr double kSwell = 0.15;
-/// What of its neighbours a periodic outline is shown with, in periods.
+/// Width of the surroundings that are shown around a periodic outline, in periods, and the opacity of the white layer
+/// over them.
 constexpr double kSurroundings = 0.3, kSurroundingsVeil = 0.62;
-/// Thin lines need this much room each.
+/// Minimum distance of thin lines. Closer lines are not drawn.
 constexpr double kLeastCell = 3.0;
 
-/// What of the plane a panel shows.
+/// Returns the rectangle of the plane that a panel shows.
 Rectangle shown_by(const MapPanel& panel) {
   if (panel.outline.empty()) return {Vec2::Zero(), Vec2::Ones()};
   Rectangle box = geometry::bounding_box(panel.outline);
   if (!panel.is_periodic) return box;
-  // As much on all sides, so that neither side of an oblong period looks cut short.
+  // The width is the same on all sides, so that an oblong period does not appear truncated.
   const Vec2 around = Vec2::Constant(kSurroundings * box.size().minCoeff());
   return {box.lower - around, box.upper + around};
 }
 
-/// Measures that all panels share.
+/// Dimensions that are the same for all panels.
 struct MapLayout {
   std::size_t columns = 1;
   std::size_t rows = 1;
-  Size box;           ///< of the largest plan
-  Size cell;          ///< of a panel with its texts
-  double head = 0.0;  ///< of a cell, for its texts
+  Size box;           ///< size of the largest plan
+  Size cell;          ///< size of a panel with its texts
+  double head = 0.0;  ///< height of the texts above a plan
   double left = 0.0;
   double top = 0.0;
   std::vector<std::string> title;
@@ -97,7 +100,7 @@ Range value_range(const MapPlot& plot) {
   return rounded_range({0.0, most}, {0.0, most}, 5);
 }
 
-/// Height of plan boxes of this width: that of the tallest plan, within reason.
+/// Returns the height of the boxes for plans of a given width. It is the height of the tallest plan, up to a maximum.
 double plan_height(const MapPlot& plot, double width) {
   double aspect = 0.0;
   for (const MapPanel& panel : plot.panels) {
@@ -141,7 +144,7 @@ MapLayout lay_out(const MapPlot& plot, const Canvas& canvas) {
   return layout;
 }
 
-/// Where the plane lies on the canvas.
+/// Transformation from the plane to the canvas.
 struct Plan {
   AxisScale x;
   AxisScale y;
@@ -156,7 +159,7 @@ struct Plan {
   Size size() const { return {x.last - x.first, y.first - y.last}; }
 };
 
-/// The plan of a panel, in the middle of its box and to scale.
+/// Returns the plan of a panel, centred in its box and to scale.
 Plan plan_of(const MapPanel& panel, const MapLayout& layout, Point box_corner) {
   const Rectangle shown = shown_by(panel);
   const double scale = std::min(layout.box.width / shown.size().x(), layout.box.height / shown.size().y());
@@ -167,7 +170,7 @@ Plan plan_of(const MapPanel& panel, const MapLayout& layout, Point box_corner) {
           {{shown.lower.y(), shown.upper.y()}, top + size.height, top}};
 }
 
-/// Where copies of a periodic panel stand; the central one alone if it is not.
+/// Returns the displacements of the copies of a periodic panel. If the panel is not periodic, returns only zero.
 std::vector<Vec2> copies_of(const MapPanel& panel) {
   if (!panel.is_periodic) return {Vec2::Zero()};
   const Vec2 period = geometry::bounding_box(panel.outline).size();
@@ -180,7 +183,7 @@ std::vector<Vec2> copies_of(const MapPanel& panel) {
   return copies;
 }
 
-/// Whether the box round some points, moved, reaches into what the panel shows.
+/// Returns true if the bounding box of the displaced points overlaps with the rectangle that the panel shows.
 template <class Points>
 bool is_shown(const MapPanel& panel, const Points& points, const Vec2& moved) {
   const Rectangle shown = shown_by(panel);
@@ -196,7 +199,7 @@ bool is_shown(const MapPanel& panel, const Points& points, const Vec2& moved) {
 
 using Paths = std::vector<std::vector<Point>>;
 
-/// Regions by the step of the colour scale, so that those of one colour are filled as one.
+/// Draws the regions. Regions of the same colour are filled in one operation.
 void draw_regions(Canvas& canvas, const MapPanel& panel, const Plan& plan, const Range& values) {
   std::map<int, Paths> by_colour;
   for (const Vec2& copy : copies_of(panel))
@@ -221,7 +224,7 @@ void draw_lines(Canvas& canvas, const MapPanel& panel, const Plan& plan) {
         if (is_shown(panel, line, copy)) canvas.line({plan.at(line[0] + copy), plan.at(line[1] + copy)}, stroke);
 }
 
-/// Makes what lies round the central period pale.
+/// Makes the surroundings of the central period pale.
 void veil_surroundings(Canvas& canvas, const Plan& plan, const std::vector<Point>& outline) {
   const Point corner = plan.corner();
   const Size size = plan.size();
@@ -286,7 +289,7 @@ void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const MapLayout& layou
   const double right = layout.bar_left + kMapBarWidth;
   const double bottom = layout.bar_top + layout.bar_height;
   const double step = layout.bar_height / kColourSteps;
-  for (int k = 0; k < kColourSteps; ++k)  // each a little taller than its step, to leave no gap
+  for (int k = 0; k < kColourSteps; ++k)  // each step is drawn slightly too high, so that there are no gaps
     canvas.fill_rectangle({layout.bar_left, layout.bar_top + k * step},
                           {kMapBarWidth, k + 1 < kColourSteps ? 1.5 * step : step},
                           colour_at(kMapScale, 1.0 - (k + 0.5) / kColourSteps));

@@ -11,7 +11,7 @@
 
 namespace retrace::report {
 
-/// A region with one value all over it.
+/// A region with a single value.
 struct MapRegion {
   geometry::Polygon outline;
   double value = 0.0;
@@ -19,28 +19,30 @@ struct MapRegion {
 
 using MapLine = std::array<geometry::Vec2, 2>;
 
-/// A plan, drawn to scale.
+/// A panel with a plan that is drawn to scale.
 struct MapPanel {
   std::string title;
   std::vector<std::string> remarks;  ///< lines under the title
   geometry::Polygon outline;
-  bool is_periodic = false;         ///< the outline repeats as a rectangle: its surroundings are drawn paler
-  std::vector<MapLine> lines;       ///< left out where they would lie too close
+  bool is_periodic = false;         ///< true if the rectangular outline repeats periodically; its surroundings are
+                                    ///< drawn paler
+  std::vector<MapLine> lines;       ///< lines, which are not drawn if they are too close together
   std::vector<MapLine> fine_lines;  ///< likewise
-  std::vector<MapRegion> regions;   ///< what they leave free of the outline is hatched
+  std::vector<MapRegion> regions;   ///< coloured regions; the rest of the outline is hatched
 };
 
-/// Plans side by side, with one colour scale. Texts are UTF-8; what does not fit is shortened by an ellipsis.
+/// Plans next to each other, with one colour scale. Texts are UTF-8; texts that are too long are shortened with an
+/// ellipsis.
 struct MapPlot {
   std::string title;
-  std::string axis_unit;    ///< "mm": the axes are "x (mm)" and "y (mm)"
-  std::string value_label;  ///< of the colour bar, which starts at 0
-  std::string rest_label;   ///< what a hatched place is
-  double full_value = 1.0;  ///< the upper end of the colour bar if a value exceeds its half
+  std::string axis_unit;    ///< unit of the axes; "mm" gives the labels "x (mm)" and "y (mm)"
+  std::string value_label;  ///< label of the colour bar, which starts at 0
+  std::string rest_label;   ///< meaning of hatched areas
+  double full_value = 1.0;  ///< upper end of the colour bar if a value exceeds half of it
   std::vector<MapPanel> panels;
 };
 
-/// What render_svg() and render_png() call.
+/// Draws the plot. render_svg() and render_png() call this function.
 std::string render(const MapPlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

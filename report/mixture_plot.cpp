@@ -13,8 +13,9 @@ namespace {
 constexpr Font kMixtureFont{11.0, false};
 constexpr double kZonePlan = 260.0, kMixtureTop = 62.0, kGoalRow = 20.0, kZoneColumn = 62.0, kGoalWidth = 176.0;
 constexpr double kTotalWidth = 74.0, kPriceWidth = 60.0, kAsideOfPlan = 34.0, kZoneLine = 17.0;
-constexpr double kBaseline = 0.36;  ///< of a font's size, from a text's middle down
-/// Where the ground is this dark, or darker, letters are white.
+constexpr double kBaseline = 0.36;  ///< distance from the centre of a text to its baseline, as a fraction of the font
+                                    ///< size
+/// Darkness of the background above which letters are white.
 constexpr double kDarkGround = 0.55;
 
 Colour colour_of_zone(std::size_t zone) {
@@ -35,7 +36,7 @@ Size mixture_figure(const MixturePlot& plot) {
   return {2.0 * kMargin + kZonePlan + kAsideOfPlan + matrix, kMixtureTop + std::max(rows, plan) + kMargin};
 }
 
-/// The part from the light, zones in stripes, and what their cells are.
+/// Draws the part as seen from the light, with its zones as stripes, and a legend with the cells of the zones.
 void draw_zones(Canvas& canvas, const MixturePlot& plot) {
   double from = 0.0;
   for (std::size_t z = 0; z < plot.zones.size(); ++z) {
@@ -57,7 +58,8 @@ void draw_zones(Canvas& canvas, const MixturePlot& plot) {
   }
 }
 
-/// Each goal a row: what the zones give, shaded by their parts of it, the total and the price.
+/// Matrix with one row for each goal. A row contains the contribution of each zone, shaded by its fraction, the total
+/// and the price.
 class GoalMatrix {
  public:
   GoalMatrix(Canvas& canvas, const MixturePlot& plot)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Plots of a part that is mixed of zones: its plan beside the matrix of what each zone gives to each goal.
+// Plots of a part that consists of zones: its plan, and the matrix of the contributions of each zone to each goal.
 
 #include <string>
 #include <vector>
@@ -9,29 +9,30 @@
 
 namespace retrace::report {
 
-/// A zone: its share of the plan and a column of the matrix.
+/// A zone: a stripe of the plan and a column of the matrix.
 struct MixtureZone {
-  std::string label;  ///< what its cells are
+  std::string label;  ///< description of the cells of the zone
   double share = 0.0;
 };
 
 /// A goal: a row of the matrix.
 struct MixtureGoal {
   std::string label;
-  std::vector<double> given;  ///< by each zone
-  std::string total;          ///< what the part has there
-  double price = 0.0;         ///< 0: it does not bind
+  std::vector<double> given;  ///< contribution of each zone
+  std::string total;          ///< value of the whole part
+  double price = 0.0;         ///< price of the goal; 0: the goal is not an active constraint
 };
 
-/// Zones are stripes of the plan, in their order from below. Texts are UTF-8; what does not fit is shortened.
+/// Plot of a part with zones. Zones are stripes of the plan, from bottom to top. Texts are UTF-8; texts that are too
+/// long are shortened.
 struct MixturePlot {
   std::string title;
-  std::string total_label;  ///< of the column of totals: "margin %"
+  std::string total_label;  ///< title of the column of totals, such as "margin %"
   std::vector<MixtureZone> zones;
   std::vector<MixtureGoal> goals;
 };
 
-/// What render_svg() and render_png() call.
+/// Draws the plot. render_svg() and render_png() call this function.
 std::string render(const MixturePlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

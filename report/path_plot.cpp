@@ -54,7 +54,7 @@ void draw_heading(Canvas& canvas, const PathPlot& plot, double width) {
   }
 }
 
-/// Moves of one kind, and what the legend says of them.
+/// Draws the moves of one kind and their entry in the legend.
 void draw_moves(Canvas& canvas, const PathPlot& plot, std::size_t k, const std::function<Point(const Vec2&)>& at,
                 double legend_top) {
   Stroke stroke{kColours[k % kColours.size()], 0.9, {}};

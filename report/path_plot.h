@@ -1,6 +1,6 @@
 #pragma once
 
-// Plots of a tool path in a section of the part, to scale.
+// Plots tool paths in a section of the part, to scale.
 
 #include <string>
 #include <utility>
@@ -15,20 +15,20 @@ namespace retrace::report {
 struct PathKind {
   std::string label;
   bool dashed = false;
-  std::vector<std::pair<geometry::Vec2, geometry::Vec2>> moves;  ///< from, to
+  std::vector<std::pair<geometry::Vec2, geometry::Vec2>> moves;  ///< start and end of each move
 };
 
-/// The way of a tool in a section, drawn to scale over the material that is left at the end.
+/// Tool path in a section, drawn to scale over the material that remains at the end.
 struct PathPlot {
   std::string title;
   std::vector<std::string> remarks;  ///< lines under the title
   std::string x_label;
   std::string y_label;
-  std::vector<geometry::Vec2> material;  ///< outline of what is left
+  std::vector<geometry::Vec2> material;  ///< outline of the remaining material
   std::vector<PathKind> kinds;
 };
 
-/// What render_svg() and render_png() call.
+/// Draws the plot. render_svg() and render_png() call this function.
 std::string render(const PathPlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

@@ -13,7 +13,7 @@
 namespace retrace::report {
 namespace {
 
-// Dashes and marker shapes change when the colours start again.
+// Dashes and marker shapes change when the colours repeat.
 constexpr std::array<Colour, 7> kPalette = {kBlue, kVermilion, kBluishGreen, kReddishPurple, kOrange, kSkyBlue, kBlack};
 const std::array<std::vector<double>, 4> kDashes = {{{}, {7.0, 3.5}, {2.0, 2.5}, {8.0, 3.0, 2.0, 3.0}}};
 constexpr std::array kMarkers = {Marker::circle, Marker::square, Marker::triangle, Marker::diamond,
@@ -25,7 +25,7 @@ constexpr Font kLabelFont{13.5, false};
 constexpr Font kTickFont{12.0, false};
 constexpr Font kLegendFont{12.0, false};
 
-constexpr double kPlotWidth = 620.0;  ///< of the area inside the axes
+constexpr double kPlotWidth = 620.0;  ///< width of the area inside the axes
 constexpr double kPlotHeight = 370.0;
 constexpr double kTickLength = 5.0;
 constexpr AxisLook kPlotAxis{.font = kTickFont,
@@ -36,17 +36,18 @@ constexpr AxisLook kPlotAxis{.font = kTickFont,
                              .width = 1.1};
 constexpr double kLineSpacing = 1.3;
 constexpr double kLegendRow = 19.0;
-constexpr double kLegendKey = 30.0;  ///< length of a legend's sample of the line
+constexpr double kLegendKey = 30.0;  ///< length of the line sample in the legend
 constexpr double kLegendGap = 8.0;
 constexpr double kLegendTextWidth = 360.0;
 constexpr std::size_t kMostLegendEntries = 60;
-constexpr std::size_t kMostMarkers = 45;  ///< of one series; longer ones are drawn as a line alone
+constexpr std::size_t kMostMarkers = 45;  ///< maximum number of points of a series with markers; longer series are
+                                          ///< drawn as lines only
 constexpr int kMostXTicks = 9;
 constexpr int kMostYTicks = 7;
-/// An error bar whose half is shorter than this would hide in the marker or the line.
+/// Minimum half length of an error bar. A shorter one would be hidden by the marker or the line.
 constexpr double kShortestErrorBar = 1.5;
 
-/// How a series is drawn, by its place in the plot.
+/// Appearance of a series, which depends on its index in the plot.
 struct Look {
   Colour colour;
   std::vector<double> dashes;
@@ -72,7 +73,7 @@ bool has_markers(const Series& series) {
   return drawn_points(series) <= kMostMarkers;
 }
 
-/// The ranges of both axes.
+/// Returns the ranges of both axes.
 std::pair<Range, Range> axis_ranges(const LinePlot& plot) {
   std::vector<double> xs;
   std::vector<double> ys;
@@ -91,7 +92,7 @@ std::pair<Range, Range> axis_ranges(const LinePlot& plot) {
   if (plot.y_range) return {drawable(x), drawable(*plot.y_range)};
   const Range data = extent_of(ys).value_or(Range{0.0, 1.0});
   Range y = rounded_range(data, extent_of(with_errors).value_or(data), kMostYTicks);
-  // Shares stay within what a share can be.
+  // Axes in percent are limited to 0 to 100.
   if (plot.y_label.find('%') != std::string::npos && data.low >= 0.0 && data.high <= 100.0)
     y = drawable({std::max(y.low, 0.0), std::min(y.high, 100.0)});
   return {drawable(x), y};
@@ -101,16 +102,16 @@ struct LegendEntry {
   std::string text;
   double width = 0.0;
   Look look;
-  bool is_sample = true;  ///< false: text alone
+  bool is_sample = true;  ///< false: the entry has only text
   bool has_markers = true;
 };
 
 enum class LegendPlace { none, row, column };
 
-/// Where everything lies.
+/// Positions of all elements of the plot.
 struct Layout {
   Size figure;
-  Point corner;  ///< of the plot area, top left
+  Point corner;  ///< top left corner of the plot area
   AxisScale x;
   AxisScale y;
   Ticks x_ticks;
@@ -157,7 +158,7 @@ double widest(const std::vector<std::string>& labels, const Canvas& canvas) {
   return width;
 }
 
-/// As many ticks as their labels leave room for.
+/// Returns the maximum number of ticks whose labels do not overlap.
 Ticks x_ticks_that_fit(Range range, const Canvas& canvas) {
   for (int most = kMostXTicks;; --most) {
     Ticks ticks = make_ticks(range, most);
@@ -166,7 +167,7 @@ Ticks x_ticks_that_fit(Range range, const Canvas& canvas) {
   }
 }
 
-/// Measures texts on `canvas` and places everything; draws nothing.
+/// Computes the positions of all elements. Uses `canvas` only to measure texts.
 Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
   Layout layout;
   const auto [x_range, y_range] = axis_ranges(plot);
@@ -195,7 +196,7 @@ Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
   const double left =
       kMargin + height_of(layout.y_label, kLabelFont) + (layout.y_label.empty() ? 0.0 : 6.0) + y_tick_width + 12.0;
   const double below = kTickLength + 8.0 + kTickFont.size + 8.0 + height_of(layout.x_label, kLabelFont) + kMargin;
-  // The last label of the x axis may hang over the plot's right end.
+  // The last label of the x axis may extend beyond the right end of the plot.
   const double right = std::max(kMargin, 0.5 * widest(layout.x_ticks.labels, canvas) + 8.0);
   const double column_height = in_column ? kLegendRow * static_cast<double>(layout.legend.size()) : 0.0;
   layout.corner = {left, top};
@@ -266,7 +267,7 @@ void draw_legend(Canvas& canvas, const Layout& layout) {
   }
 }
 
-/// Keeps markers of neighbouring points apart where the points lie close.
+/// Returns the radius of markers, which is smaller for dense points so that markers do not overlap.
 double marker_radius(const Series& series, const Layout& layout) {
   double closest = kPlotWidth;
   for (std::size_t i = 1; i < series.x.size(); ++i) {
@@ -279,7 +280,8 @@ double marker_radius(const Series& series, const Layout& layout) {
 
 void draw_series(Canvas& canvas, const Layout& layout, const Series& series, const Look& look) {
   const auto place = [&](double x, double y) { return Point{layout.x.at(x), layout.y.at(y)}; };
-  // Half a line's width beyond the axes, so that a curve on the border keeps its weight.
+  // The clip area extends beyond the axes by half of the line width, so that curves on the border are drawn with full
+  // width.
   canvas.clip({layout.corner.x - 1.5, layout.corner.y - 1.5}, {kPlotWidth + 3.0, kPlotHeight + 3.0});
   std::vector<Point> stretch;
   const auto draw_stretch = [&] {
@@ -325,7 +327,7 @@ std::string render(const LinePlot& plot, PlotFormat format, double scale) {
       throw std::invalid_argument(fmt::format("series '{}': {} x, {} y and {} y_error values", series.label,
                                               series.x.size(), series.y.size(), series.y_error.size()));
   }
-  // Texts measure alike on every canvas, so a small one serves to find the size of the real one.
+  // Text sizes do not depend on the canvas, so a small canvas is sufficient to compute the size of the plot.
   const Layout layout = lay_out(plot, Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0));
   Canvas canvas(format, layout.figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, layout.figure, kWhite);

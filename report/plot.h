@@ -11,12 +11,12 @@
 
 namespace retrace::report {
 
-/// One curve. A point whose x or y is not finite is left out and interrupts the line.
+/// A curve. A point whose x or y is not finite is omitted and interrupts the line.
 struct Series {
-  std::string label;  ///< in the legend; empty: no entry there
+  std::string label;  ///< text in the legend; empty: no entry in the legend
   std::vector<double> x;
   std::vector<double> y;        ///< as many as x
-  std::vector<double> y_error;  ///< standard errors, as many as x, or none
+  std::vector<double> y_error;  ///< standard errors, as many as `x`, or none
 
   void add(double at, double value) {
     x.push_back(at);
@@ -28,17 +28,17 @@ struct Series {
   }
 };
 
-/// What a line plot shows. Texts are UTF-8; what does not fit is wrapped, then shortened by an ellipsis.
+/// Content of a line plot. Texts are UTF-8. Texts that are too long are wrapped and then shortened with an ellipsis.
 struct LinePlot {
   std::string title;
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
-  std::optional<Range> x_range;  ///< default: the points' own
-  std::optional<Range> y_range;  ///< default: \ref rounded_range of the points
+  std::optional<Range> x_range;  ///< range of the x axis; no value: range of the points
+  std::optional<Range> y_range;  ///< range of the y axis; no value: rounded_range() of the points
 };
 
-/// What render_svg() and render_png() call.
+/// Draws the plot. render_svg() and render_png() call this function.
 std::string render(const LinePlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

@@ -21,7 +21,7 @@ constexpr Size kPolarCell{290.0, 304.0};
 constexpr double kBarRoom = 96.0;
 constexpr double kPolarBarWidth = 14.0;
 constexpr std::size_t kMostAbreast = 3;
-/// Decades below the largest value that colours tell apart.
+/// Number of decades below the largest value that the colours show.
 constexpr double kPolarDecades = 4.0;
 
 std::vector<Point> circle(Point centre, double radius) {
@@ -34,7 +34,7 @@ std::vector<Point> circle(Point centre, double radius) {
   return points;
 }
 
-/// The decades of the colours, from the largest value down.
+/// Returns the range of the colour scale in decades, below the largest value.
 Range decades_of(const PolarPlot& plot) {
   double largest = 0.0;
   for (const PolarPanel& panel : plot.panels)

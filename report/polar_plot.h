@@ -10,32 +10,33 @@
 
 namespace retrace::report {
 
-/// A place that is marked on a polar panel.
+/// A marked direction in a polar panel.
 struct PolarMark {
   double right_deg = 0.0;
   double up_deg = 0.0;
   std::string label;
   enum class Kind { holds, open, fails };
-  Kind kind = Kind::holds;  ///< a circle, a square, or a warning triangle
+  Kind kind = Kind::holds;  ///< kind of mark: a circle, a square, or a warning triangle
 };
 
-/// Values around a direction, as colours in a disc whose radius is the angle from it, up being up.
+/// Values for directions around a central direction, as colours in a disc. The distance from the centre of the disc is
+/// the angle from the central direction.
 struct PolarPanel {
   std::string title;
   double radius_deg = 1.0;
-  std::size_t columns = 0;     ///< and rows, of the square round the disc
-  std::vector<double> values;  ///< row by row, the lowest first
+  std::size_t columns = 0;     ///< number of columns and of rows of the square around the disc
+  std::vector<double> values;  ///< row by row from the bottom
   std::vector<PolarMark> marks;
 };
 
-/// Discs two or three abreast with one logarithmic colour scale.
+/// Discs, two or three in a row, with one logarithmic colour scale.
 struct PolarPlot {
   std::string title;
   std::string value_label;
   std::vector<PolarPanel> panels;
 };
 
-/// What render_svg() and render_png() call.
+/// Draws the plot. render_svg() and render_png() call this function.
 std::string render(const PolarPlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

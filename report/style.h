@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to report/: what all plots share.
+// Private to report/: colours and elements that all plots have in common.
 
 #include <array>
 #include <string_view>
@@ -18,8 +18,8 @@ inline constexpr Font kTitleFont{16.0, true};
 inline constexpr Font kPanelFont{12.5, true};
 inline constexpr double kMargin = 22.0;
 
-/// Colours of Okabe and Ito (2008), told apart with any kind of colour vision; their yellow is too pale for a line on
-/// white.
+/// Colours of Okabe and Ito (2008), which colour-blind readers can distinguish. Their yellow is too pale for a line on
+/// white and is not used.
 inline constexpr Colour kBlue{0.000, 0.447, 0.698};
 inline constexpr Colour kVermilion{0.835, 0.369, 0.000};
 inline constexpr Colour kBluishGreen{0.000, 0.620, 0.451};
@@ -28,10 +28,11 @@ inline constexpr Colour kOrange{0.902, 0.624, 0.000};
 inline constexpr Colour kSkyBlue{0.337, 0.706, 0.914};
 inline constexpr Colour kBlack{0.000, 0.000, 0.000};
 
-/// Colours at even steps of a share.
+/// Colours at equidistant positions of a scale.
 using ColourScale = std::array<Colour, 9>;
 
-/// Viridis (Smith and van der Walt 2015): even in lightness, safe with any kind of colour vision.
+/// Colour scale Viridis (Smith and van der Walt 2015). Its lightness changes uniformly, and it is suitable for
+/// colour-blind readers.
 inline constexpr ColourScale kViridis = {{{0.267, 0.005, 0.329},
                                           {0.279, 0.175, 0.483},
                                           {0.230, 0.322, 0.546},
@@ -42,36 +43,37 @@ inline constexpr ColourScale kViridis = {{{0.267, 0.005, 0.329},
                                           {0.678, 0.864, 0.190},
                                           {0.993, 0.906, 0.144}}};
 
-/// \param share 0..1, clamped
+/// Returns a colour of a scale.
+/// \param share position on the scale, clamped to 0..1
 Colour colour_at(const ColourScale& scale, double share);
 
-/// An upright bar of all the colours, in a frame or none.
+/// Draws a vertical bar with all colours, without a frame.
 void draw_colour_bar(Canvas& canvas, const ColourScale& scale, Point corner, Size size);
 
 void draw_frame(Canvas& canvas, Point corner, Size size, double width = 1.0);
 
-/// A text in one line, shortened where it is wider than that.
+/// Draws a text in one line. A text that is wider than `width` is shortened.
 void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline, std::string_view text, Font font,
                  Colour colour, Align align);
 
-/// The title in the middle of a figure's top.
+/// Draws the title, centred at the top of a figure.
 void draw_title(Canvas& canvas, Size figure, std::string_view title);
 
-/// The marks of an axis and their labels.
+/// Dimensions of the ticks of an axis and of their labels.
 struct AxisLook {
   Font font;
-  double tick = 4.0;      ///< length of a mark
-  double below = 0.0;     ///< from an axis to the baseline of a label below it
-  double beside = 0.0;    ///< from an axis to the end of a label to its left
-  double baseline = 0.0;  ///< of that label, below its mark
+  double tick = 4.0;      ///< length of a tick
+  double below = 0.0;     ///< distance from the x axis to the baseline of its labels
+  double beside = 0.0;    ///< distance from the y axis to the end of its labels
+  double baseline = 0.0;  ///< distance of the baseline of a y label below its tick
   double width = 1.0;
 };
 
 void draw_x_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label);
 void draw_y_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label);
-/// Of an axis at the height y.
+/// Draws the ticks of a horizontal axis at the height y.
 void draw_x_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double y);
-/// Of an upright axis at x.
+/// Draws the ticks of a vertical axis at x.
 void draw_y_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double x);
 
 }  // namespace retrace::report

@@ -23,17 +23,18 @@ constexpr AxisLook kSurfaceAxis{.font = kSurfaceTickFont,
                                 .beside = 7.0,
                                 .baseline = 0.36 * kSurfaceTickFont.size};
 
-constexpr Size kSurfaceCell{430.0, 390.0};  ///< of one panel with its texts
+constexpr Size kSurfaceCell{430.0, 390.0};  ///< size of a panel with its texts
 constexpr Size kPlotArea{290.0, 290.0};
-constexpr double kSurfaceLeft = 62.0;  ///< of the plot area in its cell
+constexpr double kSurfaceLeft = 62.0;  ///< distance of the plot area from the left end of its cell
 constexpr double kTop = 34.0;
 constexpr double kSurfaceBarGap = 12.0;
 constexpr double kSurfaceBarWidth = 14.0;
-constexpr std::size_t kMostPixels = 480;  ///< of a grid along an axis; finer ones are averaged
-/// Heights this many standard deviations off the mean have the colour of the end of the scale.
+constexpr std::size_t kMostPixels = 480;  ///< maximum number of pixels of a grid along an axis; finer grids are
+                                          ///< averaged
+/// Distance from the mean, in standard deviations, at which heights reach the end of the colour scale.
 constexpr double kColourReach = 3.0;
 
-/// The values that the colours spread over.
+/// Returns the range of values that the colour scale covers.
 Range colour_range(const std::vector<double>& values) {
   double sum = 0.0;
   double squares = 0.0;
@@ -52,7 +53,7 @@ Range colour_range(const std::vector<double>& values) {
       {std::max(all.low, mean - kColourReach * deviation), std::min(all.high, mean + kColourReach * deviation)});
 }
 
-/// A grid of at most kMostPixels along each axis, by averaging blocks.
+/// Returns a grid of at most kMostPixels along each axis, which contains averages of blocks.
 GridPanel reduced(const GridPanel& panel) {
   const std::size_t sx = (panel.columns + kMostPixels - 1) / kMostPixels;
   const std::size_t sy = (panel.rows + kMostPixels - 1) / kMostPixels;
@@ -76,7 +77,7 @@ GridPanel reduced(const GridPanel& panel) {
   return small;
 }
 
-/// Where a panel's axes lie.
+/// Position and size of the area between the axes of a panel.
 struct Area {
   Point corner;
   Size size;
@@ -119,7 +120,7 @@ void draw_linear_axes(Canvas& canvas, const Area& area, Range x_range, Range y_r
   draw_y_ticks(canvas, kSurfaceAxis, y, make_ticks(y_range, 5), area.corner.x);
 }
 
-/// A profile: heights over x.
+/// Draws a profile: heights over x.
 void draw_profile(Canvas& canvas, const GridPanel& panel, Point cell) {
   const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, kPlotArea};
   const Range heights = drawable(extent_of(panel.values).value_or(Range{0.0, 1.0}));
@@ -148,7 +149,7 @@ void draw(Canvas& canvas, const GridPanel& panel, Point cell) {
     draw_profile(canvas, panel, cell);
     return;
   }
-  // To scale, within the plot area; a strip keeps a visible width.
+  // The grid is drawn to scale within the plot area. Narrow grids are drawn with a minimum width.
   const double scale = std::min(kPlotArea.width / panel.x_size_um, kPlotArea.height / panel.y_size_um);
   const Size size{std::max(20.0, scale * panel.x_size_um), std::max(20.0, scale * panel.y_size_um)};
   const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, size};
@@ -164,7 +165,7 @@ void draw(Canvas& canvas, const GridPanel& panel, Point cell) {
   draw_texts(canvas, area, cell, panel.title, "x (µm)", "y (µm)");
 }
 
-/// The decades that hold all positive values; at most `most` below the highest.
+/// Returns the range of decades that contains all positive values, limited to `most` decades below the highest.
 Range decades(const LogPanel& panel, bool of_x, double most) {
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const LogCurve& curve : panel.curves)

@@ -11,25 +11,25 @@
 
 namespace retrace::report {
 
-/// Values on a grid, as colours with a bar that explains them; one row is drawn as a curve.
+/// Values on a grid, drawn as colours with a colour bar. A grid with one row is drawn as a curve.
 struct GridPanel {
   std::string title;
-  std::string value_label;  ///< "height (nm)"
+  std::string value_label;  ///< name of the values with their unit, such as "height (nm)"
   std::size_t columns = 0;
   std::size_t rows = 0;
   double x_size_um = 0.0;
   double y_size_um = 0.0;
-  std::vector<double> values;  ///< row by row, the first on top; grey where not finite
+  std::vector<double> values;  ///< row by row from the top; values that are not finite are drawn grey
 };
 
-/// One curve of positive values.
+/// A curve of positive values.
 struct LogCurve {
   std::string label;
   std::vector<double> x;
   std::vector<double> y;
 };
 
-/// Curves over two logarithmic axes. What is not positive is left out.
+/// Curves over two logarithmic axes. Values that are not positive are omitted.
 struct LogPanel {
   std::string title;
   std::string x_label;
@@ -37,13 +37,13 @@ struct LogPanel {
   std::vector<LogCurve> curves;
 };
 
-/// Panels two abreast under one title.
+/// Panels under one title, two in a row.
 struct SurfacePlot {
   std::string title;
   std::vector<std::variant<GridPanel, LogPanel>> panels;
 };
 
-/// What render_svg() and render_png() call.
+/// Draws the plot. render_svg() and render_png() call this function.
 std::string render(const SurfacePlot& plot, PlotFormat format, double scale);
 
 }  // namespace retrace::report

@@ -90,8 +90,8 @@ void draw_faces(SvgGroup& group, const studies::PlanView& view, const ToPaper& a
   group.lines("rim", on_paper(view.rims_mm, at));
 }
 
-/// Returns true if the lines of the plan are so close together that they are drawn finer. The distance is estimated
-/// from the lengths of the rims.
+/// Returns true if the lines of the plan are so close together that they are drawn finer. The mean length of the rims
+/// serves as an estimate of the distance.
 bool has_fine_lines(const studies::PlanView& view, double units_per_mm) {
   if (view.rims_mm.size() < 200) return false;
   double sum = 0.0;

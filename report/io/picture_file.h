@@ -1,6 +1,6 @@
 #pragma once
 
-// Pictures of results as files: linear values as OpenEXR, displayed colours as PNG.
+// Writes pictures of results as files: linear values as OpenEXR, displayed colours as PNG.
 
 #include <cstddef>
 #include <string>
@@ -10,10 +10,11 @@
 
 namespace retrace::report {
 
-/// The picture as an OpenEXR file; the same picture gives the same bytes. \throw OutputError if it cannot be made
+/// Returns the content of an OpenEXR file. Equal pictures give equal bytes.
+/// \throw OutputError if the file cannot be created
 std::string exr_file(const FloatPicture& picture);
 
-/// Eight-bit sRGB pixels, three bytes each, as a PNG file. \throw as exr_file()
+/// Returns the content of a PNG file with 8-bit sRGB pixels, three bytes each. Throws like exr_file().
 std::string png_file(std::size_t columns, std::size_t rows, const std::vector<unsigned char>& rgb);
 
 }  // namespace retrace::report

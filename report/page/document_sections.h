@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to the page: one function for each kind of document, light first.
+// Private to the page: one function for each kind of document, which makes its section. Documents on light come first.
 
 #include "report/page/page.h"
 #include "report/page/result_folder.h"
@@ -12,7 +12,7 @@ using SectionOf = PageSection(const ResultDocument& document, const ResultFolder
 SectionOf rre_section, footprint_section, far_field_section;
 SectionOf inspect_section, image_section, photometry_section, roughness_section, fabrication_section;
 SectionOf verification_section, forces_section, sweep_section, optimum_section;
-/// Documents that have no section of their own: their figures, and tables of what is in lists.
+/// Makes the section of documents without a specific section. It contains their values, and tables of their lists.
 SectionOf plain_section;
 
 }  // namespace retrace::report::document

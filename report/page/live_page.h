@@ -1,6 +1,7 @@
 #pragma once
 
-// The live page: one HTML document with the engine in it, in which a design can be changed and its light watched.
+// Makes the live page: one HTML document that contains the engine. The reader can change a design on this page and see
+// the change of its light.
 
 #include <string>
 
@@ -8,17 +9,17 @@
 
 namespace retrace::report {
 
-/// What a live page begins with.
+/// Initial state of a live page.
 struct LiveStart {
-  std::string toml;    ///< of the design; empty: templates
-  std::string source;  ///< what messages call it
+  std::string toml;    ///< text of the design; empty: the page offers templates
+  std::string source;  ///< name of the design in messages
 };
 
-/// The elements with the engine and the start that the script asks for, to stand before it.
-/// \param is_embedded in a page that has more
+/// Returns the HTML elements with the engine and the initial state. They must precede the script, which reads them.
+/// \param is_embedded true if the elements are part of a page with other content
 std::string live_elements(const LiveStart& start, const PageAssets& assets, bool is_embedded);
 
-/// The whole page, which needs no other file and is not let to ask the network for one.
+/// Returns the whole page. It needs no other file, and its policy forbids requests to a network.
 std::string live_html(const LiveStart& start, const std::string& title, const PageAssets& assets);
 
 }  // namespace retrace::report

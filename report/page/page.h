@@ -1,7 +1,7 @@
 #pragma once
 
-// The contents of the HTML page of `retrace report` - sections, tables, charts, figures, the view in three dimensions -
-// and their HTML.
+// Content of the HTML page of `retrace report` (sections, tables, charts, figures and the view in three dimensions) and
+// its conversion to HTML.
 
 #include <array>
 #include <cstdint>
@@ -14,26 +14,26 @@
 
 namespace retrace::report {
 
-/// One cell of a table: what is shown, and the value in full for the CSV file where that differs.
+/// Cell of a table: the text that is shown, and the full value for the CSV file if it differs.
 struct PageCell {
   std::string text;
-  std::string full;   ///< empty: the same
+  std::string full;   ///< value for the CSV file; empty: same as `text`
   std::string style;  ///< "good", "bad", "open" or none
 
   PageCell() = default;
   PageCell(std::string shown) : text(std::move(shown)) {}
   PageCell(const char* shown) : text(shown) {}
-  /// Six digits, and all of them in the CSV file.
+  /// Makes a cell that shows six digits. The CSV file contains all digits.
   PageCell(double value);
 };
 
 /// A table that can be saved as CSV.
 struct PageTable {
   std::string caption;
-  std::vector<std::string> columns;  ///< with their units: "incidence (deg)"
+  std::vector<std::string> columns;  ///< titles with units, such as "incidence (deg)"
   std::vector<std::vector<PageCell>> rows;
   std::string csv_name;
-  std::size_t left_out = 0;  ///< rows of the result that are not here
+  std::size_t left_out = 0;  ///< number of rows of the result that were omitted
 };
 
 struct ChartSeries {
@@ -47,22 +47,22 @@ struct ChartSeries {
   }
 };
 
-/// Curves that can be hovered and zoomed.
+/// Chart with curves. The reader can zoom it and read off values.
 struct PageChart {
   std::string title;
   std::string x_label;
   std::string y_label;
   std::vector<ChartSeries> series;
-  std::optional<double> y_from;  ///< where the y axis begins; none: where the values do
+  std::optional<double> y_from;  ///< lower end of the y axis; no value: determined by the data
 };
 
-/// Straight moves of one kind, in mm.
+/// Straight tool moves of one kind, in mm.
 struct PathMoves {
   std::string label;
-  std::vector<std::array<double, 4>> moves;  ///< from x, y to x, y
+  std::vector<std::array<double, 4>> moves;  ///< start x, y and end x, y of each move
 };
 
-/// The way of a tool in a section, to scale, that can be zoomed and whose kinds can be hidden.
+/// Tool path in a section, to scale. The reader can zoom it and hide kinds of moves.
 struct PagePath {
   std::string title;
   std::string x_label;
@@ -70,46 +70,46 @@ struct PagePath {
   std::vector<PathMoves> kinds;
 };
 
-/// A drawing (SVG, made by retrace) or a picture in a file of the folder.
+/// A drawing (SVG made by retrace) or a picture from a file of the result folder.
 struct PageFigure {
   std::string caption;
-  std::string svg;               ///< as markup; empty: a picture
+  std::string svg;               ///< drawing as markup; empty: the figure is a picture
   std::string media_type;        ///< of the picture, such as "image/png"
-  std::string bytes;             ///< of the picture
-  std::string alternative_text;  ///< says what is to be seen
+  std::string bytes;             ///< content of the picture file
+  std::string alternative_text;  ///< description of the figure for screen readers
 };
 
 struct PageFact {
   std::string name;
   std::string value;
-  std::string style;  ///< as PageCell::style
+  std::string style;  ///< style like PageCell::style
 };
 
 struct PageSection {
-  std::string id;  ///< unique, letters and digits
+  std::string id;  ///< unique id of letters and digits
   std::string title;
   std::vector<std::string> paragraphs;
   std::vector<PageFact> facts;
-  std::vector<std::string> steps;  ///< in their order, to be ticked off
+  std::vector<std::string> steps;  ///< steps in order, which the reader can tick off
   std::vector<PageChart> charts;
   std::vector<PagePath> paths;
   std::vector<PageFigure> figures;
   std::vector<PageTable> tables;
-  std::vector<std::pair<std::string, std::string>> details;  ///< folded texts: title, content
+  std::vector<std::pair<std::string, std::string>> details;  ///< collapsed texts: title and content
   bool has_scene = false;
   bool has_live = false;
 };
 
 PageSection titled(std::string title, const std::string& paragraph = {});
 
-/// One light path of the view in three dimensions.
+/// Light path in the view in three dimensions.
 struct ScenePathView {
   std::string label;
   std::vector<std::array<double, 3>> points_mm;
-  std::vector<std::string> events;  ///< what happens on the way, in words
+  std::vector<std::string> events;  ///< events along the path, as text
 };
 
-/// The view in three dimensions.
+/// Content of the view in three dimensions.
 struct SceneView {
   std::vector<std::array<double, 3>> vertices_mm;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -122,16 +122,17 @@ struct Page {
   std::string subtitle;
   std::vector<PageSection> sections;
   std::optional<SceneView> scene;
-  std::optional<LiveStart> live;  ///< the design that can be changed on the page
+  std::optional<LiveStart> live;  ///< design that can be changed on the page
 };
 
-/// What retrace ships for such a page. \throw InputError where it is missing
+/// Returns the shipped scripts and styles that a page needs.
+/// \throw InputError if a file is missing
 PageAssets assets_for(const Page& page);
 
-/// The page as one HTML file that needs no other file and no network. Whatever texts hold, they are shown as texts.
+/// Returns the page as one HTML file, which needs no other file and no network. All texts are escaped.
 std::string page_html(const Page& page, const PageAssets& assets);
 
-/// Six significant digits.
+/// Returns a number with six significant digits.
 std::string shown(double value);
 
 }  // namespace retrace::report

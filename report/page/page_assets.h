@@ -1,24 +1,26 @@
 #pragma once
 
-// What pages are made of beside their contents: scripts, styles, and the engine of live ones.
+// Parts of a page that do not depend on its content: scripts, styles, and the engine of live pages.
 
 #include <string>
 
 namespace retrace::report {
 
 struct PageAssets {
-  std::string script;  ///< empty: a page without charts and views, to be printed
+  std::string script;  ///< script; empty: a page for printing, without charts and views
   std::string style;
   std::string licences;
-  // Of live pages; empty of others.
-  std::string markup = {};  ///< of the body
+  // The following members are for live pages. They are empty for other pages.
+  std::string markup = {};  ///< markup of the body
   std::string engine_script = {};
-  std::string engine_wasm = {};  ///< packed by gzip
+  std::string engine_wasm = {};  ///< engine, compressed with gzip
 };
 
-/// Those that retrace ships, of pages of results ... \throw InputError where they are missing
+/// Returns the shipped assets for pages of results.
+/// \throw InputError if a file is missing
 PageAssets shipped_page_assets();
-/// ... and of live pages, whose script does what pages of results need as well.
+/// Returns the shipped assets for live pages. Their script also contains the functions for pages of results.
+/// \throw InputError if a file is missing
 PageAssets shipped_live_assets();
 
 }  // namespace retrace::report

@@ -1,4 +1,4 @@
-// Pictures: of a detector, a camera and a road at night.
+// Sections on pictures of a detector, of a camera and of a road at night.
 #include <fmt/format.h>
 
 #include "report/page/document_sections.h"
@@ -36,7 +36,7 @@ PageSection camera_section(const Json& json) {
   return section;
 }
 
-/// A value for each lamp.
+/// Returns the cell with the value of a reflector for one lamp.
 PageCell of_lamp(const Json& reflector, const char* key, std::size_t lamp) {
   const Json& values = list(reflector, key);
   return lamp < values.size() && values[lamp].is_number() ? PageCell(values[lamp].get<double>()) : PageCell();

@@ -8,15 +8,16 @@
 
 namespace retrace::report {
 
-/// A scene as the page shows it, what happens on each path in words.
+/// Converts a scene for the page. The events of each path become text.
 SceneView scene_view(const studies::DesignScene& scene);
 
-/// Gives a page the view of the design that its results quote, in the light that they are of. A page without its view
-/// is better than none. \return why it has none, if so
+/// Adds the view of the design to a page, with the light of the results. If the view cannot be made, the page is kept
+/// without it.
+/// \return reasons why there is no view
 Warnings add_scene(Page& page, const ResultFolder& folder);
 
-/// Gives a page a section in which the design that its results quote can be changed; none of one that names files, or
-/// that results do not quote.
+/// Adds a section in which the design can be changed. No section is added if the design refers to files, or if the
+/// results do not contain the design.
 void add_live(Page& page, const ResultFolder& folder);
 
 }  // namespace retrace::report

@@ -22,7 +22,7 @@ using namespace document;
 
 using MakeSection = PageSection (*)(const ResultDocument&, const ResultFolder&);
 
-/// In the order of the page: what comes first in a study comes first.
+/// Returns the functions that make sections, in the order of the page. It is the order in which a study proceeds.
 const std::vector<std::pair<std::string, MakeSection>>& makers() {
   static const std::vector<std::pair<std::string, MakeSection>> all = {{"inspect", inspect_section},
                                                                        {"rre", rre_section},

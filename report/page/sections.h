@@ -7,15 +7,15 @@
 
 namespace retrace::report {
 
-/// What the page says of a folder's results, the summary first and where everything comes from last. Documents that
-/// lack values that they should have are shown without them, not refused. Page::scene is left empty for the caller.
-/// \param title empty: that of the design
+/// Returns the page for the results in a folder. The summary comes first, and the list of sources last. If a document
+/// lacks values, they are omitted. Page::scene is empty and must be set by the caller.
+/// \param title title of the page; empty: title of the design
 Page study_page(const ResultFolder& folder, const std::string& title);
 
-/// The design of the first document that quotes one, as JSON; null if none does.
+/// Returns the design of the first document that contains one, as JSON, or null if there is none.
 const nlohmann::ordered_json* first_design(const ResultFolder& folder);
 
-/// The directions of light in the results: the least and the greatest incidence of the first RRE curve.
+/// Returns the directions with the smallest and the largest incidence of the first RRE curve, in degrees.
 std::vector<std::array<double, 2>> extreme_directions_deg(const ResultFolder& folder);
 
 }  // namespace retrace::report

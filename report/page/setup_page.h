@@ -1,6 +1,6 @@
 #pragma once
 
-// The sheet for who sets up a machine for a job: one page that prints.
+// Makes the set-up sheet for the operator of a machine: one page for printing.
 
 #include <string>
 #include <vector>
@@ -10,11 +10,13 @@
 
 namespace retrace::report {
 
-/// \param drawings of the arrangement and of the tool's way
+/// Returns the set-up sheet.
+/// \param drawings drawings of the arrangement and of the tool path
 Page setup_page(const studies::FabricationResult& result, const studies::SetupSheet& sheet,
                 std::vector<PageFigure> drawings);
 
-/// The page as one HTML file without scripts. \throw InputError where shipped styles are missing
+/// Returns the page as one HTML file without scripts.
+/// \throw InputError if the shipped styles are missing
 std::string setup_html(const Page& page);
 
 }  // namespace retrace::report

@@ -1,6 +1,6 @@
 #pragma once
 
-// The plots of results: what is drawn of them, not how.
+// Makes the plots of results. The classes of plots draw them.
 
 #include <cstddef>
 #include <string>
@@ -41,87 +41,97 @@ struct TurningResult;
 
 namespace retrace::report {
 
-/// RRE in percent against the incidence angle, one curve a design, azimuth and acceptance cone. With a single incidence
-/// angle the axis is the azimuth, with a single direction the acceptance half angle.
+/// Returns a plot of RRE in percent over the angle of incidence, with one curve for each design, azimuth and acceptance
+/// cone. If there is only one angle of incidence, the axis is the azimuth. If there is only one direction, the axis is
+/// the acceptance half angle.
 LinePlot rre_plot(const studies::RreResult& result);
 
-/// More directions than this are not drawn.
+/// Maximum number of directions in the drawing of footprints.
 inline constexpr std::size_t kMostFootprintPanels = 24;
 
-/// The active regions of the entrance face, one panel a direction, coloured by their efficiency in percent.
+/// Returns a plot of the active regions of the entrance face (regions that return light). It has one panel for each
+/// direction, and the colour is the efficiency in percent.
 /// \pre a footprint was requested
 MapPlot footprint_plot(const studies::RreResult& result);
 
-/// RRE over the Sa of the roughness: a curve for each correlation length, and measured facets as points.
+/// Returns a plot of RRE over the Sa of the roughness, with a curve for each correlation length and with measured
+/// facets as points.
 LinePlot roughness_plot(const studies::RoughnessResult& result);
 
-/// R_A around the return for every map of a result, with the test points on it.
+/// Returns a plot of R_A around the direction to the source, with the test points, for each map of a result.
 PolarPlot far_field_plot(const studies::PhotometryResult& result);
 
-/// R_A over the observation angle, one curve for each entrance angle.
+/// Returns a plot of R_A over the observation angle, with one curve for each entrance angle.
 LinePlot observation_plot(const studies::PhotometryResult& result);
 
-/// The share of parts below a value of the study's first quantity, with its nominal value and the limits on it.
+/// Returns a plot of the fraction of parts below a value of the study's first quantity, with its nominal value and its
+/// limits.
 LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceRequest& request,
                         const studies::ToleranceResult& result);
 
-/// The zones of a part beside what each gives to each goal. Without zones if there is no part.
+/// Returns a plot of the zones of a part and their contributions to each goal. If there is no part, the plot has no
+/// zones.
 MixturePlot composition_plot(const studies::Study& study, const studies::ComposeRequest& request,
                              const studies::Composition& composition);
 
-/// A measured surface less its form, its roughness, its waviness and its power spectral densities.
+/// Returns a plot of a measured surface without its form, its roughness, its waviness and its power spectral densities.
 SurfacePlot metrology_plot(const studies::MetrologyResult& result);
 
-// Of a detector and a camera.
+// Plots and pictures of a detector and a camera.
 
-/// What a picture's file says of itself. \param kind that of its document
+/// Returns the metadata of a picture file.
+/// \param kind kind of the picture's document
 std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind, const studies::Design& design);
-/// What leaves, and where it entered.
+/// Returns a plot of the light that leaves the entrance face, by the position at which it leaves and by the position at
+/// which it entered.
 ImagePlot irradiance_plot(const studies::DetectorResult& result);
-/// Around the direction back to the source, colours by decades.
+/// Returns a plot of the light over directions around the direction to the source, with logarithmic colours.
 ImagePlot angular_plot(const studies::DetectorResult& result);
-/// Channels `leaving` and `entering`, with their standard errors where there are any.
+/// Returns a picture with the channels `leaving` and `entering`, and with their standard errors if there are any.
 FloatPicture irradiance_picture(const studies::DetectorResult& result);
 FloatPicture angular_picture(const studies::DetectorResult& result);
-/// Channels Y (cd/m^2), `std_error` and `coverage`.
+/// Returns a picture with the channels Y (cd/m^2), `std_error` and `coverage`.
 FloatPicture luminance_picture(const studies::CameraResult& result);
-/// The picture as the eye might see it, three bytes a pixel.
+/// Returns the tone-mapped picture as the eye might see it, three bytes per pixel.
 std::vector<unsigned char> tone_mapped_pixels(const std::vector<double>& luminance);
-/// Luminance as colours by decades.
+/// Returns a plot of the luminance with logarithmic colours.
 ImagePlot false_colour_plot(const studies::CameraResult& result);
 
-/// The views side by side as the driver sees them, all exposed alike, with distances and luminances. A PNG file.
-/// \throw OutputError if it cannot be drawn
+/// Returns a PNG file with the views of the driver next to each other. All views have the same exposure. Distances and
+/// luminances are written below them.
+/// \throw OutputError if the picture cannot be drawn
 std::string road_png(const studies::RoadResult& result, double scale = 1.5);
 
-/// The luminances of all views one beside the other, channel Y, and `reflected`: what of it the reflectors send.
+/// Returns a picture with all views next to each other: the channel Y contains the luminance, and the channel
+/// `reflected` contains the part of it that comes from the reflectors.
 FloatPicture road_picture(const studies::RoadResult& result);
 
-/// The way of the tool through one element, roughing or finishing.
+/// Returns a plot of the tool path through one element, for roughing or finishing.
 PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing);
 
-/// Which elements are cut where, coloured by the order in which they are visited. Of large arrays neighbours in a row
-/// are drawn as one.
+/// Returns a plan of the elements that are cut, coloured by the order in which they are cut. In large arrays, adjacent
+/// elements of a row are drawn as one.
 MapPlot arrangement_plot(const studies::FabricationResult& result);
 
-/// The array from above, coloured by what programs leave over its facets.
+/// Returns a plan of the array, coloured by the material that the programs leave above the facets.
 SurfacePlot error_map_plot(const studies::ErrorMap& map);
 
-/// Forces on the tool against time, one curve an axis of the machine.
+/// Returns a plot of the forces on the tool over time, with one curve for each axis of the machine.
 LinePlot forces_plot(const studies::ForcesResult& result);
 
-/// Acceleration of Z over two turns round its largest jump.
+/// Returns a plot of the acceleration of Z over two revolutions around its largest jump.
 LinePlot turning_acceleration_plot(const studies::TurningResult& result);
-/// Deviation from the design across a few cuts.
+/// Returns a plot of the deviation from the design across a few cuts.
 LinePlot turning_profile_plot(const studies::TurningResult& result);
-/// The surface's height, and the size of what the programs leave on it.
+/// Returns maps of the height of the surface, and of the magnitude of the deviation after the programs.
 ImagePlot turning_maps(const studies::TurningResult& result);
 
-/// Depth over the distance from the middle: the design, and what the programs leave (of a lathe: its chords).
+/// Returns a plot of the depth over the distance from the centre: the design, and the surface after the programs (for a
+/// lathe, its chords).
 LinePlot planing_profile_plot(const studies::PlaningResult& result);
-/// Where the strokes of a mill go, by set of programs; of a lathe: the ends of its chords.
+/// Returns a plot of the strokes of a mill, by set of programs, or of the ends of the chords of a lathe.
 LinePlot planing_zones_plot(const studies::PlaningResult& result);
-/// What is left above the design over the distance from the middle; mill only.
+/// Returns a plot of the material that remains above the design over the distance from the centre. Only for mills.
 LinePlot planing_error_plot(const studies::PlaningResult& result);
 
 }  // namespace retrace::report

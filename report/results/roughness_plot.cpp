@@ -15,7 +15,7 @@ namespace {
 
 using studies::FacetGroup, studies::RoughnessPoint;
 
-/// Processes stand alone; single facets go together by their table.
+/// Returns the label of a group. Each process is a group of its own. Single facets are grouped by their table.
 std::string label_of(const FacetGroup& group) {
   if (!group.is_process) return fmt::format("single facets: {}", std::filesystem::path(group.table).stem().string());
   return fmt::format("{}: waviness Sa {} nm, {} facets", group.name, fixed(group.waviness_sa_nm, 1), group.facets);
@@ -37,7 +37,7 @@ LinePlot roughness_plot(const studies::RoughnessResult& result) {
     const auto [it, is_new] = series_of.try_emplace(label, plot.series.size());
     if (is_new) plot.series.push_back(Series{label, {}, {}, {}});
     Series& series = plot.series[it->second];
-    // Nothing leads from one measured facet to the next.
+    // Measured facets are not connected by a line.
     if (p.measured && !is_new) series.add(kNone, kNone, 0.0);
     series.add(p.roughness_sa_nm, 100.0 * p.rre, 100.0 * p.std_error);
   }

@@ -16,7 +16,7 @@ namespace {
 
 using studies::RrePoint, studies::RreResult;
 
-/// What varies in the result: one of these becomes the axis, the others tell curves apart.
+/// Parameters that vary in the result. One of them becomes the axis, and the others distinguish the curves.
 struct Variation {
   std::set<std::size_t> designs;
   std::set<double> incidences;
@@ -46,7 +46,8 @@ double coordinate(const RrePoint& p, Axis axis) {
   return axis == Axis::cone ? p.acceptance_half_angle_deg : p.incidence_deg;
 }
 
-/// Designs that go by the same name, such as two made from one template, are told apart by their place.
+/// Returns the label of a design. Designs with the same name, such as two designs from one template, are distinguished
+/// by their number.
 std::string design_label(const RreResult& result, std::size_t design) {
   const std::string name = short_name(result.designs[design]);
   const auto has_name = [&](const studies::Design& other) { return short_name(other) == name; };
@@ -64,7 +65,7 @@ std::string label(const RreResult& result, const RrePoint& p, const Variation& v
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// What the points of one curve have in common.
+/// Parameters that are equal for all points of one curve.
 using CurveKey = std::tuple<std::size_t, double, double, double>;
 
 CurveKey curve_of(const RrePoint& p, Axis axis) {
@@ -83,7 +84,7 @@ LinePlot rre_plot(const RreResult& result) {
   plot.x_label = axis == Axis::azimuth ? "Azimuth (°)"
                  : axis == Axis::cone  ? "Acceptance half angle (°)"
                                        : "Incidence angle (°)";
-  // Angles may have been requested in any order; a curve runs from left to right.
+  // The angles may be in any order. The points of a curve are sorted by angle.
   std::vector<const RrePoint*> points;
   for (const RrePoint& p : result.points) points.push_back(&p);
   std::map<CurveKey, std::size_t> series_of;

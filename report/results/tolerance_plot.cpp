@@ -14,7 +14,8 @@ Series line_at(const std::string& label, double value) {
   return {label, {value, value}, {0.0, kPercent}, {}};
 }
 
-/// Percentiles, evenly spaced where there are more parts than can be told apart.
+/// Returns the distribution of the values. If there are more parts than can be distinguished, evenly spaced percentiles
+/// are used.
 Series distribution(const std::vector<double>& ascending) {
   Series series{"parts", {}, {}, {}};
   const std::size_t points = std::min(kMostPoints, ascending.size());
