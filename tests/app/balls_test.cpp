@@ -1,4 +1,4 @@
-// Balls: the commands that take them, and those that refuse them by name before anything is written.
+// Tests of designs with balls: commands that accept them, and commands that refuse them before anything is written.
 
 #include <gtest/gtest.h>
 

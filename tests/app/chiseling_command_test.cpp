@@ -7,13 +7,13 @@
 
 #include "tests/app/program.h"
 
-// Cube corners from a design to NC text, and back to a part that is traced.
+// Tests of cube corners: from a design to NC text, and back to a part that is traced.
 
 namespace retrace::test::chiseling_command_test {
 namespace {
 
 std::string design(bool is_hexagonal) {
-  // 3 x 3 triangles, or 7 hexagons round the one in the middle.
+  // The design has 3 x 3 triangles, or a central hexagon with 6 hexagons around it.
   return std::string("[element]\nkind = \"") + (is_hexagonal ? "hexagonal_icc" : "triangular_icc") +
          "\"\naperture_mm = 0.3\n[array]\nx_length_mm = " + "0.76" +
          "\ny_length_mm = " + (is_hexagonal ? "0.79" : "0.53") +
@@ -39,7 +39,7 @@ class ChiselingCommand : public ::testing::Test {
                                              "detector.acceptance_half_angle_deg=0.5"});
     return json["points"][0]["rre"].get<double>();
   }
-  /// The design without what the cuts' texture adds.
+  /// Writes the design without the surface texture of the cuts.
   void write_smooth(const std::string& from, const std::string& to) {
     folder_.write(to, without_texture(folder_.read(from)));
   }
@@ -56,7 +56,8 @@ TEST_F(ChiselingCommand, EveryDialectVerifiesAndTakesItsTime) {
     EXPECT_EQ(made["elements"], 9);
     EXPECT_EQ(made["plunge_rake_deg"], 22.0);
     EXPECT_NEAR(made["poses"][0]["b_deg"].get<double>(), 35.2643897, dialect == "fanuc" ? 5e-7 : 1e-7);
-    // Six turns a layer, four layers of 15 um, two of 5: the blank's face is 61 um from every facet. And the return.
+    // Each layer requires six rotations. There are four layers of 15 um and two of 5 um, because the face of the blank
+    // is 61 um above every facet. The return is one more rotation.
     EXPECT_EQ(made["cuts_per_facet"], 4);
     const std::string file = dialect + "/" + made["programs"][0].get<std::string>();
     const Json json = retrace_json(folder_, {"verify", "job.toml", file});
@@ -65,7 +66,7 @@ TEST_F(ChiselingCommand, EveryDialectVerifiesAndTakesItsTime) {
     EXPECT_EQ(json["border_overcut_mm3"], 0.0);
     const double a = 0.3 * std::sqrt(3.0 / 8.0);
     EXPECT_NEAR(json["removed_volume_mm3"].get<double>(), 9.0 * a * a * a / 6.0, 1e-7);
-    // C of a Sinumerik goes the shorter way.
+    // The axis C of a Sinumerik rotates in the shorter direction.
     const double planned_s = made["time_s"].get<double>();
     EXPECT_NEAR(json["time_s"].get<double>(), planned_s, (dialect == "sinumerik" ? 0.1 : 0.01) * planned_s);
   }
@@ -90,17 +91,17 @@ TEST_F(ChiselingCommand, HexagonsAsMachinedHaveFlares) {
       folder_, {"verify", "job.toml", "rs274ngc/program.ngc", "--as-machined", "part.toml", "--map", "map.png"});
   EXPECT_EQ(json["verdict"], "pass");
   ASSERT_EQ(json["elements_cut"], 7);
-  // Six hexagons round one have 12 corners at dihedral edges: (12 - 7) / 6 of a cube.
+  // A hexagon with six hexagons around it has 12 corners at dihedral edges, which gives (12 - 7) / 6 of a cube.
   const double a = 0.3 * std::sqrt(3.0 / 8.0);
   EXPECT_NEAR(json["border_overcut_mm3"].get<double>(), 5.0 / 6.0 * a * a * a, 1e-12);
   ASSERT_NE(folder_.read("part.toml").find("facets = \"part_facets.csv\""), std::string::npos);
   const Json inspected = retrace_json(folder_, {"inspect", "part.toml"});
   EXPECT_EQ(inspected["elements_full"], 7);
   EXPECT_EQ(inspected["boundary"], "closed, free of self-intersections");
-  // Three squares each, and the flares within the extent.
+  // Each element has three squares. The flares (cuts beyond the hexagons) within the extent add to the area.
   EXPECT_GT(inspected["facet_area_mm2"].get<double>(), 21.0 * a * a);
   write_smooth("part.toml", "smooth.toml");
-  // The hexagons return what they do in the design; flares add little or nothing at normal incidence.
+  // The hexagons return the same light as in the design. At normal incidence, flares add little or no light.
   EXPECT_NEAR(rre_of("smooth.toml"), rre_of("design.toml"), 0.05);
 }
 
@@ -110,8 +111,8 @@ std::string cube_design(bool is_hexagonal) {
          "thickness_mm = 1\nrefractive_index = 1.4917\n";
 }
 
-/// The triangle at the apex that a chisel does not reach is half its edge high; what it leaves over the apex ends where
-/// three rake faces meet. The cut's own planes say the same.
+/// The triangular region at the apex that a chisel cannot reach is half as high as its edge is long. The material that
+/// remains above the apex ends where three rake faces meet. The planes of the cut must give the same height.
 TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
   const TemporaryFolder folder;
   for (const bool is_hexagonal : {false, true}) {
@@ -126,7 +127,7 @@ TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
     EXPECT_NEAR(reach["facet_area_mm2"].get<double>(), area, 1e-12);
     EXPECT_NEAR(reach["reached_share"].get<double>(), 1.0 - 0.01 / area, 1e-12);
     EXPECT_NEAR(reach["reached_share_cut"].get<double>(), 1.0 - 0.01 / area, 0.01);
-    // On the axis, t from each facet: sqrt(2) t - 0.1 = t / tan 53.
+    // At a point on the axis with the distance t from each facet: sqrt(2) t - 0.1 = t / tan 53.
     const double t = 0.1 / (std::sqrt(2.0) - 1.0 / std::tan(53.0 * 3.14159265358979 / 180.0));
     EXPECT_NEAR(reach["core_mm"].get<double>(), std::sqrt(3.0) * t, 1e-9);
     EXPECT_NEAR(reach["core_mm_cut"].get<double>(), std::sqrt(3.0) * t, 1e-6);
@@ -140,7 +141,8 @@ TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
     const double whole = rre("d.toml");
     const double part = rre("part.toml");
     EXPECT_LT(part, whole);
-    // Light that meets the core, 3 (0.2 / 2)^2 / sqrt(3) in plan of each cell, is lost, on either way.
+    // Light that meets the core is lost, on its way in or out. The core covers 3 (0.2 / 2)^2 / sqrt(3) of each cell in
+    // plan.
     EXPECT_GT(part, 0.4 * whole);
   }
 }

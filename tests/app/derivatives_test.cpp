@@ -1,4 +1,4 @@
-// rre --derivatives: what it writes, what it needs.
+// Tests of `retrace rre --derivatives`: its output and the options that it requires.
 #include <gtest/gtest.h>
 
 #include <cmath>

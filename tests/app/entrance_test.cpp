@@ -114,7 +114,7 @@ double miss_deg(double radius, double thickness, double n, double x, double y) {
   const double b = dot(q, d);
   const Vector out = along(foot, -b + std::sqrt(b * b - dot(q, q) + r * r), d);
   const Vector m = normal(out);
-  if (std::abs(out[0]) > 0.5 || std::abs(out[1]) > 0.4) return 180.0;  // through a side
+  if (std::abs(out[0]) > 0.5 || std::abs(out[1]) > 0.4) return 180.0;  // light that leaves through a side
   d = refracted(d, {-m[0], -m[1], -m[2]}, n);
   return std::acos(std::min(1.0, d[2])) * 180.0 / std::numbers::pi;
 }

@@ -67,7 +67,7 @@ TEST(Fabricate, WritesProgramsPicturesAndTimesTheSameInEveryRun) {
 }
 
 TEST(Fabricate, TakesAsManyCutsAsTheThesis) {
-  // Milliken 2017, 4.1.3: a 1 mm prism at 10 and at 5 um.
+  // Milliken 2017, 4.1.3: a prism of 1 mm with depths of cut of 10 um and 5 um.
   const TemporaryFolder folder;
   folder.write("d.toml", design("single", 0));
   const std::pair<std::string, int> cases[] = {{"thesis-forces-10um", 71}, {"thesis-forces", 142}};

@@ -5,7 +5,7 @@
 
 #include "tests/app/program.h"
 
-// retrace metrology: what it measures in the examples, its files, and what it refuses.
+// Tests of `retrace metrology`: values of the examples, its files, and refused input.
 
 namespace retrace::test::metrology_test {
 namespace {

@@ -6,14 +6,14 @@
 
 #include "tests/app/program.h"
 
-// A program without the modules that stand beside it, or without the libraries that they need.
+// Tests of a program without its modules, or without the libraries that the modules need.
 
 namespace retrace::test::modules_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// What needs a module, and where it looks for it.
+/// A command that needs a module, and the path at which the module is searched.
 struct Need {
   std::string module;
   std::string command;
@@ -27,7 +27,7 @@ const std::vector<Need>& needs() {
   return all;
 }
 
-/// The program by itself in bin/, with its data.
+/// Fixture with a copy of the program in bin/ and its data, but without modules.
 class Modules : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -248,7 +248,7 @@ TEST(LuminanceFixture, RatioOfThePublishedSamplesDependsOnTheObservationAngle) {
         retrace(folder, {"photometry", examples + design, "--standard", examples + "fixture.csv", "--area-cm2", "1.27",
                          "--window-deg", "3", "--no-advice", "--no-diffraction", "--samples", "16384", "--json", "-"});
     EXPECT_EQ(outcome.code, 1) << "undetermined: " << outcome.err;
-    std::vector<double> values;  // at 0.2, 0.33, 0.5, 1, 1.5 and 2 degrees
+    std::vector<double> values;  // values at observation angles of 0.2, 0.33, 0.5, 1, 1.5 and 2 degrees
     const Json json = Json::parse(outcome.out);
     for (const Json& point : json["points"]) values.push_back(point["r_a_cd_per_lx_m2"]);
     return values;

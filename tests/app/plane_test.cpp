@@ -1,4 +1,4 @@
-// retrace plane: its files, its exit codes, and what it refuses before anything is written.
+// Tests of `retrace plane`: its files, its exit codes, and input that is refused before anything is written.
 
 #include <gtest/gtest.h>
 

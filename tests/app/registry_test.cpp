@@ -4,13 +4,13 @@
 
 #include "tests/app/program.h"
 
-// Every command that the program knows is in its help, its manual, the list of docs/commands.md and the completion of
-// each shell, which is run by that shell.
+// Tests that every command of the program is in its help, its manual, the list in docs/commands.md and the completion
+// of each shell. The tests run the completion scripts in their shells.
 
 namespace retrace::test::registry_test {
 namespace {
 
-/// What a shell's script completes in a folder with a few files.
+/// Fixture that runs the completion script of a shell in a folder with a few files.
 class Completion : public testing::TestWithParam<std::string> {
  protected:
   Completion() {
@@ -25,7 +25,7 @@ class Completion : public testing::TestWithParam<std::string> {
     folder_.write(".init", kZshInit);
   }
 
-  /// What may stand for the last word of a line.
+  /// Returns the completions of the last word of a line.
   Arguments completed(const std::string& line) const {
     Arguments run = {"/usr/bin/env", GetParam(), ".ask", line};
     if (GetParam() == "zsh") run.insert(run.begin() + 2, "-f");
@@ -50,7 +50,7 @@ class Completion : public testing::TestWithParam<std::string> {
   TemporaryFolder folder_;
 
  private:
-  // Words as bash splits them: at spaces and at "=".
+  // Splits the line into words like bash: at spaces and at "=".
   static constexpr const char* kAskBash = R"(source ./.script
 line=${1//=/ = }
 read -ra COMP_WORDS <<<"$line"
@@ -64,7 +64,8 @@ for line in (complete -C "$argv[1]")
     echo '<'(string replace -r '/?(\t.*)?$' '' -- $line)'>'
 end
 )";
-  // An interactive shell with a terminal of its own, whose compadd says what it adds.
+  // Runs an interactive shell in a pseudo-terminal. The function compadd is replaced by one that prints the
+  // completions.
   static constexpr const char* kAskZsh = R"(zmodload zsh/zpty
 zpty shell zsh -f -i
 zpty -w shell 'source ./.init'
@@ -98,7 +99,7 @@ TEST_P(Completion, KnowsEveryCommandAndOption) {
   for (const Json& command : manual["commands"]) {
     const std::string name = command["name"];
     EXPECT_TRUE(std::find(found.begin(), found.end(), name) != found.end()) << name;
-    if (GetParam() == "zsh" && name.size() > 3) continue;  // which takes a second for each
+    if (GetParam() == "zsh" && name.size() > 3) continue;  // zsh takes a second for each name
     const Arguments options = completed("retrace " + name + " --");
     for (const Json& arguments : {command["arguments"], manual["arguments"]})
       for (const Json& argument : arguments)
@@ -178,12 +179,12 @@ TEST(Manual, HasEveryCommandAndOptionAndIsWellFormed) {
         EXPECT_NE(plain.find("fB" + option + "fR"), std::string::npos) << name << option;
       }
   }
-  // The page has no date: it is of the version that it names.
+  // The manual page has no date, because it contains the version instead.
   const std::string lint = "mandoc -T lint -W warning retrace.1 2>&1 | grep -v 'missing date'";
   EXPECT_EQ(Child(folder.path(), {"/bin/sh", "-c", lint}).wait().out, "");
 }
 
-/// What stands in docs/commands.md between two marks.
+/// Returns the text between two marks in docs/commands.md.
 std::string listed() {
   const std::string page = read_text(std::string(RETRACE_SOURCE_DIR) + "/docs/commands.md");
   const std::string mark = "<!-- commands -->\n";
@@ -208,7 +209,7 @@ TEST(Documentation, ListsTheCommandsAndNamesTheirOptions) {
   EXPECT_EQ(listed(), expected + "\n");
 }
 
-// Cheap runs of several kinds: what they write is what the registry says.
+// Runs several fast commands. The formats that they write must be those that the registry contains.
 TEST(Registry, NamesTheFormatsThatAreWritten) {
   const TemporaryFolder folder;
   const Json manual = retrace_json(folder, {"manual"});

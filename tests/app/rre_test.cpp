@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 const std::string kDesign = example("rtp_brick_2mm.toml");
 const std::string kOther = example("rtp_single_0p45mm.toml");
 
-/// An oblique direction at which the result depends on the samples.
+/// Returns the arguments for oblique directions at which the result depends on the samples.
 Arguments oblique(const Arguments& more) {
   Arguments arguments = {"rre", kDesign, "--incidence=-25,25", "--azimuth=30", "--samples=65536"};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -130,7 +130,7 @@ TEST(Rre, EngineThatWasAskedForIsNamed) {
   }
 }
 
-// Arrays of equal elements need no search.
+// For arrays of equal elements, rays are traced without a search structure.
 TEST(Rre, MonteCarloChoosesItsEngine) {
   const TemporaryFolder folder;
   const std::string endless = RETRACE_SOURCE_DIR "/examples/honeycomb_infinite.toml";
@@ -169,7 +169,8 @@ TEST(Rre, AutoIsExactWhereThatIsCheap) {
   EXPECT_EQ(cheap["engine_requested"], "auto");
   EXPECT_EQ(cheap["engine"], "exact");
   for (const Json& point : cheap["points"]) EXPECT_LE(point["ledger"]["truncated"].get<double>(), 1e-4);
-  // Cube corners at oblique incidence: one such direction does not decide for the others.
+  // Beams are expensive for cube corners at oblique incidence. The engine for this direction does not determine the
+  // engine for the other direction.
   const Json dear = retrace_json(folder, {"rre", RETRACE_SOURCE_DIR "/examples/honeycomb_infinite.toml",
                                           "--incidence=0,20", "--azimuth=4", "--target-error=0.01"});
   EXPECT_EQ(dear["engine"], "mixed");
@@ -208,7 +209,7 @@ TEST(Rre, ExactEngineHasNoNoise) {
     EXPECT_GT(point["depth"], 0);
     EXPECT_LT(point["ledger"]["truncated"], 1e-10);
   }
-  // 22 of 25 elements are whole; a cut one sends back 2R/(1+R) (docs/theory/closed_forms.md, 1).
+  // 22 of 25 elements are complete. A partial element returns the fraction 2R/(1+R) (docs/theory/closed_forms.md, 1).
   const double r = std::pow(0.4917 / 2.4917, 2.0);
   EXPECT_NEAR(json["points"][0]["rre"].get<double>(), 0.88 + 0.12 * 2.0 * r / (1.0 + r), 1e-9);
   Arguments threads = run;
@@ -261,9 +262,9 @@ TEST(Rre, CsvHasTheKeysAndTheNumbersOfTheJson) {
 
   Arguments header;
   for (const std::string& key : keys(json["points"][0]))
-    if (key != "ledger" && key != "stokes" && key != "engine") header.push_back(key);  // a list is no column
+    if (key != "ledger" && key != "stokes" && key != "engine") header.push_back(key);  // lists are not columns
   for (const std::string& key : keys(json["points"][0]["ledger"])) header.push_back(key);
-  header.push_back("engine");  // the only text, last
+  header.push_back("engine");  // the only text is the last column
   EXPECT_EQ(split(csv[0]), header);
 
   for (std::size_t row = 1; row < csv.size(); ++row) {
@@ -337,7 +338,7 @@ TEST(Rre, SpectraGiveTheSameBytesAtAnyNumberOfThreads) {
 
 TEST(Rre, QuietSaysNothing) {
   const TemporaryFolder folder;
-  // Warns: the wavelength is outside the material's data.
+  // This design causes a warning, because the wavelength is outside of the data of the material.
   folder.write("d.toml",
                "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"single\"\n"
                "[body]\nthickness_mm = 1\nmaterial = \"PC\"\n[light]\nwavelength_nm = 350\n");

@@ -2,7 +2,7 @@
 
 #include "tests/app/program.h"
 
-// `retrace schema`: the formats, and JSON Schema that a validator of its own accepts our files by.
+// Tests of `retrace schema`. An independent validator must accept our files with the printed JSON Schemas.
 
 namespace retrace::test::schema_command_test {
 namespace {
@@ -46,7 +46,7 @@ TEST(SchemaCommand, RefusesAnUnknownFormat) {
   EXPECT_EQ(refused_at(outcome), "schema");
 }
 
-/// One line for each TOML file: its name, and whether the schema accepts it.
+/// Python script that prints one line for each TOML file: its name, and whether the schema accepts it.
 const char* const kValidate = R"(
 import json, pathlib, sys, tomllib
 import jsonschema
@@ -58,7 +58,7 @@ for name in sys.argv[2:]:
     print(pathlib.Path(name).name, "accepted" if is_valid else "refused")
 )";
 
-/// What the validator says of files by the schema of a format.
+/// Returns the output of the validator for files with the schema of a format.
 std::vector<std::string> judged(const TemporaryFolder& folder, const std::string& format,
                                 const std::vector<std::string>& files) {
   folder.write("validate.py", kValidate);
@@ -71,7 +71,7 @@ std::vector<std::string> judged(const TemporaryFolder& folder, const std::string
   return lines_of(outcome.out);
 }
 
-/// The files of a folder of the repository whose names end in .toml.
+/// Returns the files with the extension .toml in a folder of the repository.
 std::vector<std::string> files_in(const std::string& name) {
   std::vector<std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / name))
@@ -93,7 +93,7 @@ TEST(SchemaCommand, AValidatorAcceptsWhatIsShipped) {
         std::tuple{"design", "examples/fronts", 1U}, std::tuple{"design", "examples/luminance_fixture", 1U},
         std::tuple{"study", "examples/studies", 9U}}) {
     std::vector<std::string> files = files_in(name);
-    // Designs that are varied lie beside the studies.
+    // The folder of studies also contains designs, which are not studies.
     if (format == std::string("study"))
       std::erase_if(files,
                     [](const std::string& file) { return read_text(file).find("[[parameter]]") == std::string::npos; });
@@ -103,7 +103,7 @@ TEST(SchemaCommand, AValidatorAcceptsWhatIsShipped) {
   }
 }
 
-/// Each alone is wrong in a design of prisms; a validator says so as our reader does.
+/// Each of these lines makes a design of prisms invalid. The validator must refuse it, as our reader does.
 TEST(SchemaCommand, AValidatorRefusesWrongDesigns) {
   const TemporaryFolder folder;
   const std::string good = "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n";
@@ -145,13 +145,13 @@ TEST(SchemaCommand, AValidatorRefusesWrongDesigns) {
   for (std::size_t i = 0; i < wrong.size(); ++i) EXPECT_TRUE(lines[i + 1].ends_with(" refused")) << wrong[i];
 }
 
-/// A shipped file in which a text is replaced by another one.
+/// Replacement of a text in a shipped file, which makes the file invalid.
 struct Wrong {
   std::string from;
   std::string to;
 };
 
-/// retrace and the validator both refuse each of these.
+/// Expects that both retrace and the validator refuse each case.
 void expect_refused(const std::string& format, const std::string& file, const std::vector<Wrong>& cases) {
   const TemporaryFolder folder;
   const std::string good = read_text(fs::path(RETRACE_SOURCE_DIR) / file);
@@ -244,7 +244,7 @@ TEST(SchemaCommand, AValidatorRefusesWrongStudies) {
                   {"maximize", "minimize = \"rre\"\nmaximize"}});
 }
 
-/// What editors read of a file of `init --editor` is the schema that `retrace schema` prints.
+/// The schema to which a file of `init --editor` refers must be equal to the schema that `retrace schema` prints.
 TEST(SchemaCommand, EditorsFindTheSchema) {
   const TemporaryFolder folder;
   for (const auto& [kind, format] : {std::pair{"rtp", "design"}, std::pair{"round_zone_lens", "planed_part"}}) {
@@ -259,7 +259,7 @@ TEST(SchemaCommand, EditorsFindTheSchema) {
   }
 }
 
-/// Every format has its file beside the program.
+/// The schema file of every format is installed with the program.
 TEST(SchemaCommand, AllSchemasAreInstalled) {
   const TemporaryFolder folder;
   const auto formats = nlohmann::json::parse(retrace(folder, {"schema", "--json", "-"}).out)["formats"];

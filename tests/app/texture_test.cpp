@@ -6,7 +6,8 @@
 
 #include "tests/app/program.h"
 
-// Texture of facets on the command line: measured maps that are refused, and what models say outside of their range.
+// Tests of facet textures on the command line: measured maps that are refused, and warnings of models outside of their
+// range.
 
 namespace retrace::test::texture_test {
 namespace {
@@ -23,7 +24,8 @@ std::string repeated(const std::string& line, int count) {
   return text;
 }
 
-/// A map of points 0.2 um apart whose heights step by `step_nm` from one to the next and back.
+/// Returns a height map with points at a distance of 0.2 um. The heights alternate between 0 and `step_nm` every eight
+/// points.
 std::string stairs(int points, const std::string& step_nm) {
   std::string row;
   for (int k = 0; k < points; ++k) row += (k % 16 < 8 ? "0 " : step_nm + " ");
@@ -108,7 +110,7 @@ struct OutOfRange {
   std::string word;  ///< of its warning, no other has it
 };
 
-// Each model says what it is asked beyond its range, on standard error and in the JSON of both commands.
+// Each model warns if it is used outside of its range, on standard error and in the JSON documents of both commands.
 TEST(TextureOfADesign, WarnsOutsideTheRangeOfEveryModel) {
   const std::vector<OutOfRange> cases = {
       {"roughness_sq_nm = 10\ncorrelation_length_um = 0.2\n", "correlation length"},

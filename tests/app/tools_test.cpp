@@ -9,8 +9,8 @@
 
 #include "tests/app/program.h"
 
-// tools/run where it cannot do its work: one line says what to do, and nothing is half done. The system is made of
-// stubs: the only programs that the script finds.
+// Tests of tools/run in environments in which it cannot do its work. It must print one line with the remedy and must
+// not leave partial results. The environment consists of stubs, which are the only programs that the script can find.
 
 namespace retrace::test::tools_test {
 namespace {
@@ -32,8 +32,8 @@ class ToolsRun : public ::testing::Test {
       fs::create_symlink(fs::exists(fs::path("/bin") / name) ? fs::path("/bin") / name : fs::path("/usr/bin") / name,
                          stubs() / name);
     stub("id", "echo 0");
-    stub("env", "shift; exec \"$@\"");  // behind `env DEBIAN_FRONTEND=...`
-    stub("dpkg-query", "exit 1");       // nothing is installed
+    stub("env", "shift; exec \"$@\"");  // the program follows `env DEBIAN_FRONTEND=...`
+    stub("dpkg-query", "exit 1");       // no package is installed
     stub("apt-get", "echo \"apt-get $1\" >>../asked; echo 'E: Failed to fetch' >&2; exit 100");
     stub("cmake", "[ \"$1\" = --version ] && { echo cmake version 3.25.1; exit; }; mkdir -p build/release; exit 1");
     fs::create_symlink("/bin/mkdir", stubs() / "mkdir");
@@ -53,7 +53,7 @@ class ToolsRun : public ::testing::Test {
                       arguments))
         .wait();
   }
-  /// What apt-get was asked for, one a line.
+  /// Returns the arguments of apt-get calls, one call per line.
   std::string asked() const { return fs::exists(folder_.path() / "asked") ? folder_.read("asked") : ""; }
   /// Expects an end with code 3 and a last line of ours, after as many others, and no build folder.
   void expect_gives_up(const Outcome& outcome, std::ptrdiff_t others = 0) const {
@@ -122,7 +122,7 @@ TEST(PackageList, IsWhatTheDebianPackageIsBuiltWith) {
   ASSERT_GT(end - begin, 20);
   for (auto line = begin + 1; line != end; ++line) {
     const std::string package = line->substr(0, line->find(' '));
-    // The compiler is there in any build of packages, mpirun is not needed in one.
+    // The compiler exists in every build of packages, and mpirun is not required for such a build.
     if (package.empty() || package == "g++" || package == "openmpi-bin") continue;
     EXPECT_TRUE(std::any_of(control.begin(), control.end(),
                             [&](const std::string& wanted) {

@@ -1,4 +1,4 @@
-// retrace verify of planed and turned parts: programs of all examples in all dialects, and what it refuses.
+// Tests of `retrace verify` for planed and turned parts: programs of all examples in all dialects, and refused input.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class VerifyParts : public ::testing::Test {
 
 TEST_F(VerifyParts, ProgramsOfPlaneInAllDialects) {
   const std::string mill = example("planing/zone_lens_60ghz.toml");
-  // A lathe of a PMAC needs the lines of its spindle.
+  // A lathe with a PMAC control requires the lines for its spindle.
   std::string lathe = read_text(example("planing/round_zone_lens.toml"));
   folder_.write("lathe.toml", lathe + "spindle_start = \"M103\"\nspindle_stop = \"M105\"\n");
   for (const std::string& part : {mill, std::string("lathe.toml")})
@@ -59,7 +59,7 @@ TEST_F(VerifyParts, ProgramsOfTurnInAllDialects) {
     EXPECT_EQ(json["process"], "turning");
     EXPECT_EQ(json["programs"][0]["dialect"], program["dialect"]);
     for (const char* key : {"form_error_nm", "interference_nm", "scallop_nm", "block_low_nm", "step_um_max"})
-      // Sums of increments, which a Fanuc is told, differ in their last digits.
+      // Fanuc programs contain increments. Their sums differ in the last digits.
       EXPECT_NEAR(json[key].get<double>(), turned["verification"][key].get<double>(), 1e-3) << key;
   }
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// The layers: what each folder may include besides itself.
+/// Layers: the folders that each folder may include, in addition to itself.
 const std::map<std::string, Names>& folders() {
   static const std::map<std::string, Names> order = {
       {"core", {}},
@@ -35,7 +35,8 @@ const std::map<std::string, Names>& folders() {
   return order;
 }
 
-/// What a room of studies/ may see of the others. Rooms that come later are listed here first.
+/// Subfolders ("rooms") of studies/, and the subfolders that each of them may include. A subfolder is listed after
+/// those that it may include.
 const std::map<std::string, Names>& study_rooms() {
   static const std::map<std::string, Names> rooms = {
       {"design", {}},
@@ -67,7 +68,8 @@ const std::map<std::string, Names>& study_rooms() {
   return rooms;
 }
 
-/// The same for rooms of fabrication/: machine and programs first, then a room for each process.
+/// Subfolders ("rooms") of fabrication/, and the subfolders that each of them may include: machine and programs first,
+/// then one subfolder for each process.
 const std::map<std::string, Names>& fabrication_rooms() {
   static const std::map<std::string, Names> rooms = {{"job", {}},
                                                      {"machine", {}},
@@ -82,8 +84,8 @@ const std::map<std::string, Names>& fabrication_rooms() {
   return rooms;
 }
 
-/// Of fabrication/: what plans and writes programs, and what reads and judges them. Neither may see the other, directly
-/// or through others, or they would share their mistakes.
+/// Sides of fabrication/: code that plans and writes programs, and code that reads and verifies them. Neither side may
+/// include the other, directly or indirectly, because both could then make the same mistakes.
 enum class Side { neither, plans, judges };
 
 Side side_of(const std::string& path) {
@@ -93,27 +95,27 @@ Side side_of(const std::string& path) {
   return lies_in("/check/") || lies_in("/read/") ? Side::judges : Side::neither;
 }
 
-/// Rooms of studies/ that see fabrication/, themselves or through what they include. A design knows of no tool.
+/// Subfolders of studies/ that may include fabrication/, directly or indirectly. A design does not depend on tools.
 const Names& rooms_that_see_fabrication() {
   static const Names rooms = {"calibration", "closed_loop", "compose", "fabrication", "forces",  "optimise",  "planing",
                               "quantity",    "setup",       "sweep",   "tolerance",   "turning", "validation"};
   return rooms;
 }
 
-/// The rooms of a folder that has such; null for others.
+/// Returns the subfolder rules of a folder, or null if it has none.
 const std::map<std::string, Names>* rooms_of(const std::string& folder) {
   if (folder == "studies") return &study_rooms();
   return folder == "fabrication" ? &fabrication_rooms() : nullptr;
 }
 
-/// Folders that may include anything, or hold no code of the program.
+/// Returns true for folders that may include everything or contain no code of the program.
 bool is_outside_the_layers(const std::string& folder) {
   static const Names outside = {"benchmarks", "build",   "cmake", "data", "docs",
                                 "examples",   "install", "tests", "tools"};
   return outside.contains(folder) || folder.starts_with(".");
 }
 
-/// Where a file lies: folder, and room if it is in one.
+/// Folder and subfolder (room) of a file. The room is empty if the file is not in one.
 struct Place {
   std::string folder;
   std::string room;
@@ -138,7 +140,7 @@ bool in_io_room(const std::string& path) {
   return path.find("/io/") != std::string::npos;
 }
 
-/// A library that is kept behind few files.
+/// An external library that only a few files may include.
 struct Library {
   std::string_view name;
   std::string_view include_prefix;
@@ -196,7 +198,8 @@ struct Include {
   std::string target;
 };
 
-/// From the root of the tree. Headers that are installed with the library name each other as those who use them do.
+/// Returns the path of an included file relative to the root of the tree. Installed headers of the library include each
+/// other in the way in which users include them.
 std::string from_root(const std::string& target, const std::string& path) {
   if ((path.starts_with("library/") || path.starts_with("python/")) && target.starts_with("retrace/"))
     return "library/" + target;
@@ -267,7 +270,7 @@ class Checker {
     check_order(path, include, target);
     check_side(path, include);
     check_fabrication(path, include);
-    // Types of a library must not reach files that may not include it through a header either.
+    // Types of an external library must not reach other files indirectly, through a header.
     if (!(place_of(path) == target))
       for (const Library* library : leaked_by(include.target))
         if (!library->may_include(path))
@@ -307,7 +310,7 @@ class Checker {
         report(path, include.line, "studies/" + from.room + "/ may not see " + header);
   }
 
-  /// What including `path` brings: itself and all that it includes.
+  /// Returns the files that are included directly or indirectly by `path`, and `path` itself.
   std::set<std::string> reached_from(const std::string& path) const {
     std::set<std::string> seen;
     std::vector<std::string> open = {path};
@@ -321,7 +324,7 @@ class Checker {
     return seen;
   }
 
-  /// The kept-back libraries that including `path` brings along, directly or through other headers.
+  /// Returns the restricted libraries that `path` includes, directly or through other headers.
   std::set<const Library*> leaked_by(const std::string& path) {
     std::set<const Library*> leaked;
     for (const std::string& header : reached_from(path))
@@ -346,7 +349,7 @@ std::vector<Violation> check_tree(const fs::path& root) {
 }
 
 std::string layer_picture() {
-  // Above all that it may include.
+  // A folder is one floor above the highest folder that it may include.
   const std::function<int(const std::string&)> floor_of = [&](const std::string& folder) {
     int floor = 0;
     for (const std::string& below : folders().at(folder)) floor = std::max(floor, floor_of(below) + 1);

@@ -1,4 +1,4 @@
-// The order of folders and rooms holds in the source tree, and the check that says so does see violations.
+// Tests that the source tree obeys the order of folders and rooms (subfolders), and that the check finds violations.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@ namespace retrace::layering::layering_test {
 namespace fs = std::filesystem;
 namespace {
 
-/// A source tree made for one test and removed after it. It starts with a core/ that is in order.
+/// Fixture with a temporary source tree. It begins with a valid folder core/.
 class SyntheticTree : public ::testing::Test {
  protected:
   void SetUp() override {

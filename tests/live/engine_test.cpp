@@ -265,7 +265,7 @@ TEST(LiveEngine, PathsComeBackFromTheFootprintAlone) {
       path["at_mm"] = {middle.x(), middle.y()};
       const Json found = told(engine, path);
       ++tried;
-      // The drawn path takes the stronger branch at each interface.
+      // The drawn path follows the stronger branch at each interface.
       if (region["efficiency"].get<double>() > 0.5) {
         EXPECT_TRUE(found["returned"]) << incidence_deg << " " << path << found;
         ++returned;
