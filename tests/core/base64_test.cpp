@@ -5,7 +5,7 @@
 namespace retrace::base64_test {
 namespace {
 
-/// The test vectors of RFC 4648, section 10.
+/// Test vectors of RFC 4648, section 10.
 TEST(Base64, IsThatOfTheStandard) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");

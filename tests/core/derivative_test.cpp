@@ -1,4 +1,5 @@
-// Numerical differentiation: the error it reports bounds the error it makes, and what has no derivative gets none.
+// Tests of numerical differentiation: the reported error bounds the true error, and functions without a derivative get
+// none.
 #include "core/math/derivative.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ struct Known {
   std::function<double(double)> slope;
 };
 
-/// Smooth functions with a parameter c of order 1.
+/// Returns smooth functions with a parameter c of order 1, and their derivatives.
 std::vector<Known> smooth_functions(double c) {
   return {{"sin", [=](double x) { return std::sin(c * x); }, [=](double x) { return c * std::cos(c * x); }},
           {"exp", [=](double x) { return std::exp(-c * x); }, [=](double x) { return -c * std::exp(-c * x); }},
@@ -31,7 +32,7 @@ std::vector<Known> smooth_functions(double c) {
           {"square", [=](double x) { return c * x * x; }, [=](double x) { return 2.0 * c * x; }}};
 }
 
-/// Noise of either sign that is the same at every call.
+/// Returns positive or negative noise that depends only on x.
 double noise_at(double x, double amplitude) {
   std::seed_seq seed{std::hash<double>{}(x)};
   std::mt19937 engine(seed);
@@ -49,12 +50,12 @@ Derivative differentiate_with(const std::function<double(double)>& f, double noi
 
 struct Outcome {
   int cases = 0;
-  int covered = 0;     ///< true error within the estimate
-  double worst = 0.0;  ///< true error over estimate
+  int covered = 0;     ///< number of cases whose true error is within the estimate
+  double worst = 0.0;  ///< maximum ratio of the true error to the estimate
   double worst_error = 0.0;
 };
 
-/// Many functions at many places with many first steps.
+/// Differentiates many functions at many points, with many first steps.
 Outcome try_many(double noise, bool one_sided) {
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -120,7 +121,7 @@ TEST(Differentiate, StaysWithinItsRange) {
   EXPECT_FALSE(differentiate([](double) { return Sample{}; }, 1.0, {0.1, 1.0, 1.0}).converged());
 }
 
-/// What has no derivative at 0.
+/// Functions without a derivative at 0 must not converge.
 TEST(Differentiate, KinksAndJumpsDoNotConverge) {
   const auto converges = [](const std::function<double(double)>& f) {
     return differentiate_with(f, 1e-12, 0.0, {0.1}).converged();

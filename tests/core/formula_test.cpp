@@ -11,7 +11,7 @@
 #include "core/math/formula_evaluation.h"
 #include "tests/support/refusals.h"
 
-// Formulas: their values, their exact derivatives, and what is none.
+// Tests of formulas: their values, their exact derivatives, and texts that are not formulas.
 
 namespace retrace::formula_test {
 namespace {
@@ -36,7 +36,7 @@ TEST(Formula, BindsPowersBeforeSignsAndToTheRight) {
   EXPECT_DOUBLE_EQ(at(formula("cos(pi)"), 0.0, 0.0).value, -1.0);
 }
 
-// The sag of a conic: R - sqrt(R^2 - r^2), differentiated by hand.
+// The expected values come from the sag of a sphere, R - sqrt(R^2 - r^2), differentiated by hand.
 TEST(Formula, DifferentiatesASphereExactly) {
   const Jet jet = at(formula("10 - sqrt(10^2 - x^2 - y^2)"), 3.0, -2.0);
   const double root = std::sqrt(100.0 - 9.0 - 4.0);
@@ -118,7 +118,7 @@ TEST(Formula, IsTheSameByEveryNumber) {
     EXPECT_NEAR(along[1], 0.6 * whole.x - 0.8 * whole.y, 1e-13 * (1.0 + std::abs(along[1]))) << text;
     EXPECT_NEAR(2.0 * along[2], 0.36 * whole.xx - 0.96 * whole.xy + 0.64 * whole.yy, 1e-12 * (1.0 + std::abs(along[2])))
         << text;
-    // Derivatives of higher order: the series stands for the function around.
+    // The series with derivatives of higher order must approximate the function at a nearby point.
     const std::array<double, 2> beside = {0.7 + 0.6e-2, 0.4 - 0.8e-2};
     EXPECT_NEAR(jets::horner(along.c.data(), 6, 1e-2), f.evaluate(beside.data()), 1e-9) << text;
   }
@@ -126,7 +126,7 @@ TEST(Formula, IsTheSameByEveryNumber) {
 
 TEST(Formula, WorksOutWhatIsConstant) {
   const Formula f = formula("x^(3-5) + 0*y + sin(pi/2)*4");
-  // x, -2, their power, y, 0, its product, two sums, 4.
+  // The nodes are x, -2, their power, y, 0, the product of y and 0, two sums, and 4.
   EXPECT_EQ(f.nodes.size(), 9U);
   EXPECT_DOUBLE_EQ(at(f, -2.0, 1.0).value, 4.25) << "a whole exponent, though it is not written as one number";
   EXPECT_DOUBLE_EQ(at(f, -2.0, 1.0).x, 0.25);
@@ -149,7 +149,7 @@ TEST(Formula, TakesLongOnes) {
   EXPECT_DOUBLE_EQ(at(formula(nested), 1.0, 0.5).value, 151.0);
 }
 
-// By a logarithm it would have no value where the base is negative.
+// Computed with a logarithm, the power would be undefined for a negative base.
 TEST(Formula, HighWholePowersOfNegativeConstants) {
   EXPECT_DOUBLE_EQ(at(formula("(-2)^66*x"), 1.0, 0.0).value, std::ldexp(1.0, 66));
 }

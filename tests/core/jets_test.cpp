@@ -6,7 +6,7 @@
 
 #include "core/math/partials.h"
 
-// Automatic differentiation against identities and against each other.
+// Tests of automatic differentiation: the results are compared with identities and with each other.
 
 namespace retrace::jets::jets_test {
 namespace {
@@ -39,7 +39,7 @@ TEST(Jet, ExponentialHasInverseFactorials) {
   }
 }
 
-/// Everything that formulas are made of.
+/// Returns an expression that contains the elementary operations of formulas.
 template <class T>
 T mixture(const T& x, const T& y) {
   return atan2(y * x, exp(x) + y) / sqrt(2.0 + x * x) - log(y + 3.0) * sin(x * 0.5) + cos(1.0 - y) * (x - 2.0) / 3.0;

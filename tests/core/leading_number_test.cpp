@@ -11,7 +11,7 @@
 namespace retrace::leading_number_test {
 namespace {
 
-/// The standard library's own reader, where it has one, is the judge.
+/// Compares the result with that of the standard library, if it can read floating-point numbers.
 void expect_read_alike(const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -13,8 +13,8 @@
 #include "tests/support/key_table.h"
 #include "tests/support/refusals.h"
 
-// A small format that has every kind of key: what is read, what is refused in which words, what is written, and what
-// JSON Schema and the documentation say of it.
+// Tests with a small format that has every kind of key: accepted and refused values, messages, the written text, JSON
+// Schema and the documentation.
 
 namespace retrace::schema_test {
 namespace {
@@ -114,7 +114,7 @@ Thing read(const std::string& text) {
 
 const std::string kLeast = "schema = 'retrace.thing/1'\nname = 'a'\nsize_mm = 2\nis_open = false\n";
 
-/// The message for the least file with further lines, the first of which is line 5.
+/// Returns the message for a minimal file with further lines. The first of these is line 5.
 std::string refusal(const std::string& more, const std::string& least = kLeast) {
   return refusal_of([&] { read(least + more); }, "accepted");
 }

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-// Tables of TOML files: what they hand out, and what they refuse with file, line and key.
+// Tests of tables of TOML files: the returned values, and refused values with file, line and key.
 
 namespace retrace::toml_file_test {
 namespace {

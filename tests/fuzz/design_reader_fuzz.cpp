@@ -1,4 +1,5 @@
-// Whatever a design file or an override holds, the reader either returns a design or throws an InputError of one line.
+// For any text of a design file and any override, the reader either returns a design or throws an InputError of one
+// line.
 
 #include <algorithm>
 #include <array>
@@ -14,7 +15,7 @@
 
 namespace {
 
-/// The first line is an override if it begins with "#--set "; to TOML that is a comment.
+/// Returns the override in the first line if this line begins with "#--set ". For TOML, such a line is a comment.
 std::string override_of(std::string_view text) {
   constexpr std::string_view mark = "#--set ";
   if (text.substr(0, mark.size()) != mark) return {};

@@ -1,5 +1,5 @@
-// Whatever a table of planes holds, the reader either returns planes near to the design's or throws an InputError of
-// one line; and what it returns reads back from its own text.
+// For any table of planes, the reader either returns planes close to those of the design or throws an InputError of one
+// line. Planes that it returns can be written and read back.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Whatever a table of facets holds, the reader either returns groups that keep its promises or throws an InputError of
+// For any table of facets, the reader either returns groups that satisfy its postconditions or throws an InputError of
 // one line.
 
 #include <algorithm>

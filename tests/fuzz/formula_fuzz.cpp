@@ -1,4 +1,4 @@
-// Whatever a formula says, it is read or refused in one line; what is read has the same value by every kind of number.
+// Any text is either read as a formula or refused in one line. A formula has the same value for every number type.
 
 #include <algorithm>
 #include <array>

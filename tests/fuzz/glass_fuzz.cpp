@@ -1,5 +1,5 @@
-// Any bytes as a catalogue of glasses: each of its glasses is understood or refused in one line, and an index is a
-// number.
+// Reads any bytes as a glass catalogue. Each glass is either understood or refused in one line, and each index is a
+// finite number.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
-// Text grids and every other format as its content says: the corpus holds whole files.
+// Reads any bytes as a height map whose format is determined by its content, such as a text grid. The corpus contains
+// complete files.
 
 #include "tests/fuzz/height_map_fuzz.h"
 

@@ -1,4 +1,4 @@
-// Gwyddion Simple Fields: what follows the first words.
+// Reads Gwyddion Simple Field files. The input follows the fixed first words.
 
 #include "tests/fuzz/height_map_fuzz.h"
 

@@ -1,4 +1,4 @@
-// Gwyddion's native files: what follows the first four bytes.
+// Reads native files of Gwyddion. The input follows the fixed first four bytes.
 
 #include "tests/fuzz/height_map_fuzz.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Whatever a file holds, a reader of height maps either returns a map that keeps its promises or throws an InputError
+// For any file, a reader of height maps either returns a map that satisfies its postconditions or throws an InputError
 // of one line.
 
 #include <algorithm>
@@ -15,8 +15,9 @@
 
 namespace retrace::fuzz {
 
-/// \param begin with which each content starts, so that this reader gets it
-/// \param name whose end may choose the format
+/// Reads a height map.
+/// \param begin first bytes of each content, which select the reader
+/// \param name file name, whose extension may select the format
 inline void read_height_map(const std::string& begin, const std::uint8_t* data, std::size_t size,
                             const std::string& name) {
   const std::string content = begin + std::string(data, data + size);

@@ -1,4 +1,4 @@
-// Whatever a job file holds, it either becomes a job that is written and read back the same, or is refused in one line.
+// Any text of a job file is either read as a job, which can be written and read back unchanged, or refused in one line.
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Any bytes as a photometric file, LM-63 or EULUMDAT by the first byte: it is understood or refused in one line, and
-// what is understood has a flux and an intensity everywhere.
+// Reads any bytes as a photometric file, LM-63 or EULUMDAT depending on the first byte. The file is either understood
+// or refused in one line. A lamp that is read has a flux, and an intensity in every direction.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Whatever a limits file holds, the reader either returns limits that keep its promises or throws an InputError of one
-// line; and so does every programme that can be chosen from it.
+// For any limits file, the reader either returns limits that satisfy its postconditions or throws an InputError of one
+// line. The same holds for every test plan that can be selected from the file.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Any bytes as a machine file: a machine or an InputError, nothing else.
+// Reads any bytes as a machine file. The result is a machine or an InputError.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

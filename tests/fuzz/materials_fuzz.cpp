@@ -1,4 +1,4 @@
-// Any bytes as a file of materials: a library or an InputError, nothing else.
+// Reads any bytes as a file of materials. The result is a library of materials or an InputError.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// Whatever a table of measurements holds, the reader either returns measurements that keep its promises or throws an
-// InputError of one line; and so does what is calibrated from them.
+// For any table of measurements, the reader either returns measurements that satisfy its postconditions or throws an
+// InputError of one line. The same holds for the calibration from these measurements.
 
 #include <algorithm>
 #include <cmath>

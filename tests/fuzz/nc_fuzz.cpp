@@ -1,4 +1,5 @@
-// Any bytes as an NC program of each dialect: motions or an error of one line, in bounded time.
+// Reads any bytes as an NC program of each dialect. The result is a list of motions or an error of one line, in bounded
+// time.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

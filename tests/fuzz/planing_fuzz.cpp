@@ -1,4 +1,4 @@
-// Whatever a file of a part to be planed holds, it is read or refused in one line.
+// Any text of a planed-part file is either read or refused in one line.
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Any bytes as a process file: a process or an InputError, nothing else.
+// Reads any bytes as a process file. The result is a process or an InputError.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -1,6 +1,7 @@
 #pragma once
 
-// Reads any bytes as a file of rays: they are understood or refused in one line, and what is understood can be traced.
+// Reads any bytes as a file of rays. The file is either understood or refused in one line. Rays that are read can be
+// traced.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Any bytes as a table of rays.
+// Reads any bytes as a table of rays.
 
 #include "studies/rays/io/ray_csv.h"
 #include "tests/fuzz/ray_reading.h"

@@ -1,4 +1,5 @@
-// Any bytes as a record of refractiveindex.info: it is understood or refused in one line, and an index is a number.
+// Reads any bytes as a record of refractiveindex.info. The record is either understood or refused in one line, and each
+// index is a finite number.
 
 #include <algorithm>
 #include <cmath>

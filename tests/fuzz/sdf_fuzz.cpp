@@ -1,4 +1,4 @@
-// Surface data files: what follows the first word.
+// Reads surface data files (SDF). The input follows the fixed first word.
 
 #include "tests/fuzz/height_map_fuzz.h"
 

@@ -1,4 +1,4 @@
-// Whatever the file of a lamp holds, it either becomes wavelengths and weights that add to 1 or is refused in one line.
+// Any spectrum file of a lamp is either read as wavelengths and weights with the sum 1, or refused in one line.
 
 #include <algorithm>
 #include <cmath>

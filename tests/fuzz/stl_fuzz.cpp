@@ -1,5 +1,5 @@
-// Whatever an STL file holds, the reader either returns a mesh or throws an InputError of one line; and so does what
-// makes a part of it.
+// For any STL file, the reader either returns a mesh or throws an InputError of one line. The same holds for making a
+// part from the mesh.
 
 #include <algorithm>
 #include <cstddef>

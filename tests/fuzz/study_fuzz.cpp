@@ -1,5 +1,5 @@
-// Whatever a study file holds, every command either takes it or refuses it in one line that names the place. Designs
-// are those of a folder of its own; quantities are not computed.
+// Any study file is either accepted by every command or refused in one line that contains the position. Its designs are
+// in a temporary folder. Quantities are not computed.
 
 #include <unistd.h>
 
@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  // No files but those of the folder: some others never end.
+  // Names with a path are skipped, because files outside of the folder may be infinite.
   if (text.find('/') != std::string::npos || text.find('\\') != std::string::npos) return 0;
   refused_in_one_line([&] {
     const studies::Study study = studies::parse_study(text, "study.toml");

@@ -1,5 +1,5 @@
-// Whatever a table of times holds, the reader either returns rows that can be calibrated from or throws an InputError
-// of one line.
+// For any table of times, the reader either returns rows that can be used for calibration or throws an InputError of
+// one line.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20;
 }
 
-/// One program under the name "a".
+/// Returns the text of one program with the file name "a".
 FileTexts programs(const fabrication::Machine& machine) {
   constexpr std::string_view kDialect = "rs274ngc";
   return {{"a", fabrication::nc_text(studies::time_programs(machine, kDialect).back(), kDialect)}};

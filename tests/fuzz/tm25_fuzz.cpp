@@ -1,4 +1,4 @@
-// Any bytes as a ray file of TM-25.
+// Reads any bytes as a TM-25 ray file.
 
 #include "studies/rays/io/tm25.h"
 #include "tests/fuzz/ray_reading.h"

@@ -1,4 +1,4 @@
-// Any bytes as the file of a turned part: a part or an InputError, nothing else.
+// Reads any bytes as a turned-part file. The result is a part or an InputError.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -1,4 +1,4 @@
-// Lists of points.
+// Reads any bytes as a list of points.
 
 #include "tests/fuzz/height_map_fuzz.h"
 

@@ -59,7 +59,7 @@ TEST(MapPlot, EveryRegionAndPanelShows) {
   less = plot_of(2);
   less.panels[1].regions[1].value = 60.0;
   EXPECT_NE(render_svg(less), whole);
-  // Wider with more panels in a row, higher with more rows.
+  // The picture is wider if there are more panels in a row, and higher if there are more rows.
   const std::string three = render_png(plot_of(3), 1.0);
   const std::string twenty = render_png(plot_of(20), 1.0);
   EXPECT_GT(big_endian(three, 16), big_endian(render_png(plot_of(1), 1.0), 16));

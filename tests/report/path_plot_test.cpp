@@ -97,7 +97,7 @@ TEST(FabricationPlot, DrawsEveryElementOnce) {
   }
   EXPECT_NEAR(area, 8 * 0.25, 1e-12);
   EXPECT_DOUBLE_EQ(last, 100.0);
-  // Element 0 lies in the lower left corner of the part.
+  // Element 0 is in the lower left corner of the part.
   EXPECT_NEAR(geometry::bounding_box(plot.panels[0].regions[0].outline).lower.norm(), 0.0, 1e-12);
 }
 

@@ -41,13 +41,13 @@ LinePlot curves(std::size_t count, std::size_t points) {
   return plot;
 }
 
-/// What a picture shows, read back from the bytes of a PNG file.
+/// A picture that is decoded from the bytes of a PNG file.
 struct Picture {
   int width = 0;
   int height = 0;
   std::vector<std::uint32_t> pixels;
 
-  /// Pixels that are near `rgb`, so that smoothed edges count as well.
+  /// Returns the number of pixels whose colour is close to `rgb`, so that anti-aliased edges are counted as well.
   std::size_t count_near(std::uint32_t rgb, int tolerance = 12) const {
     const auto is_near = [&](std::uint32_t pixel) {
       for (const int shift : {0, 8, 16}) {
@@ -58,7 +58,7 @@ struct Picture {
     };
     return static_cast<std::size_t>(std::count_if(pixels.begin(), pixels.end(), is_near));
   }
-  /// Whether the outermost `margin` pixels are all white: nothing runs out of the picture.
+  /// Returns true if the outermost `margin` pixels on all sides are white, so that nothing is cut off.
   bool has_white_border(int margin) const {
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
@@ -97,7 +97,8 @@ Picture decoded(const std::string& png) {
   return picture;
 }
 
-/// Empty if `text` is a well-formed XML document whose root is `svg`, else what is wrong.
+/// Returns an empty text if `text` is a well-formed XML document with the root `svg`, and otherwise a description of
+/// the fault.
 std::string svg_fault(const std::string& text) {
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
   std::string root;
@@ -153,7 +154,7 @@ TEST(Render, GivesTheSameBytesEveryTime) {
   const LinePlot plot = curves(12, 30);
   const std::string svg = render_svg(plot);
   const std::string png = render_png(plot);
-  static_cast<void>(render_svg(empty_plot()));  // what was drawn between must not show
+  static_cast<void>(render_svg(empty_plot()));  // another plot in between must not change the result
   EXPECT_EQ(render_svg(plot), svg);
   EXPECT_EQ(render_png(plot), png);
 }
@@ -193,7 +194,7 @@ TEST(Render, InterruptsTheLineAtMissingValues) {
 
 TEST(Render, KeepsToGivenRanges) {
   LinePlot plot = curves(1, 101);
-  plot.x_range = Range{100.0, 200.0};  // the curve lies outside
+  plot.x_range = Range{100.0, 200.0};  // the curve is outside of this range
   plot.series[0].label.clear();
   EXPECT_EQ(decoded(render_png(plot)).count_near(kBlue), 0U);
   plot.x_range = Range{-10.0, 10.0};

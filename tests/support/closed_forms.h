@@ -1,6 +1,6 @@
 #pragma once
 
-// The closed forms that `retrace validate` holds the tracer to, under the names of tests.
+// Makes the closed forms of `retrace validate` available in the namespace of the tests.
 
 #include "studies/validation/closed_forms.h"
 

@@ -9,9 +9,9 @@
 
 namespace retrace::testing {
 
-/// Index of PMMA that the closed forms of the array-size study use.
+/// Refractive index of PMMA in the closed forms of the array-size study.
 inline constexpr double kPmma = 1.4917;
-/// Cube corners of edge 1 mm.
+/// Aperture, in mm, of cube corners with an edge length of 1 mm.
 inline constexpr double kCubeAperture = 1.6329931618554521;
 
 inline raytrace::Optics pmma() {
@@ -20,7 +20,7 @@ inline raytrace::Optics pmma() {
   return optics;
 }
 
-/// Mirror facets under a lossless face: what theory without Fresnel describes.
+/// Returns optics with mirror facets and a lossless entrance face, as in theories without Fresnel reflection.
 inline raytrace::Optics ideal() {
   raytrace::Optics optics = pmma();
   optics.mirror_facets = true;
@@ -28,15 +28,16 @@ inline raytrace::Optics ideal() {
   return optics;
 }
 
-/// An opaque film. \param index n + i k
+/// Returns an opaque film.
+/// \param index complex refractive index n + i k
 inline materials::LayerStack opaque(std::complex<double> index) {
   return {{{index, kInfinity}}};
 }
-/// A quarter of a wave of magnesium fluoride.
+/// Returns a quarter-wave layer of magnesium fluoride.
 inline materials::LayerStack anti_reflection() {
   return {{{1.3777, 0.25 / 1.3777}}};
 }
-/// Aluminium so thin that it lets a third of the light through, under silica.
+/// Returns a layer of aluminium under silica. The aluminium is so thin that it transmits a third of the light.
 inline materials::LayerStack thin_aluminium() {
   return {{{std::complex<double>(1.13, 6.85), 0.008}, {1.4585, 0.3}}};
 }

@@ -15,13 +15,13 @@
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
 
-// Documents of any format, by its rows, and what the documentation says of them.
+// Random documents of any format, made from its rows, and checks of the documentation of a format.
 
 namespace retrace::documents_test {
 
 using namespace schema;
 
-/// A number of the range, which reads back from its shortest text.
+/// Returns a random number of the range that its shortest text gives exactly.
 inline double number_in(const NumberRange& range, const NumberRange& sane = {}) {
   const double low = std::max({range.low, sane.low, -1e3});
   const double high = std::min({range.high, sane.high, low + 1e3});
@@ -86,7 +86,8 @@ inline Value some_value(const Kind& kind) {
       kind);
 }
 
-/// Of keys of which exactly one must be given: whether it is the one. Nothing for other keys.
+/// Selects one key at random from each set of keys of which exactly one must be given. Returns true for the selected
+/// keys and false for the others of these sets.
 inline std::map<std::string_view, bool> chosen_keys(const Table& table) {
   std::map<std::string_view, bool> chosen;
   for (const Rule& rule : table.rules) {
@@ -98,7 +99,7 @@ inline std::map<std::string_view, bool> chosen_keys(const Table& table) {
   return chosen;
 }
 
-/// Gives every required key and some of the others. Which rows serve is known as soon as the keys before them are.
+/// Sets all required keys and some of the others. The row of a key is selected after the keys before it have been set.
 inline void fill(Document& document, const Table& table, const std::string& path) {
   const std::map<std::string_view, bool> chosen = chosen_keys(table);
   for (const Row& row : table.rows) {
@@ -125,8 +126,8 @@ inline void fill(Document& document, const Table& table, const std::string& path
   }
 }
 
-/// A document that is written reads back the same. Conditions may look forward: keys that they rule out after all make
-/// it no document.
+/// Expects that a random document can be written and read back unchanged. A condition may refer to a later key. If such
+/// a condition does not hold, the document is invalid and is skipped.
 inline void expect_random_document_to_read_back(const Format& format) {
   Document document(format.root);
   fill(document, format.root, "");
@@ -141,7 +142,7 @@ inline void expect_random_document_to_read_back(const Format& format) {
   RC_ASSERT(to_json(read_document(format, toml_of_json(format, json), "d.toml")) == json);
 }
 
-/// What stands in a page of docs/ between the marks of a table or format.
+/// Returns the text in a page of docs/ between the marks of a table or format.
 inline std::string documented(const std::string& page, std::string_view name) {
   const std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/docs/" + page);
   const std::string mark = "<!-- keys of " + std::string(name) + " -->\n";

@@ -1,6 +1,6 @@
 #pragma once
 
-// Entrance surfaces for tests: planes, caps and waves.
+// Entrance surfaces for tests: planes, spherical caps and waves.
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ inline geometry::Entrance entrance_of(geometry::Sag sag, const geometry::Vec3& o
       geometry::FreeformSurface(std::move(sag), std::nullopt, {}, {}), origin_mm, finest_mm);
 }
 
-/// A surface from a formula of x and y.
+/// Returns a surface whose height is a formula of x and y.
 inline geometry::Entrance formula_entrance(const std::string& height_mm,
                                            double finest_mm = std::numeric_limits<double>::infinity()) {
   geometry::Sag sag;
@@ -35,14 +35,15 @@ inline geometry::Entrance plane_entrance(double height_mm, double slope_x = 0.0,
   return entrance_of(std::move(sag), {0.0, 0.0, height_mm});
 }
 
-/// A cap of a sphere whose highest place, of height `top_mm`, lies over a point.
+/// Returns a spherical cap. Its highest point has the height `top_mm` and is located above `over_mm`.
 inline geometry::Entrance sphere_entrance(double radius_mm, double top_mm, const geometry::Vec2& over_mm) {
   geometry::Sag sag;
   sag.asphere.curvature_per_mm = -1.0 / radius_mm;
   return entrance_of(std::move(sag), {over_mm.x(), over_mm.y(), top_mm});
 }
 
-/// Bumps and hollows: a cos(k x) cos(k y) about a height. \param finest_mm that is told
+/// Returns a surface of bumps and hollows: a cos(k x) cos(k y) about a height.
+/// \param finest_mm size of the finest structure that is passed to the surface
 inline geometry::Entrance egg_box_entrance(double height_mm, double a, double k, double finest_mm) {
   return formula_entrance(fmt::format("{} + {} * cos({} * x) * cos({} * y)", height_mm, a, k, k), finest_mm);
 }
@@ -50,7 +51,7 @@ inline geometry::Entrance egg_box_entrance(double height_mm, double a, double k)
   return egg_box_entrance(height_mm, a, k, 3.14159265358979 / k);
 }
 
-/// A surface as triangles on a grid over a square.
+/// Returns a surface as a mesh of triangles on a grid over a square.
 inline geometry::TriangleMesh meshed(const geometry::EntranceSurface& surface, double size_mm, std::uint32_t cells) {
   geometry::TriangleMesh mesh;
   for (std::uint32_t j = 0; j <= cells; ++j)

@@ -6,14 +6,14 @@
 
 namespace retrace::schema {
 
-/// The keys of a format as tables in Markdown, one for the root and one for each table with a head; tables in a row
-/// that have the same keys share one.
+/// Returns the keys of a format as Markdown tables: one for the root and one for each table with a header. Adjacent
+/// tables with equal keys share one Markdown table.
 std::string key_tables(const Format& format);
 
-/// The same of the keys of one table alone, without what is in tables below it.
+/// Returns the keys of one table as a Markdown table, without the tables within it.
 std::string key_table(const Table& table);
 
-/// What holds between keys of several tables, as a table in Markdown. Empty without such rules.
+/// Returns the rules on keys of several tables as a Markdown table, or an empty text if there are none.
 std::string rule_table(const Table& root);
 
 }  // namespace retrace::schema

@@ -1,6 +1,6 @@
 #pragma once
 
-// Jobs of four prisms of 0.5 mm in a checker, two of them turned, and their programs as control files.
+// Jobs with four prisms of 0.5 mm in a checker arrangement, two of which are rotated, and their NC programs.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace retrace::test {
 
 struct PrismJob {
   double apex_angle_deg = 90.0;
-  double gap_mm = 0.0;  ///< between them
+  double gap_mm = 0.0;  ///< gap between the prisms
   double finishing_depth_um = 5.0;
   int finishing_cuts = 2;
 };
@@ -71,8 +71,8 @@ inline std::vector<fabrication::NcProgram> programs_of(const studies::Fabricatio
   return programs;
 }
 
-/// Machines that differ in all that a set-up leaves uncertain: by up to a um, and up to 0.02 degrees. Of more the cuts
-/// of roughing would reach below what finishing leaves.
+/// Returns random errors of a machine for all quantities that the set-up leaves uncertain: up to 1 um and up to 0.02
+/// degrees. With larger errors, roughing cuts would go deeper than the finished surface.
 template <class Bits>
 std::vector<double> hidden_errors(Bits& bits) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -26,12 +26,12 @@ constexpr int kBatches = 32;
 struct Ray {
   Vec3 origin;
   Vec3 direction;
-  std::array<Vec3c, 2> field;  ///< of two orthogonal incoherent inputs
-  double flux = 1.0;           ///< power of unit field strength
+  std::array<Vec3c, 2> field;  ///< fields of two orthogonal incoherent inputs
+  double flux = 1.0;           ///< power at unit field strength
   bool inside = false;
   bool entered = false;
-  FacetRole left_through = FacetRole::entrance;  ///< before it has entered: what it met first
-  bool has_met = false;                          ///< any face
+  FacetRole left_through = FacetRole::entrance;  ///< before the ray has entered: role of the first face that it meets
+  bool has_met = false;                          ///< true if the ray has met a face
 
   double power() const { return 0.5 * flux * (field[0].squaredNorm() + field[1].squaredNorm()); }
 };
@@ -85,18 +85,20 @@ class Reference {
   }
 
  private:
-  /// +x seen from the source, and upwards from there.
+  /// Returns the axes of polarisation: +x as seen from the source, and the axis upwards from it.
   static std::array<Vec3, 2> axes_of(const Vec3& to_source) {
     const Vec3 first = (Vec3::UnitX() - to_source.x() * to_source).normalized();
     return {first, to_source.cross(first)};
   }
 
-  /// Two orthogonal incoherent fields that add to the incident light: the eigenvectors of its coherency matrix.
+  /// Returns two orthogonal incoherent fields whose sum is the incident light: the eigenvectors of its coherency
+  /// matrix.
   std::array<Vec3c, 2> incident_fields() const { return fields_of(stokes_in_, axes_of(to_source_)); }
 
   static std::array<Vec3c, 2> fields_of(const raytrace::Stokes& stokes, const std::array<Vec3, 2>& axes) {
     const auto& [i, q, u, v] = stokes;
-    // Light that comes along -s: clockwise for whom it reaches is first to second for whom it leaves.
+    // The light propagates along -to_source. A rotation that is clockwise for the receiver is a rotation from the first
+    // to the second axis for the source.
     Eigen::Matrix2cd coherency;
     coherency << Complex(i + q), Complex(u, -v), Complex(u, v), Complex(i - q);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd> solver(coherency);
@@ -200,8 +202,10 @@ class Reference {
   struct Amplitudes {
     Complex r, t;
   };
-  /// Of E for s, of H for p, by recursion over interfaces and phases from the last medium on, with normal wave numbers
-  /// and no angle of refraction. \param indices of the media, first and last included \param waves their thicknesses
+  /// Returns the amplitudes of a stack of layers, of E for s and of H for p. They are computed by recursion over
+  /// interfaces and phases, beginning with the last medium, from normal wave numbers without angles of refraction.
+  /// \param indices refractive indices of all media, including the first and the last
+  /// \param waves thicknesses of the layers in wavelengths
   static Amplitudes amplitudes(const std::vector<Complex>& indices, const std::vector<double>& waves, double ci,
                                bool is_p) {
     const Complex tangential = indices[0] * std::sqrt(std::max(0.0, 1.0 - ci * ci));
@@ -260,7 +264,8 @@ class Reference {
     if (passes) follow(through);
   }
 
-  /// Field after an interface: s stays, p turns with the direction.
+  /// Returns the field after an interface. The direction of s is unchanged, and the direction of p rotates with the
+  /// ray.
   static std::array<Vec3c, 2> recombined(const Ray& ray, const Vec3& direction, const Vec3& s, Complex c_s,
                                          Complex c_p) {
     const Vec3 p_in = s.cross(ray.direction);
@@ -317,7 +322,7 @@ class Reference {
   std::vector<ReferenceExit> exits_;
 };
 
-/// A point of a convex polygon, by rejection from its bounding box.
+/// Returns a random point of a convex polygon, by rejection sampling from its bounding box.
 geometry::Vec2 random_point(const geometry::Polygon& outline, std::mt19937_64& generator) {
   const geometry::Rectangle box = geometry::bounding_box(outline);
   std::uniform_real_distribution<double> x(box.lower.x(), box.upper.x());

@@ -1,6 +1,7 @@
 #pragma once
 
-// A part of four prisms as the verifier cuts it on a machine with hidden errors, and what an instrument sees of it.
+// A part with four prisms as the verifier cuts it on a machine with hidden errors, and simulated measurements of this
+// part.
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -17,13 +18,13 @@
 
 namespace retrace::test {
 
-/// Four prisms with land of 0.25 mm between them.
+/// Returns a plan for four prisms with flat gaps of 0.25 mm between them.
 inline const studies::FabricationResult& four_prisms() {
   static const studies::FabricationResult made = planned(prism_job({90.0, 0.25, 10.0, 1}));
   return made;
 }
 
-/// The planes that the verifier finds of a part's facets, and the face, as a surface over the plane.
+/// Cut surface of a part: the facet planes that the verifier computes, and the face, as heights over the plane.
 class CutSurface {
  public:
   explicit CutSurface(const fabrication::Machine& real, const studies::FabricationResult& made = four_prisms())
@@ -57,9 +58,10 @@ class CutSurface {
     return 0.0;
   }
 
-  /// How far facets are off at most, but for what any part does that lies turned or shifted: that is not told.
+  /// Returns the maximum deviations of facets. A common rotation or displacement of the whole part is removed first,
+  /// because it cannot be observed.
   studies::FacetOutlook off() const {
-    constexpr double kTiltNm = 250.0;  // weighs a turn as what it does over half a facet
+    constexpr double kTiltNm = 250.0;  // converts a rotation to the deviation over half a facet
     const auto facets = static_cast<Eigen::Index>(planes_.size());
     Eigen::MatrixXd of_pose(3 * facets, 5);
     Eigen::VectorXd off(3 * facets);
@@ -85,7 +87,7 @@ class CutSurface {
     return most;
   }
 
-  /// By how much the angle of a groove is off at most.
+  /// Returns the maximum error of the apex angles.
   double apex_error_arcsec() const {
     double most = 0.0;
     for (std::size_t k = 0; k < figures_.size(); k += 2)
@@ -109,18 +111,19 @@ class CutSurface {
   }
 
   std::vector<fabrication::Groove> grooves_;
-  std::vector<fabrication::FacetFigures> figures_;  ///< facet by facet
+  std::vector<fabrication::FacetFigures> figures_;  ///< figures of all facets
   std::vector<std::pair<geometry::Vec3, geometry::Vec3>> planes_;
 };
 
-/// Where a point lies under the edge that cut its facet: along it from its middle, and up the facet. Facets stand
-/// upright with their outward normal along -Y while they are cut, so that the edge, along X, is z times that.
+/// Position of a point under the edge that cut its facet: along the edge from its centre, and up the facet. While a
+/// facet is cut, it is vertical with its outward normal along -Y. The direction of the edge, +X, is therefore the cross
+/// product of z and this normal.
 struct UnderEdge {
   double along_mm = 0.0;
   double up_mm = 0.0;
 };
 
-/// The facets of a cut part with a pattern over what the edge does, in nm.
+/// Surface of a cut part with an additional pattern, in nm, that depends on the position under the edge.
 template <class Pattern>
 class PatternedSurface {
  public:
@@ -151,7 +154,8 @@ class PatternedSurface {
   Pattern pattern_;
 };
 
-/// What is measured of a facet that lies askew. \param figures as the verifier finds it in the machine
+/// Returns the measured value of a quantity of a facet on a part with an unknown pose.
+/// \param figures values that the verifier computes in the machine
 inline double measured_of(const fabrication::Groove& groove, const fabrication::FacetFigures& figures,
                           std::size_t facet, studies::FacetQuantity what, const fabrication::RigidMotion& pose) {
   const fabrication::DesignFacet& design = groove.facets[facet];
@@ -168,7 +172,7 @@ inline double measured_of(const fabrication::Groove& groove, const fabrication::
   }
 }
 
-/// What an instrument sees of all of the part, with 5 nm of noise; 220 points a row are 6 um apart.
+/// Returns the measurement of the whole part by an instrument with a noise of 5 nm. 220 points per row are 6 um apart.
 template <class Surface>
 studies::FacetMap seen(const Surface& surface, std::mt19937& bits, std::size_t points = 220) {
   std::normal_distribution<double> normal;
@@ -183,8 +187,8 @@ studies::FacetMap seen(const Surface& surface, std::mt19937& bits, std::size_t p
     for (std::size_t column = 0; column < points; ++column) {
       const double x = pixel_mm * (static_cast<double>(column) - 0.5 * static_cast<double>(points - 1));
       const double y = pixel_mm * (static_cast<double>(row) - 0.5 * static_cast<double>(points - 1));
-      // The height at which the line of sight meets the part: it stands askew on it, by so little that each step leaves
-      // less than a hundredth of what is missing.
+      // Iterate for the height at which the line of sight meets the part. The tilt of the part is so small that each
+      // step reduces the error to less than a hundredth.
       constexpr int kSteps = 8;
       double z = -shift.z();
       for (int step = 0; step < kSteps; ++step) {

@@ -10,7 +10,7 @@
 
 namespace retrace::testing {
 
-/// Independent Gaussian heights of variance 1 on a grid of one micrometre.
+/// Returns independent Gaussian heights of variance 1 on a grid with a spacing of 1 um.
 inline surface_models::HeightMap white_noise(std::size_t columns, std::size_t rows, std::uint32_t seed) {
   surface_models::HeightMap map{columns, rows, 1.0, 1.0, std::vector<double>(columns * rows)};
   for (std::size_t i = 0; i < map.heights_nm.size(); ++i) {
@@ -21,8 +21,8 @@ inline surface_models::HeightMap white_noise(std::size_t columns, std::size_t ro
   return map;
 }
 
-/// Gaussian heights with the autocorrelation sq^2 exp(-(distance / length)^2): white noise under the kernel
-/// exp(-2 (distance / length)^2), summed directly. Periodic.
+/// Returns periodic Gaussian heights with the autocorrelation sq^2 exp(-(distance / length)^2). They are the direct
+/// convolution of white noise with the kernel exp(-2 (distance / length)^2).
 inline surface_models::HeightMap gaussian_surface(std::size_t columns, std::size_t rows, double sq_nm, double length_um,
                                                   std::uint32_t seed) {
   const auto reach = static_cast<std::ptrdiff_t>(std::ceil(2.2 * length_um));
@@ -50,7 +50,7 @@ inline surface_models::HeightMap gaussian_surface(std::size_t columns, std::size
   return map;
 }
 
-/// Adds sqrt(2) sq sin(2 pi (fx x + fy y) + phase), a wave of root mean square height sq.
+/// Adds the wave sqrt(2) sq sin(2 pi (fx x + fy y) + phase), which has the root mean square height sq.
 inline void add_wave(surface_models::HeightMap& map, double sq_nm, double fx_per_um, double fy_per_um,
                      double phase = 0.0) {
   for (std::size_t row = 0; row < map.rows; ++row)
@@ -61,7 +61,7 @@ inline void add_wave(surface_models::HeightMap& map, double sq_nm, double fx_per
     }
 }
 
-/// Adds a plane that falls or rises by those amounts over the map.
+/// Adds a plane that rises by the given amounts over the map; negative amounts fall.
 inline void add_plane(surface_models::HeightMap& map, double offset_nm, double x_rise_nm, double y_rise_nm) {
   for (std::size_t row = 0; row < map.rows; ++row)
     for (std::size_t column = 0; column < map.columns; ++column)

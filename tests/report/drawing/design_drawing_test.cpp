@@ -1,4 +1,4 @@
-// Plan and section of designs: faces, lines, lengths and texts against what the design says.
+// Tests of plan and section of designs: faces, lines, lengths and texts are compared with the design.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -77,14 +77,14 @@ double value_of(const std::vector<Dimension>& dimensions, const std::string& nam
   return NAN;
 }
 
-/// Of all panels of the plan.
+/// Returns the value of a dimension, which is searched in all panels of the plan.
 double plan_value(const DesignDrawing& drawing, const std::string& name) {
   for (const PlanPanel& panel : drawing.plan)
     if (const double value = value_of(panel.dimensions, name); std::isfinite(value)) return value;
   return NAN;
 }
 
-/// Every place of the part is drawn once, and facets have the areas of their plans.
+/// Every point of the part is drawn exactly one time, and facets have the areas of their projections.
 TEST(DesignDrawing, FacesCoverThePart) {
   for (const std::string& text : finite_designs()) {
     const Drawn d = drawn(text);
@@ -95,7 +95,7 @@ TEST(DesignDrawing, FacesCoverThePart) {
       if (face.role == FacetRole::retro_facet) facets += area(face.outline_mm);
     }
     EXPECT_NEAR(all, d.part.entrance_area_mm2, 1e-9 * all) << text;
-    // Facets of prisms rise by 45 degrees, those of cube corners by acos(1 / sqrt 3).
+    // The facets of prisms are inclined by 45 degrees, and those of cube corners by acos(1 / sqrt 3).
     const bool is_cube = text.find("icc") != std::string::npos;
     EXPECT_NEAR(facets * (is_cube ? std::numbers::sqrt3 : std::numbers::sqrt2), d.part.retro_facet_area_mm2, 1e-9 * all)
         << text;
@@ -146,7 +146,8 @@ TEST(DesignDrawing, HasTheLengthsOfTheDesign) {
       {"x pitch", 0.58},
       {"y pitch", 0.55},
       {"x length", 6.0},
-      // 9 x 6 elements in the middle: (6 - 9 * 0.58 + 0.08) / 2 and (4 - 6 * 0.55 + 0.05) / 2.
+      // 9 x 6 elements are centred on the part. The margins are (6 - 9 * 0.58 + 0.08) / 2 and (4 - 6 * 0.55 + 0.05) /
+      // 2.
       {"y length", 4.0},
       {"x margin", 0.43},
       {"y margin", 0.375}};
@@ -187,14 +188,15 @@ double area_of(const std::vector<Vec2>& outline) {
 }
 
 TEST(DesignDrawing, SectionsHaveTheirAreas) {
-  // A rectangle and a right triangle.
+  // The section is a rectangle with a right triangle below it.
   const Drawn prism = drawn(prisms("arrangement = \"single\"\n"));
   EXPECT_NEAR(area_of(prism.drawing.section->view.outline_mm), 0.5 * 1.2 + 0.25 * 0.25, 1e-6);
-  // From the apex at -2 d to 0 on one side, and along the dihedral edge to -d on the other; d = aperture / sqrt 8.
+  // The section rises from the apex at -2 d to 0 on one side, and along the dihedral edge to -d on the other side, with
+  // d = aperture / sqrt 8.
   const Drawn cube = drawn(cubes("hexagonal_icc", "arrangement = \"single\"\n"));
   const double d = 1.0 / std::numbers::sqrt2;
   EXPECT_NEAR(area_of(cube.drawing.section->view.outline_mm), 2.0 * 1.2 + d + 1.5 * d, 1e-6);
-  // An offset row of which a shifted element's half is cut away at the left.
+  // In an offset row, half of a shifted element is cut off at the left end.
   const Drawn brick =
       drawn(prisms("arrangement = \"offset\"\nshifted_rows = \"odd\"\nx_length_mm = 1\ny_length_mm = 1\n"));
   const auto row = section_view(brick.part, 0.25, 0.0, 1.0);
@@ -203,7 +205,7 @@ TEST(DesignDrawing, SectionsHaveTheirAreas) {
 }
 
 TEST(DesignDrawing, MasksAreShown) {
-  // The planes of a table stand for a mask here: what is not in it is land.
+  // The table of planes acts as a mask here: elements that are not in the table are flat.
   Design design = parse_design(prisms("x_length_mm = 2\ny_length_mm = 1\n"), "d.toml");
   ElementPlanes element;
   element.centre_mm = {1.25, 0.75};
@@ -221,7 +223,7 @@ TEST(DesignDrawing, MasksAreShown) {
     }
 }
 
-/// The texts of a drawing, those with numbers that a reader relies on.
+/// Returns the texts of a drawing, including those with numbers.
 std::multiset<std::string> texts_of(const std::string& svg) {
   std::multiset<std::string> texts;
   for (const SvgElement& element : svg_elements(svg))
@@ -240,7 +242,7 @@ TEST(DesignSheets, TextsAreTheLengths) {
     EXPECT_EQ(section.count(text), 1U) << text;
 }
 
-/// Back from the paper to mm.
+/// The coordinates of lines in the drawing are converted back to mm and compared with the geometry.
 TEST(DesignSheets, LinesLieWhereTheGeometrySays) {
   const Drawn d = drawn(prisms(kPlain));
   const std::vector<SvgElement> elements = svg_elements(report::plan_svg(d.drawing));
@@ -292,7 +294,8 @@ std::vector<TextBox> value_boxes(const std::string& svg, const std::string& grou
   return boxes;
 }
 
-/// Of every kind of design: well-formed, no text over another, nothing off the sheet, the same bytes again.
+/// For every kind of design, the drawing is well-formed, texts do not overlap, nothing is outside of the sheet, and a
+/// second drawing has the same bytes.
 TEST(DesignSheets, AreLegible) {
   for (const std::string& text : all_designs()) {
     const Drawn d = drawn(text);

@@ -1,4 +1,4 @@
-// What `retrace inspect --out` draws, and masks in everything that traces, as users meet them.
+// Tests of the drawings of `retrace inspect --out`, and of masks in all commands that trace light.
 #include <gtest/gtest.h>
 
 #include "tests/app/program.h"
@@ -15,13 +15,13 @@ std::string with_mask(const std::string& mask) {
   return text.insert(text.find("[body]"), "mask = \"" + mask + "\"\n");
 }
 
-/// A picture of 6 x 4 pixels.
+/// Returns a picture of 6 x 4 pixels.
 std::string picture(const std::string& pixels) {
   return "P2\n6 4\n255\n" + pixels + "\n";
 }
 
 const std::string kAll = picture("0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0");
-// The upper left quarter of the part.
+// Mask that contains the upper left quarter of the part.
 const std::string kQuarter =
     picture("0 0 0 255 255 255 0 0 0 255 255 255 255 255 255 255 255 255 255 255 255 255 255 255");
 
@@ -66,7 +66,8 @@ double rre_of(const TemporaryFolder& folder, const std::string& design, const st
   return retrace_json(folder, arguments)["points"][0]["rre"].get<double>();
 }
 
-/// A mask that leaves nothing out is none, and one that leaves a quarter leaves about a quarter of the light.
+/// A mask that contains the whole part has no effect. A mask with a quarter of the part returns about a quarter of the
+/// light.
 TEST(Masks, AreTraced) {
   const TemporaryFolder folder;
   folder.write("all.pgm", kAll);
@@ -85,7 +86,7 @@ TEST(Masks, AreTraced) {
   EXPECT_EQ(inspected["boundary"], "closed, free of self-intersections");
 }
 
-/// Row 0 of the picture is that of the largest y: the upper left quarter of a camera's picture is bright.
+/// Row 0 of a picture has the largest y. The upper left quarter of the camera picture is therefore bright.
 TEST(Masks, AreSeenByACamera) {
   const TemporaryFolder folder;
   folder.write("quarter.pgm", kQuarter);
@@ -111,7 +112,7 @@ TEST(Masks, AreExported) {
   folder.write("quarter.pgm", kQuarter);
   folder.write("d.toml", with_mask("quarter.pgm"));
   const Json json = retrace_json(folder, {"export", "d.toml", "part.stl"});
-  // The plate and six prisms of 0.5 x 0.25 / 2 x 0.5.
+  // Expected volume: the plate, and six prisms of 0.5 x 0.25 / 2 x 0.5.
   EXPECT_NEAR(json["volume_mm3"].get<double>(), 3.0 * 2.0 * 1.0 + 6.0 * 0.5 * 0.25 / 2.0 * 0.5, 1e-9);
   EXPECT_EQ(json["elements_full"], 6);
 }

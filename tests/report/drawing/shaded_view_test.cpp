@@ -1,4 +1,5 @@
-// Shaded views: silhouettes against closed forms, what hides what, and that the file is a picture.
+// Tests of shaded views: silhouettes are compared with closed forms, hidden faces are not drawn, and the file is a
+// valid picture.
 #include "report/drawing/shaded_view.h"
 
 #include <cairo.h>
@@ -20,7 +21,8 @@ using report::shaded_view;
 using report::ShadedView;
 using report::ViewDirection;
 
-/// The shadow of a convex body: the convex hull of its corners seen along a direction (Andrew's monotone chain).
+/// Returns the area of the projection of a convex body: the convex hull of its projected corners (Andrew's monotone
+/// chain).
 double hull_area(const std::vector<Vec3>& corners, const ViewDirection& direction) {
   const Vec3 right = direction.up.cross(direction.from).normalized();
   const Vec3 up = direction.from.cross(right);
@@ -86,7 +88,7 @@ TEST(ShadedView, SilhouetteOfATriangularCubeIsItsShadow) {
     EXPECT_NEAR(covered_mm2(shaded_view(view.mesh, view.edges, d, 300, 400)) / hull_area(corners, d), 1.0, 2e-3);
 }
 
-/// Seen from the light a part is its entrance face: nothing behind it shows.
+/// Seen from the light, a part shows only its entrance face, which hides everything behind it.
 TEST(ShadedView, NearerFacesHideOthers) {
   const Part part = build_part(finite(HexagonalCube{1.0}, Arrangement::honeycomb, 6.0, 5.0, 0.5));
   const studies::DesignView view = studies::view_of(part);
@@ -95,7 +97,7 @@ TEST(ShadedView, NearerFacesHideOthers) {
   const report::Colour& middle = seen.colours[80 * 200 + 100];
   for (std::size_t row = 30; row < 130; ++row)
     for (std::size_t column = 40; column < 160; ++column) EXPECT_EQ(seen.colours[row * 200 + column].blue, middle.blue);
-  // From behind there are three kinds of facets and their edges.
+  // Seen from behind, there are three orientations of facets and their edges.
   const ShadedView back = shaded_view(view.mesh, view.edges, {-Vec3::UnitZ(), Vec3::UnitY()}, 200, 160);
   std::vector<double> shades;
   for (std::size_t row = 40; row < 120; ++row)
@@ -105,7 +107,8 @@ TEST(ShadedView, NearerFacesHideOthers) {
   EXPECT_GT(shades.size(), 3U);
 }
 
-/// Pieces of a large part and borders of a cut one close to one surface: from below no background shows through.
+/// Placements of a large part and borders of partial elements form one surface without gaps: seen from below, no
+/// background is visible.
 TEST(ShadedView, PartsOfManyPiecesHaveNoHoles) {
   const Part part = build_part(finite(RtpElement{0.2, 0.2}, Arrangement::offset, 12.1, 10.3, 0.5));
   ASSERT_GT(part.placements.size(), 1U);

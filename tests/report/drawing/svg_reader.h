@@ -9,7 +9,7 @@
 
 namespace retrace::testing {
 
-/// An element of a drawing, with the group it lies in.
+/// An element of an SVG drawing, and the group that contains it.
 struct SvgElement {
   std::string name;
   std::string group;  ///< id of the group
@@ -22,7 +22,7 @@ struct SvgPoint {
   double y = 0.0;
 };
 
-/// All elements of an SVG document in their order; empty if it is not well-formed.
+/// Returns all elements of an SVG document in order. Returns an empty list if the document is not well-formed.
 inline std::vector<SvgElement> svg_elements(const std::string& svg) {
   struct State {
     std::vector<SvgElement> elements;
@@ -51,7 +51,7 @@ inline std::vector<SvgElement> svg_elements(const std::string& svg) {
   return is_read ? state.elements : std::vector<SvgElement>{};
 }
 
-/// The points of a path of straight lines.
+/// Returns the points of a path that consists of straight lines.
 inline std::vector<SvgPoint> svg_points(const SvgElement& path) {
   std::string numbers = path.attributes.at("d");
   for (char& c : numbers)

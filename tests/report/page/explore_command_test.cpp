@@ -2,14 +2,15 @@
 
 #include "tests/app/program.h"
 
-// `retrace explore` as users meet it; what the page does is the browser test's, what its engine says tests/live/.
+// Tests of the command `retrace explore`. The browser test checks the behaviour of the page, and tests/live/ checks its
+// engine.
 
 namespace retrace::test::explore_command_test {
 namespace {
 
 constexpr std::size_t kMostBytes = 3'000'000;
 
-/// What a page begins with.
+/// Returns the initial state of a page as JSON.
 Json start_of(const std::string& html) {
   const std::string head = "id=\"start\">";
   const std::size_t begin = html.find(head) + head.size();
@@ -49,7 +50,7 @@ TEST(Explore, BeginsWithTheDesignByteForByte) {
   EXPECT_EQ(start_of(html)["toml"], text);
   EXPECT_EQ(start_of(html)["source"], "my design.toml");
   EXPECT_FALSE(start_of(html)["embedded"]);
-  // From standard input, with a key changed.
+  // The design comes from standard input, and one key is changed.
   const Outcome changed = retrace(folder, {"explore", "-", "--set", "element.base_mm=2"}, text);
   EXPECT_EQ(changed.code, 0) << changed.err;
   EXPECT_NE(start_of(changed.out)["toml"].get<std::string>().find("base_mm = 2"), std::string::npos);
@@ -79,7 +80,7 @@ TEST(Explore, RefusesWhatAPageCannotHave) {
   EXPECT_EQ(folder.read("mesh.toml"), mesh);
 }
 
-/// A page of results has the design as well, unless it names files.
+/// A page of results contains the design as well, unless the design refers to files.
 TEST(Explore, IsASectionOfReports) {
   const TemporaryFolder folder;
   ASSERT_EQ(
