@@ -21,8 +21,9 @@
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/swept_volume_sink.h"
 
-// Programs of every strategy with one line lost, doubled or another number in it, judged by a measure of chips of its
-// own: lines of dexels normal to the facets, cut move by move as polyhedra.
+// Tests of programs of every strategy in which one line is removed or duplicated, or one number is changed. The chips
+// are measured by an independent method: dexel lines normal to the facets, from which each move is subtracted as a
+// polyhedron.
 
 namespace retrace::fabrication::test::chip_faults_test {
 namespace {
@@ -33,13 +34,16 @@ Machine machine(const std::string& name) {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
 }
 
-/// Lines normal to one facet of the first element: what earlier moves took of each, as parts that do not overlap.
+/// Dexel lines normal to one facet of the first element. Each line stores the disjoint intervals that earlier moves
+/// have removed.
 class DexelFacet {
  public:
-  /// \param extents of the field from the root: along it, up the slope \param lines along the longer one
+  /// \param low_mm lower bounds of the field, measured from the root: along the root, up the facet and along the normal
+  /// \param high_mm upper bounds of the field
+  /// \param lines number of lines along the longer side
   DexelFacet(const Groove& groove, std::size_t facet, const Vec3& low_mm, const Vec3& high_mm, std::size_t lines)
       : groove_(groove), normal_(groove.facets[facet].normal), box_{low_mm, high_mm}, lines_(lines) {
-    // The field's axes: z along the normal, x and y in the facet.
+    // Axes of the field: z is the normal, and x and y are in the facet.
     const Vec3 y = groove.is_cube() ? groove.edges[(facet + 1) % 3] : groove.facets[facet].up_slope;
     from_workpiece_.row(0) = y.cross(normal_).transpose();
     from_workpiece_.row(1) = y.transpose();
@@ -48,10 +52,11 @@ class DexelFacet {
 
   struct Chip {
     double length_mm = 0.0;
-    double left_mm = 0.0;  ///< over the facet, where the chip begins
+    double left_mm = 0.0;  ///< height above the facet at which the chip begins
   };
 
-  /// The thickest that a move takes along the lines, which is a chip if it goes along the facet.
+  /// Removes a move and returns the maximum thickness that it removes along the lines. It is a chip only if the move
+  /// runs along the facet.
   Chip cut(const SweptVolume& sweep, const RigidMotion& pose, const ToolWedge& wedge) {
     RigidMotion from_field;
     from_field.rotation = pose.rotation * from_workpiece_.transpose();
@@ -70,13 +75,14 @@ class DexelFacet {
     }
     const Vec3 travel = pose.rotation.transpose() * (sweep.to_mm - sweep.from_mm);
     const Vec3 looks = pose.rotation.transpose() * wedge.sides[0].outward;
-    // Along the facet; of a V, which goes along two at once, with its clearance face towards it.
+    // True if the move runs along the facet. A V-shaped tool runs along two facets at the same time; only the facet
+    // that its clearance face faces counts.
     const bool goes_along = std::abs(travel.normalized().dot(normal_)) < 0.02;
     return goes_along && (!groove_.is_cube() || looks.dot(normal_) < -0.9) ? chip : Chip{};
   }
 
  private:
-  /// Where a line leaves the blank, z = 0.
+  /// Returns the height at which a line leaves the blank, whose face is z = 0.
   double face_mm(const DexelField& field, std::size_t i) const {
     const Vec3 size = box_.high_mm - box_.low_mm;
     const double x = (static_cast<double>(i % field.columns) + 0.5) / static_cast<double>(field.columns);
@@ -86,7 +92,7 @@ class DexelFacet {
     return -p.z() / normal_.z();
   }
 
-  /// Adds a part to others, and says how much of it was new.
+  /// Adds an interval to others and returns the length of its part that was not covered before.
   static double take(std::vector<std::pair<double, double>>& parts, double low, double high) {
     double length = high - low;
     if (length <= 0.0) return 0.0;
@@ -113,7 +119,7 @@ class DexelFacet {
   std::vector<std::vector<std::pair<double, double>>> taken_;
 };
 
-/// Most that a chip may be, over the depth of cut, anywhere: by the formulas of the theory.
+/// Returns the maximum ratio of chip thickness to depth of cut, by the formulas of the theory.
 double most_share(const Job& job) {
   if (job.strategy == Strategy::dmc) {
     const Vec3 spine = v_tool_edges(job.tool).spine;
@@ -124,7 +130,7 @@ double most_share(const Job& job) {
   return std::max(1.0, std::tan(rake) * (1.0 + std::cos(apex)) / std::sin(apex));
 }
 
-/// By how much the thickest chip of a program exceeds its limit, in um.
+/// Returns the difference between the thickest chip of a program and its limit, in um.
 double true_excess_um(const Job& job, const Machine& m, const std::string& text) {
   SweptVolumeSink moves(m);
   run_nc(parse_nc(text, "p.ngc", NcDialect::rs274ngc), moves);
@@ -142,7 +148,7 @@ double true_excess_um(const Job& job, const Machine& m, const std::string& text)
       fields.emplace_back(f, DexelFacet(groove, f, {0.0, 0.0, -0.1 * length_mm}, {length_mm, length_mm, top}, 24));
       continue;
     }
-    // One field over the facet, one close to the root.
+    // One field covers the whole facet, and a finer field covers the part close to the root.
     fields.emplace_back(f, DexelFacet(groove, f, {-0.01, 0.0, -0.1}, {0.01, length_mm, top}, 60));
     fields.emplace_back(f, DexelFacet(groove, f, {-0.01, 0.0, -0.1}, {0.01, 0.1, top}, 60));
   }
@@ -161,7 +167,7 @@ double true_excess_um(const Job& job, const Machine& m, const std::string& text)
   return excess_um;
 }
 
-/// Programs with one line changed, with what was done to them.
+/// Returns programs with one changed line, and descriptions of the changes.
 std::vector<std::pair<std::string, std::string>> faults_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -196,7 +202,7 @@ std::vector<std::pair<std::string, std::string>> faults_of(const std::string& te
   return faults;
 }
 
-/// One element of each strategy with few and thick cuts, so that a program is short.
+/// Returns a job with one element and few thick cuts, so that its program is short.
 Job short_job(Strategy strategy) {
   Job job = strategy == Strategy::dmc ? cube_job(false, 0.3) : square_job(1);
   if (strategy == Strategy::dmc) {
@@ -236,14 +242,14 @@ TEST_P(ChipFaults, EveryLineWhoseLossOrChangeThickensAChipIsFound) {
       EXPECT_FALSE(v.passes()) << what << " takes " << excess_um << " um too much\n" << listed(v);
       told += has_kind(v, "chip_too_thick") ? 1 : 0;
     } catch (const InputError&) {
-      continue;  // is refused
+      continue;  // the job is refused
     }
   }
   EXPECT_GT(thick, 50);
   EXPECT_GT(told, thick * 4 / 5) << "the others cut beside the element";
 }
 
-/// The program with the visits of one subroutine left out, or moved along Z.
+/// Returns the program in which the visits of one subroutine (its calls at elements) are removed or moved along Z.
 std::string changed_stage(const Plan& plan, std::size_t subroutine, std::optional<Nanometres> by_nm) {
   Program program = plan.programs.front();
   const auto is_of_it = [&](const Item& item) {
@@ -268,15 +274,15 @@ TEST_P(ChipFaults, AStageThatIsGoneOrStandsTooHighIsFound) {
         for (const std::optional<Nanometres> by_nm : {std::optional<Nanometres>(), {Nanometres{60'000}}}) {
           const std::string text = changed_stage(plan, k, by_nm);
           if (!verified(job, m, text).passes()) continue;
-          // A first layer may be so thin that the next takes it along.
+          // A first layer may be so thin that the next layer removes its material as well.
           const std::string& title = plan.subroutines[k].title;
           EXPECT_TRUE(title.starts_with("layer-1") && true_excess_um(job, m, text) < 0.0) << title << " of " << cuts;
         }
     }
 }
 
-/// On a base the strip that a tilted edge leaves may be as wide as a cut is deep, and chips as much thicker: what was
-/// not finished is found by counting cuts.
+/// On a substrate, the strip that a tilted edge leaves may be as wide as the depth of cut, and chips may be thicker by
+/// the same amount. The verifier therefore finds missing finishing cuts by counting them.
 TEST(FinishingFaults, AFinishingCutThatIsMissingIsFoundWhereTheEdgeIsTilted) {
   Job job = square_job(2, geometry::Arrangement::aligned);
   job.substrate = {geometry::PlaneSubstrate{0.35, 90.0}, geometry::ElementAxes::normal};

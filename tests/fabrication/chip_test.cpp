@@ -19,7 +19,7 @@
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/substrate_jobs.h"
 
-// How much cuts take at once: the measure against geometry that is known, and right programs of jobs of every kind.
+// Tests of the chip thickness: the measured values for known geometry, and correct programs of jobs of every kind.
 
 namespace retrace::fabrication::test::chip_test {
 namespace {
@@ -63,7 +63,8 @@ int count_of(const std::vector<ConvexPiece>& pieces, const Vec2& p) {
       std::count_if(pieces.begin(), pieces.end(), [&](const auto& piece) { return holds(piece, p); }));
 }
 
-/// What is taken and what is left make up what was there, without overlaps, and what is taken lies in the body.
+/// The removed and the remaining pieces add up to the original area without overlaps, and the removed pieces are inside
+/// the body.
 RC_GTEST_PROP(Chips, TakingAwayKeepsTheArea, ()) {
   const auto number = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
   std::vector<ConvexPiece> pieces = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
@@ -96,7 +97,7 @@ RC_GTEST_PROP(Chips, TakingAwayKeepsTheArea, ()) {
   RC_ASSERT(std::abs(left_area + taken_area - 4.0) < 1e-7);
 }
 
-/// The half-spaces of a swept body against the part of a line within it.
+/// The half-spaces of a swept body must agree with the part of a line that is inside the body.
 RC_GTEST_PROP(Chips, HalfSpacesOfASweepHoldItsLines, ()) {
   const auto number = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
   const auto vector = [&] { return Vec3(number(), number(), number()); };
@@ -125,7 +126,8 @@ RC_GTEST_PROP(Chips, HalfSpacesOfASweepHoldItsLines, ()) {
   RC_ASSERT(std::abs(std::min(span->high, 1e3) - high) < 1e-6);
 }
 
-/// Where a tip goes one depth past the other facet its rake face, 53 degrees from the wall, takes tan 53 of it.
+/// If a tip moves one depth of cut beyond the other facet, its rake face, at 53 degrees to the wall, removes tan 53
+/// degrees times this depth.
 TEST(Chips, ThickestOfRightProgramsIsThatOfTheRakeFace) {
   const double slope = std::tan(53.0 * M_PI / 180.0);
   Job job = square_job(1);
@@ -139,7 +141,7 @@ TEST(Chips, ThickestOfRightProgramsIsThatOfTheRakeFace) {
   EXPECT_NEAR(verified(job, machine("ideal")).chip_um_max, 5.0 * slope, 2e-3);
 }
 
-/// A prism job of any kind that the checks of jobs let through.
+/// Returns a random job of prisms that is valid.
 Job any_prisms() {
   Job job = square_job(*rc::gen::inRange(1, 3), *rc::gen::element(Arrangement::offset, Arrangement::checker));
   geometry::RtpElement& prism = prism_of(job);
@@ -176,7 +178,8 @@ RC_GTEST_PROP(Chips, RightProgramsOfAnyPrismsPass, ()) {
   RC_ASSERT(v.chip_share_max <= 1.0 + 1e-9);
 }
 
-/// Blanks whose faces are curved or inclined, and stand over the rims of elements in parallel.
+/// Correct programs pass on blanks whose faces are curved or inclined and that extend above the rims of elements with
+/// parallel axes.
 RC_GTEST_PROP(Chips, RightProgramsOnAnyBasePass, ()) {
   const ElementAxes axes = *rc::gen::element(ElementAxes::normal, ElementAxes::parallel);
   const double radius_mm = *rc::gen::element(12.0, -12.0, 30.0, -30.0, 200.0);

@@ -6,8 +6,8 @@
 
 namespace retrace::fabrication::test {
 
-/// 3 x 3 cube corners, by a tool that reaches: three columns of three triangles, or of three hexagons each, of which
-/// the outer two have a fourth that the pattern leaves out.
+/// Returns a job of 3 x 3 cube corners with a suitable tool: three columns of three triangles or of three hexagons. The
+/// outer two columns of hexagons have a fourth cell, which the pattern excludes.
 inline Job cube_job(bool is_hexagonal, double aperture_mm = 0.3) {
   Job job;
   const double radius_mm = 0.5 * aperture_mm;

@@ -16,8 +16,9 @@
 #include "tests/fabrication/jobs.h"
 #include "tests/support/refusals.h"
 
-// Whatever an earlier program, a line typed in or a reset may have left: each word of the preparation is missed, and
-// what changes in the middle is found at the next cut. In every dialect.
+// Tests in every dialect of states of the control that an earlier program, a manual input or a reset may have left. The
+// verifier must notice if any word of the preparation is missing. If a state is changed in the middle of a program, the
+// verifier must report it at the next cut.
 
 namespace retrace::fabrication::test::control_state_test {
 namespace {
@@ -26,7 +27,7 @@ using geometry::Arrangement;
 
 using Lines = std::vector<std::string>;
 
-/// A machine whose control has all that a control may have.
+/// Returns a machine whose control has all optional features.
 Machine full_machine(NcDialect dialect) {
   const std::string file = std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml";
   Machine machine = parse_machine(read_file(file), file);
@@ -55,7 +56,7 @@ class ControlState : public ::testing::TestWithParam<NcDialect> {
   bool is_pmac() const { return GetParam() == NcDialect::pmac; }
   bool has_texts() const { return has_own_texts(GetParam()); }
 
-  /// Kinds of what is found, each once; "error" for a text that cannot be carried out.
+  /// Returns the kinds of the findings, each kind one time. Returns "error" for a text that cannot be executed.
   std::string kinds_in(const Lines& lines) const {
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
@@ -72,14 +73,15 @@ class ControlState : public ::testing::TestWithParam<NcDialect> {
     return fmt::format("{}", fmt::join(kinds, " "));
   }
 
-  /// The first line of the main program that moves an axis.
+  /// Returns the index of the first line of the main program that moves an axis.
   std::size_t first_move() const {
     const std::string rapid = is_pmac() ? "rapid " : "G0 ";
     std::size_t i = 0;
     while (!lines_[i].starts_with(rapid)) ++i;
     return i;
   }
-  /// Lines behind the preparation, of subroutines as well, between which others can stand.
+  /// Returns true for lines after the preparation, including those of subroutines, before which other lines can be
+  /// inserted.
   bool is_step(std::size_t i) const {
     return lines_[i].starts_with(is_pmac() ? "rapid " : "G0 ") || is_feed(lines_[i]) || lines_[i] == dwell_line();
   }
@@ -114,10 +116,10 @@ TEST_P(ControlState, RightProgramsPass) {
 }
 
 TEST_P(ControlState, EveryWordOfThePreparationIsAskedFor) {
-  // Planes and cycles change no straight move.
+  // Lines that do not change straight moves, such as selections of planes and cycles.
   const Lines without_effect = {"G17", "G80", "M5", "X0.", "Y0.", "Z0."};
   int asked = 0;
-  // The preparation is all that stands before the first move and is neither comment nor subroutine.
+  // The preparation consists of all lines before the first move that are neither comments nor part of a subroutine.
   std::size_t begin = first_move();
   const auto is_prepared = [&](const std::string& line) {
     return line.starts_with("G") || line.starts_with("M5") || line.starts_with("T") || line.starts_with("Coord") ||
@@ -157,7 +159,7 @@ TEST_P(ControlState, WhatChangesInTheMiddleIsFound) {
       Lines spoilt = lines_;
       spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), line);
       const std::string kinds = kinds_in(spoilt);
-      // Lines that lead a tool from one clearance to another cut nothing, and the next one does.
+      // Lines that move the tool from one clearance to another cut nothing. The fault is reported at the next cut.
       EXPECT_NE(kinds.find(kind), std::string::npos) << line << " before " << lines_[i] << ": " << kinds;
       ++tried;
     }
@@ -172,7 +174,8 @@ TEST_P(ControlState, MistThatNeverComesOn) {
   EXPECT_EQ(kinds_in(spoilt), "mist");
 }
 
-/// Z alone, away from the part, and nothing lower before all axes are known.
+/// The first move must move only Z, away from the part. Nothing may be lower before the positions of all axes are
+/// known.
 TEST_P(ControlState, TheFirstMoves) {
   const std::size_t first = first_move();
   const std::string feed = is_pmac() ? "linear Z-12. F2000." : "G1 Z-12. F2000.";
@@ -187,7 +190,7 @@ TEST_P(ControlState, TheFirstMoves) {
   Lines spoilt = lines_;
   spoilt.erase(spoilt.begin() + static_cast<std::ptrdiff_t>(first));
   EXPECT_NE(kinds_in(spoilt).find("first_move"), std::string::npos);
-  // X and Y, and the way down, in the other order.
+  // Exchange the move of X and Y with the downward move.
   spoilt = lines_;
   std::size_t across = first + 1;
   while (spoilt[across].find(" X") == std::string::npos) ++across;
@@ -208,7 +211,8 @@ TEST_P(ControlState, FeedsAreThoseOfTheMachine) {
   EXPECT_GE(tried, 3);
 }
 
-/// Feeds of finishing are those of finishing: told from where the edge sweeps, not from the name of the stage.
+/// Finishing cuts must have the finishing feed. The verifier recognises them from the path of the edge, not from the
+/// name of the stage.
 TEST_P(ControlState, FeedsAreThoseOfTheStage) {
   const double finishing = job_.process.finishing_feed_mm_per_min;
   const std::string feed = fmt::format(" F{:.3f}", finishing);
@@ -244,31 +248,31 @@ TEST_P(ControlState, DwellsInTheMaterial) {
     EXPECT_EQ(kinds_in(spoilt), "");
     spoilt[i] = as_long_as(dwell, 0.5);
     EXPECT_EQ(kinds_in(spoilt), "missing_dwell");
-    // Dwells at one place add up, and the operator may be long.
+    // Dwells at one position are added up. A stop may take any time, because the operator continues it.
     spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), spoilt[i]);
     EXPECT_EQ(kinds_in(spoilt), "");
     spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), 5, spoilt[i]);
     EXPECT_EQ(kinds_in(spoilt), "dwell_too_long");
     const std::string stop = has_texts() ? machine_.control.optional_stop : "M0";
-    // Lines that an integrator gave stand in the main program alone, and cuts in subprograms.
+    // Lines of the machine file occur only in the main program, and cuts only in subprograms.
     for (const std::size_t at : {i, i + 1})
       EXPECT_TRUE(holds(kinds_with(at, {stop}), has_texts() ? "error" : "dwell_too_long"));
     ++tried;
   }
   EXPECT_GE(tried, 3);
-  // Above the part a rest harms nothing.
+  // A dwell above the part is harmless.
   Lines rests = lines_;
   rests.insert(rests.begin() + static_cast<std::ptrdiff_t>(first_move()) + 1, as_long_as(dwell, 1000.0));
   EXPECT_EQ(kinds_in(rests), "");
 }
 
-/// A chisel has no reason to turn, wherever the program stands.
+/// The spindle must never rotate a chisel, at any line of the program.
 TEST_P(ControlState, TheSpindleNeverTurns) {
-  if (is_pmac()) return;  // a control's texts name no spindle here, so that M3 is an error
+  if (is_pmac()) return;  // the machine codes of this control contain no spindle codes, so M3 is an error
   int tried = 0;
   for (std::size_t i = 0; i <= lines_.size(); ++i) {
     if (i < lines_.size() && !is_step(i)) continue;
-    const std::size_t at = i < lines_.size() ? i : i - 2;  // before the end
+    const std::size_t at = i < lines_.size() ? i : i - 2;  // line before the end of the program
     EXPECT_TRUE(holds(kinds_with(at, {"M3 S3000", "M5"}), "spindle")) << lines_[at];
     ++tried;
   }
@@ -305,14 +309,14 @@ TEST_P(ControlState, CutsAreNotTooSlow) {
   EXPECT_GE(tried, 3);
 }
 
-/// Axes that turn or come from anywhere have limits too.
+/// Moves of rotary axes and the first moves must also respect the limits of the axes.
 TEST_P(ControlState, FeedsOfEveryMove) {
   int tried = 0;
   for (std::size_t i = first_move(); i < lines_.size(); ++i) {
     if (!lines_[i].starts_with(is_pmac() ? "rapid " : "G0 ")) continue;
     Lines spoilt = lines_;
     spoilt[i] = (is_pmac() ? "linear " : "G1 ") + lines_[i].substr(lines_[i].find(' ') + 1);
-    // Only lines before the first feed have none.
+    // Only lines before the first feed word have no feed.
     if (i == first_move()) {
       EXPECT_TRUE(holds(kinds_in(spoilt), "zero_feed")) << spoilt[i];
     }
@@ -324,7 +328,7 @@ TEST_P(ControlState, FeedsOfEveryMove) {
   EXPECT_GE(tried, 10);
 }
 
-/// The tool is to stand by `rotary_clearance_mm` above all that the blank comes up to.
+/// During rotations, the tool must be at least `rotary_clearance_mm` above the highest point of the blank.
 TEST_P(ControlState, TurnsKeepTheirClearance) {
   Job asks_more = job_;
   asks_more.process.rotary_clearance_mm *= 2.0;
@@ -339,7 +343,7 @@ TEST_P(ControlState, TurnsKeepTheirClearance) {
   EXPECT_GE(found, 1);
 }
 
-/// What an edge's tilt leaves at the root is that of the plunge that leaves it.
+/// The strip that a tilted edge leaves at the root must be the strip of the plunge that cuts this root.
 TEST_P(ControlState, RootsAreThoseOfTheirPlunge) {
   const std::string feed = fmt::format(" F{:.3f}", job_.process.finishing_feed_mm_per_min);
   int tried = 0;
@@ -393,7 +397,7 @@ TEST_P(ControlState, WhatControlsRefuse) {
   EXPECT_EQ(kinds_in(lines_), "setup");
 }
 
-/// What a coarse increment leaves on facets is no more than the tolerance, also where both meet.
+/// The deviation of facets due to a coarse increment is at most the tolerance, also where two facets meet.
 TEST_P(ControlState, CoarseIncrementsLeaveWhatTheyRound) {
   if (GetParam() != NcDialect::fanuc) return;
   for (const IncrementSystem system : {IncrementSystem::d, IncrementSystem::c})
@@ -418,7 +422,8 @@ TEST_P(ControlState, IncrementsAreFinerThanCuts) {
   EXPECT_EQ(refusal_of([&] { make_plan(job_, for_dialect(machine, "fanuc")); }), "process.finishing_depth_um");
 }
 
-/// A tolerance wider than the chips are thick says nothing of whether they come free.
+/// A correct program also passes with a tolerance that is larger than the chip thickness. Such a tolerance does not
+/// affect the check that chips are separated.
 TEST_P(ControlState, WideTolerancesPassToo) {
   std::string text;
   for (const std::string& line : lines_) text += line + "\n";

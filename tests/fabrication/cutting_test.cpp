@@ -18,7 +18,8 @@
 #include "tests/fabrication/controls.h"
 #include "tests/fabrication/jobs.h"
 
-// Cutting by planes against analytic shapes, against dexels that clip polyhedra, and against random faults.
+// Tests of cutting by planes. The results are compared with analytic shapes and with dexels that clip polyhedra. Random
+// faults must be found.
 
 namespace retrace::fabrication::test::cutting_test {
 namespace {
@@ -34,8 +35,9 @@ SweptVolume sweep_of(const Vec3& from, const Vec3& to, std::uint32_t pose = 0) {
   return {pose, {1, 0}, false, from, to};
 }
 
-/// Volume removed from the blank z < 0 below a rectangle, by lines along z: lines are exact, and the integrand is
-/// piecewise linear across x and y with corners where the test puts the cells' borders.
+/// Returns the volume that is removed from the blank z < 0 below a rectangle. It is integrated from lines along z. Each
+/// line is exact. Across x and y, the integrand is piecewise linear, and the test places the borders of the cells at
+/// its corners.
 double volume_by_lines(const std::vector<SweptVolume>& sweeps, const std::vector<RigidMotion>& poses,
                        const ToolWedge& wedge, double x_end, double y_low, double y_high, int cells) {
   double volume = 0.0;
@@ -58,8 +60,8 @@ Tool tool_of_width(double width_mm) {
   return tool;
 }
 
-/// At A = 0 the tool plunges to a depth and ploughs: a slot with the clearance face at one end and the rake face at the
-/// other.
+/// At A = 0, the tool plunges to a depth and then ploughs. This makes a slot with the shape of the clearance face at
+/// one end and of the rake face at the other end.
 TEST(Cutting, VolumeOfASlot) {
   const Machine ideal = machine("ideal");
   const ToolWedge wedge = tool_wedge(tool_of_width(1.0), ideal, Angle::from_deg(90));
@@ -67,7 +69,7 @@ TEST(Cutting, VolumeOfASlot) {
   const std::vector<SweptVolume> sweeps = {sweep_of({0, 0, 0.2}, {0, 0, -depth}),
                                            sweep_of({0, 0, -depth}, {0, -0.6, -depth})};
   const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {0, 0})};
-  // Plunging leaves a vertical wall at y = 0; ploughing ends with the rake face, 53 degrees from the vertical.
+  // The plunge leaves a vertical wall at y = 0. The plough ends with the rake face, at 53 degrees to the vertical.
   const double analytic = depth * 0.6 + 0.5 * depth * depth * std::tan(Angle::from_deg(53).rad());
   const double end = -0.6 - depth * std::tan(Angle::from_deg(53).rad());
   const double whole = volume_by_lines(sweeps, poses, wedge, 0.5, -0.6, 0.0, 1);
@@ -75,7 +77,7 @@ TEST(Cutting, VolumeOfASlot) {
   EXPECT_NEAR(whole + ramp, analytic, 1e-9 * analytic);
 }
 
-/// Two plunges of an ideal machine leave a right prism: base^2 / 4 times the width.
+/// Two plunges on an ideal machine cut a right prism with the volume base^2 / 4 times the width.
 TEST(Cutting, VolumeOfAPrism) {
   const Machine ideal = machine("ideal");
   const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal, Angle::from_deg(90));
@@ -90,7 +92,7 @@ TEST(Cutting, VolumeOfAPrism) {
   EXPECT_NEAR(left + right, 0.25 * substrate * substrate * 0.5, 1e-9 * 0.03125);
 }
 
-/// Prisms whose apertures overlap by a quarter of their base share a smaller prism.
+/// Prisms whose apertures overlap by a quarter of the base have a smaller prism in common.
 TEST(Cutting, VolumeOfOverlappingPrisms) {
   const Machine ideal = machine("ideal");
   const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal, Angle::from_deg(90));
@@ -112,7 +114,8 @@ TEST(Cutting, VolumeOfOverlappingPrisms) {
   EXPECT_NEAR(volume, analytic, 1e-9 * analytic);
 }
 
-/// A line's part within a swept body, against membership: a point is swept if some place of the travel has it.
+/// The part of a line in a swept body must agree with a test of single points: a point is swept if the tool contains it
+/// at some position along its path.
 RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
   const ToolWedge wedge = tool_wedge(tool_of_width(0.5), machine("ideal"), Angle::from_deg(90));
   const auto coordinate = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
@@ -126,7 +129,7 @@ RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
   const Vec3 direction = (vector() + Vec3(0, 0, 2)).normalized();
   const auto span = swept_span(wedge, sweep, point, direction);
   const auto is_swept = [&](const Vec3& p) {
-    // The bound on t from each side of the wedge: the reverse order of elimination.
+    // Compute the bounds on t from each side of the wedge. The variables are eliminated in the reverse order.
     double low = 0.0;
     double high = 1.0;
     for (const auto& side : wedge.sides) {
@@ -149,7 +152,7 @@ RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
   }
 }
 
-/// Hulls against points: a tetrahedron and a box that comes near to one of its faces.
+/// Convex hulls: a tetrahedron, and a box that approaches one of its faces.
 TEST(Bodies, HullsMeetWhereTheyDo) {
   const std::vector<Vec3> tetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const auto cube_at = [](double corner) {
@@ -159,14 +162,14 @@ TEST(Bodies, HullsMeetWhereTheyDo) {
                         corner + ((i & 4) != 0 ? 0.5 : 0.0));
     return cube;
   };
-  // The face x + y + z = 1 is met where 3 corner = 1, though the boxes overlap up to corner = 1.
+  // The box meets the face x + y + z = 1 at 3 corner = 1, although the bounding boxes overlap up to corner = 1.
   for (const double corner : {0.0, 0.2, 0.333}) EXPECT_TRUE(hulls_meet(tetrahedron, cube_at(corner))) << corner;
   for (const double corner : {0.334, 0.4, 0.9, 1.5}) EXPECT_FALSE(hulls_meet(tetrahedron, cube_at(corner))) << corner;
   EXPECT_FALSE(hulls_meet(cube_at(-0.501), tetrahedron));
   EXPECT_TRUE(hulls_meet(cube_at(-0.499), tetrahedron));
 }
 
-/// Random hulls: a plane between them (they are built on either side of one), or a common point.
+/// Random hulls that are built on both sides of a plane, or that have a common point.
 RC_GTEST_PROP(Bodies, HullsAgreeWithPlanesBetweenThem, ()) {
   const auto coordinate = [] { return 1e-3 * *rc::gen::resize(100, rc::gen::inRange(-1000, 1001)); };
   const auto vector = [&] {
@@ -185,7 +188,7 @@ RC_GTEST_PROP(Bodies, HullsAgreeWithPlanesBetweenThem, ()) {
     above.push_back(b + normal * (std::max(-normal.dot(b), 0.0) + 0.5 * gap));
   }
   RC_ASSERT(!hulls_meet(below, above));
-  // A common point within both.
+  // Move the hulls such that both contain a common point.
   const Vec3 to = above[0] - (below[0] + below[1] + below[2] + below[3]) * 0.25;
   for (Vec3& p : below) p += to;
   above.push_back(above[0] + Vec3(0.1, 0, 0));
@@ -193,7 +196,7 @@ RC_GTEST_PROP(Bodies, HullsAgreeWithPlanesBetweenThem, ()) {
   RC_ASSERT(hulls_meet(below, above));
 }
 
-/// Collects the sweeps of programs, for dexels.
+/// Collects the swept volumes of programs, for dexels.
 struct Cut {
   std::vector<SweptVolume> sweeps;
   std::vector<RigidMotion> poses;
@@ -224,7 +227,7 @@ DexelBox box_around(double half_x, double half_y, double depth) {
   return {{-half_x, -half_y, -depth}, {half_x, half_y, 0.0}};
 }
 
-/// Dexels along all three axes agree with the volume that the planes leave, to their resolution.
+/// Dexels along all three axes must agree, within their resolution, with the volume from cutting by planes.
 TEST(Cutting, DexelsAgreeInVolume) {
   Job job = square_job(2, Arrangement::checker);
   job.process.roughing_depth_um = 50;
@@ -236,12 +239,13 @@ TEST(Cutting, DexelsAgreeInVolume) {
   const Cut cut = cut_of(text, job, paper);
   for (const int axis : {0, 1, 2}) {
     const DexelField field = cut_dexels(cut.sweeps, cut.poses, cut.wedge, box_around(0.451, 0.451, 0.23), axis, 127);
-    // Cells of 7 um, of which no row lies along a slope: half of one, which errs to both sides.
+    // The tolerance is half of a cell of 7 um. No row of cells is parallel to a slope, so the errors have both signs.
     EXPECT_NEAR(field.volume_mm3(), v.removed_volume_mm3, 0.005 * v.removed_volume_mm3) << "axis " << axis;
   }
 }
 
-/// The picture shows what the exact figures say: nothing beyond the unavoidable, and a raised element where it is.
+/// The error field must agree with the exact figures: it shows only unavoidable errors, and a raised element at its
+/// position.
 TEST(Cutting, TheErrorFieldShowsFaultsWhereTheyAre) {
   Job job = square_job(2, Arrangement::aligned);
   job.process.roughing_depth_um = 50;
@@ -257,7 +261,8 @@ TEST(Cutting, TheErrorFieldShowsFaultsWhereTheyAre) {
   EXPECT_EQ(right.columns, 40U);
   EXPECT_EQ(right.rows, 40U);
   for (const double nm : right.height_nm) EXPECT_NEAR(nm, 0.0, 1.5);
-  // Element 1 lies at larger x of the part, which is -y of the workpiece: the lower half of the picture, x_w < 0.
+  // Element 1 is at larger x of the part, which is -y of the workpiece. In the picture, it is in the lower half, x_w <
+  // 0.
   for (Program& program : programs)
     for (Item& item : program.items)
       if (auto* visit = std::get_if<Visit>(&item))
@@ -275,7 +280,7 @@ TEST(Cutting, TheErrorFieldShowsFaultsWhereTheyAre) {
   EXPECT_LT(outside_nm, 1.5);
 }
 
-/// A program whose single tokens are changed at random.
+/// Parameters of a test that changes single tokens of a program at random.
 struct Mutated {
   Arrangement arrangement;
   Strategy strategy;
@@ -286,7 +291,7 @@ struct Mutated {
 
 class Mutations : public ::testing::TestWithParam<Mutated> {};
 
-/// Whatever moves the surface by more than 10 nm is refused or found.
+/// Every change that moves the surface by more than 10 nm is refused or reported.
 TEST_P(Mutations, NoneThatMovesTheSurfaceGoesUnreported) {
   const Mutated& p = GetParam();
   Job job = square_job(p.arrangement == Arrangement::single ? 1 : 2, p.arrangement);
@@ -307,7 +312,7 @@ TEST_P(Mutations, NoneThatMovesTheSurfaceGoesUnreported) {
     state = state * 6364136223846793005ULL + 1442695040888963407ULL;
     return static_cast<std::size_t>((state >> 33) % below);
   };
-  // Comments and messages are no tokens of the program.
+  // Comments and messages are not tokens of the program.
   std::vector<std::size_t> places;
   bool is_comment = false;
   for (std::size_t i = 0, depth = 0; i < text.size(); ++i) {
@@ -349,7 +354,7 @@ TEST_P(Mutations, NoneThatMovesTheSurfaceGoesUnreported) {
       worst_mm = std::max(worst_mm, std::abs(before.lowest_mm[i] - after.lowest_mm[i]));
       worst_mm = std::max(worst_mm, std::abs(before.removed_mm[i] - after.removed_mm[i]));
     }
-    // Along z a distance of 10 nm from a facet counts sqrt 2 times; as much is allowed, to rounding.
+    // A distance of 10 nm normal to a facet is sqrt(2) times as long along z. This is the maximum, except for rounding.
     const double kMostMm = (1e-5 + 1e-12) * std::sqrt(2.0);
     if (worst_mm > kMostMm) ++moved;
     EXPECT_TRUE(is_reported || worst_mm <= kMostMm)

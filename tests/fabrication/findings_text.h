@@ -8,7 +8,7 @@
 
 namespace retrace::fabrication::test {
 
-/// What was found, a line each, to show where a test fails.
+/// Returns the findings as text, one per line, to show them when a test fails.
 inline std::string listed(const Verification& v) {
   std::string text;
   for (const Finding& f : v.findings)

@@ -17,12 +17,13 @@ std::vector<MeasuredForce> table() {
   return parse_forces(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/cutting_forces.csv"), "cutting_forces.csv");
 }
 
-/// Experiment 1: 1 mm prism, third last of 142 cuts at 5 um and second last of 71 at 10 um, both 0.697 mm long.
+/// Returns experiment 1: a prism of 1 mm, the third last of 142 cuts at 5 um, and the second last of 71 cuts at 10 um.
+/// Both cuts are 0.697 mm long.
 CutConditions experiment_1(double depth_um) {
   CutConditions cut;
   cut.depth_of_cut_um = depth_um;
   cut.width_mm = 0.982;
-  cut.plunge_mm = (5.23 - 1.0) * 10.0 / 60.0;  // as recorded: accelerations and rounding included
+  cut.plunge_mm = (5.23 - 1.0) * 10.0 / 60.0;  // duration as recorded, including accelerations and rounding
   cut.plough_mm = 0.25;
   return cut;
 }
@@ -34,7 +35,8 @@ CutConditions experiment_2() {
   return cut;
 }
 
-/// Experiment 2 was not used for the calibration: the full chip load comes out, the peaks do not, and are not tuned.
+/// Experiment 2 was not used for the calibration. The force at full chip load is predicted. The peaks are not
+/// predicted, and the model is not tuned to them.
 TEST(Forces, ExperimentTwoIsPredicted) {
   const ForceEvents two = force_events(calibrate(table()), experiment_2());
   EXPECT_NEAR(two.full_chip_fz_n, -1.31, 0.005);
@@ -45,11 +47,11 @@ TEST(Forces, ExperimentTwoIsPredicted) {
   EXPECT_NEAR(two.peak_fy_n, -2.77, 0.005) << "measured -1.73";
 }
 
-/// The events of Figure 4.8 at their times: contact 1.00, full chip 1.07, before the root 5.18, root 5.23, ploughing
-/// from 5.33 with its peak at 5.36 s.
+/// Times of the events of Figure 4.8: contact 1.00, full chip 1.07, before the root 5.18, root 5.23, ploughing from
+/// 5.33 with its peak at 5.36 s.
 TEST(Forces, ProfileOverTheEventsOfTheThesis) {
   CutConditions cut = experiment_1(5);
-  cut.clearance_mm = 10.0 / 60.0;  // one second
+  cut.clearance_mm = 10.0 / 60.0;  // a clearance that takes one second
   const std::vector<ForceSample> profile = force_profile(calibrate(table()), cut);
   const auto at = [&](double time_s, auto force) {
     for (std::size_t i = 1; i < profile.size(); ++i)

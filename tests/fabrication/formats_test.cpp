@@ -7,7 +7,8 @@
 #include "tests/support/key_table.h"
 #include "tests/support/refusals.h"
 
-// Process and machine files: what is written reads back the same, and the documentation says what the rows say.
+// Tests of process and machine files: written files can be read back unchanged, and the documentation agrees with the
+// rows of the formats.
 
 namespace retrace::fabrication::formats_test {
 namespace {
@@ -141,7 +142,7 @@ TEST(ProcessFile, DefaultsAreThoseOfAProcess) {
   EXPECT_TRUE(same(p, Process{}));
 }
 
-/// The message for a process file that is right but for one line, which is its last.
+/// Returns the message for a process file with one wrong line, which is its last.
 std::string refusal(const std::string& line) {
   return refusal_of(
       [&] {

@@ -55,7 +55,7 @@ TEST(Job, HasAsManyElementsAsThePartHasWholeOnes) {
 
 TEST(Job, PlacesElementsInTheWorkpieceFrame) {
   Job job = square_job(2);
-  const auto elements = cut_elements(job);  // row 1: two, row 2 shifted by half a base: one
+  const auto elements = cut_elements(job);  // row 1 has two elements; row 2, shifted by half a base, has one
   ASSERT_EQ(elements.size(), 3U);
   // Transformation to the workpiece frame: x_w = y_part and y_w = -x_part, from the centre of the extent.
   EXPECT_NEAR((elements[0].centre_mm - geometry::Vec2(-0.2255, 0.2255)).norm(), 0.0, 1e-15);
@@ -96,7 +96,7 @@ TEST(Job, TurnsEverySecondElementOfAChecker) {
 
 TEST(Job, PatternSaysWhatIsCut) {
   Job job = square_job(3, Arrangement::aligned);
-  job.array.pattern = {"--#", "---", "#--"};  // the first text is the row of largest y
+  job.array.pattern = {"--#", "---", "#--"};  // the first text is the row with the largest y
   const auto elements = cut_elements(job);
   ASSERT_EQ(elements.size(), 2U);
   EXPECT_EQ(elements[0].row, 0);
@@ -275,7 +275,7 @@ TEST(JobFile, BasesThatCannotBeAreRefused) {
 
 TEST(JobFile, APatternMustLeaveSomethingToCut) {
   Job job = square_job(2, Arrangement::offset);
-  job.array.pattern = {"-#", "--"};  // the only cell that is cut lies in the shifted row's last column
+  job.array.pattern = {"-#", "--"};  // the only cell that is cut is in the last column of the shifted row
   EXPECT_THROW(parse_job(job_text(job), "j.toml"), InputError);
   job.array.pattern = {"#-", "--"};
   EXPECT_EQ(cut_elements(parse_job(job_text(job), "j.toml")).size(), 1U);

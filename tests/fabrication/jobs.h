@@ -15,7 +15,7 @@ inline Process thesis_process() {
   return p;
 }
 
-/// n x n prisms of 0.451 mm in brick rows, as the thesis cut them, by a tool that fits.
+/// Returns a job of n x n prisms of 0.451 mm in brick rows, as in the thesis, with a suitable tool.
 inline Job square_job(int n, geometry::Arrangement arrangement = geometry::Arrangement::offset) {
   Job job;
   prism_of(job).base_mm = 0.451;
@@ -27,11 +27,11 @@ inline Job square_job(int n, geometry::Arrangement arrangement = geometry::Arran
   return job;
 }
 
-/// A wedge angle that the checks of a job of prisms let through: so much above the least, no more than the greatest.
+/// Returns a valid wedge angle for a job of prisms. It is `above_deg` larger than the minimum, but at most the maximum.
 inline double wedge_deg(const Job& job, int above_deg) {
   const double apex_deg = prism_of(job).apex_angle_deg;
   const double widest_deg = std::min(apex_deg - 12.5 - job.tool.clearance_deg, 70.0);
-  // Rake faces of plunges along both facets that do not cross leave a fin over the root.
+  // If the rake faces of plunges along both facets do not intersect, a fin remains above the root.
   const double least_deg =
       job.strategy == Strategy::unidirectional ? 40.0 : std::max(40.0, 0.5 * apex_deg + 2.0 - job.tool.clearance_deg);
   return std::min(widest_deg, least_deg + above_deg);

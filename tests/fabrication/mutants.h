@@ -1,6 +1,7 @@
 #pragma once
 
-// Every small change of a program's text: lines left out, doubled, exchanged, put in, and every number changed.
+// Makes all small changes of a program's text: lines are removed, duplicated, exchanged or inserted, and every number
+// is changed.
 
 #include <fmt/format.h>
 
@@ -31,14 +32,15 @@ inline std::string text_of_lines(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// A change of the number behind a letter.
+/// A change of the number that follows a letter.
 struct NumberChange {
   char letter = 'X';
   double factor = 1.0;
   double shift = 0.0;
 };
 
-/// \param inserted lines that are put in before each line
+/// Returns all changed versions of a program.
+/// \param inserted lines that are inserted before each line
 inline std::vector<Mutant> mutants_of(const std::string& text, const std::vector<NumberChange>& changes,
                                       const std::vector<std::string>& inserted) {
   const std::vector<std::string> lines = lines_of_text(text);
@@ -81,16 +83,17 @@ inline std::vector<Mutant> mutants_of(const std::string& text, const std::vector
   return mutants;
 }
 
-/// A reader of the few words that programs of lathes and planing mills have, for rules that are to share nothing with
-/// the readers of the program: RS274/NGC without subroutines.
+/// Move of a program that is read by a simple independent reader. The reader supports the few words of programs for
+/// lathes and planing mills: RS274/NGC without subroutines. It shares no code with the readers of the program, so that
+/// test rules are independent of them.
 struct PlainMove {
   bool is_rapid = true;
-  bool is_timed = false;                ///< under G93
+  bool is_timed = false;                ///< true if G93 is active
   bool is_stop = true;                  ///< G61
-  double feed = 0.0;                    ///< as written
-  double at[4] = {0.0, 0.0, 0.0, 0.0};  ///< X Y Z C afterwards
+  double feed = 0.0;                    ///< feed word as written
+  double at[4] = {0.0, 0.0, 0.0, 0.0};  ///< positions of X, Y, Z and C after the move
   double from[4] = {0.0, 0.0, 0.0, 0.0};
-  bool known[4] = {false, false, false, false};  ///< before it
+  bool known[4] = {false, false, false, false};  ///< true for axes whose position was known before the move
   bool named[4] = {false, false, false, false};
   bool is_spindle_on = false;
   double rpm = 0.0;
@@ -98,10 +101,10 @@ struct PlainMove {
 
 struct PlainProgram {
   std::vector<PlainMove> moves;
-  bool ends = false;          ///< by M2 and %
-  bool is_prepared = true;    ///< all settings before the first move
-  bool stops_spindle = true;  ///< and the spindle was told to stand still
-  bool is_odd = false;        ///< something that this does not know
+  bool ends = false;          ///< true if the program ends with M2 and %
+  bool is_prepared = true;    ///< true if all settings are made before the first move
+  bool stops_spindle = true;  ///< true if the spindle is also stopped before the first move
+  bool is_odd = false;        ///< true if the program contains a word that this reader does not support
   bool spindle_is_left_on = false;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Records what a program does.
+// Records the moves of a program.
 
 #include <string>
 #include <string_view>

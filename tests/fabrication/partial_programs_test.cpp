@@ -17,7 +17,8 @@
 #include "tests/fabrication/jobs.h"
 #include "tests/support/refusals.h"
 
-// Programs that make a part of a job: phases, restarts behind a line, and splits, with what stands before them.
+// Tests of programs that make only a part of a job: phases, restarts after a line, and split programs. The verifier
+// uses the material that earlier programs have left.
 
 namespace retrace::fabrication::test::partial_programs_test {
 namespace {
@@ -76,7 +77,7 @@ TEST_P(PartialPrograms, EveryPhaseIsRightAfterWhatComesBefore) {
     for (std::size_t k = 0; k < whole.stages.size(); ++k) {
       PlanOptions options;
       options.phase = whole.stages[k].name;
-      // A name may stand for a group.
+      // The name may denote a group of stages.
       const bool is_last = make_plan(c.job, machine_of(c), options).stages.back().name == whole.stages.back().name;
       std::vector<NcProgram> programs = {program(texts(c, options).front())};
       if (k > 0) {
@@ -102,14 +103,14 @@ TEST_P(PartialPrograms, AProgramGoesOnWhereAnotherWasStopped) {
     for (const std::size_t stage : {std::size_t{0}, whole.stages.size() - 1}) {
       PlanOptions options;
       options.phase = whole.stages[stage].name + "+";
-      // The second element of the stage: the operator stopped behind the call of the first.
+      // Restart at the second element of the stage, after the operator stopped after the call for the first.
       const Plan rest = make_plan(c.job, machine_of(c), options);
       std::vector<std::int32_t> visited;
       for (const Item& item : rest.programs.front().items)
         if (const auto* const visit = std::get_if<Visit>(&item)) visited.push_back(visit->element);
       options.from_element = visited[1];
       const std::string next = texts(c, options).front();
-      // What the next program begins with stands in the first one behind the line at which it stopped.
+      // The first item of the next program must be in the first program, after the line at which it stopped.
       std::size_t passed = 0;
       for (std::size_t k = 0; k < stage; ++k)
         passed += static_cast<std::size_t>(std::count_if(whole.programs.front().items.begin(),
@@ -118,7 +119,7 @@ TEST_P(PartialPrograms, AProgramGoesOnWhereAnotherWasStopped) {
                                                            return visit != nullptr && visit->element == visited[0] &&
                                                                   visit->subroutine == whole.stages[k].subroutine;
                                                          }));
-      // Comments close with a bracket in some dialects.
+      // In some dialects, comments end with a bracket.
       const auto find_mark = [&](std::size_t from) {
         const std::string name = fmt::format("element {}", visited[0]);
         std::size_t found = text.find(name, from);
@@ -138,7 +139,8 @@ TEST_P(PartialPrograms, AProgramGoesOnWhereAnotherWasStopped) {
   }
 }
 
-/// A program that stops in any line is whole behind its last call alone; a line that never comes is refused.
+/// A program that stops at any line is complete only if it stops after its last call. A line that is never executed is
+/// refused.
 TEST_P(PartialPrograms, EveryLineStopsTheProgramOrIsRefused) {
   const Case c = cases()[2];
   const std::string text = texts(c, {}).front();
@@ -167,7 +169,7 @@ TEST_P(PartialPrograms, EveryLineStopsTheProgramOrIsRefused) {
       EXPECT_EQ(recorded_place_of(error), fmt::format("p:{}", line));
       ++refused;
     }
-    // Behind the last call nothing is left to be cut.
+    // After the last call, nothing remains to be cut.
     EXPECT_TRUE((verdict == "pass") == (line >= last_call && line <= last) || verdict == "refused")
         << line << ": " << verdict;
   }

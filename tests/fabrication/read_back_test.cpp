@@ -16,7 +16,8 @@
 #include "tests/fabrication/nc_record.h"
 #include "tests/support/refusals.h"
 
-// The readers, which know nothing of planner and writers, read every dialect back to the planned axis positions.
+// Tests that the readers, which share no code with planner and writers, read the programs of every dialect back to the
+// planned axis positions.
 
 namespace retrace::fabrication::test::read_back_test {
 namespace {
@@ -37,7 +38,8 @@ double distance_mm(double read, const std::optional<Nanometres>& planned) {
   return planned ? std::abs(read - static_cast<double>(*planned) / kNanometresPerMm) : 0.0;
 }
 
-/// Throws if the moves differ in kind, number, feed or dwell.
+/// Writes a program, reads it back and returns the deviations. Throws if the moves differ in kind, number, feed or
+/// dwell.
 ReadBack read_back(const Program& program, NcDialect dialect) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw std::runtime_error(what);
@@ -65,7 +67,7 @@ ReadBack read_back(const Program& program, NcDialect dialect) {
          {distance_mm(read.to.x_mm, to[kX]), distance_mm(read.to.y_mm, to[kY]), distance_mm(read.to.z_mm, to[kZ])})
       result.worst_linear_mm = std::max(result.worst_linear_mm, d);
     if (!to[kTilt]) continue;
-    // Of a modulo axis whole turns are not told.
+    // Positions of a modulo axis are known only up to full rotations.
     for (const double d : {read.to.a_deg - degrees(*to[kTilt]), read.to.c_deg - degrees(*to[kC])})
       result.worst_rotary_deg = std::max(result.worst_rotary_deg, std::abs(std::remainder(d, 360.0)));
   }
@@ -96,15 +98,16 @@ RC_GTEST_PROP(ReadBack, EveryDialectToThePlannedPositions, ()) {
          make_plan(job, for_dialect(on, kNcDialectWords[static_cast<std::size_t>(dialect)])).programs) {
       const ReadBack result = read_back(program, dialect);
       RC_ASSERT(result.moves > 10U);
-      RC_ASSERT(result.worst_linear_mm < 1e-9);  // a thousandth of the nanometre that is asked for
+      RC_ASSERT(result.worst_linear_mm < 1e-9);  // a thousandth of the required nanometre
       RC_ASSERT(result.worst_rotary_deg < 1e-11);
     }
 }
 
-/// Positions are solved from rounded poses and rounded to what a Fanuc takes, so that writing them loses nothing.
+/// Positions are computed from rounded poses and rounded to the increments of a Fanuc control, so that no accuracy is
+/// lost when they are written.
 TEST(ReadBack, EveryIncrementSystemSaysWhatWasPlanned) {
   Job job = square_job(2, Arrangement::checker);
-  job.process.roughing_depth_um = job.process.finishing_depth_um = 20.0;  // as thin as increments of 1 um allow
+  job.process.roughing_depth_um = job.process.finishing_depth_um = 20.0;  // minimum depth that increments of 1 um allow
   for (std::size_t system = 0; system < std::size(kIncrementSystemWords); ++system) {
     Machine on = machine("paper");
     on.control.increment_system = static_cast<IncrementSystem>(system);
@@ -134,7 +137,8 @@ TEST(ReadBack, WhatAnIncrementSystemCannotSayIsRefused) {
   EXPECT_EQ(refusal_of([&] { nc_text(program, "fanuc"); }), "--dialect");
 }
 
-/// Words of a modulo axis lie within a turn, and the axis goes the shortest way; in paths it goes by increments.
+/// Words of a modulo axis are within one rotation, and the axis rotates in the shorter direction. In paths, it moves by
+/// increments.
 TEST(ReadBack, ModuloAxesOfASinumerik) {
   Program program;
   Move up, turn, back, cut;
@@ -159,7 +163,8 @@ TEST(ReadBack, ModuloAxesOfASinumerik) {
   EXPECT_NE(nc_text(program, "sinumerik").find("G0 A-1.0000000 C-0.1192463\n"), std::string::npos);
 }
 
-/// Times of an Aerotech's path are those of its ways, mm and degrees together, at the speed that is written.
+/// Times of moves on an Aerotech control follow from the path length, with mm and degrees combined, and the programmed
+/// speed.
 TEST(ReadBack, TimesOfAnAerotechsPathAreThoseOfItsWays) {
   Program program;
   Move up, over, cut;
@@ -180,7 +185,7 @@ TEST(ReadBack, TimesOfAnAerotechsPathAreThoseOfItsWays) {
   EXPECT_NE(nc_text(program, "pmac"), "");
 }
 
-/// The least feed that a job may have is the least that every dialect can say.
+/// The minimum feed of a job is the minimum that every dialect can express.
 TEST(ReadBack, TheLeastFeedIsNoneOfZero) {
   Job job = square_job(1);
   for (const auto& [feed, is_said] : {std::pair{kLeastFeedMmPerMin, true}, {0.999 * kLeastFeedMmPerMin, false}}) {
@@ -192,7 +197,7 @@ TEST(ReadBack, TheLeastFeedIsNoneOfZero) {
   }
 }
 
-/// Whoever takes the last digit off every word is found out: the comparison can fail.
+/// If the last digit of every word is removed, the comparison must fail.
 TEST(ReadBack, ANanometreIsSeen) {
   const Plan plan = make_plan(square_job(1), machine("paper"));
   std::string text = nc_text(plan.programs.front(), "rs274ngc");

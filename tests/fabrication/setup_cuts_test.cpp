@@ -19,8 +19,8 @@
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/jobs.h"
 
-// A machine that errs cuts what was planned for one that does not: what the verifier then measures of the facets is
-// what the derivatives of the set-up say, quantity by quantity.
+// Tests of programs that are planned for a machine without errors and cut on a machine with an error. For each quantity
+// of the set-up, the facets that the verifier measures must agree with the derivatives of the set-up.
 
 namespace retrace::fabrication::test::setup_cuts_test {
 namespace {
@@ -32,11 +32,11 @@ Machine machine(const std::string& name) {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
 }
 
-/// A job with the cuts that make its facets, and its programs.
+/// A job with its programs, and the cuts that form its facets.
 struct Made {
   Job job;
-  Machine taken_for;                                                 ///< the machine that the programs are for
-  std::map<std::pair<std::size_t, std::size_t>, FacetEdgeCut> last;  ///< by element and facet
+  Machine taken_for;                                                 ///< machine for which the programs are planned
+  std::map<std::pair<std::size_t, std::size_t>, FacetEdgeCut> last;  ///< final cuts, by element and facet
   std::vector<NcProgram> programs;
 };
 
@@ -53,7 +53,8 @@ Verification cut_on(const Made& made, const Machine& real) {
   return verify_programs(made.job, real, made.programs, {}, {});
 }
 
-/// What a facet's figures and the derivatives say of an error: its height where its mean is told, and its slopes.
+/// Effect of an error on a facet, from its figures or from the derivatives: its height at the point of its mean, and
+/// its slopes.
 struct Effect {
   double height_nm = 0.0;
   double slope_up = 0.0;
@@ -96,7 +97,7 @@ double amount_of(const SetupQuantity& quantity) {
   return quantity.is_angle() ? 20.0 : 1.0;
 }
 
-/// 1 um and 20 arcsec move facets by up to 1.4 um; what is left of the prediction is of the second order.
+/// Errors of 1 um and 20 arcsec move facets by up to 1.4 um. The difference from the prediction is of second order.
 TEST(SetupCuts, VerifiedFacetsOfPrismsAreAsPredicted) {
   Job job = square_job(2, Arrangement::checker);
   job.strategy = Strategy::two_step;
@@ -122,7 +123,8 @@ TEST(SetupCuts, VerifiedFacetsOnAMachineThatLeansAreAsPredicted) {
     expect_effects(cut, quantity, amount_of(quantity), 0.5);
 }
 
-/// What turns the edge of a V against its ways makes two planes of a facet, one beside the other: those are left out.
+/// Quantities that rotate the edge of a V-shaped tool relative to its path split a facet into two adjacent planes.
+/// These quantities are excluded.
 TEST(SetupCuts, VerifiedFacetsOfCubeCornersAreAsPredicted) {
   Job job = cube_job(false);
   job.process.roughing_depth_um = 40.0;
@@ -134,7 +136,7 @@ TEST(SetupCuts, VerifiedFacetsOfCubeCornersAreAsPredicted) {
   }
 }
 
-/// Programs that are made for a tool as it stands leave what was designed.
+/// Programs that are planned for the actual mount of the tool cut the designed facets.
 TEST(SetupCuts, AMountThatIsKnownIsPlannedFor) {
   Machine m = machine("paper");
   m.mount.offset_mm.value = Vec3(0.02, -0.03, 0.01);
@@ -155,7 +157,7 @@ TEST(SetupCuts, AMountThatIsKnownIsPlannedFor) {
   EXPECT_TRUE(v.passes()) << listed(v);
 }
 
-/// An edge that is not level leaves at the root what axes cannot mend; it is foretold.
+/// A tilted edge leaves a strip at the root that the axes cannot correct. The verifier predicts it.
 TEST(SetupCuts, AnEdgeThatIsNotLevelLeavesItsRise) {
   Job job = square_job(1);
   job.strategy = Strategy::two_step;

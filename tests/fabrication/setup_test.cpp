@@ -13,7 +13,8 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/machine/setup.h"
 
-// What a unit of every quantity of the set-up does to the plane of a cut: in closed form, and against the kinematics.
+// Tests of the effect of one unit of each quantity of the set-up on the plane of a cut. The results are compared with
+// closed forms and with the kinematics.
 
 namespace retrace::fabrication::setup_test {
 namespace {
@@ -24,7 +25,7 @@ Machine machine(const std::string& name) {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
 }
 
-/// A plunge of facet 1 or 2 of a prism of 90 degrees, whose root lies `root_mm` from the origin.
+/// Returns a plunge of facet 1 or 2 of a prism of 90 degrees whose root is at `root_mm`.
 EdgeCut plunge_of_facet(const Machine& m, int facet, const Vec3& root_mm) {
   EdgeCut cut;
   cut.at = inverse(m, root_mm, {45.0, facet == 1 ? 0.0 : 180.0});
@@ -36,11 +37,11 @@ Vec3 normal_of_facet(int facet) {
 
 struct Effect {
   double distance_nm = 0.0;
-  double up_arcsec = 0.0;     ///< by which the facet turns about its root, closing is positive
-  double along_arcsec = 0.0;  ///< by which it rises along the root
+  double up_arcsec = 0.0;     ///< rotation of the facet about its root; positive if it closes the groove
+  double along_arcsec = 0.0;  ///< rise of the facet along the root
 };
 
-/// What a unit of a quantity does to a facet whose root is at `root_mm`.
+/// Returns the effect of one unit of a quantity on a facet whose root is at `root_mm`.
 Effect effect_on(int facet, const std::string& key, const Vec3& root_mm = Vec3::Zero()) {
   const Machine m = machine("ideal");
   const EdgeCut cut = plunge_of_facet(m, facet, root_mm);
@@ -62,11 +63,11 @@ void expect_effect(int facet, const std::string& key, const Effect& expected) {
   EXPECT_NEAR(effect.along_arcsec, expected.along_arcsec, 1e-9);
 }
 
-/// docs/theory/kinematics.md: the table for a prism of 90 degrees at the origin.
+/// Checks the table in docs/theory/kinematics.md for a prism of 90 degrees at the origin.
 TEST(Setup, EffectsOnAPrismInClosedForm) {
   const double s = std::numbers::sqrt2 / 2.0;
   expect_effect(1, "c_y_um", {0, 0, 0});
-  expect_effect(2, "c_y_um", {2000 * s, 0, 0});  // 1,414 nm in parallel
+  expect_effect(2, "c_y_um", {2000 * s, 0, 0});  // 1,414 nm, without a tilt
   for (const int facet : {1, 2}) {
     const double side = facet == 1 ? 1.0 : -1.0;
     expect_effect(facet, "a_z_um", {1000 * s, 0, 0});  // 707 nm
@@ -75,7 +76,8 @@ TEST(Setup, EffectsOnAPrismInClosedForm) {
     for (const char* const nothing : {"c_x_um", "tool_x_um", "tool_z_um", "tool_turn_x_arcsec", "tool_turn_y_arcsec",
                                       "y_lean_x_arcsec", "y_lean_z_arcsec", "z_lean_x_arcsec"})
       expect_effect(facet, nothing, {0, 0, 0});
-    // C at 0 stands as it should whatever its lean; at 180 degrees the facet turns by twice that, about X closing it.
+    // At C = 0, the facet is not affected by the lean of C. At 180 degrees, it is rotated by twice the lean. The
+    // rotation about X closes the groove.
     const double twice = facet == 1 ? 0.0 : 2.0;
     expect_effect(facet, "c_lean_y_arcsec", {0, twice, 0});
     expect_effect(facet, "c_lean_x_arcsec", {0, 0, -twice * s});
@@ -85,7 +87,7 @@ TEST(Setup, EffectsOnAPrismInClosedForm) {
   }
 }
 
-/// A machine whose quantities are all off, of either kind.
+/// Returns a machine with errors in all quantities, with or without a head.
 Machine any_machine(bool has_head) {
   Machine m = machine(has_head ? "ideal-dmc" : "paper");
   std::vector<double> amounts;
@@ -100,7 +102,7 @@ double within(double size) {
   return size * 1e-6 * *rc::gen::inRange(-1000000, 1000001);
 }
 
-/// Any cut of the machine: where it ends, how it got there, with which edge.
+/// Returns a random cut of the machine: its end point, its direction and its edge.
 EdgeCut any_cut(const Machine& m) {
   EdgeCut cut;
   const double tilt_deg = 50.0 + within(40.0);
@@ -115,7 +117,7 @@ EdgeCut any_cut(const Machine& m) {
   return cut;
 }
 
-/// The closed forms are the derivatives of the kinematics, wherever the axes stand and however they lean.
+/// The closed forms must be the derivatives of the kinematics for all axis positions and all tilts of the axes.
 RC_GTEST_PROP(Setup, ChangesArePlanesOfMachinesThatDiffer, ()) {
   const Machine m = any_machine(*rc::gen::arbitrary<bool>());
   const EdgeCut cut = any_cut(m);
@@ -123,7 +125,7 @@ RC_GTEST_PROP(Setup, ChangesArePlanesOfMachinesThatDiffer, ()) {
   const CutPlane plane = cut_plane(m, cut, outward);
   for (const SetupQuantity& quantity : setup_quantities(m.tilt)) {
     const PlaneChange change = plane_change(m, cut, quantity, outward);
-    // Central differences over 20 um or 20 arcsec: their error is of the third order.
+    // Central differences over 20 um or 20 arcsec. Their error is of third order.
     constexpr double kStep = 10.0;
     const CutPlane more = cut_plane(with_error(m, quantity, kStep), cut, outward);
     const CutPlane less = cut_plane(with_error(m, quantity, -kStep), cut, outward);
@@ -131,15 +133,15 @@ RC_GTEST_PROP(Setup, ChangesArePlanesOfMachinesThatDiffer, ()) {
     RC_ASSERT(((more.normal - less.normal) / (2.0 * kStep) - change.normal).norm() < 2e-11);
     const Vec3 over = plane.point_mm + Vec3(within(1.0), within(1.0), within(1.0));
     const double height = (more.height_mm(over, outward) - less.height_mm(over, outward)) / (2.0 * kStep);
-    // Over a plane that stands across the direction heights are long, as one over its cosine: the third derivative, by
-    // which differences err, goes by the fourth power of that.
+    // The height over a plane is proportional to one over the cosine between normal and direction. The third
+    // derivative, which determines the error of the differences, is proportional to the fourth power of this factor.
     const double facing = std::pow(plane.normal.dot(outward), 2);
     RC_ASSERT(std::abs(height - change.height_mm(plane, over, outward)) < 2e-10 / facing * (1.0 + 1e-2 / facing));
   }
 }
 
-/// Moving the axes and the tool together is what moving the blank is: no cut tells it from that. C is a line: along an
-/// upright one its point says nothing, so Z has none.
+/// A common displacement of axes and tool has the same effect as a displacement of the blank, so cuts cannot
+/// distinguish them. The axis C is a line. If it is vertical, the Z coordinate of its point has no effect.
 RC_GTEST_PROP(Setup, ShiftsOfAllAreThatOfTheBlank, ()) {
   Machine m = any_machine(false);
   const bool is_along_z = *rc::gen::arbitrary<bool>();

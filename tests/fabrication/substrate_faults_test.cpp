@@ -1,4 +1,4 @@
-// Faults that are planted in programs for elements on substrates.
+// Tests of faults that are inserted into programs for elements on substrates.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace retrace::fabrication::test::substrate_faults_test {
 namespace {
 
-/// Faults that are planted in the text of a program.
+/// Fixture with the text of a program, into which tests insert faults.
 class SubstrateFaults : public ::testing::TestWithParam<bool> {
  protected:
   SubstrateFaults()
@@ -17,7 +17,7 @@ class SubstrateFaults : public ::testing::TestWithParam<bool> {
                         : prisms_on(cylinder_substrate(6.0, false, ElementAxes::normal))),
         text_(text_of(job_)) {}
 
-  /// The text with one word of a line changed, the line after `from` that begins with `start`.
+  /// Returns the text with one changed word in the first line after `from` that begins with `start`.
   std::string changed(std::size_t from, const std::string& start, char letter, double by) const {
     const std::size_t line = text_.find("\n" + start, from) + 1;
     const std::size_t word = text_.find(letter, line) + 1;
@@ -40,7 +40,7 @@ TEST_P(SubstrateFaults, NoneWithoutAFault) {
 }
 
 TEST_P(SubstrateFaults, AShiftedElement) {
-  // Words that stay are not written: Y, or X where Y stays.
+  // Words that do not change are not written. The word to change is Y, or X if Y is not written.
   const std::size_t visit = last_visit(4);
   const bool has_y = text_.find(" Y", visit) < text_.find(" call", visit);
   const std::size_t word = text_.find(has_y ? " Y" : " X", visit);

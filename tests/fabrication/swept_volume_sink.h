@@ -8,7 +8,7 @@
 
 namespace retrace::fabrication::test {
 
-/// Collects the sweeps of a program, for dexels.
+/// Collects the swept volumes of a program, for dexels.
 struct SweptVolumeSink : NcSink {
   explicit SweptVolumeSink(const Machine& m) : machine_of(m) {}
   void motion(const NcMotion& motion, const NcSettings&) override {

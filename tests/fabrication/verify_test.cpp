@@ -20,7 +20,7 @@
 #include "tests/fabrication/jobs.h"
 #include "tests/support/refusals.h"
 
-// What planner and writers make is cut again from its text, by a verifier that knows nothing of either.
+// Tests of the verifier, which simulates the text of programs and shares no code with planner and writers.
 
 namespace retrace::fabrication::test::verify_test {
 namespace {
@@ -70,7 +70,8 @@ TEST(Verify, CorrectProgramsOfEveryStrategyAndMachine) {
       }
 }
 
-/// A facet that is ploughed with a tilted edge leans along the root by what the machine's axes leave: both are told.
+/// A facet that is ploughed (cut along the facet from the root) with a tilted edge is inclined along the root by the
+/// remaining error of the machine's axes. The verifier reports both the tilt and the unavoidable part.
 TEST(Verify, TheTiltOfAPloughedFacetIsToldWithWhatIsUnavoidable) {
   Job job = square_job(1);
   job.strategy = Strategy::unidirectional;
@@ -83,7 +84,7 @@ TEST(Verify, TheTiltOfAPloughedFacetIsToldWithWhatIsUnavoidable) {
   EXPECT_LT(finished.facet_angle_arcmin_max, 0.01);
 }
 
-/// Golden programs: passes side by side, another apex angle, masks, direct cutting, every dialect.
+/// Golden programs: several passes per element, another apex angle, masks, direct cutting, and every dialect.
 TEST(Verify, GoldenProgramsOfEveryDialect) {
   int count = 0;
   for (const auto& folder : std::filesystem::directory_iterator(RETRACE_SOURCE_DIR "/tests/fabrication/golden")) {
@@ -99,7 +100,8 @@ TEST(Verify, GoldenProgramsOfEveryDialect) {
   EXPECT_GE(count, 28);
 }
 
-/// A small job on the machine with the largest errors: four prisms in a checker, finished with one cut a facet.
+/// Returns a small job for the machine with the largest errors: four prisms in a checker arrangement, finished with one
+/// cut per facet.
 Job small_job() {
   Job job = square_job(2, Arrangement::checker);
   job.strategy = Strategy::two_step;
@@ -122,12 +124,12 @@ std::string text_of(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// The program of the small job, to be spoilt.
+/// Fixture with the program of the small job, into which tests insert faults.
 class Faults : public ::testing::Test {
  protected:
   Faults() : lines_(lines_of(texts_of(job_, "paper").front())) {}
 
-  /// The first line at or behind `from` that contains `what`.
+  /// Returns the index of the first line from `from` on that contains `what`.
   std::size_t find(const std::string& what, std::size_t from = 0) const {
     for (std::size_t i = from; i < lines_.size(); ++i)
       if (lines_[i].find(what) != std::string::npos) return i;
@@ -251,7 +253,7 @@ TEST_F(Faults, TheTableAndTheHolder) {
   EXPECT_TRUE(has(v, "gouge", call)) << listed(v);
 }
 
-/// A convex body that the machine file adds to the paper's machine.
+/// Returns the machine of the paper with an additional convex body.
 Machine machine_with(const std::string& moves_with, const std::vector<Vec3>& points) {
   Machine m = machine("paper");
   MachineBody body;
@@ -270,9 +272,9 @@ std::vector<Vec3> box(const Vec3& low, const Vec3& high) {
   return corners;
 }
 
-/// Beside the blank, 10 to 30 mm towards +Y: a ramp that rises away from the tool stays parallel to the holder, 7 mm
-/// from its axis, while A stands at 45 degrees; the box around it reaches into the holder, which is 5 mm wide to a
-/// side.
+/// A ramp next to the blank, 10 to 30 mm towards +Y, rises away from the tool. While A is at 45 degrees, it is parallel
+/// to the holder, at 7 mm from the holder's axis. The holder extends 5 mm from its axis, so it does not meet the ramp,
+/// but it meets the bounding box of the ramp.
 TEST_F(Faults, FixturesAreConvexBodiesAndNotTheirBoxes) {
   std::vector<Vec3> ramp;
   for (const double x : {-20.0, 20.0})
@@ -282,8 +284,8 @@ TEST_F(Faults, FixturesAreConvexBodiesAndNotTheirBoxes) {
   EXPECT_TRUE(beside.passes()) << listed(beside);
   const Verification v = verify_texts(job_, machine_with("workpiece", box({-20, 10, 0}, {20, 30, 20})), texts);
   ASSERT_TRUE(has_kind(v, "fixture_collision")) << listed(v);
-  // The holder, and the diamond on its way down, meet it at the first moves of the first pose, and with C at 180 not at
-  // all.
+  // At the first pose, the holder and the diamond on its way down meet the body in their first moves. With C at 180
+  // degrees, they do not meet it.
   const auto first_call = static_cast<std::int32_t>(find("o101 call"));
   std::int32_t first = std::numeric_limits<std::int32_t>::max();
   for (const Finding& f : v.findings) {
@@ -295,7 +297,7 @@ TEST_F(Faults, FixturesAreConvexBodiesAndNotTheirBoxes) {
 }
 
 TEST_F(Faults, TheDiamondRunsIntoAFixtureWithinTheArray) {
-  // A pin of 0.1 mm beside the last element, as high as the clearance plane.
+  // A pin of 0.1 mm next to the last element, as high as the clearance plane.
   const Verification v =
       verify_texts(job_, machine_with("workpiece", box({0.2, 0.2, 0.0}, {0.3, 0.3, 0.3})), {text_of(lines_)});
   ASSERT_TRUE(has_kind(v, "fixture_collision")) << listed(v);
@@ -305,12 +307,13 @@ TEST_F(Faults, TheDiamondRunsIntoAFixtureWithinTheArray) {
 }
 
 TEST_F(Faults, WhatTurnsMeetsTheHolder) {
-  // A post of the table that passes below the holder at neither end of the turn, but on the way from C 0 to C 90.
+  // A post on the table. It is below the holder at neither end of the rotation, but collides with it between C = 0 and
+  // C = 90 degrees.
   const std::size_t turn = find("G0 A", find("o101 call"));
   const Verification v =
       verify_texts(job_, machine_with("workpiece", box({24, 24, 0}, {26, 26, 60})), {text_of(lines_)});
   EXPECT_TRUE(has(v, "fixture_collision", turn)) << listed(v);
-  // What C does not turn stays away.
+  // A body that C does not rotate does not collide.
   EXPECT_FALSE(has(verify_texts(job_, machine_with("cradle", box({24, 24, 0}, {26, 26, 60})), {text_of(lines_)}),
                    "fixture_collision", turn));
 }
@@ -348,7 +351,7 @@ TEST_F(Faults, ClearanceOfAQuarter) {
 }
 
 TEST_F(Faults, OverTravelLost) {
-  // The finishing plunge of facet 1 stops one depth of cut short of passing facet 2.
+  // The finishing plunge of facet 1 stops one depth of cut before it passes facet 2.
   const std::size_t routine = find("finishing-1-facet-1");
   const std::size_t line = find("G1 Z-", routine);
   const double z = std::stod(lines_[line].substr(4));
@@ -357,7 +360,7 @@ TEST_F(Faults, OverTravelLost) {
 }
 
 TEST_F(Faults, StartOfFacet2UsedAtC0) {
-  // Elements start facet 1's finishing where facet 2's should.
+  // Exchange the start positions: elements begin the finishing of facet 1 where the finishing of facet 2 should begin.
   const std::size_t first = find("finishing-1-facet-1");
   static_cast<void>(first);
   std::vector<std::size_t> calls1;
@@ -378,8 +381,8 @@ TEST_F(Faults, StartOfFacet2UsedAtC0) {
 }
 
 TEST_F(Faults, AxisVectorScaledByOnePercent) {
-  // What a planner makes that forgets to scale the directions of the axes to length 1: Rodrigues' formula then turns
-  // and stretches.
+  // Program of a planner that does not normalise the directions of the axes: Rodrigues' formula then rotates and
+  // stretches.
   Machine spoilt = machine("paper");
   spoilt.a.direction.value *= 1.01;
   std::string text;
@@ -390,7 +393,8 @@ TEST_F(Faults, AxisVectorScaledByOnePercent) {
 TEST_F(Faults, PlannedForIdealAxesShowsTheErrorsOfTheMachine) {
   const Verification v = verify_texts(job_, "paper", texts_of(job_, "ideal"));
   EXPECT_FALSE(v.passes());
-  // Upright elements are off by 5.06 and 5.42 arcmin and 3.32 arcmin in their apex; turned ones by their own figures.
+  // The facets of upright elements deviate by 5.06 and 5.42 arcmin, and their apex angle by 3.32 arcmin. Rotated
+  // elements have other deviations.
   double upright = 0.0;
   for (const ElementResult& e : {v.elements[0], v.elements[3]}) {
     EXPECT_NEAR(e.facet_angle_arcmin[0], 5.06, 0.01);

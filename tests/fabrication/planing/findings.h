@@ -7,7 +7,7 @@
 
 namespace retrace::fabrication::test {
 
-/// Whether a check has a finding of that kind.
+/// Returns true if a check has a finding of the given kind.
 inline bool finds(const PlaningCheck& check, const std::string& kind) {
   return std::any_of(check.findings.begin(), check.findings.end(), [&](const Finding& f) { return f.kind == kind; });
 }

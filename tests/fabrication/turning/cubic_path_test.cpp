@@ -337,7 +337,7 @@ TEST(CubicPath, NoFaultOfAMovePasses) {
     for (std::size_t i = 1; i < knots.size(); ++i)
       for (int part = 1; part <= 16; ++part) {
         const std::array<double, 4> at = between(knots[i - 1], knots[i], part / 16.0);
-        if (plane.touching_radius_mm(at[0], at[3]) > plane.radius_mm) continue;  // beyond the part
+        if (plane.touching_radius_mm(at[0], at[3]) > plane.radius_mm) continue;  // the nose touches outside of the part
         worst = std::max(worst, std::abs(at[2] - plane.height_mm(at[0], at[1], at[3])));
       }
     return 1e6 * worst;

@@ -10,7 +10,8 @@
 #include "fabrication/turning/plan/turning_program.h"
 #include "tests/fabrication/turning/paths.h"
 
-// What the programs' text leaves, against closed forms of cusps and against the design.
+// Tests of the surface that programs leave. It is computed from the text of the programs and compared with closed forms
+// of cusps and with the design.
 
 namespace retrace::fabrication::turning::envelope_test {
 namespace {
@@ -58,7 +59,7 @@ TEST(TurningEnvelope, CuspsOfAFlat) {
   const PathOptions o = spiral_of(0.8, 0.02);
   const Inspection i = inspect(cut(sphere(0.0), tool, o), sphere(0.0), tool, disc(o), 41);
   expect_cusps(i, 200);
-  // f^2 / (8 r) = 250 nm
+  // The cusp height is f^2 / (8 r) = 250 nm.
   EXPECT_NEAR(i.scallop_nm, 250.0, 2.5);
 }
 
@@ -104,7 +105,7 @@ TEST(TurningEnvelope, CuspsOfARasterWithSkewAndRake) {
       expect_cusps(flat, 200);
       EXPECT_NEAR(flat.scallop_nm, finish_figures(effective_radius_mm(tool), o.feed_mm).peak_to_valley_nm,
                   0.01 * flat.scallop_nm);
-      // What is left of a slope and a bend: no closed form with skew, but no error of form either.
+      // On an inclined and curved surface, there is no closed form with skew. The form error must nevertheless be zero.
       const Inspection bent = inspect(cut(surface, tool, o), surface, tool, region, 21);
       EXPECT_LT(bent.form_error_nm, 1.0);
       EXPECT_LT(bent.interference_nm, 1.0);
@@ -127,7 +128,7 @@ TEST(TurningEnvelope, ARasterWithSkewIsThatOfEdgesLaidOutOneByOne) {
   const std::vector<Pass> passes = make_path(surface, tool, o, kHere);
   const Envelope envelope = cut(surface, tool, o);
   for (int s = 0; s < 6; ++s) {
-    // The tool moves along the part's y; its edge lies turned by the skew, from x towards y.
+    // The tool moves along y of the part. Its edge is rotated by the skew, from x towards y.
     const geometry::Vec2 p(0.08 * std::cos(1.1 * s + 0.2), 0.08 * std::sin(1.1 * s + 0.2));
     const geometry::Vec2 edge(std::cos(30.0 * kDegree), std::sin(30.0 * kDegree));
     double lowest = 1.0;
@@ -136,7 +137,7 @@ TEST(TurningEnvelope, ARasterWithSkewIsThatOfEdgesLaidOutOneByOne) {
         for (int k = 0; k < 100; ++k) {
           const double share = k / 100.0;
           const auto between = [&](double a, double b) { return a + share * (b - a); };
-          // C = -30 degrees turns the part; back by it from the machine's axes.
+          // The part is rotated by C = -30 degrees. Rotate the point back from the axes of the machine.
           const double x = between(pass[i].x_mm, pass[i + 1].x_mm);
           const double y = between(pass[i].y_mm, pass[i + 1].y_mm);
           const geometry::Vec2 tip(x * edge.x() - y * edge.y(), x * edge.y() + y * edge.x());
@@ -154,7 +155,7 @@ TEST(TurningEnvelope, ARasterWithSkewIsThatOfEdgesLaidOutOneByOne) {
 }
 
 TEST(TurningEnvelope, MapsShowCuspsAndNoWavesOfThePixels) {
-  // Cusps of a flat are equally high everywhere: whatever the pixels, the map must be the same everywhere too.
+  // The cusps of a plane have the same height everywhere. The map must therefore be uniform for every number of pixels.
   TurningTool tool;
   const PathOptions o = spiral_of(0.8, 0.02);
   const Envelope envelope = cut(sphere(0.0), tool, o);
@@ -165,12 +166,12 @@ TEST(TurningEnvelope, MapsShowCuspsAndNoWavesOfThePixels) {
     for (std::size_t k = 0; k < i.map_nm.size(); ++k) {
       const double x = (static_cast<double>(k % pixels) + 0.5) / static_cast<double>(pixels) - 0.5;
       const double y = (static_cast<double>(k / pixels) + 0.5) / static_cast<double>(pixels) - 0.5;
-      // Near the rim and the centre a feed's length is not all inspected, and near the centre cusps differ.
+      // Near the rim and near the centre, the map does not cover a whole feed, and near the centre the cusps differ.
       const double r = 1.6 * std::hypot(x, y);
       if (r < 0.4 || r > 0.6) continue;
       EXPECT_NEAR(i.map_nm[k], cusp, 0.02 * cusp) << r;
     }
-    // The mean square of parabolas over their valleys is a fifth of the square of their height.
+    // The mean square of parabolas above their valleys is a fifth of the square of their height.
     EXPECT_NEAR(i.rms_nm, cusp / std::sqrt(5.0), 0.1 * cusp);
   }
 }
@@ -196,7 +197,7 @@ TEST(TurningEnvelope, FormOfALensletThatReachesTheExtrapolatedBase) {
   expect_cusps(i, 60);
 }
 
-/// Lenslets of their own form, tilted to a curved base.
+/// Returns lenslets of individual form that are tilted with a curved base.
 FreeformSurface lenslet_array() {
   Sag base;
   base.asphere.curvature_per_mm = -0.2;
@@ -222,7 +223,7 @@ TEST(TurningEnvelope, CuspsAndFormOfALensletArray) {
   tool.nose_radius_mm = 0.1;
   PathOptions o = spiral_of(0.32, 0.01);
   o.sampling = Sampling::arc;
-  // The chord of a block sags by arc^2 k / 8: 0.3 nm at k = 2 per mm.
+  // The sagitta of the chord of a block is arc^2 k / 8: 0.3 nm at k = 2 per mm.
   o.arc_mm = 0.001;
   const FreeformSurface design = lenslet_array();
   const Inspection i = inspect(cut(design, tool, o), design, tool, disc(o), 31);
@@ -234,7 +235,7 @@ TEST(TurningEnvelope, FindsAnErrorOfTheProgram) {
   const PathOptions o = spiral_of(0.5, 0.02);
   const Inspection low = inspect(cut(sphere(-0.5), tool, o, 7.0), sphere(-0.5), tool, disc(o), 15);
   EXPECT_NEAR(low.interference_nm, 7.0, 1.0);
-  // Planned for another nose: a hollow sphere is cut too deep or too flat.
+  // The program is planned for another nose radius. A concave sphere is then cut too deep or too flat.
   TurningTool other = tool;
   other.nose_radius_mm = 0.21;
   CutRecorder recorder;
@@ -245,7 +246,7 @@ TEST(TurningEnvelope, FindsAnErrorOfTheProgram) {
 }
 
 TEST(TurningEnvelope, EveryTurnIsMetWhereItBegins) {
-  // With a skew the places at which the edge passes at C = 0 lie on a curve; none of the turns may be lost there.
+  // With a skew, the points at which the edge passes at C = 0 are on a curve. No revolution may be lost there.
   TurningTool tool;
   tool.skew_deg = -27.0;
   PathOptions o = spiral_of(0.8, 0.02);
@@ -272,7 +273,7 @@ TEST(TurningEnvelope, RefusesPlacesLeftUncut) {
 }
 
 TEST(TurningEnvelope, IsThatOfEdgesLaidOutOneByOne) {
-  // Lay the edge out point by point at many poses of the path and take the lowest that comes near a place.
+  // Compute the points of the edge at many poses of the path, and take the lowest point close to a given position.
   TurningTool tool;
   tool.nose_radius_mm = 0.05;
   tool.skew_deg = 20.0;

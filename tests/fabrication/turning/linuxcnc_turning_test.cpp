@@ -8,8 +8,8 @@
 #include "tests/fabrication/linuxcnc.h"
 #include "tests/fabrication/turning/paths.h"
 
-// LinuxCNC's interpreter reads programs of turning, whose moves have times instead of feeds: it makes the planned moves
-// in the planned times.
+// Tests of turning programs with the interpreter of LinuxCNC. Their moves have times instead of feeds. The interpreter
+// must make the planned moves in the planned times.
 
 namespace retrace::fabrication::turning::linuxcnc_turning_test {
 namespace {
@@ -25,9 +25,10 @@ FreeformSurface wavy() {
   return {sag, std::nullopt, {}, kHere};
 }
 
-/// A path as it is printed, from one point to the next in the time of the point.
+/// Compares a path with the moves that the interpreter prints: each point, and the time to reach it from the previous
+/// point.
 void expect_path(const Path& path, Words& at, const std::vector<test::CanonicalMove>& moves, std::size_t& next) {
-  constexpr double kPrinted = 1e-4;  // four decimals
+  constexpr double kPrinted = 1e-4;  // rounding of printed positions
   for (const Move& move : path.moves) {
     ASSERT_LT(next, moves.size());
     const test::CanonicalMove& read = moves[next++];
@@ -37,7 +38,7 @@ void expect_path(const Path& path, Words& at, const std::vector<test::CanonicalM
     ASSERT_FALSE(read.rapid);
     for (const Axis axis : {kX, kY, kZ}) ASSERT_NEAR(read.at[axis], to[axis], kPrinted);
     ASSERT_NEAR(read.at[5], degrees(*at[kC]), kPrinted);
-    // The interpreter turns a time into a feed along X, Y and Z.
+    // The interpreter converts a time to a feed along X, Y and Z.
     ASSERT_NEAR(read.feed, (to - from).norm() / move.seconds * 60.0, 1e-4 + 1e-6 * read.feed);
   }
 }

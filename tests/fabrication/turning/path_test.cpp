@@ -12,7 +12,8 @@
 #include "tests/fabrication/turning/paths.h"
 #include "tests/support/refusals.h"
 
-// Paths against closed forms: compensation on spheres and planes, kinematics, and programs that read back the same.
+// Tests of paths. Tool compensation on spheres and planes and the kinematics are compared with closed forms. Programs
+// must read back unchanged.
 
 namespace retrace::fabrication::turning::path_test {
 namespace {
@@ -56,7 +57,8 @@ TEST(TurningPath, SpiralOfAFlatIsFlat) {
 }
 
 TEST(TurningPath, NoseOnASphereRunsOnALargerSphere) {
-  // Convex: the nose's middle stays at the sum of the radii from the sphere's; hollow: at the difference.
+  // On a convex sphere, the distance of the nose's centre from the centre of the sphere is the sum of both radii. On a
+  // concave sphere, it is their difference.
   for (const double sphere : {3.0, -3.0})
     for (const double skew : {0.0, 25.0, -50.0}) {
       Sag sag;
@@ -65,7 +67,7 @@ TEST(TurningPath, NoseOnASphereRunsOnALargerSphere) {
       tool.skew_deg = skew;
       const std::vector<Pass> passes = make_path(plain(sag), tool, small_spiral(), kHere);
       for (const PathPoint& p : passes.front()) {
-        // In the plane of the rake face the sphere shows as a circle.
+        // The section of the sphere in the plane of the rake face is a circle.
         const double circle = std::copysign(std::sqrt(sphere * sphere - p.y_mm * p.y_mm), sphere);
         const double middle = std::abs(circle + 0.2);
         const double z = std::copysign(std::sqrt(middle * middle - p.x_mm * p.x_mm), sphere) - sphere - 0.2;
@@ -162,7 +164,8 @@ TEST(TurningPath, RefusesPathsWithoutEnd) {
 }
 
 TEST(TurningKinematics, OfAnInclinedPlaneAreThoseOfASine) {
-  // z = 0.1 x at radius r and speed w: amplitude 0.1 r, acceleration 0.1 r w^2, jerk 0.1 r w^3.
+  // z = 0.1 x at radius r and angular speed w has the amplitude 0.1 r, the acceleration 0.1 r w^2 and the jerk 0.1 r
+  // w^3.
   PathOptions o = small_spiral();
   o.points_per_turn = 3600;
   o.feed_mm = 0.5;
@@ -175,7 +178,8 @@ TEST(TurningKinematics, OfAnInclinedPlaneAreThoseOfASine) {
   EXPECT_NEAR(axis_figures(passes, 0).speed_mm_per_s, 0.5, 1e-9);
 }
 
-/// Ten turns of a spiral at one turn a second, 5 um apart: the exact acceleration of Z by a series in time.
+/// Returns the exact acceleration of Z by a series in time, on a spiral of ten revolutions with one revolution per
+/// second and a feed of 5 um.
 double acceleration(const FreeformSurface& surface, double c) {
   const double w = 2.0 * std::numbers::pi;
   const Series<double> angle = line_series(c, -w, 2);
@@ -183,7 +187,8 @@ double acceleration(const FreeformSurface& surface, double c) {
   return 2.0 * surface.evaluate(radius * cos(angle), radius * sin(angle))[2];
 }
 
-/// The exact acceleration of Z, nose of no size, as a spiral crosses the rectangle: largest jump.
+/// Returns the largest jump of the exact acceleration of Z while a spiral with a nose radius of zero crosses the
+/// rectangle.
 double acceleration_jump(int order) {
   const Sag base = formula_sag("0.4*x^6-0.5*x^4*y^2+0.3*x^2*y^4-0.2*y^6");
   const Boundary rectangle = rectangle_boundary({0, 0}, 1.2, 0.8, 0.15, {order + 1, 128}, kHere);
@@ -223,7 +228,8 @@ TEST(TurningServo, SharesOfTheStrokeAddUp) {
     EXPECT_NEAR(slow[i].z_mm, fast[i].z_mm + fast[i].servo_mm, 1e-15);
     if (i > 90 && i + 90 < slow.size()) most = std::max(most, std::abs(fast[i].servo_mm));
   }
-  // The tilt is all that differs within a turn: amplitude 0.02 r, r up to 1, and a little of the nose.
+  // Within a revolution, only the tilt changes the height: the amplitude is 0.02 r, with r up to 1, plus a small
+  // contribution of the nose.
   EXPECT_NEAR(most, 0.02, 0.002);
   EXPECT_LT(axis_figures({fast}, 2).acceleration_mm_per_s2, 0.25 * axis_figures({slow}, 2).acceleration_mm_per_s2);
 }

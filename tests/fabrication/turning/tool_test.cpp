@@ -8,7 +8,8 @@
 
 #include "fabrication/turning/finish.h"
 
-// Clearance, skew and finish against closed forms (docs/theory/turning.md) and the figures of Sohn and Naples.
+// Tests of clearance, skew and finish. The results are compared with closed forms (docs/theory/turning.md) and with the
+// figures of Sohn and Naples.
 
 namespace retrace::fabrication::turning::tool_test {
 namespace {
@@ -19,7 +20,7 @@ TurningTool sharp_tool(double clearance_deg, double skew_deg) {
   return {.window_deg = 179.0, .clearance_deg = clearance_deg, .skew_deg = skew_deg};
 }
 
-/// A convex circular cylinder along y whose slope at the rim of a round part is `edge_deg`.
+/// Returns slopes of a convex circular cylinder along y. Its slope at the rim of a round part is `edge_deg`.
 std::vector<SlopeSample> cylinder(double edge_deg) {
   std::vector<SlopeSample> samples;
   for (int i = 0; i <= 40; ++i)
@@ -28,7 +29,7 @@ std::vector<SlopeSample> cylinder(double edge_deg) {
       const double theta = k * 0.25 * kDegree;
       const double x = r * std::cos(theta);
       const double slope = -x / std::sqrt(1.0 - x * x);
-      // Along the cut is the direction of rising theta.
+      // The direction along the cut is the direction of increasing theta.
       samples.push_back({{x, r * std::sin(theta)}, slope * std::cos(theta), -slope * std::sin(theta)});
     }
   return samples;
@@ -80,7 +81,7 @@ TEST(TurningTool, CylinderLensNeedsTheSkewOfTheRightSign) {
 }
 
 TEST(TurningTool, LeastSkewOfTheCylinderLens) {
-  // Needed: sin 50 (1 - sin skew) / 2 = sin 12.
+  // The required skew follows from sin 50 (1 - sin skew) / 2 = sin 12.
   const double exact = std::asin(1.0 - 2.0 * std::sin(12.0 * kDegree) / std::sin(50.0 * kDegree)) / kDegree;
   const auto skew = least_skew_deg(sharp_tool(12.0, 0.0), cylinder(50.0), 60.0);
   ASSERT_TRUE(skew.has_value());
@@ -168,7 +169,7 @@ TEST(TurningFinish, ExactFiguresTendToTheClosedForms) {
 }
 
 TEST(TurningFinish, CuspsOnACurveAreThoseOfCircles) {
-  // Circles of radius r about points of the circle of radius R + r meet at this distance from its middle.
+  // Circles of radius r around points of the circle of radius R + r intersect at this distance from its centre.
   const double r = 0.2;
   const double feed = 0.01;
   for (const double R : {2.0, 0.5}) {

@@ -9,8 +9,8 @@
 #include "geometry/surface/concavity_bound.h"
 #include "tests/fabrication/turning/paths.h"
 
-// What is proved of the surface's curvature against samples of it, and paths that rely on it against those that search
-// the whole arc at every point.
+// Tests of proven bounds on the curvature of a surface, which are compared with samples. Paths that use these bounds
+// are compared with paths that search the whole arc at every point.
 
 namespace retrace::fabrication::turning::touch_map_test {
 namespace {
@@ -34,7 +34,8 @@ Sag sphere(double curvature_per_mm) {
   return sag;
 }
 
-/// The largest second derivative in any direction, from those in three.
+/// Returns the largest second derivative in any direction. It is computed from the second derivatives in three
+/// directions.
 double concavity_bound(const std::function<Jet2(const Jet2&, const Jet2&)>& z, const Vec2& p) {
   const auto along = [&](double c, double s) { return 2.0 * z(Jet2(p.x(), c, 0.0), Jet2(p.y(), s, 0.0))[2]; };
   const double xx = along(1.0, 0.0);
@@ -43,7 +44,7 @@ double concavity_bound(const std::function<Jet2(const Jet2&, const Jet2&)>& z, c
   return 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy);
 }
 
-/// What a lenslet is made of.
+/// Parameters of a lenslet.
 struct Kind {
   double curvature_per_mm = -0.8;
   double height_mm = 5e-3;
@@ -90,7 +91,7 @@ const Kind kKinds[] = {{},
                        {0.9, -4e-3, 2},
                        {0.9, -4e-3, 2, true, true, 0.25}};
 
-/// Hollowest place of a lenslet's inside and of its blend, sampled.
+/// Returns the maximum sampled concavity of the inside of a lenslet and of its blend.
 std::pair<double, double> sampled(const FreeformSurface& surface, const Lenslet& lenslet) {
   const auto z = [&](const Jet2& x, const Jet2& y) { return surface.evaluate(x, y); };
   double inside = -1e300;
@@ -165,8 +166,10 @@ PathOptions spiral() {
   return spiral_of(0.6, 0.02, 400);
 }
 
-/// Largest difference of a path's heights from those found by searching the whole arc at every point. \param once,
-/// searched how many points of either sort there were
+/// Returns the largest difference between the heights of a path and the heights that a search of the whole arc gives at
+/// every point.
+/// \param once receives the number of points without a search
+/// \param searched receives the number of points with a search
 double largest_difference(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, int& once,
                           int& searched) {
   const NoseCompensation slow(surface, tool);
@@ -200,7 +203,7 @@ TEST(TouchMap, QuickPathsAreThoseOfTheSearch) {
 }
 
 TEST(TouchMap, SearchesRoundWhatIsHollowerThanTheNose) {
-  // One lenslet of four has a blend that is too hollow for the nose.
+  // One of four lenslets has a blend that is too concave for the nose.
   std::vector<Lenslet> lenslets;
   for (const double x : {-0.25, 0.25})
     for (const double y : {-0.25, 0.25}) lenslets.push_back(lenslet_at({}, {x, y}));

@@ -1,4 +1,4 @@
-// retrace turn: its files, its verdict, and what it refuses.
+// Tests of `retrace turn`: its files, its verdict, and refused input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ TEST_F(Turn, WritesNothingWithoutAFolder) {
 }
 
 TEST_F(Turn, WhatIsLeftCanBeTraced) {
-  // A flat with cusps of 0.6 nm: a plane plate, which sends back 2 R / (1 + R) at normal incidence.
+  // A plane with cusps of 0.6 nm acts as a plane plate, which returns 2 R / (1 + R) at normal incidence.
   const Json json =
       turned(kHead + "[base]\nkind = \"plane\"\n[tool]\nnose_radius_mm = 0.2\nclearance_deg = 15\n[path]\n" +
              "radius_mm = 0.1\nfeed_um = 1\nspindle_rpm = 60\n[inspect]\nmesh_thickness_mm = "
@@ -111,7 +111,8 @@ TEST_F(Turn, FindsTheLeastSkew) {
 }
 
 TEST_F(Turn, FindsTheLeastSkewOfARaster) {
-  // A slope of 18 degrees along the lines: sin 18 cos s = sin 12 of the tool, or less of it.
+  // For a slope of 18 degrees along the lines, the skew s must satisfy sin 18 cos s <= sin 12, with the clearance angle
+  // of 12 degrees of the tool.
   const Json json = turned(kHead +
                            "[base]\nkind = \"formula\"\nformula = \"0.325*y\"\n[tool]\nnose_radius_mm = "
                            "0.1\nclearance_deg = 12\nfind_least_skew = true\n[path]\nstrategy = \"raster\"\nsize_mm = "
