@@ -3,7 +3,8 @@
     python3 live_sources.py record SOURCE BUILD    after a build by emscripten: writes data/live_page/engine.*
     python3 live_sources.py check SOURCE           exit code 1 and a line for each file that has changed
 
-Every file that the compiler read goes in, and what says how it is built; of the root's CMakeLists.txt the version alone.
+Every file that the compiler read goes in, and every file that controls the build. Of the root's CMakeLists.txt only the
+version counts, and of C++ files only the code: comments and white space may change without a new engine.
 """
 
 import hashlib
@@ -18,6 +19,34 @@ LISTS = ["cmake/RetraceLivePage.cmake", "cmake/RetraceTargets.cmake", "live/engi
 
 def hash_of(content):
     return hashlib.sha256(content).hexdigest()
+
+
+# Literals of C++, in which // and /* begin no comment, and comments.
+LITERAL_OR_COMMENT = re.compile(
+    r'R"(?P<delimiter>[^\s()\\]*)\(.*?\)(?P=delimiter)"'  # raw string
+    r'|"(?:[^"\\\n]|\\.)*"'  # string
+    r"|(?<!\w)'(?:[^'\\\n]|\\.)+'"  # character, but no separator of digits
+    r"|(?P<comment>//[^\n]*|/\*.*?\*/)",
+    re.DOTALL,
+)
+
+
+def code_of(text):
+    """The words, signs and literals of a C++ file, without comments."""
+    code = []
+    end = 0
+    for found in LITERAL_OR_COMMENT.finditer(text):
+        code += re.findall(r"\w+|[^\w\s]", text[end : found.start()])
+        if not found["comment"]:
+            code.append(found[0])
+        end = found.end()
+    code += re.findall(r"\w+|[^\w\s]", text[end:])
+    return " ".join(code)
+
+
+def hash_of_source(path):
+    content = path.read_bytes()
+    return hash_of(code_of(content.decode()).encode() if path.suffix in {".h", ".cpp"} else content)
 
 
 def version_of(source):
@@ -56,7 +85,7 @@ def record(source, build):
     wasm = (build / "live/engine/engine.wasm").read_bytes()
     # Every page carries it, so that the 5 % that zopfli saves over gzip are worth ten seconds.
     packed = subprocess.run(["zopfli", "-c", build / "live/engine/engine.wasm"], check=True, capture_output=True).stdout
-    files = {name: hash_of((source / name).read_bytes()) for name in sources_of(source, build)}
+    files = {name: hash_of_source(source / name) for name in sources_of(source, build)}
     script = (build / "live/engine/engine.js").read_text().replace("</script", "<\\/script")
     data.mkdir(parents=True, exist_ok=True)
     (data / "engine.wasm.gz").write_bytes(packed)
@@ -80,7 +109,7 @@ def changes(source):
     for name, wanted in made["sources"].items():
         if not (source / name).is_file():
             yield f"{name} is gone"
-        elif hash_of((source / name).read_bytes()) != wanted:
+        elif hash_of_source(source / name) != wanted:
             yield f"{name} has changed"
 
 
