@@ -307,7 +307,7 @@ Warnings lengths_without_heights(const Document& document) {
 Warnings Design::warnings() const {
   if (!document) return {};
   Warnings warnings = schema::superseded_keys(*document);
-  const std::vector<std::string> more = lengths_without_heights(*document);
+  const Warnings more = lengths_without_heights(*document);
   warnings.insert(warnings.end(), more.begin(), more.end());
   return warnings;
 }
