@@ -192,7 +192,7 @@ TEST(Rre, RoughFacetsAreForRaysAndBeamsThatScatterThem) {
   Arguments exact = rough;
   exact.insert(exact.end(), {"--engine", "exact"});
   const Outcome outcome = retrace(folder, exact);
-  EXPECT_EQ(refused_at(outcome), "surface.roughness_sq_nm");
+  EXPECT_EQ(refused_at(outcome), "--set surface.roughness_sq_nm=5: surface.roughness_sq_nm");
 }
 
 TEST(Rre, ExactEngineHasNoNoise) {

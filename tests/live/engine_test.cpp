@@ -132,7 +132,7 @@ TEST(LiveEngine, ChangesKeys) {
       told(engine, {{"ask", "set"}, {"design", after["design"]}, {"changes", {{"body.refractive_index", 1.6}}}});
   ASSERT_EQ(both["warnings"].size(), 1U) << both["warnings"];
   const auto warning = both["warnings"][0].get<std::string>();
-  EXPECT_EQ(recorded_place_of(warning), "?");
+  EXPECT_EQ(recorded_place_of(warning), "design.toml:12: body.material");
 }
 
 TEST(LiveEngine, RefusesChangesThatMakeNoDesign) {
@@ -143,13 +143,13 @@ TEST(LiveEngine, RefusesChangesThatMakeNoDesign) {
     EXPECT_FALSE(error["ok"]) << changes;
     return recorded_place_of(error["text"].get<std::string>());
   };
-  EXPECT_EQ(refused({{"element.aperture_mm", -1}}), "?");
-  EXPECT_EQ(refused({{"element.aperture_mm", "wide"}}), "?");
-  EXPECT_EQ(refused({{"element.kind", "rtp"}}), "?");
-  EXPECT_EQ(refused({{"element.apertur_mm", 1}}), "?");
-  EXPECT_EQ(refused({{"element.aperture_mm", nullptr}}), "?");
+  EXPECT_EQ(refused({{"element.aperture_mm", -1}}), "design.toml: element.aperture_mm");
+  EXPECT_EQ(refused({{"element.aperture_mm", "wide"}}), "design.toml: element.aperture_mm");
+  EXPECT_EQ(refused({{"element.kind", "rtp"}}), "design.toml: element.base_mm");
+  EXPECT_EQ(refused({{"element.apertur_mm", 1}}), "design.toml: element.apertur_mm");
+  EXPECT_EQ(refused({{"element.aperture_mm", nullptr}}), "design.toml: element.aperture_mm");
   // A design that cannot be built is refused as well.
-  EXPECT_EQ(refused({{"element.cant_deg", 10}, {"body.thickness_mm", 1e-6}}), "?");
+  EXPECT_EQ(refused({{"element.cant_deg", 10}, {"body.thickness_mm", 1e-6}}), "design.toml: body.thickness_mm");
 }
 
 /// A design can be changed from every kind of element to every other kind. The engine adapts the other keys.

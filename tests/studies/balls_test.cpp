@@ -69,27 +69,30 @@ TEST(BallDesign, JsonReadsBackAsTheSameDesign) {
 }
 
 TEST(BallDesign, WhatMeansNothingForBallsIsRefused) {
-  EXPECT_EQ(refusal({"element.diameter_mm=0"}), "?");
+  EXPECT_EQ(refusal({"element.diameter_mm=0"}), "--set element.diameter_mm=0: element.diameter_mm");
   EXPECT_EQ(refusal({}, "[element]\nkind = \"ball\"\n"), "balls.toml:1: element.diameter_mm");
-  EXPECT_EQ(refusal({"element.base_mm=1"}), "?");
-  EXPECT_EQ(refusal({"array.x_length_mm=1"}), "?");
-  EXPECT_EQ(refusal({"array.arrangement=honeycomb"}), "?");
-  EXPECT_EQ(refusal({"array.extent=finite"}), "?");
-  EXPECT_EQ(refusal({"array.arrangement=single", "array.gap_mm=1"}), "?");
-  EXPECT_EQ(refusal({"array.gap_mm=-1"}), "?");
-  EXPECT_EQ(refusal({"body.thickness_mm=1"}), "?");
-  EXPECT_EQ(refusal({"surface.roughness_sq_nm=5"}), "?");
-  EXPECT_EQ(refusal({"element.mirror_half_angle_deg=91"}), "?");
-  EXPECT_EQ(refusal({"element.mirror_offset_mm=0.025", "element.mirror_half_angle_deg=31"}), "?");
-  EXPECT_EQ(refusal({"element.mirror_offset_mm=0.01", "idealisation.facets=real"}), "?");
+  EXPECT_EQ(refusal({"element.base_mm=1"}), "--set element.base_mm=1: element.base_mm");
+  EXPECT_EQ(refusal({"array.x_length_mm=1"}), "--set array.x_length_mm=1: array.x_length_mm");
+  EXPECT_EQ(refusal({"array.arrangement=honeycomb"}), "--set array.arrangement=honeycomb: array.arrangement");
+  EXPECT_EQ(refusal({"array.extent=finite"}), "--set array.extent=finite: array.extent");
+  EXPECT_EQ(refusal({"array.arrangement=single", "array.gap_mm=1"}), "--set array.gap_mm=1: array.gap_mm");
+  EXPECT_EQ(refusal({"array.gap_mm=-1"}), "--set array.gap_mm=-1: array.gap_mm");
+  EXPECT_EQ(refusal({"body.thickness_mm=1"}), "--set body.thickness_mm=1: body.thickness_mm");
+  EXPECT_EQ(refusal({"surface.roughness_sq_nm=5"}), "--set surface.roughness_sq_nm=5: surface");
+  EXPECT_EQ(refusal({"element.mirror_half_angle_deg=91"}),
+            "--set element.mirror_half_angle_deg=91: element.mirror_half_angle_deg");
+  EXPECT_EQ(refusal({"element.mirror_offset_mm=0.025", "element.mirror_half_angle_deg=31"}),
+            "--set element.mirror_half_angle_deg=31: element.mirror_half_angle_deg");
+  EXPECT_EQ(refusal({"element.mirror_offset_mm=0.01", "idealisation.facets=real"}),
+            "--set element.mirror_offset_mm=0.01: element.mirror_offset_mm");
 }
 
 TEST(BallDesign, KeysOfBallsAreRefusedForPrisms) {
   const std::string prism =
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"single\"\n"
       "[body]\nthickness_mm = 1\n";
-  EXPECT_EQ(refusal({"element.diameter_mm=1"}, prism), "?");
-  EXPECT_EQ(refusal({"array.gap_mm=1"}, prism), "?");
+  EXPECT_EQ(refusal({"element.diameter_mm=1"}, prism), "--set element.diameter_mm=1: element.diameter_mm");
+  EXPECT_EQ(refusal({"array.gap_mm=1"}, prism), "--set array.gap_mm=1: array.gap_mm");
 }
 
 TEST(BallDesign, WhatTakesNoBallsSaysWhatDoes) {

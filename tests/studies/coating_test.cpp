@@ -85,8 +85,8 @@ TEST(Coating, WhatWouldNotCountIsRefused) {
                             {"body.facet_coating=none", ""}});
   // Balls can only have a mirror.
   const std::string balls = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[coating]\n";
-  EXPECT_EQ(complaint(balls + kProtected), "?");
-  EXPECT_EQ(complaint(balls + kCoated), "coating.entrance");
+  EXPECT_EQ(complaint(balls + kProtected), "d.toml:5: coating.facets");
+  EXPECT_EQ(complaint(balls + kCoated), "d.toml:5: coating.entrance");
   EXPECT_EQ(
       complaint(balls + "facets = [{ material = \"fused-silica\", thickness_nm = 50 }, { material = \"silver\" }]\n"),
       "");

@@ -27,7 +27,7 @@ TEST(DesignReader, ArrangementMustFitTheKind) {
 }
 
 TEST(DesignReader, KeysOfAnotherKindAreRefused) {
-  EXPECT_EQ(set_complaint({"element.aperture_mm=1"}), "?");
+  EXPECT_EQ(set_complaint({"element.aperture_mm=1"}), "--set element.aperture_mm=1: element.aperture_mm");
   EXPECT_EQ(complaint(design_of(kHexagonal + "; base_mm = 1", "")), "d.toml:4: element.base_mm");
 }
 
@@ -48,9 +48,9 @@ TEST(DesignReader, GapsRowsAndOverlapOnlyWhereTheyMeanSomething) {
                    {design_of(kRtp, "extent = \"infinite\"; shifted_rows = \"odd\""), "d.toml:7: array.shifted_rows"},
                    {design_of(kRtp, "extent = \"infinite\"; overlap_percent = 50"), "d.toml:7: array.overlap_percent"},
                    {design_of(kRtp, "extent = \"infinite\"; x_gap_mm = 0.1"), ""}});
-  EXPECT_EQ(set_complaint({"array.x_gap_mm=-0.1"}), "?");
-  EXPECT_EQ(set_complaint({"array.y_offset_mm=-0.1"}), "?");
-  EXPECT_EQ(set_complaint({"array.overlap_percent=100"}), "?");
+  EXPECT_EQ(set_complaint({"array.x_gap_mm=-0.1"}), "--set array.x_gap_mm=-0.1: array.x_gap_mm");
+  EXPECT_EQ(set_complaint({"array.y_offset_mm=-0.1"}), "--set array.y_offset_mm=-0.1: array.y_offset_mm");
+  EXPECT_EQ(set_complaint({"array.overlap_percent=100"}), "--set array.overlap_percent=100: array.overlap_percent");
   EXPECT_EQ(set({"array.overlap_percent=0"}).part().array.overlap_percent, 0.0);
 }
 
@@ -74,7 +74,8 @@ TEST(DesignReader, ArrayMustHoldOneElement) {
 }
 
 TEST(DesignReader, ArrayHasAtMost1e8Elements) {
-  EXPECT_EQ(set_complaint({"array.x_length_mm=1e6", "array.y_length_mm=1e6"}), "?");
+  EXPECT_EQ(set_complaint({"array.x_length_mm=1e6", "array.y_length_mm=1e6"}),
+            "--set array.x_length_mm=1e6: array.x_length_mm");
   EXPECT_EQ(set_complaint({"array.x_length_mm=5000", "array.y_length_mm=5000"}), "");
 }
 

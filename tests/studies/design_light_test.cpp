@@ -96,7 +96,7 @@ TEST(DesignReader, AbsorptionIsANumberOrPairsOverTheWavelength) {
   const auto refused = [&](const std::string& value) {
     return complaint(with_line(11, "absorption_per_mm = " + value));
   };
-  const std::string where = "d.toml:11";
+  const std::string where = "d.toml:11: body.absorption_per_mm";
   expect_refusals(refused, {{"[[400, 1], [400, 2]]", where},
                             {"[[500, 1], [400, 2]]", where},
                             {"[[500, 1]]", where},
@@ -128,7 +128,7 @@ TEST(DesignReader, WhatIsNoSpectrumIsRefused) {
                             {"[[555, 1], [555.0, 2]]", where}});
   EXPECT_EQ(refused("\"A\"\nwavelength_nm = 555"), "d.toml:13: light.wavelength_nm");
   EXPECT_EQ(refused("\"A\"\nweighting = \"eye\""), "d.toml:13: light.weighting");
-  EXPECT_EQ(set_complaint({"light.weighting=photopic"}), "?");
+  EXPECT_EQ(set_complaint({"light.weighting=photopic"}), "--set light.weighting=photopic: light.weighting");
 }
 
 }  // namespace

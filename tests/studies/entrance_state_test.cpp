@@ -63,7 +63,7 @@ TEST(EntranceState, WhatIsWrongIsRefusedWithItsPlace) {
                                       {"scratch_coverage = 0.1", "scratch_spread_deg"},
                                       {"haze = 0.1", "haze_spread_deg"},
                                       {"roughness_sq_nm = 5", "correlation_length_um"}})
-    EXPECT_EQ(refused(lines), "?");
+    EXPECT_EQ(refused(lines), std::string("d.toml:11: entrance.") + needed);
   EXPECT_TRUE(refused("layers = [{ refractive_index = 1.5 }]").find("entrance.layers[1].thickness_um") !=
               std::string::npos);
   EXPECT_EQ(refused("dirt = 1"), "d.toml:12: entrance.dirt");
@@ -71,10 +71,10 @@ TEST(EntranceState, WhatIsWrongIsRefusedWithItsPlace) {
 }
 
 TEST(EntranceState, WhatWouldNotCountIsRefused) {
-  EXPECT_EQ(complaint(entrance(kDust), {"idealisation.entrance=lossless"}), "?");
+  EXPECT_EQ(complaint(entrance(kDust), {"idealisation.entrance=lossless"}), "d.toml:11: entrance");
   const std::string ball = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[entrance]\n";
-  EXPECT_EQ(complaint(ball + kDust), "entrance");
-  EXPECT_EQ(complaint(entrance(kDust), {"front.turned=lens.toml"}), "?");
+  EXPECT_EQ(complaint(ball + kDust), "d.toml:4: entrance");
+  EXPECT_EQ(complaint(entrance(kDust), {"front.turned=lens.toml"}), "d.toml:12: entrance.dust_coverage");
   EXPECT_EQ(complaint(entrance("film_coverage = 0.5"), {"front.turned=lens.toml"}), "");
 }
 

@@ -174,15 +174,15 @@ TEST(FormOfDesign, WrongFormsAreRefused) {
                          {"terms = 3", "d.toml:10: form.terms"},
                          {"terms = [{ level = 2, down = 7, height_um = 0.1 }]", "d.toml:10: form.terms[1].down"},
                          {"sink_um = 10", "d.toml:10: form.sink_um"}});
-  EXPECT_EQ(said("terms = [{ level = 1.5, down = 0, height_um = 0.1 }]"), "?");
-  EXPECT_EQ(said("terms = [{ level = 1, down = 0 }]"), "form.terms[1].height_um");
-  EXPECT_EQ(said("map = \"none.txt\""), "?");
+  EXPECT_EQ(said("terms = [{ level = 1.5, down = 0, height_um = 0.1 }]"), "d.toml:10: form.terms[1].level");
+  EXPECT_EQ(said("terms = [{ level = 1, down = 0 }]"), "d.toml:10: form.terms[1].height_um");
+  EXPECT_EQ(said("map = \"none.txt\""), "d.toml:10: form.map");
   const MapFolder small([](double, double) { return 0.0; }, 5.0);
-  EXPECT_EQ(refused(small.text("")), "?");
+  EXPECT_EQ(refused(small.text("")), "d.toml:10: form.map");
   // Parts without elements have no facets that could have a form.
-  for (const std::string& part : {std::string("[element]\nkind = \"ball\"\ndiameter_mm = 1\n"),
-                                  std::string("[part]\nplate_mm = [1, 1]\n[body]\nthickness_mm = 1\n")})
-    EXPECT_EQ(complaint(part + "[form]\nsink_um = 1\n"), "?");
+  const std::string form = "[form]\nsink_um = 1\n";
+  EXPECT_EQ(complaint("[element]\nkind = \"ball\"\ndiameter_mm = 1\n" + form), "d.toml:4: form");
+  EXPECT_EQ(complaint("[part]\nplate_mm = [1, 1]\n[body]\nthickness_mm = 1\n" + form), "d.toml:5: form");
 }
 
 TEST(FormOfDesign, IsWrittenAsItWasRead) {
@@ -312,7 +312,7 @@ TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
   EXPECT_EQ(run(design, request).engine, "embree") << "without diffraction";
   request.engine = Engine::exact;
   request.rays.reset();
-  EXPECT_EQ(refusal_of([&] { run(design, request); }), "?");
+  EXPECT_EQ(refusal_of([&] { run(design, request); }), "form");
   request.engine = Engine::automatic;
   request.diffraction = true;
   design.surface.texture = HarveyShackTexture{.roughness_sq_nm = 5.0, .correlation_length_um = 20.0};
@@ -320,7 +320,7 @@ TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
   EXPECT_EQ(rough.engine, "embree");
   EXPECT_NE(rough.reason.find("both a form and a texture"), std::string::npos);
   request.engine = Engine::exact;
-  EXPECT_EQ(refusal_of([&] { run(design, request); }), "?");
+  EXPECT_EQ(refusal_of([&] { run(design, request); }), "form");
 }
 
 }  // namespace

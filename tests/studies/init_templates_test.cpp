@@ -54,7 +54,7 @@ TEST(InitTemplates, UnknownKindIsRefused) {
     design_template("cube");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(recorded_place_of(error), "?");
+    EXPECT_EQ(recorded_place_of(error), "refused");
   }
 }
 

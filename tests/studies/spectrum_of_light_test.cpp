@@ -286,7 +286,7 @@ TEST(SpectrumOfLight, AColouredPlateKeepsTheMeanOfItsTransmittance) {
   }
   EXPECT_EQ(complaint(design({"body.absorption_per_mm=[[500, 0.2], [780, 0]]", "light.spectrum=[[490, 1], [600, 1]]"}),
                       exactly(0.0)),
-            "?");
+            "--set body.absorption_per_mm=[[500, 0.2], [780, 0]]: body.absorption_per_mm");
 }
 
 TEST(SpectrumOfLight, AFileIsReadFromTheFolderOfTheDesign) {
@@ -303,16 +303,17 @@ TEST(SpectrumOfLight, AFileIsReadFromTheFolderOfTheDesign) {
   const Design of_file = parse_design(text, (folder / "d.toml").string(), {});
   EXPECT_EQ(RreStudy({of_file}, exactly(5.0)).run().points.at(0).rre, point({"light.spectrum=A"}, exactly(5.0)).rre);
   std::ofstream(folder / "a.csv") << "wavelength_nm,power\n500,1\n490,1\n";
-  EXPECT_EQ(complaint(of_file, exactly(5.0)), "?");
+  EXPECT_EQ(complaint(of_file, exactly(5.0)), "TMP/d.toml:10: light.spectrum");
   fs::remove_all(folder);
-  EXPECT_EQ(complaint(of_file, exactly(5.0)), "?");
+  EXPECT_EQ(complaint(of_file, exactly(5.0)), "TMP/d.toml:10: light.spectrum");
 }
 
 TEST(SpectrumOfLight, WhatCannotBeTracedIsRefused) {
   const auto refused = [](const Overrides& overrides) { return complaint(design(overrides), exactly(0.0)); };
   const std::string unseen = refused({"light.spectrum=[[1064, 1]]"});
   EXPECT_EQ(unseen, "--set light.spectrum=[[1064, 1]]: light.spectrum");
-  EXPECT_EQ(refused({"light.spectrum=[[555, 0]]", "light.weighting=radiant"}), "?");
+  EXPECT_EQ(refused({"light.spectrum=[[555, 0]]", "light.weighting=radiant"}),
+            "--set light.spectrum=[[555, 0]]: light.spectrum");
   const std::string no_index = refused({"light.spectrum=[[555, 1], [1e8, 1]]", "light.weighting=radiant"});
   EXPECT_EQ(no_index, "--set light.spectrum=[[555, 1], [1e8, 1]]: light.spectrum");
 }
@@ -321,7 +322,7 @@ TEST(SpectrumOfLight, WhatShowsOneWavelengthIsRefused) {
   for (const int which : {0, 1, 2}) {
     RreRequest request = exactly(0.0);
     (which == 0 ? request.derivatives : which == 1 ? request.footprint : request.far_field) = true;
-    EXPECT_EQ(complaint(design({"light.spectrum=A"}), request), "?");
+    EXPECT_EQ(complaint(design({"light.spectrum=A"}), request), "--set light.spectrum=A: light.spectrum");
     EXPECT_EQ(complaint(design({"light.spectrum=[[572,1]]"}), request), "");
   }
 }

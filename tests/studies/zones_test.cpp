@@ -148,7 +148,7 @@ TEST(ZonedDesign, TheSameKindKeepsWhatTheDesignSays) {
   for (const std::string kind :
        {"'element.kind = \"hexagonal_icc\" '", "\"element.kind='hexagonal_icc'\"", "\"element.kind=hexagonal_icc\""})
     EXPECT_EQ(aperture_mm(kind), of_design) << kind;
-  EXPECT_EQ(refusal_of([&] { aperture_mm("'element.kind=\"triangular_icc\"'"); }), "?");
+  EXPECT_EQ(refusal_of([&] { aperture_mm("'element.kind=\"triangular_icc\"'"); }), "d.toml:11: zone[1].set");
 }
 
 TEST(ZonedDesign, ZonesOfSingleElementsAreWrittenAsTheyWereRead) {
@@ -220,7 +220,8 @@ TEST(ZonedDesign, MasksThatDoNotServeAreRefused) {
   EXPECT_EQ(refused("[[zone]]\nmask = \"negative.pgm\"\n"), "TMP/d.toml:10: zone[1].mask");
   EXPECT_EQ(refused("[[zone]]\nmask = \"corner.pgm\"\n[[zone]]\nrest = true\n"), "TMP/d.toml:9: zone[1]");
   EXPECT_EQ(refused("[[zone]]\nmask = \"none.pgm\"\n"), "TMP/d.toml:10: zone[1].mask");
-  EXPECT_EQ(refusal_of([&] { check_names_no_file(folder.design(left), "which nobody reads"); }), "?");
+  EXPECT_EQ(refusal_of([&] { check_names_no_file(folder.design(left), "which nobody reads"); }),
+            "TMP/d.toml:10: zone[1].mask");
 }
 
 TEST(ZonedDesign, QuestionsOfOneKindOfElementAreRefused) {

@@ -360,7 +360,8 @@ TEST(Material, WhatCannotBeIsRefusedAndNothingWritten) {
   refused({"m.xml", "--what", "element"}, "--what");
   refused({"m.stl", "--error", "0.1"}, "--error");
   refused({"m.json", "--json", "m.csv"}, "--json");
-  EXPECT_EQ(refused_at(retrace(folder, {"export", example("fronts/cats_eye_lenslets.toml"), "m.json"})), "?");
+  EXPECT_EQ(refused_at(retrace(folder, {"export", example("fronts/cats_eye_lenslets.toml"), "m.json"})),
+            "examples/fronts/cats_eye_lenslets.toml: form");
   EXPECT_EQ(folder.names(), std::vector<std::string>{"d.toml"});
 }
 

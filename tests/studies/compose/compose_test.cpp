@@ -315,17 +315,22 @@ TEST(Compose, ReadsItsExample) {
 }
 
 TEST(Compose, RefusesWhatMeansNothing) {
-  EXPECT_EQ(refusal(""), "?");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"h\"\n"), "?");
-  EXPECT_EQ(refusal("[compose]\nmaximize = [\"g\", \"g.1\"]\n"), "?");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nleast_share = 0.6\nmost_share = 0.5\n"), "?");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmost_zones = 2\nmost_share = 0.4\n"), "?");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nprice = {h = 1}\n"), "?");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nfront = {g = \"most\", h = \"least\"}\n"), "?");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nleast_share = 2\n"), "?");
+  EXPECT_EQ(refusal(""), "examples/studies/study.toml: compose");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"h\"\n"), "examples/studies/study.toml:22: compose.maximize");
+  EXPECT_EQ(refusal("[compose]\nmaximize = [\"g\", \"g.1\"]\n"), "examples/studies/study.toml:22: compose.maximize");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nleast_share = 0.6\nmost_share = 0.5\n"),
+            "examples/studies/study.toml:23: compose.least_share");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmost_zones = 2\nmost_share = 0.4\n"),
+            "examples/studies/study.toml:24: compose.most_share");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nprice = {h = 1}\n"),
+            "examples/studies/study.toml:23: compose.price.h");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nfront = {g = \"most\", h = \"least\"}\n"),
+            "examples/studies/study.toml:23: compose.front");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nleast_share = 2\n"),
+            "examples/studies/study.toml:23: compose.least_share");
   EXPECT_EQ(refusal(kMaximize,
                     "[[parameter]]\nkey = \"body.thickness_mm\"\ndistribution = \"normal\"\nmean = 1\nsigma = 0.1\n"),
-            "?");
+            "examples/studies/study.toml:2: parameter[1]");
 }
 
 }  // namespace

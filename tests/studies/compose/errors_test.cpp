@@ -221,10 +221,10 @@ TEST(ComposeErrors, RefuseWhatMeansNothing) {
     }
     return {};
   };
-  EXPECT_EQ(refusal("worst_share = 0.1\n"), "compose.worst_share");
-  EXPECT_EQ(refusal("zone_sigma_arcmin = -1\n"), "compose.zone_sigma_arcmin");
-  EXPECT_EQ(refusal("zone_sigma_arcmin = 1\nworst_share = 0\n"), "?");
-  EXPECT_EQ(refusal("parts = 3\n"), "compose.parts");
+  EXPECT_EQ(refusal("worst_share = 0.1\n"), "examples/studies/study.toml:13: compose.worst_share");
+  EXPECT_EQ(refusal("zone_sigma_arcmin = -1\n"), "examples/studies/study.toml:13: compose.zone_sigma_arcmin");
+  EXPECT_EQ(refusal("zone_sigma_arcmin = 1\nworst_share = 0\n"), "examples/studies/study.toml:14: compose.worst_share");
+  EXPECT_EQ(refusal("parts = 3\n"), "examples/studies/study.toml:13: compose.parts");
   EXPECT_EQ(refusal("zone_sigma_arcmin = 0\n"), "");
 }
 

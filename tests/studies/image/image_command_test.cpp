@@ -104,7 +104,7 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--camera", "--pixels=99999999999999999999999x4"}, "--pixels"},
       {{"--detector", "--pixels=0"}, "--pixels"},
       {{"--detector", "--pixels=1000000"}, "--pixels"},
-      {{"--detector", "--pixels="}, "--pixels: "},
+      {{"--detector", "--pixels="}, "--pixels"},
       {{"--detector", "--angle-pixels=0"}, "--angle-pixels"},
       {{"--detector", "--angle-pixels=9999"}, "--angle-pixels"},
       {{"--detector", "--window-deg=0"}, "--window-deg"},
@@ -116,7 +116,7 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--camera", "--eye-mm=0,0,0.5"}, "--eye-mm"},
       {{"--camera", "--eye-mm=0,0,-0.2"}, "--eye-mm"},
       {{"--camera", "--lamp-mm=1,1,0.9"}, "--lamp-mm"},
-      {{"--camera", "--eye-mm=0,0,1"}, "--eye-mm: "},
+      {{"--camera", "--eye-mm=0,0,1"}, "--eye-mm"},
       {{"--camera", "--eye-mm=0,0"}, "--eye-mm"},
       {{"--camera", "--eye-mm=a,b,c"}, "--eye-mm"},
       {{"--camera", "--eye-mm=inf,0,0"}, "--eye-mm"},
@@ -142,7 +142,7 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--road", "--lamp-height-m=0"}, "--lamp-height-m"},
       {{"--road", "--lamp=" + example("low_beam.ies"), "--lamp-aim-deg=46"}, "--lamp-aim-deg"},
       {{"--camera", "--cylinder-mm=50"}, "--cylinder-mm"},
-      {{"--camera", "--set", "light.polarisation=linear"}, "light.polarisation: "},
+      {{"--camera", "--set", "light.polarisation=linear"}, "brick.toml: light.polarisation"},
   };
   const auto before = folder_.names();
   for (const auto& [more, place] : cases) {

@@ -249,7 +249,7 @@ TEST(Lamp, EditionIsThatOfItsHeader) {
           EXPECT_EQ(lower_case(lamp.title), "a lamp");
         }
   for (const std::string header : {"IESNA:LM-63", "IES:LM-63-YEAR", "IESNA:LM-63-20022"})
-    EXPECT_EQ(refusal_of([&] { parse_ies("\n" + header + "\n" + rest, "a.ies"); }), "?");
+    EXPECT_EQ(refusal_of([&] { parse_ies("\n" + header + "\n" + rest, "a.ies"); }), "a.ies:2: header");
   for (const std::string tilt : {"tilt=none", "TILT = NONE", "  Tilt=None  "})
     EXPECT_NEAR(parse_ies(with_replaced(rest, "TILT=NONE", tilt), "a.ies").intensity.largest_cd(), 99.0, 1e-9);
 }
@@ -302,20 +302,20 @@ TEST(Lamp, WhatIsWrongIsToldWithItsLine) {
   const auto with = [](std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
   };
-  EXPECT_EQ(complaint(with(right, "1 1000 2 2 1 1", "1 1000 2 2 1 4")), "a.ies:4");
-  EXPECT_EQ(complaint(with(right, "1 1000 2 2", "1 1000 2 2.5")), "a.ies:4");
-  EXPECT_EQ(complaint(with(right, "1 1000 2 2", "1 1000 2 1e9")), "a.ies:4");
-  EXPECT_EQ(complaint(with(right, "0 90", "90 0")), "a.ies:6");
+  EXPECT_EQ(complaint(with(right, "1 1000 2 2 1 1", "1 1000 2 2 1 4")), "a.ies:4: photometric type");
+  EXPECT_EQ(complaint(with(right, "1 1000 2 2", "1 1000 2 2.5")), "a.ies:4: number of vertical angles");
+  EXPECT_EQ(complaint(with(right, "1 1000 2 2", "1 1000 2 1e9")), "a.ies:4: number of vertical angles");
+  EXPECT_EQ(complaint(with(right, "0 90", "90 0")), "a.ies:6: vertical angles");
   EXPECT_EQ(complaint(with(right, "50 50", "50 -50")), "a.ies:8: candela");
   EXPECT_EQ(complaint(with(right, "50 50", "50 nan")), "a.ies:8: candela");
   EXPECT_EQ(complaint(with(right, "50 50 \n", "50\n")), "a.ies:9");
-  EXPECT_EQ(complaint(ies(1, {0, 100}, {0, 90}, kPlain)), "a.ies:9");
-  EXPECT_EQ(complaint(ies(3, {10, 40}, {0, 90}, kPlain)), "a.ies:9");
+  EXPECT_EQ(complaint(ies(1, {0, 100}, {0, 90}, kPlain)), "a.ies:9: horizontal angles");
+  EXPECT_EQ(complaint(ies(3, {10, 40}, {0, 90}, kPlain)), "a.ies:9: horizontal angles");
   const std::string other = ldt(0, 30, {0, 90}, kPlain, steps(0, 330, 30));
   EXPECT_EQ(complaint("", false), "a.ldt:1");
-  EXPECT_EQ(complaint(with(other, "1\n0\n12\n", "1\n5\n12\n"), false), "a.ldt:3");
-  EXPECT_EQ(complaint(with(other, "1\n0\n12\n", "1\n4\n13\n"), false), "a.ldt:55");
-  EXPECT_EQ(complaint(other.substr(0, other.size() / 2), false), "?");
+  EXPECT_EQ(complaint(with(other, "1\n0\n12\n", "1\n5\n12\n"), false), "a.ldt:3: symmetry indicator");
+  EXPECT_EQ(complaint(with(other, "1\n0\n12\n", "1\n4\n13\n"), false), "a.ldt:55: C planes");
+  EXPECT_EQ(complaint(other.substr(0, other.size() / 2), false), "a.ldt:39: direct ratio");
   EXPECT_EQ(refusal_of([] { read_lamp("lamp.txt", "--lamp"); }), "--lamp");
 }
 

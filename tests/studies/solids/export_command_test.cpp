@@ -65,7 +65,7 @@ TEST(Export, WhatCannotBeIsRefusedAndNothingWritten) {
   EXPECT_EQ(refused_at(retrace(folder, {"export", kPrism, "a.stl", "--what", "mould", "--block-mm", "0"})),
             "--block-mm");
   EXPECT_EQ(refused_at(retrace(folder, {"export", example("honeycomb_infinite.toml"), "a.stl"})),
-            example("honeycomb_infinite.toml") + ": array.extent");
+            "examples/honeycomb_infinite.toml: array.extent");
   EXPECT_EQ(refused_at(retrace(folder, {"export", kPrism, "a.stl", "--json", "a.stl"})), "--json");
   EXPECT_EQ(refused_at(retrace(folder, {"export", "none.toml", "a.stl"})), "none.toml");
   EXPECT_TRUE(folder.names().empty());

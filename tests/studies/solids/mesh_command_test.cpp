@@ -207,7 +207,7 @@ TEST(MeshPart, BodiesThatCrossAreUnitedOnRequest) {
   folder.write("part.stl",
                "solid\n" + plate + box_facets({1, 1, -0.5}, {2, 3, 0.5}, {0, 1, 2, 3, 6, 7, 4, 5}) + "endsolid\n");
   const Outcome refused = retrace(folder, how);
-  EXPECT_EQ(refused_at(refused), "?");
+  EXPECT_EQ(refused_at(refused), "mesh.toml:2: part.mesh");
 }
 
 /// If some triangles are reversed, the message reports the orientation of the triangles and no opening. `allow_open`

@@ -177,11 +177,11 @@ TEST(MeshPart, ShapesThatAreNoPartAreRefused) {
   const TriangleMesh good = mesh_of(test::single_part(RtpElement{0.5, 0.5, 90.0}));
   TriangleMesh leaning = good;
   for (Vec3& p : leaning.vertices) p.z() += 0.1 * p.x();
-  EXPECT_EQ(complaint([&] { part_of_mesh(leaning); }), "?");
+  EXPECT_EQ(complaint([&] { part_of_mesh(leaning); }), "refused");
   TriangleMesh wide = good;
   for (Vec3& p : wide.vertices)
     if (p.z() < 0.5) p.head<2>() *= 1.2;
-  EXPECT_EQ(complaint([&] { part_of_mesh(wide); }), "?");
+  EXPECT_EQ(complaint([&] { part_of_mesh(wide); }), "refused");
   // This mesh is only a tetrahedron and has no plate.
   const TriangleMesh tetrahedron = parse_stl(
       "solid\nfacet normal 0 0 0 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n"
@@ -189,7 +189,7 @@ TEST(MeshPart, ShapesThatAreNoPartAreRefused) {
       "facet normal 0 0 0 outer loop vertex 0 1 0 vertex 1 0 0 vertex 0.3 0.3 -1 endloop endfacet\n"
       "facet normal 0 0 0 outer loop vertex 0 0 0 vertex 0 1 0 vertex 0.3 0.3 -1 endloop endfacet\nendsolid\n",
       "x.stl");
-  EXPECT_EQ(complaint([&] { part_of_mesh(tetrahedron); }), "?");
+  EXPECT_EQ(complaint([&] { part_of_mesh(tetrahedron); }), "refused");
 }
 
 TEST(MeshPart, OpeningsAreClosedAndCounted) {

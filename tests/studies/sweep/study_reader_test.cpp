@@ -26,7 +26,7 @@ Sweep sweep_of(const std::string& text, const std::vector<std::string>& override
   return read_sweep(parse_study(text, kFolder + "study.toml", overrides));
 }
 
-const std::string kExamples = "examples/studies/";
+const std::string kExamples = "examples/";
 
 /// Returns the place at which a study is refused, without the folder.
 std::string message(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -227,7 +227,8 @@ TEST(StudyReader, ACutoffThatNothingUsesIsRefused) {
   }
   for (const std::string engine : {"auto", "exact"}) EXPECT_EQ(message(text + analysis(engine)), "");
   EXPECT_EQ(message(text + "[analysis]\nengine = \"montecarlo\"\n"), "");
-  EXPECT_EQ(message(text + "[analysis]\nengine = \"montecarlo\"\n", {"analysis.cutoff=1e-4"}), "?");
+  EXPECT_EQ(message(text + "[analysis]\nengine = \"montecarlo\"\n", {"analysis.cutoff=1e-4"}),
+            "--set analysis.cutoff=1e-4: analysis.cutoff");
 }
 
 TEST(StudyReader, ATargetErrorThatNothingUsesIsRefused) {
@@ -235,13 +236,13 @@ TEST(StudyReader, ATargetErrorThatNothingUsesIsRefused) {
       "[[quantity]]\nkind = \"photometry\"\nstandard = \"r150\"\nclass = \"IA\"\ncolour = \"red\"\narea_cm2 = 1\n";
   const std::string text = kDesign + kParameter + photometry;  // 10 lines
   const std::string analysis = "[analysis]\ntarget_error = 1e-3\n";
-  EXPECT_EQ(message(text + analysis), "study.toml:12");
-  EXPECT_EQ(message(text, {"analysis.target_error=1e-3"}), "?");
+  EXPECT_EQ(message(text + analysis), "study.toml:12: analysis.target_error");
+  EXPECT_EQ(message(text, {"analysis.target_error=1e-3"}), "--set analysis.target_error=1e-3: analysis.target_error");
   EXPECT_EQ(message(text + analysis + kQuantity), "");
 }
 
 TEST(StudyReader, AnOverrideOfAVariedKeyIsRefused) {
-  EXPECT_EQ(message(kDesign + kParameter + kQuantity, {"element.base_mm=3"}), "?");
+  EXPECT_EQ(message(kDesign + kParameter + kQuantity, {"element.base_mm=3"}), "--set element.base_mm=3");
 }
 
 /// If a file that the design names has changed, a store does not match the study.

@@ -11,6 +11,7 @@
 
 #include "tests/app/program.h"
 #include "tests/studies/sweep/stored_points.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::test::sweep_command_test {
 namespace {
@@ -234,18 +235,18 @@ TEST(SweepCommand, AnExistingStoreNeedsAWord) {
   };
   EXPECT_EQ(run({}).code, 0);
   const Outcome again = run({});
-  EXPECT_EQ(refused_at(again), "?");
+  EXPECT_EQ(refused_at(again), "out/sweep.sqlite");
   EXPECT_EQ(run({"--resume"}).code, 0);
   EXPECT_EQ(run({"--resume", "--overwrite"}).code, 2);
   folder.write("study.toml", sweep_study(5, 1000));
   const Outcome changed = run({"--resume"});
-  EXPECT_EQ(refused_at(changed), "?");
+  EXPECT_EQ(refused_at(changed), "study.toml");
   EXPECT_EQ(folder.json("out/sweep.json")["points"].size(), 4U) << "nothing written";
   EXPECT_EQ(run({"--overwrite"}).code, 0);
   EXPECT_EQ(folder.json("out/sweep.json")["points"].size(), 5U);
   EXPECT_EQ(run({"--resume", "--seed", "2"}).code, 2);
   const Outcome without = retrace(folder, {"sweep", "study.toml", "--resume"});
-  EXPECT_EQ(refused_at(without), "?");
+  EXPECT_EQ(refused_at(without), "--resume");
 }
 
 TEST(SweepCommand, AFullDiskLosesNothing) {
@@ -258,7 +259,7 @@ TEST(SweepCommand, AFullDiskLosesNothing) {
                                                 std::string("trap '' XFSZ; ulimit -f 256; exec '") + RETRACE_PROGRAM +
                                                     "' sweep study.toml -o full --quiet"})
                               .wait();
-  EXPECT_EQ(refused_at(outcome, 3), "?");
+  EXPECT_EQ(refused_at(outcome, 3), "full/sweep.sqlite");
   const std::size_t kept = stored_points(folder.path() / "full/sweep.sqlite").size();
   EXPECT_GT(kept, 0U);
   EXPECT_LT(kept, 300U);
@@ -302,12 +303,13 @@ TEST(OptimizeCommand, ChoosesResumesAndSaysNo) {
   for (const char* key : {"pareto", "rejected", "bands", "version", "warnings", "complete"})
     EXPECT_TRUE(json.contains(key)) << key;
   const Outcome again = retrace(folder, {"optimize", "study.toml", "-o", "out"});
-  EXPECT_EQ(refused_at(again), "?");
+  EXPECT_EQ(refused_at(again), "out/optimum.sqlite");
   EXPECT_EQ(without_elapsed(retrace(folder, {"optimize", "study.toml", "-o", "out", "--resume", "--json", "-"}).out),
             without_elapsed(folder.read("out/optimum.json")));
   folder.write("none.toml", study("2"));
   const Outcome none = retrace(folder, {"optimize", "none.toml"});
-  EXPECT_EQ(refused_at(none, 1), "");
+  EXPECT_EQ(none.code, 1) << none.err;
+  record_message(none.out.substr(0, none.out.find('\n')));
 }
 
 TEST(SweepCommand, NoIsTheAnswerIfEveryPointFailed) {

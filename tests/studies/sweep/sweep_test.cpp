@@ -253,14 +253,14 @@ TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
 }
 
 TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
-  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "study.toml:12: quantity[1].points");
-  EXPECT_EQ(message("name = \"q\"\npoints = 1.5\n"), "study.toml:12: quantity[1].points");
-  EXPECT_EQ(message("name = \"q\"\npoints = \"all\"\n"), "study.toml:12: quantity[1].points");
-  EXPECT_EQ(message("name = \"q\"\nfigure = \"R\"\n"), "study.toml:12: quantity[1].figure");
-  EXPECT_EQ(message("name = \"q\"\ncolour = \"green\"\n"), "study.toml:12: quantity[1].colour");
-  EXPECT_EQ(message("name = \"q\"\ndye = \"no.csv\"\n"), "study.toml:12: quantity[1].dye");
-  EXPECT_EQ(message("name = \"q\"\nwindow_deg = 0.1\n"), "study.toml:12: quantity[1].window_deg");
-  EXPECT_EQ(message("name = \"q\"\nwidth = 1\n"), "study.toml:12: quantity[1].width");
+  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "TMP/study.toml:12: quantity[1].points");
+  EXPECT_EQ(message("name = \"q\"\npoints = 1.5\n"), "TMP/study.toml:12: quantity[1].points");
+  EXPECT_EQ(message("name = \"q\"\npoints = \"all\"\n"), "TMP/study.toml:12: quantity[1].points");
+  EXPECT_EQ(message("name = \"q\"\nfigure = \"R\"\n"), "TMP/study.toml:12: quantity[1].figure");
+  EXPECT_EQ(message("name = \"q\"\ncolour = \"green\"\n"), "TMP/study.toml:12: quantity[1].colour");
+  EXPECT_EQ(message("name = \"q\"\ndye = \"no.csv\"\n"), "TMP/study.toml:12: quantity[1].dye");
+  EXPECT_EQ(message("name = \"q\"\nwindow_deg = 0.1\n"), "TMP/study.toml:12: quantity[1].window_deg");
+  EXPECT_EQ(message("name = \"q\"\nwidth = 1\n"), "TMP/study.toml:12: quantity[1].width");
 }
 
 /// The surface that the machining process leaves is inserted into the design. If the study itself sets one of these

@@ -65,7 +65,7 @@ TEST(ToleranceCommand, ResumesWithoutComputingAnythingAgain) {
   const std::string first = without_elapsed(folder.read("out/tolerance.json"));
   const auto before = stored_points(folder.path() / "out/tolerance.sqlite");
   const Outcome again = retrace(folder, arguments);
-  EXPECT_EQ(refused_at(again), "?");
+  EXPECT_EQ(refused_at(again), "out/tolerance.sqlite");
   Arguments resume = arguments;
   resume.push_back("--resume");
   EXPECT_EQ(retrace(folder, resume).code, 0);
@@ -98,7 +98,7 @@ TEST(ToleranceCommand, BadInputLeavesNothing) {
   const TemporaryFolder folder;
   folder.write("study.toml", tolerance_study("[tolerance]\nsamples = 0\n"));
   const Outcome outcome = retrace(folder, {"tolerance", "study.toml", "-o", "out"});
-  EXPECT_EQ(refused_at(outcome), "?");
+  EXPECT_EQ(refused_at(outcome), "study.toml:17: tolerance.samples");
   EXPECT_EQ(folder.names(), std::vector<std::string>{"study.toml"});
 }
 
@@ -145,7 +145,7 @@ TEST(OptimizeJob, BadInputIsSaidInOneLine) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"study.toml"}) << "nothing is written";
     return refused_at(outcome);
   };
-  EXPECT_EQ(error({"--machine", "thesis"}), "--job");
+  EXPECT_EQ(error({"--machine", "thesis"}), "--machine");
   EXPECT_EQ(error({"--job", "j.toml", "--machine", "lathe"}), "--machine");
   EXPECT_EQ(error({"--job", "j.toml", "--strategy", "drill"}), "--strategy");
   EXPECT_EQ(error({"--job", "j.toml", "--strategy", "dmc"}), "--strategy");
