@@ -35,13 +35,13 @@ const std::string kCubes =
     "extent = \"infinite\"\n[body]\nthickness_mm = 1.5\n";
 
 FacetForm form_of(const std::string& text) {
-  std::vector<std::string> warnings;
+  Warnings warnings;
   return form_of_design(parse_design(text, "d.toml"), warnings);
 }
 
 FormReport report_of(const std::string& text) {
   const Design design = parse_design(text, "d.toml");
-  std::vector<std::string> warnings;
+  Warnings warnings;
   return report_form(design, form_of_design(design, warnings));
 }
 
