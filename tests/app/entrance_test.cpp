@@ -305,7 +305,7 @@ TEST_F(Entrance, KeysThatMakeNoSenseAreRefused) {
   EXPECT_EQ(refusal("[part]\nplate_mm = 1\n" + kBody), "design.toml:2: part.plate_mm");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\nmesh = \"a.stl\"\n" + kBody), "design.toml:3: part.mesh");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n" + kBody + "[surface]\nfacet_tilt_arcmin = [1, 1]\n"),
-            "surface.facet_tilt_arcmin");
+            "design.toml:7: surface.facet_tilt_arcmin");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[element]\nkind = \"rtp\"\n" + kBody), "design.toml:3: element");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\n[body]\nrefractive_index = 1.5\n"), "design.toml:3: body.thickness_mm");
 }

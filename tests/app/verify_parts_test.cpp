@@ -117,7 +117,7 @@ TEST_F(VerifyParts, BadInputIsOneLine) {
       {{lens, "p.ngc", "--servo", "strokes.csv"}, "--servo"},
       {{raster, "p.ngc", "--servo", "strokes.csv"}, "--servo"},
       {{"fast.toml", "p.ngc"}, "--servo"},
-      {{"fast.toml", "p.ngc", "--servo", "strokes.csv"}, "strokes.csv:2"},
+      {{"fast.toml", "p.ngc", "--servo", "strokes.csv"}, "strokes.csv:2: stroke_mm"},
       {{raster, "p.ngc", "--json", "p.ngc"}, "--json"}};
   const std::vector<std::string> before = folder_.names();
   for (const auto& [given, message] : cases) {
