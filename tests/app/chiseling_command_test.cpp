@@ -161,7 +161,7 @@ TEST(ReachablePart, WhatIsWrongIsRefusedInOneLine) {
       {{"job", "d.toml", "--tool-width-mm", "0.2", "--reachable", "o.toml", "-o", "j.toml"}, "--out"},
       {{"job", "d.toml", "--tool-width-mm", "0.2", "--reachable", "d.toml"}, "--reachable"},
       {{"job", "d.toml", "--tool-width-mm", "0.2", "--set", "array.x_length_mm=0.1", "--reachable", "o.toml"},
-       "array.x_length_mm"}};
+       "--set array.x_length_mm=0.1: array.x_length_mm"}};
   for (const auto& [arguments, message] : cases) {
     EXPECT_EQ(refused_at(retrace(folder, arguments)), message);
     EXPECT_EQ(folder.names(), before);

@@ -86,7 +86,7 @@ TEST(Fabricate, EveryDialectHasItsEnding) {
   folder.write("d.toml", design("single", 0));
   ASSERT_EQ(retrace(folder, with(kJob, {"-o", "j.toml"})).code, 0);
   const Outcome refused = retrace(folder, {"fabricate", "j.toml", "--dialect", "pmac"});
-  EXPECT_EQ(refused_at(refused), "?");
+  EXPECT_EQ(refused_at(refused), "--dialect");
   give_mist_lines(folder, "j.toml");
   const std::pair<std::string, std::string> dialects[] = {
       {"rs274ngc", "program.ngc"}, {"sinumerik", "program.mpf"}, {"fanuc", "program.nc"},
@@ -213,7 +213,7 @@ TEST(Job, ADihedralErrorOpensTheApex) {
 
 TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
   const TemporaryFolder folder;
-  folder.write("d.toml", design("offset", 3 * 0.451));
+  folder.write("d.toml:7: array.x_length_mm", design("offset", 3 * 0.451));
   folder.write("cube.toml",
                "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\narrangement = \"single\"\n"
                "[body]\nthickness_mm = 1\n");

@@ -28,7 +28,7 @@ TEST(Plane, ALatheOfAPmacNeedsTheLinesOfItsSpindle) {
   const TemporaryFolder folder;
   const Outcome outcome =
       retrace(folder, {"plane", example("planing/round_zone_lens.toml"), "--dialect=pmac", "-o", "out"});
-  EXPECT_EQ(refused_at(outcome), "lathe.spindle_start");
+  EXPECT_EQ(refused_at(outcome), "examples/planing/round_zone_lens.toml:15: lathe.spindle_start");
   EXPECT_TRUE(folder.names().empty());
 }
 

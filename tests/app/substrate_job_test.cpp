@@ -48,7 +48,7 @@ TEST_F(SubstrateJob, OfTheExampleVerifiesInEveryDialect) {
     // There are ten rows of prisms. Each facet of a row has its own angle A.
     EXPECT_EQ(json["poses"].size(), 20U);
   }
-  EXPECT_EQ(refusal({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}), "?");
+  EXPECT_EQ(refusal({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}), "job.toml:29: base");
 }
 
 /// The machined part has the RRE (retroreflective efficiency) of the design, except for the effect of the surface
@@ -83,7 +83,7 @@ TEST_F(SubstrateJob, AsMachinedReturnsWhatTheDesignDoes) {
     if (!(skips && line.find("call") != std::string::npos)) cut += line + "\n";
   }
   folder_.write("cut.ngc", cut);
-  EXPECT_EQ(refusal({"verify", "job.toml", "cut.ngc", "--as-machined", "other.toml"}), "?");
+  EXPECT_EQ(refusal({"verify", "job.toml", "cut.ngc", "--as-machined", "other.toml"}), "--as-machined");
 }
 
 TEST_F(SubstrateJob, OfCubeCornersOnASphere) {
@@ -100,18 +100,18 @@ TEST_F(SubstrateJob, OfCubeCornersOnASphere) {
   EXPECT_LT(json["facet_distance_nm_max"].get<double>(), 1.0);
   EXPECT_EQ(refusal({"job", "design.toml", "--strategy", "dmc", "--tool-width-mm", "0.6", "--workpiece", "direct", "-o",
                      "d.toml"}),
-            "?");
+            "--workpiece");
 }
 
 TEST_F(SubstrateJob, OfWhatCannotBeCutIsRefused) {
   EXPECT_EQ(
       refusal({"job", example("pin_bundle.toml"), "--strategy", "dmc", "--tool-width-mm", "9", "-o", "pins.toml"}),
-      "?");
+      "examples/pin_bundle.toml: array.arrangement");
   ASSERT_EQ(retrace(folder_, {"job", example(kExample), "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet", "--set",
                               "base.axis=x"})
                 .code,
             0);
-  EXPECT_EQ(refusal({"fabricate", "job.toml", "-o", "program"}), "?");
+  EXPECT_EQ(refusal({"fabricate", "job.toml", "-o", "program"}), "job.toml:5: machine");
 }
 
 }  // namespace

@@ -101,12 +101,15 @@ TEST_F(ZoneJobCommand, WhatCannotBeCutIsRefusedAndNothingWritten) {
       {"", "", {"--strategy", "two-step"}, "--strategy"},
       {"", "", {"--workpiece", "direct"}, "--workpiece"},
       {"", "", {"--tool-width-mm", "0.3"}, "--tool-width-mm"},
-      {"element.aperture_mm=0.4", "element.cant_deg=3", {}, "zone[3]"},
-      {"element.aperture_mm=0.4", "element.kind=\\\"triangular_icc\\\"\", \"element.aperture_mm=0.5", {}, "zone[3]"},
+      {"element.aperture_mm=0.4", "element.cant_deg=3", {}, "design.toml:19: zone[3]"},
+      {"element.aperture_mm=0.4",
+       "element.kind=\\\"triangular_icc\\\"\", \"element.aperture_mm=0.5",
+       {},
+       "design.toml:19: zone[3]"},
       {"\"element.aperture_mm=0.4\"",
        "'element.kind=\"rtp\"', \"element.base_mm=0.5\", \"element.width_mm=0.5\"",
        {},
-       "zone[3]"},
+       "design.toml:19: zone[3]"},
   };
   for (const Case& wrong : cases) {
     SCOPED_TRACE(wrong.message);
@@ -141,11 +144,14 @@ TEST_F(ZoneJobCommand, EditedJobsComeBackAsTheyAreCut) {
   EXPECT_NE(folder_.read("part.toml").find("surface.dihedral_error_arcmin=[13, 1, -8]"), std::string::npos)
       << folder_.read("part.toml");
   std::filesystem::remove(folder_.path() / "part.toml");
-  for (const auto& [from, to] :
-       {std::pair("rotation_deg = 33", "rotation_deg = 33.01"), {"aperture_mm = 0.4", "aperture_mm = 0.39"}}) {
-    edit(from, to);
+  struct Edit {
+    std::string from, to, place;
+  };
+  for (const Edit& e : {Edit{"rotation_deg = 33", "rotation_deg = 33.01", "job.toml:32: zone[2]"},
+                        Edit{"aperture_mm = 0.4", "aperture_mm = 0.39", "job.toml:38: zone[3]"}}) {
+    edit(e.from, e.to);
     const Outcome run = retrace(folder_, {"verify", "job.toml", "nc/program.ngc", "--as-machined", "part.toml"});
-    EXPECT_EQ(refused_at(run), "?");
+    EXPECT_EQ(refused_at(run), e.place);
     EXPECT_FALSE(exists("part.toml"));
   }
 }
