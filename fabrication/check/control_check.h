@@ -36,7 +36,8 @@ struct ControlRule {
   bool may_blend = false;   ///< true: blocks need no exact stop
   /// Maximum total time, in s, of consecutive dwells at one position in the material.
   double most_rest_s = std::numeric_limits<double>::infinity();
-  /// Bit i: the position of axis i of kNcAxisLetters must be known before Z goes below `safe_z_mm`.
+  /// Set of axes, one bit for each axis of kNcAxisLetters (bit 0: the first axis). The positions of these axes must be
+  /// known before Z goes below `safe_z_mm`.
   std::uint8_t axes = 0b111;
   /// Minimum Z, in mm, of the first move, which must move only Z. Z must stay above this value until the positions of
   /// all `axes` are known.
@@ -44,7 +45,7 @@ struct ControlRule {
 };
 
 /// Checks the moves and settings of programs and adds findings to a list. A modal setting that stays wrong gives only
-/// one finding. It gives another one only if it was correct in between.
+/// one finding. If the setting is corrected and becomes wrong again, there is another finding.
 class ControlCheck {
  public:
   ControlCheck(FindingList& findings, const ControlRule& rule, const Control& control = {})
@@ -66,7 +67,8 @@ class ControlCheck {
   /// Checks a stop at which the program waits for the operator. The tool must be at the safe height, the rotary axes
   /// must be at 0, and mist and spindle must be off. The rest of the program is then checked like a new program.
   void stop(const NcSettings& settings, const AxisPositions& at, const NcPlace& place);
-  /// Returns the axes whose position was given since the start of the program or the last stop; bit i: axis i.
+  /// Returns the axes whose position was given since the start of the program or the last stop, as one bit for each
+  /// axis of kNcAxisLetters.
   std::uint8_t known() const { return known_; }
   void spindle_at_end(const NcEnd& end);
   /// Checks that the machine has the axes that move, and that the axes stay within their limits, have a feed and do not
@@ -85,8 +87,10 @@ class ControlCheck {
   void words_of_axes(const NcMotion& motion);
   void refuse_option(const NcSettings& settings, const NcPlace& place, bool is_there, const NcNeed& option);
   void spindle(const NcSettings& settings, const NcPlace& place);
-  /// Updates whether a modal setting is wrong.
-  /// \return true if the setting was right before and is wrong now
+  /// Records whether a modal setting is correct now.
+  /// \param kind name of the setting
+  /// \param holds true if the setting is correct now
+  /// \return true if the setting was correct before this call and is wrong now
   bool turns_wrong(const std::string& kind, bool holds);
 
   FindingList& findings_;
@@ -94,7 +98,8 @@ class ControlCheck {
   Control control_;
   NcDialect dialect_ = NcDialect::rs274ngc;
   bool has_moved_ = false;  ///< true if an axis has moved since the start of the program or the last stop
-  /// Axes whose position was given since the start of the program or the last stop; bit i: axis i.
+  /// Axes whose position was given since the start of the program or the last stop, as one bit for each axis of
+  /// kNcAxisLetters.
   std::uint8_t known_ = 0;
   double rested_s_ = 0.0;        ///< total dwell time in the material since the last move
   double z_slack_mm_ = 0.0;      ///< tolerance for the rounding of the last Z word

@@ -17,7 +17,7 @@ struct Finding {
   std::int32_t line = 0;      ///< line of the program; 0: no line
   std::int64_t element = -1;  ///< number of the element; -1: no element
   std::string message;
-  double value = 0.0;  ///< value in the unit of the message
+  double value = 0.0;  ///< actual value, in the unit that `message` uses; 0 if the finding has no value
   double limit = 0.0;
   std::int64_t count = 1;  ///< number of occurrences in this line
 };

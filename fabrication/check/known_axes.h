@@ -1,7 +1,7 @@
 #pragma once
 
-// Checks the axes of programs for machines with less than five axes: no unknown axes, and no moves while the position
-// of an axis is unknown.
+// Checks the axes of programs for machines with fewer than five axes. A program must not use axes that the machine does
+// not have, and must not move while the position of an axis is unknown.
 
 #include <cstdint>
 
@@ -10,11 +10,11 @@
 
 namespace retrace::fabrication {
 
-/// Checks that programs only move axes that the machine has, and only after the positions of all axes are known. A
-/// rapid move may set the position of an axis.
+/// Checks that programs move only axes that the machine has, and that the positions of all axes are known before a
+/// move. A rapid move is allowed if it moves only axes whose positions were unknown, because it gives these positions.
 class KnownAxes {
  public:
-  /// \param axes axes of the machine; bit i: axis i of kNcAxisLetters
+  /// \param axes axes of the machine, as one bit for each axis of kNcAxisLetters
   KnownAxes(FindingList& findings, std::uint8_t axes) : findings_(findings), axes_(axes) {}
 
   void motion(const NcMotion& motion);

@@ -13,7 +13,7 @@ void ProgramTime::add(const Machine& machine, const NcMotion& motion) {
   const geometry::Vec3 travel(known(0) ? motion.to.x_mm - motion.from.x_mm : 0.0,
                               known(1) ? motion.to.y_mm - motion.from.y_mm : 0.0,
                               known(2) ? motion.to.z_mm - motion.from.z_mm : 0.0);
-  // The tool is touched off at A = C = 0, so that the first rotary move starts there.
+  // The first rotary move is assumed to start at A = C = 0, because the tool is touched off in this position.
   const RotaryPose from = rotary_pose(machine, motion.from);
   const RotaryPose to = rotary_pose(machine, motion.to);
   const AxisTravel by{travel, to.a_deg - from.a_deg, to.c_deg - from.c_deg};

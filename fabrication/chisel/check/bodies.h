@@ -23,11 +23,12 @@ struct PlacedBody {
   std::vector<geometry::Vec3> points_mm;
 };
 
-/// Returns the bodies that move with the tool, relative to its tip. They are the diamond up to `diamond_mm` above its
-/// edge, and the tool bodies of the machine file.
+/// Returns the bodies that move with the tool, relative to its tip. They are the tool bodies of the machine file, and
+/// the part of the diamond from its edge up to the height `diamond_mm`.
 std::vector<PlacedBody> tool_bodies(const Machine& machine, const ToolWedge& wedge, double diamond_mm);
 
-/// Returns table, cradle and fixtures of the machine file, as positioned by the rotary axes.
+/// Returns the table, the cradle and the fixtures that the machine file describes, in their positions for a rotary
+/// pose.
 std::vector<PlacedBody> standing_bodies(const Machine& machine, const RotaryPose& pose);
 
 /// Names of two bodies that collide.
@@ -35,8 +36,11 @@ struct BodyContact {
   std::string tool;
   std::string other;
 };
-/// Returns the collisions of the tool while its tip moves inside the convex hull of some points, for example along a
-/// straight move between two end points. The result is exact, because the swept volume of a convex body is convex.
+/// Returns the pairs of bodies that collide while the tip of the tool moves inside the convex hull of `tips_mm`. For a
+/// straight move, `tips_mm` contains the two end points. The result is exact, because the swept volume of a convex body
+/// is convex.
+/// \param tool bodies that move with the tool
+/// \param standing bodies that do not move
 std::vector<BodyContact> contacts(std::span<const PlacedBody> tool, std::span<const PlacedBody> standing,
                                   std::span<const geometry::Vec3> tips_mm);
 

@@ -15,8 +15,8 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Minimum cosine of the angle between a section and the normal of the swept plane. If this angle is larger than 30
-/// degrees, chip thicknesses cannot be measured in the section.
+/// Minimum cosine of the angle between a cross-section and the normal of the plane that the edge sweeps. If this angle
+/// is larger than 30 degrees, chip thicknesses cannot be measured in the cross-section.
 constexpr double kLeastInPlane = 0.87;
 
 double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const Vec2& direction, double to_mm) {
@@ -61,8 +61,9 @@ ChipCheck::ChipCheck(const Workpiece3d& workpiece, std::size_t element, Standing
   if (allowance_mm_ > 0.0) add_lines();
 }
 
-/// Adds the lines along which the finishing layers are measured. The lines keep clear of the root, where cuts of the
-/// other facet remove parts of these layers. They also keep clear of the rim, where the layers extend beyond the blank.
+/// Adds the lines along which the thickness of the finishing layers is measured. Near the root, cuts of the other facet
+/// remove parts of these layers. Near the rim, the layers extend beyond the blank. The lines keep clear of both
+/// regions.
 void ChipCheck::add_lines() {
   constexpr double kClearOfRoot = 6.0;  // allowances
   const double least_mm = kClearOfRoot * (allowance_mm_ + workpiece_.prediction(element_).root_mm);

@@ -25,8 +25,8 @@ struct ChipFigures {
 };
 
 /// Checks the cuts of one element in their order. Adds a finding for a chip that is thicker than its limit. Also adds a
-/// finding for a facet whose last layers are removed by fewer finishing cuts than the process requires. The checks
-/// depend only on the removed material, and not on the titles of cuts in the program.
+/// finding if fewer finishing cuts than required remove the last layers of a facet. The checks depend only on the
+/// removed material, and not on the names of the cuts in the program.
 class ChipCheck {
  public:
   /// \param material material before the first cut; each cut removes a part of it
@@ -52,7 +52,8 @@ class ChipCheck {
   void add_lines();
   void check_chips(const SweptVolume& sweep, const std::optional<FacetCut>& cut, const RigidMotion& back,
                    std::span<const std::vector<ConvexPiece>> removed);
-  /// Adds a finding if the edge rubs: the maximum chip thickness of a plunge is less than the minimum of the process.
+  /// Adds a finding if the edge rubs, which means that the maximum chip thickness of a plunge is less than the minimum
+  /// that the process allows.
   void check_rubbing(const SweptVolume& sweep, const FacetCut& cut, double thickest_mm);
   void count_finishing(const SweptVolume& sweep, const FacetCut& cut,
                        std::span<const std::vector<ConvexPiece>> removed);

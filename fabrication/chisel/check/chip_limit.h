@@ -1,7 +1,7 @@
 #pragma once
 
-// Computes the chip thickness that follows from the process's depth of cut, for each measuring line of a section
-// (docs/theory/verification.md).
+// Computes the maximum allowed chip thickness from the depth of cut of the process. The limit is different for each
+// measuring line of a cross-section (docs/theory/verification.md).
 
 #include <array>
 #include <limits>
@@ -20,10 +20,10 @@ class ChipLimit {
   ChipLimit(const Workpiece3d& workpiece, std::size_t element, const std::optional<FacetCut>& cut,
             const ToolWedge& wedge, const RigidMotion& back);
 
-  /// Returns the maximum chip thickness on one measuring line, in mm.
-  /// \param from_tip_mm distance of the line from the deepest position of the tip, along the path. For a V-shaped tool,
-  ///        the distance is measured in the section
-  /// \param beside_mm distance of the deepest position of the tip from the section of the line
+  /// Returns the maximum chip thickness on one measuring line of a cross-section, in mm.
+  /// \param from_tip_mm distance, along the path of the tool, from the deepest position of the tip to the line. For a
+  ///        V-shaped tool, the distance is measured in the cross-section
+  /// \param beside_mm distance from the deepest position of the tip to the cross-section that contains the line
   double at(double from_tip_mm, double beside_mm) const;
   /// Distances from the tip, in mm, at which the limit has a kink or a jump.
   const std::array<double, 2>& bends_mm() const { return bends_mm_; }

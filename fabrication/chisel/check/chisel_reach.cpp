@@ -29,8 +29,8 @@ double edge_mm_of(const geometry::Element& element) {
   return std::numbers::sqrt3 * geometry::element_depth_mm(element);
 }
 
-/// Returns a machine without rotation of its axes, so that the frame of a facet equals the machine frame. The poses
-/// contain the rotation instead.
+/// Returns a machine whose linear axes are the coordinate axes. Its machine frame is used as the frame of a facet. The
+/// rotation of the workpiece to this frame is part of the poses in Cutter, so the rotary axes are not used.
 Machine still_machine() {
   Machine machine;
   machine.x.direction.value = Vec3::UnitX();
@@ -155,7 +155,7 @@ void check_chisel_reach(const geometry::Element& element, const Tool& tool, cons
     throw InputError(wedge, fmt::format("with clearance_deg must be > {}, or fins remain along dihedral edges, got {}",
                                         fixed_apart(least_deg, rake_deg, 3), shortest(rake_deg)));
   const double rake = Angle::from_deg(rake_deg).rad();
-  // Height of the core above the apex, per mm of edge length.
+  // Height of the core above the apex, per mm of the tool's width.
   const double rise =
       0.5 * std::sin(rake) * std::numbers::sqrt3 / (std::numbers::sqrt2 * std::sin(rake) - std::cos(rake));
   const double most_mm = geometry::element_depth_mm(element) / rise;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Common base class for the checks of single processes. They check the cuts of a tool in the elements.
+// Base class for the checks of cuts. Each derived class checks the cuts of one machining process in the elements.
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ struct CutMove {
   std::size_t element = 0;
 };
 
-/// Checks depths of cut, dwells and chips by the rules of one process.
+/// Checks the depths of cut, the dwells and the chips according to the rules of one machining process.
 class CutCheck {
  public:
   /// \pre all arguments outlive this object

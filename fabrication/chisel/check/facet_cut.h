@@ -17,7 +17,8 @@ struct FacetCut {
   bool is_by_clearance = false;  ///< true if the clearance face is next to the facet, as in a plunge with a chisel
 };
 
-/// Returns the cut of a move. Returns nothing for a move along no facet, such as a retract between both facets.
+/// Returns the facet along which a move cuts. Returns nothing if the move is along no facet, such as a retract between
+/// the two facets.
 /// \param back transformation from the machine frame to the workpiece frame
 std::optional<FacetCut> facet_cut(const Groove& groove, const ToolWedge& wedge, const SweptVolume& sweep,
                                   const RigidMotion& back);
@@ -33,8 +34,8 @@ double finishing_allowance_mm(const Workpiece3d& workpiece);
 /// name in the program, and must use the feed and depth of finishing.
 bool is_finishing(const Workpiece3d& workpiece, const FacetCut& cut);
 
-/// Returns the depth of cut of the process for a move, for roughing or finishing.
-/// \param cut cut of the move; empty: the move is along no facet
+/// Returns the depth of cut that the process specifies for a move, either for roughing or for finishing.
+/// \param cut facet along which the move cuts; nullopt if the move is along no facet
 double depth_of_cut_mm(const Workpiece3d& workpiece, const std::optional<FacetCut>& cut);
 
 }  // namespace retrace::fabrication

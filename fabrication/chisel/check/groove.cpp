@@ -119,7 +119,7 @@ std::vector<Groove> designed_grooves(const Job& job) {
 
 GrooveMap::GrooveMap(const std::vector<Groove>& grooves) : grooves_(grooves) {
   for (const Groove& groove : grooves) {
-    // In plan, the aperture of an inclined element is displaced from its root, so that more cells must be searched.
+    // Seen along Z, the aperture of an inclined element is displaced from its root, so more cells must be searched.
     if (groove.axis != Vec3::UnitZ()) cells_around_ = 3;
     cell_mm_ = std::max({cell_mm_ == 1.0 ? 0.0 : cell_mm_, groove.half_base_mm, groove.half_width_mm});
   }

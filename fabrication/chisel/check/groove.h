@@ -92,8 +92,8 @@ Groove groove_of(const CutElement& element, const Job& job, double stock_mm = 0.
 /// Returns all elements of a job, in the order of cut_elements(), for a blank whose face is at the height of the rims.
 std::vector<Groove> designed_grooves(const Job& job);
 
-/// Finds the element whose aperture contains a point of the blank's face. Among cube corners, it finds the nearest one
-/// within the radius of the aperture.
+/// Finds the element whose aperture contains a point of the blank's face. For cube corners, it finds the element with
+/// the nearest apex, if the distance is at most the radius of the aperture.
 class GrooveMap {
  public:
   explicit GrooveMap(const std::vector<Groove>& grooves);
@@ -102,9 +102,9 @@ class GrooveMap {
   std::optional<std::size_t> at(double x_mm, double y_mm) const { return at(geometry::Vec3(x_mm, y_mm, 0.0)); }
   /// Returns the element whose aperture contains a point that is projected along the element's axis.
   std::optional<std::size_t> at(const geometry::Vec3& p) const;
-  /// Returns the element with the deepest design surface at a point. It is usually the element of at(). A cavity of a
-  /// cube corner may extend beyond its aperture, so that a neighbour may be deeper. Returns nothing where the face is
-  /// not cut.
+  /// Returns the element with the deepest design surface at a point. It is usually the element that at() returns. It
+  /// can be a neighbour of this element, because the cavity of a cube corner may extend beyond its aperture. Returns
+  /// nothing where the face is not cut.
   std::optional<std::size_t> deepest(double x_mm, double y_mm) const;
 
  private:

@@ -97,8 +97,9 @@ void PlungeCheck::close() {
   open_.reset();
 }
 
-/// Checks that a chip separates without a plough. This requires two plunges. The first plunge passes the surface of the
-/// other facet. The second plunge, along the other facet, ends at the surface of the first one.
+/// Checks that the chip of a plunge separates without a plough. The chip separates if the plunge passes the machined
+/// surface of the other facet. It also separates if the last plunge along the other facet has passed the plane of this
+/// plunge.
 void PlungeCheck::check_chip() {
   const std::size_t f = open_->facet;
   const std::size_t g = 1 - f;

@@ -26,7 +26,7 @@ struct PloughedFloor {
 /// Unavoidable errors of all elements of one orientation on one machine. They are computed from the poses that the
 /// machine requires, and not from the poses in the program (docs/theory/verification.md).
 struct Prediction {
-  std::vector<PlungePose> poses;          ///< poses in which the two or three facets are cut
+  std::vector<PlungePose> poses;  ///< poses of the rotary axes, one for the cuts of each facet (two or three facets)
   std::array<PloughedFloor, 2> ploughed;  ///< surfaces of facets 1 and 2, each ploughed in the pose of the other facet
   /// Normal, in the machine frame, of the plane in which the tool moves when only Y and Z move.
   geometry::Vec3 pass_normal = geometry::Vec3::UnitX();

@@ -25,7 +25,8 @@ namespace retrace::fabrication {
 /// Receives the moves of programs, one after the other. Checks each move and stores the swept volumes of every element.
 class ProgramCheck : public NcSink {
  public:
-  /// \param visits for a job with a substrate: result of VisitFinder for the same programs
+  /// \param visits element to which each run of cutting moves belongs, as found by VisitFinder in the same programs;
+  ///        empty for a job without a substrate
   ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
                std::vector<std::optional<std::size_t>> visits = {});
 

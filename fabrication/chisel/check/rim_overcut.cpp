@@ -12,7 +12,7 @@ namespace {
 
 using geometry::Vec3;
 
-/// Tolerance, in mm, for rims that meet except for rounding errors.
+/// Maximum overcut, in mm, of rims that are considered to meet. It allows for rounding errors.
 constexpr double kMeetMm = 1e-9;
 
 /// Returns points along the rims of an element.

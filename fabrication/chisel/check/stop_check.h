@@ -10,7 +10,8 @@
 
 namespace retrace::fabrication {
 
-/// Checks programs from stop to stop. Each kind of finding is added at most one time between two stops.
+/// Checks programs from stop to stop: cuts before the end of the warm-up, cuts beyond the tool life of the edge, cuts
+/// too long after the last stop, and finishing without inspection of the roughed element.
 class StopCheck {
  public:
   /// \pre all arguments outlive this object

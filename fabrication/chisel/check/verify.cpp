@@ -47,7 +47,7 @@ bool has_poses_of(const Workpiece3d& workpiece, const std::vector<RotaryPose>& w
   return !words.empty() && std::all_of(words.begin(), words.end(), is_solved);
 }
 
-/// Refuses a program if its rotary poses match another machine with measured axes.
+/// Refuses a program if its rotary poses do not match this machine, but match another machine whose axes were measured.
 void refuse_other_machine(const Job& job, const Machine& machine, const std::vector<Machine>& others,
                           const Workpiece3d& workpiece, const std::vector<RotaryPose>& words, const std::string& file) {
   if (has_poses_of(workpiece, words)) return;
@@ -121,7 +121,7 @@ class Judge {
 
  private:
   /// Returns the predicted residual material at the root of a facet. It comes from the plunges along the other facet.
-  /// In a unidirectional job, only one facet is plunged, and the larger of both values is used.
+  /// For a unidirectional job, returns the larger of the values of both facets, because only one facet is plunged.
   double root_limit_mm(const Prediction& prediction, std::size_t facet) const {
     if (workpiece_.job->strategy == Strategy::dmc) return prediction.fin_mm;
     return workpiece_.job->strategy == Strategy::unidirectional ? prediction.root_mm : prediction.root_of_mm[1 - facet];

@@ -21,8 +21,9 @@
 namespace retrace::fabrication {
 
 /// Returns the default tolerance for facet planes, in nm. It is 10 nm, or the maximum effect of rounded positions if
-/// that is larger. Rounding displaces the cuts of two facets by up to half the diagonal of a cube of one increment
-/// each. These displacements add up at the root. Only the increments of Fanuc programs are larger than 1 nm.
+/// that is larger. Rounding displaces the cuts of each facet by up to half the diagonal of a cube whose edge is one
+/// increment. The displacements of two facets add up at the root. Only the increments of Fanuc programs are larger than
+/// 1 nm.
 double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs);
 
 struct VerifyOptions {
@@ -65,8 +66,8 @@ struct Verification {
   /// Maximum depth by which cuts of neighbouring elements unavoidably go below the rims of an element. This happens
   /// where the rims have different heights.
   double rim_overcut_um_max = 0.0;
-  /// Job with zones: area (in plan) and maximum depth of the material that cavities unavoidably remove from elements of
-  /// other zones, and the number of these elements.
+  /// Overcut in a job with zones. Cavities unavoidably remove material from elements of other zones. The values are the
+  /// area of this material (seen along Z), its maximum depth, and the number of the elements that lose material.
   double zone_overcut_mm2 = 0.0;
   double zone_overcut_um_max = 0.0;
   std::int64_t elements_overcut = 0;

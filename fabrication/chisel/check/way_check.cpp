@@ -90,7 +90,7 @@ void WayCheck::turn_from_anywhere(const NcMotion& motion) {
         motion.from.z_mm, safe_mm);
 }
 
-/// Returns sampled positions of a rotary move. Each of two moving axes may move at its own speed. All combinations of
+/// Returns sampled positions of a rotary move. If two axes move, each may move at its own speed. All combinations of
 /// their angles are then sampled, unless the rapid moves of the machine are straight.
 std::vector<AxisPositions> WayCheck::places_of_turn(const NcMotion& motion) const {
   const AxisPositions& from = motion.from;

@@ -83,9 +83,9 @@ class Overcutter {
     return is_there;
   }
 
-  /// Adds one half of the corner in which cavity i extends beyond its hexagon at dihedral edge k. In plan, the half is
-  /// an equilateral triangle inside the hexagon of one neighbour.
-  /// \param side -1 or 1: which half
+  /// Adds one half of the corner in which cavity i extends beyond its hexagon at dihedral edge k. Seen along Z, the
+  /// half is an equilateral triangle inside the hexagon of one neighbour.
+  /// \param side -1 or 1, to select one of the two halves
   void add_half_corner(std::size_t i, int k, double side) {
     const double radius_mm = grooves_[i].half_base_mm;
     const double edge_deg = 120.0 * k - 90.0;
@@ -102,8 +102,8 @@ class Overcutter {
         take(i, a + (m + 1.0 / 3.0) * u + (n + 1.0 / 3.0) * v, area_mm2);
         if (m + n + 1 < kDivisions) take(i, a + (m + 2.0 / 3.0) * u + (n + 2.0 / 3.0) * v, area_mm2);
       }
-    // The maximum depth is on a side of the triangle. The grid points are therefore evaluated as well, with an area of
-    // 0.
+    // The maximum depth is on a side of the triangle. The corners of the grid, which include points on the sides, are
+    // therefore evaluated in addition. Their area is set to 0, so that they do not change the total area and volume.
     for (int m = 0; m <= kDivisions; ++m)
       for (int n = 0; m + n <= kDivisions; ++n) take(i, a + m * u + n * v, 0.0);
   }

@@ -20,11 +20,11 @@ using geometry::Vec3;
 constexpr double kStripMm = kEdgeStripMm;
 /// Minimum distance of measuring lines from the border of a facet, relative to the facet's size.
 constexpr double kWithin = 1e-6;
-/// Angle between the tool's leading edge and the two measured directions on both sides of it.
+/// Angle between the tool's leading edge and each of the two measured directions, which are on both sides of this edge.
 constexpr double kBesideLeadingRad = 1e-5;
 
-/// Generates the measured points of a facet. Their coordinates are distances from the apex along the two dihedral edges
-/// of the facet.
+/// Generates the points at which a facet is measured. Their coordinates are distances from the apex along the two
+/// dihedral edges of the facet.
 class Places {
  public:
   /// \param edges_mm lengths of the two dihedral edges
@@ -88,11 +88,13 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
   return surface_along(spans, exit);
 }
 
-/// Returns the height above a facet, along its normal, up to which material is attributed to this facet. The height is
-/// limited by the blank's face. It is also limited by another facet if the angle between both facets is less than 90
-/// degrees, and by the strip along a dihedral edge if the point is close to this edge. Close to both other facets, the
-/// normal is nearly parallel to their common dihedral edge. A fin may remain at that edge due to rounded positions, and
-/// then limits the height.
+/// Returns the height above a facet, along its normal, up to which material is attributed to this facet. The following
+/// limits apply:
+/// - the blank's face,
+/// - another facet, if the angle between both facets is less than 90 degrees,
+/// - the width of the strip along a dihedral edge, if the point is in this strip,
+/// - the height of a fin, if the point is close to both other facets. Near the apex, the normal is nearly parallel to
+///   the common dihedral edge of the other facets. Rounded positions may leave a fin (thin ridge) along this edge.
 double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge, double fin_mm) {
   constexpr double kParallel = 1e-9;
   const Vec3& normal = cavity.facets[facet].normal;

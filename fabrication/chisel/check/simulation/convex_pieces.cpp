@@ -34,7 +34,7 @@ bool is_thin(const ConvexPiece& piece) {
   return std::abs(area) < kThinMm * around;
 }
 
-/// Subtracts a body from one polygon and adds the remaining parts to `left`.
+/// Subtracts a convex body (an intersection of half-planes) from one polygon and adds the remaining parts to `left`.
 /// \return the subtracted part. If it is empty, nothing was subtracted and `left` is unchanged
 ConvexPiece take_from(const ConvexPiece& piece, std::span<const HalfPlane> body, std::vector<ConvexPiece>& left) {
   if (std::any_of(body.begin(), body.end(), [&](const HalfPlane& side) { return is_outside(piece, side); })) return {};
@@ -57,7 +57,8 @@ struct Range {
   double high = -std::numeric_limits<double>::infinity();
 };
 
-/// Polygon and its range of positions across the lines.
+/// Polygon, and the positions of the parallel lines that cross it. The position of a line is its coordinate
+/// perpendicular to the lines.
 struct Chords {
   const ConvexPiece* piece = nullptr;
   Range reach;
@@ -136,7 +137,8 @@ double chord_mm(const ConvexPiece& piece, const Vec2& point, const Vec2& directi
 
 std::vector<LineLength> line_lengths(std::span<const ConvexPiece> pieces, const Vec2& across,
                                      std::span<const double> also) {
-  // Evaluate the length on both sides of each corner, because it jumps at an edge that is parallel to the lines.
+  // The length jumps at a polygon edge that is parallel to the lines. It is therefore evaluated on both sides of each
+  // corner.
   constexpr double kBesideMm = kThinMm;
   std::vector<Chords> chords;
   std::vector<double> places(also.begin(), also.end());

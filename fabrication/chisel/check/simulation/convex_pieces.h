@@ -36,7 +36,8 @@ double chord_mm(const ConvexPiece& piece, const geometry::Vec2& point, const geo
 
 /// Length of one line inside a set of polygons.
 struct LineLength {
-  double at_mm = 0.0;  ///< position of the line: across . p for its points p
+  /// Position of the line: the value of across . p for all points p of the line (see line_lengths()).
+  double at_mm = 0.0;
   double length_mm = 0.0;
 };
 /// Returns the lengths of parallel lines inside polygons that do not overlap. The lines are at all positions where the

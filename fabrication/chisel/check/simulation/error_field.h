@@ -1,6 +1,6 @@
 #pragma once
 
-// Computes a map of the height errors of a machined part, in plan.
+// Computes a map of the height errors of a machined part, as seen along Z.
 
 #include <cstddef>
 #include <vector>

@@ -10,17 +10,17 @@ namespace {
 
 using geometry::Vec3;
 
-/// Distance of measuring lines from the corners of the machined surface. A line through a corner would lie in a plane
-/// of the tool.
+/// Distance of measuring lines from the corners of the machined surface. A line exactly through a corner would be in a
+/// side plane of the tool.
 constexpr double kOffCornerMm = 2e-7;
 /// Minimum distance from the root, in mm, at which a measuring line can distinguish the two facets.
 constexpr double kLeastStripMm = 2e-6;
 /// Distance from the root, in mm, of the line that measures the residual material at the root.
 constexpr double kAtRootMm = 1.5e-6;
-/// Maximum thickness of the layer over the other facet that is attributed to the root, relative to the facet's length.
-/// The limit applies to large tolerances.
+/// Maximum extent, along a facet, of the tolerance layer on the other facet, relative to the facet's length. Residual
+/// material within this extent is attributed to the root. The maximum only has an effect for large tolerances.
 constexpr double kMostLayerShare = 0.01;
-/// Maximum tolerance for the positions of the ends of the edge, relative to half of the width.
+/// Maximum tolerance for the position of a pass along the root, relative to half of the width of the element.
 constexpr double kMostEndShare = 0.01;
 /// Safety factor on the predicted size of the strip at the root. It allows for rounded poses and positions.
 constexpr double kRootMargin = 1.05;
@@ -28,13 +28,13 @@ constexpr int kEvenLines = 12;
 /// Maximum distance, in mm, between the centers of two passes that count as one pass. Their ploughed surfaces differ by
 /// picometres only.
 constexpr double kSamePassMm = 3e-6;
-/// Fraction of the width that is used to fit the plane of a facet. The ends of the facet are excluded.
+/// Fraction of the facet's width that is used to fit the plane of the facet. The ends of the facet are excluded.
 constexpr double kPlaneShare = 0.8;
 /// Maximum distance of a measured point from the root, in lengths of a facet, for which is_beside() is reliable.
 constexpr double kReachShare = 4.0;
 
-/// Positions along the root: of the stations, which are the cross-sections where facets are measured, and of the passes
-/// of the tool.
+/// Positions along the root: those of the stations (cross-sections in which the facets are measured), and those of the
+/// passes of the tool.
 struct Stations {
   std::vector<double> along_mm;         ///< positions of the sections
   std::vector<double> pass_middles_mm;  ///< center of each pass
@@ -64,7 +64,8 @@ class Measurer {
 
   /// Measures the deviations of a facet from the design.
   /// \param is_ploughed true if this facet is ploughed
-  /// \param is_other_ploughed true if the other facet is ploughed. Its surface then rises along the edge as predicted
+  /// \param is_other_ploughed true if the other facet is ploughed. The predicted rise of that facet along the edge is
+  ///        then taken into account
   FacetFigures measure(std::size_t facet, bool is_ploughed, bool is_other_ploughed) {
     FacetFigures figures;
     figures.is_ploughed = is_ploughed;
@@ -118,9 +119,10 @@ class Measurer {
            slant <= 0.98 * groove_.facet_length_mm;
   }
 
-  /// Computes the position and height of the burr that plunges along the two facets may leave at the root. It remains
-  /// between the rake faces if the tips end above the root by up to t, measured along the facets
-  /// (docs/theory/verification.md). If the rake faces do not intersect, a fin remains, which is not allowed.
+  /// Computes the position and height of the burr that plunges along the two facets may leave at the root. The tips of
+  /// the plunges may end above the root, by a distance of up to `t` along the facets. The burr is the material that
+  /// then remains between the two rake faces (docs/theory/verification.md). If the rake faces do not intersect, the
+  /// remaining material is a fin, which is not allowed.
   void find_burr() {
     const double up = wedge_.rake_direction.dot(wedge_.clearance_direction);
     const double slope = std::tan(std::acos(std::clamp(up, -1.0, 1.0)) + std::asin(wedge_.sides[0].outward.z()));
@@ -255,9 +257,10 @@ class Measurer {
     return surface_along(spans_, is_at_root ? groove_.to_face_mm(point, direction) : exit_of(facet, point));
   }
 
-  /// Measures the residual material at the root. The line runs close to the other facet, and therefore inside the layer
-  /// that the tolerance allows on that facet. If this layer disturbs the result, a second line above the layer is used.
-  /// The thickness of the layer is then subtracted, as an allowance for the inclined rake face of the last plunge.
+  /// Measures the residual material at the root along a line close to the other facet. This line is inside the layer
+  /// that the tolerance allows on the other facet. If material in this layer disturbs the result, a second line above
+  /// the layer is used. The inclined rake face of the last plunge increases the result on the second line, so the
+  /// thickness of the layer is subtracted.
   LineSurface at_root(std::size_t facet, double along, double slant) {
     const LineSurface close = surface_at(facet, along, slant);
     const double above = slant + layer_end_mm_;
@@ -346,7 +349,7 @@ class Measurer {
   const ToolWedge& wedge_;
   const Prediction& prediction_;
   std::vector<const SweptVolume*> by_pose_;  ///< all sweeps, ordered by pose
-  std::vector<const SweptVolume*> near_;     ///< the sweeps of select_sweeps(), ordered by pose
+  std::vector<const SweptVolume*> near_;     ///< sweeps selected by select_sweeps(), ordered by pose
   Stations stations_;
   double strip_mm_ = 0.0;
   /// Distance from the root up to which the tolerance of the other facet affects the measurement.

@@ -17,7 +17,8 @@ using geometry::Vec3;
 constexpr int kTangents = 32;
 /// Maximum distance of the search from an edge, in radii of the nose.
 constexpr double kFurthest = 40.0;
-/// Maximum height, in radii, of the end of a cut above the facets. Higher cuts do not reach the dihedral edges.
+/// Maximum height, in radii, above the facets at which a cut ends. Cuts that end higher do not reach the dihedral
+/// edges.
 constexpr double kNear = 20.0;
 
 /// Returns the normalized component of a vector that is perpendicular to a unit vector.

@@ -63,9 +63,9 @@ std::vector<double> stations_mm(const Groove& groove, double wall_mm, double too
   return stations;
 }
 
-/// Returns the distances from the apex of the sections across a dihedral edge. The first layer begins at a third of the
-/// edge length. The second section is slightly above this point, so that all layers cross it. Only the last layers
-/// cross the sections near the apex.
+/// Returns the positions of the cross-sections of a dihedral edge, as distances from the apex along the edge. The first
+/// layer begins at a third of the edge length. The second section is slightly beyond this point, so that all layers
+/// cross it. The section near the apex is crossed only by the last layers.
 std::vector<double> places_mm(double edge_mm, double depth_mm) {
   const double first = std::min(edge_mm / 3.0 + 1.5 * depth_mm, 0.45 * edge_mm);
   return {0.12 * edge_mm, first, 0.6 * edge_mm};
@@ -74,7 +74,8 @@ std::vector<double> places_mm(double edge_mm, double depth_mm) {
 }  // namespace
 
 std::vector<ConvexPiece> StandingSection::cut(std::span<const ToolWedge::Side> sides, const RigidMotion& pose) {
-  // A side whose normal has a smaller component in the section plane is considered parallel to this plane.
+  // Minimum component, in the section plane, of the normal of a side. A side with a smaller component is considered
+  // parallel to the section plane.
   constexpr double kAcross = 1e-12;
   const Vec3 u = pose.direction(plane.across);
   const Vec3 v = pose.direction(plane.up);

@@ -126,7 +126,8 @@ std::optional<LineSpan> swept_span(const ToolWedge& wedge, const SweptVolume& sw
 }
 
 std::vector<ToolWedge::Side> swept_sides(const ToolWedge& wedge, const SweptVolume& sweep) {
-  constexpr double kLevel = 1e-15;  // sides with a smaller rate are considered parallel to the travel
+  // Sides with a smaller outward displacement per unit of t are considered parallel to the travel.
+  constexpr double kLevel = 1e-15;
   struct Bound {
     ToolWedge::Side side;
     double rate = 0.0;  ///< outward displacement of the side per unit of t

@@ -31,7 +31,8 @@ struct ToolWedge {
     double bound_mm = 0.0;
   };
   /// Sides of the wedge, at most kMostSides. Chisel: clearance face, rake face, ends of the edge at +X and -X. V-shaped
-  /// tool: clearance face, leading flank, and the trailing flank twice. A rounded nose adds its tangential planes.
+  /// tool: clearance face, leading flank, trailing flank, and the trailing flank again as the fourth side. A rounded
+  /// nose adds its tangential planes.
   std::vector<Side> sides;
   geometry::Vec3 edge = geometry::Vec3::UnitX();                 ///< direction of the edge
   geometry::Vec3 clearance_direction = geometry::Vec3::UnitZ();  ///< upward direction in the clearance face
