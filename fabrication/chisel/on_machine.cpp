@@ -56,7 +56,8 @@ bool fits_all_zones(const Job& job, const Tool& tool) {
 }
 
 /// Searches for the smallest sufficient wedge angle in steps of 0.1 degrees, beginning at the wedge angle of the job.
-/// The tool must fit all zones, and its fins must not be higher than `max_mm`.
+/// The tool must fit all zones. Its fins (thin ridges that remain along dihedral edges) must not be higher than
+/// `max_mm`.
 /// \param fin_mm function that returns the maximum height of a fin for a tool
 /// \return the wedge angle, or nullopt if no angle is sufficient
 std::optional<double> allowed_wedge_deg(const Job& job, double max_mm,

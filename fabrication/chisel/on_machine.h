@@ -26,13 +26,13 @@ bool has_finishing_cuts(const Job& job);
 ///        the increments of the control
 void check_on_machine(const Job& job, const Machine& machine);
 
-/// Checks the height of the fins that a V-shaped tool leaves along dihedral edges when the control rounds positions.
-/// The maximum is max_fin_mm().
+/// Checks the height of the fins (thin ridges) that a V-shaped tool leaves along dihedral edges when the control rounds
+/// positions. The maximum height is max_fin_mm().
 /// \pre the tool fits the cube corner if positions are exact
 /// \param root_tilts rotation of each facet about its normal, relative to the tool
 /// \param who beginning of the error message
-/// \throw InputError with the key to change: a larger wedge angle, or smaller increments of the control if no wedge
-/// angle is large enough
+/// \throw InputError at tool.wedge_deg if a larger wedge angle is sufficient. Otherwise, it is thrown at `machine` if
+///        smaller increments are sufficient, or at tool.nose_angle_deg
 void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner,
                 const std::array<Angle, 3>& root_tilts = {}, const std::string& who = "");
 

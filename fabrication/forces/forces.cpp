@@ -127,8 +127,8 @@ std::vector<ForceSample> force_profile(const ForceModel& model, const CutConditi
   const double root_s = contact_s + cut.plunge_mm / feed;
   const auto fraction_of = [&](double depth, double travel) { return std::clamp(depth / travel, 0.0, 1.0); };
   std::vector<ForceSample> samples = {{0.0, ForcePhase::approach, 0, 0, 0, 0}};
-  // Corners of the force during a plunge: contact, full chip load along Z and Y, start of the additional force at the
-  // root, root.
+  // Corners of the piecewise linear force during a plunge: first contact, full chip load along Z and along Y, start of
+  // the additional force at the root, and the root.
   std::vector<double> corners = {0.0, mm(model.chip_travel_um.at(d)), mm(model.chip_travel_fy_um.at(d)),
                                  cut.plunge_mm - mm(model.root_travel_um.at(d)), cut.plunge_mm};
   for (double& corner : corners) corner = std::clamp(corner, 0.0, cut.plunge_mm);

@@ -8,8 +8,8 @@
 
 namespace retrace::fabrication {
 
-/// Least increments of the control. Planned positions are whole multiples of them, so that they are not changed when
-/// they are written to a program.
+/// Least increments of the control. Planned positions are whole multiples of these increments, so writing the positions
+/// to a program does not change them.
 struct Increments {
   std::int64_t linear_nm = 1;     ///< increment of linear axes, in nm
   std::int64_t rotary_units = 1;  ///< increment of rotary axes, in units of 1e-7 degrees

@@ -42,7 +42,7 @@ struct Interval {
 inline const Sourced<double> kNoJerkLimit = {std::numeric_limits<double>::infinity(), Basis::assumed,
                                              "acceleration begins at once, as for every axis that names no jerk"};
 
-/// Linear axis. Positive positions move the tool along `direction` relative to the workpiece.
+/// Linear axis. Increasing positions move the tool along `direction` relative to the workpiece.
 struct LinearAxis {
   Sourced<geometry::Vec3> direction;  ///< unit vector, in the workpiece frame at A = C = 0
   Sourced<Interval> limits_mm;

@@ -225,8 +225,8 @@ class CutMotion {
   Matrix3d directions_;
   Vec3 at_words_, edge_, travel_, tip_, point_;
 
-  // Derivatives. Rotation of the whole tool and displacement of its tip are in the workpiece frame, the others in the
-  // machine frame.
+  // Derivatives. The rotation of the whole tool (`turn_`) and the displacement of its tip (`shift_`) are in the
+  // workpiece frame. The changes of the edge and of the travel are in the machine frame.
   Vec3 turn_ = Vec3::Zero();
   Vec3 shift_ = Vec3::Zero();
   Vec3 edge_change_ = Vec3::Zero();

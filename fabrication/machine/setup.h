@@ -43,7 +43,7 @@ struct SetupQuantity {
 
 /// Returns the quantities of a kind of machine, always in the same order.
 std::span<const SetupQuantity> setup_quantities(Tilt tilt);
-/// Returns the quantity with a key, or null if this kind of machine does not have it.
+/// Returns the quantity with the given key, or null if this kind of machine does not have it.
 const SetupQuantity* setup_quantity(Tilt tilt, std::string_view key);
 
 /// Returns the machine with an error of one quantity.
@@ -51,7 +51,7 @@ const SetupQuantity* setup_quantity(Tilt tilt, std::string_view key);
 Machine with_error(Machine machine, const SetupQuantity& quantity, double amount);
 /// Returns the machine with errors of all quantities.
 /// \param amounts values in um or arcsec, in the order of setup_quantities()
-/// \pre the size is that of setup_quantities()
+/// \pre `amounts` contains one value for each quantity of setup_quantities()
 Machine with_errors(Machine machine, std::span<const double> amounts);
 
 /// Derivative of the plane of a cut with respect to a quantity, per um or arcsec (docs/theory/kinematics.md).

@@ -1,6 +1,7 @@
 #pragma once
 
-// Programs in a neutral form between planner and writers, independent of dialects. All positions are integers.
+// Data types for NC programs that do not depend on a dialect. The planner creates these programs, and a writer for each
+// dialect converts them to text. All positions are integers.
 
 #include <array>
 #include <cmath>
@@ -47,8 +48,8 @@ inline geometry::Vec3 millimetres(const Place& place) {
 enum Axis : std::size_t { kX, kY, kZ, kTilt, kC };
 inline constexpr std::size_t kAxes = 5;
 
-/// Positions of a move for each axis: nanometres for X, Y and Z, and rotary units for the others. Empty: the axis does
-/// not move.
+/// Positions of a move for each axis: nanometres for X, Y and Z, and rotary units for the tilting axis and C. An axis
+/// without a value does not move.
 using Words = std::array<std::optional<std::int64_t>, kAxes>;
 
 /// Returns positions for X, Y and Z only.
@@ -140,13 +141,14 @@ struct Spindle {
   bool has_unchecked_lines = false;  ///< true: start_text and stop_text are not checked
 };
 
-/// Self-contained program: preparation, `items` in their order, end. Texts are single lines of ASCII without brackets,
-/// quotes, semicolons and percent signs.
+/// Self-contained program. It prepares the machine, executes `items` in their order, and ends the program. Texts are
+/// single lines of ASCII without brackets, quotes, semicolons and percent signs.
 struct Program {
   std::string name;  ///< file name without extension
   std::vector<std::string> header;
   std::optional<Spindle> spindle;  ///< rotates during all items; empty: the spindle does not rotate
-  bool has_mist = true;     ///< true: mist from the first cut to the next rapid move of Z only, if the control has mist
+  /// True: mist from the first cut until the next rapid move that moves only Z, if the control has mist.
+  bool has_mist = true;
   bool needs_mist = false;  ///< true: the control must have mist
   std::vector<Subroutine> subroutines;
   std::vector<Item> items;

@@ -17,7 +17,8 @@ class ClearWay {
  public:
   ClearWay(const Job& job, const Machine& machine);
 
-  /// Returns true if all rapid moves from `from` to the start of a visit keep the clearance of the process.
+  /// Returns true if all rapid moves from `from` to the start of a visit (one call of a subroutine at an element) keep
+  /// the clearance of the process.
   bool is_clear(const Words& from, const Visit& visit, const CuttingPose& pose) const;
 
  private:

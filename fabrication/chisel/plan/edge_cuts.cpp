@@ -24,7 +24,7 @@ Angle edge_rise(const Job& job) {
   return Angle::from_deg(job.strategy == Strategy::dmc ? 90.0 - 0.5 * job.tool.nose_angle_deg : 0.0);
 }
 
-/// Collects the cuts of all visits.
+/// Collects the cuts of all visits. A visit is one call of a subroutine at an element.
 class Collector {
  public:
   Collector(const Job& job, const Plan& plan, const std::vector<std::size_t>& elements)
@@ -94,7 +94,8 @@ class Collector {
   const Job& job_;
   const Plan& plan_;
   const std::vector<std::size_t>& elements_;
-  /// Index of each stage, by the title of its subroutine: numbers of subroutines differ between programs.
+  /// Index of each stage. The key is the title of the stage's subroutine, because the numbers of subroutines differ
+  /// between programs.
   std::map<std::string, std::size_t> stages_;
   std::vector<FacetEdgeCut> cuts_;
 };

@@ -44,7 +44,7 @@ class EdgeAccount {
   void cut(double mm) { used_.cut_mm += mm; }
   const EdgeUse& used() const { return used_; }
 
-  /// Returns the reason for a stop before a visit, or nothing if no stop is required.
+  /// Returns the reason for which a stop is required before a visit, or nothing if no stop is required.
   std::optional<StopReason> stop_before(const EdgeUse& visit) const;
   /// Returns true if the visit needs a new edge and therefore a new program.
   bool needs_program(const EdgeUse& visit) const;

@@ -19,7 +19,7 @@ void put_in_order(const std::vector<CutElement>& elements, bool rotated, std::ve
     if (line_of(a) != line_of(b)) return line_of(a) < line_of(b);
     return place_of(a) < place_of(b);
   });
-  // Reverse every second line. Empty lines are not counted.
+  // Reverse every second line. Lines without elements are not counted.
   bool backwards = false;
   for (auto first = order.begin(); first != order.end();) {
     const auto last = std::find_if(first, order.end(), [&](std::int32_t k) { return line_of(k) != line_of(*first); });

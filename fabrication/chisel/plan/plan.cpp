@@ -31,7 +31,7 @@ using geometry::Vec3;
 
 constexpr double kSecondsPerHour = 3600.0;
 
-/// Replaces the characters that are not allowed in comments of all dialects by underscores.
+/// Replaces every character that at least one dialect does not allow in comments by an underscore.
 std::string plain(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -230,7 +230,8 @@ class ProgramMaker {
   }
 
   void turn(RotaryUnits a, RotaryUnits c) {
-    // At the start of a program, the rotary positions are not known. They are assumed to be 0, where programs end.
+    // At the start of a program, the rotary positions are not known. They are assumed to be 0, because programs end at
+    // 0.
     const RotaryUnits by_a = rotation(machine_.tilt_letter(), a - at_[kTilt].value_or(0));
     const RotaryUnits by_c = rotation('C', c - at_[kC].value_or(0));
     if (at_[kTilt] == a && at_[kC] == c) return;
@@ -286,7 +287,8 @@ class ProgramMaker {
     go_to(at_, move.to);
   }
 
-  /// Skips some visits. The direction of the passes alternates between visits, so an odd number reverses it.
+  /// Skips some visits of elements. The order of the parallel passes alternates from visit to visit, so an odd number
+  /// of skipped visits reverses this order.
   void skip(std::ptrdiff_t visits) { forth_ = forth_ != (visits % 2 != 0); }
 
   /// Returns the parallel passes of an element. Their order alternates from visit to visit.
@@ -308,7 +310,8 @@ class ProgramMaker {
     return passes;
   }
 
-  /// Returns the length of cut of a visit and its maximum run time, with a move via the safe height to each pass.
+  /// Returns the length of cut and the run time of all passes of a visit. The run time is an upper limit, which assumes
+  /// a move to the safe height before each pass.
   EdgeUse use_of(const Stage& stage, const std::vector<Visit>& passes) const {
     EdgeUse use;
     if (!job_.tool.edge_life_mm && !job_.process.stop_every_min) return use;

@@ -22,9 +22,10 @@ struct PlanOptions {
   /// followed by "+" selects this stage and all later stages.
   std::string phase = "all";
   std::optional<std::int64_t> from_element;  ///< number of the element at whose first visit the program starts
-  std::optional<std::int64_t> from_pass;     ///< number, from 1, of the pass of that visit at which the program starts
-  std::optional<std::int64_t> stop_every;    ///< number of visits between optional stops
-  std::optional<double> split_hours;         ///< maximum run time of a program, unless a single visit takes longer
+  /// Number, from 1, of the pass at which the program starts, in the first visit of `from_element`.
+  std::optional<std::int64_t> from_pass;
+  std::optional<std::int64_t> stop_every;  ///< number of visits between optional stops
+  std::optional<double> split_hours;       ///< maximum run time of a program, unless a single visit takes longer
   std::string before;  ///< only the stages before this stage or group of stages are planned; empty: no restriction
 };
 
@@ -45,8 +46,8 @@ struct Stage {
   std::size_t pose = 0;  ///< index in Plan::poses
   std::uint32_t subroutine = 0;
   bool roughs = false;
-  int cut = 0;              ///< number of this cut, from 1; 0 for roughing
-  int cuts = 0;             ///< number of such cuts of each facet
+  int cut = 0;              ///< number of this layer or finishing cut, from 1; 0 for roughing in one stage
+  int cuts = 0;             ///< total number of layers, or of finishing cuts, on each facet
   double left_mm = 0.0;     ///< thickness of the material that remains on the cut facets after this stage
   std::int64_t visits = 0;  ///< number of planned visits
   TimeShares time;
@@ -59,7 +60,7 @@ struct PlannedStop {
   std::size_t stage = 0;     ///< index in Plan::stages
   std::int32_t element = 0;  ///< element with which the program continues
   double at_s = 0.0;         ///< run time since the start of the program
-  EdgeUse used;              ///< use since the previous stop, or since the edge was new if there was no stop
+  EdgeUse used;  ///< use of the edge since the previous stop, or since the edge was new if there was no stop
 };
 
 /// Number of a program's first subroutine.

@@ -116,7 +116,7 @@ double left_of_roughing_mm(const Job& job, double across_mm, int cut, int cuts, 
   const double least_mm = 1e-3 * job.process.least_chip_um.value_or(0.0);
   const double left_mm = depth_mm * (cuts - cut);
   const double taken_mm = across_mm - left_mm;
-  // A cut above the blank's face removes nothing.
+  // A cut above the blank's face removes nothing, so the minimum chip thickness does not apply to this cut.
   if (least_mm == 0.0 || taken_mm <= -dip_mm || share * taken_mm - dip_mm >= least_mm) return left_mm;
   const double shared_mm = cut < cuts ? 0.5 * (taken_mm + depth_mm) : taken_mm;
   if (share * shared_mm - dip_mm < least_mm)

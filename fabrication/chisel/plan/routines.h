@@ -21,7 +21,7 @@ struct Routine {
 int cuts_per_facet(const Job& job, double stock_mm = 0.0);
 
 /// Returns the thickness that roughing removes from a facet, along its normal. For a bidirectional strategy, returns
-/// half of the thickness.
+/// half of this thickness, because each layer removes material from both facets.
 /// \throw InputError naming the key if nothing remains for roughing
 double roughing_across_mm(const Job& job, double stock_mm);
 

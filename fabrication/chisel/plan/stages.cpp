@@ -88,7 +88,7 @@ class StageMaker {
     const double across_mm =
         is_dmc ? chiseling_across_mm(job_, zone, plan_.stock_mm) : roughing_across_mm(job_, plan_.stock_mm);
     // The second plunge of the first layer has the thinnest chip. Its material is the remainder of the triangular
-    // cross- section above the rake face of the first plunge.
+    // cross-section above the rake face of the first plunge.
     double share = 1.0;
     if (!is_dmc) {
       const double apex_rad = plan_.poses.front().section.apex.rad();

@@ -26,7 +26,8 @@ std::string machine_text(const Machine& machine);
 /// Returns the shipped machines (data/machines/*.toml).
 std::vector<Machine> shipped_machines();
 
-/// Returns the shipped machine with a name, or the machine in a file. A name with an extension is a file.
+/// Returns the shipped machine with the given name, or the machine in the given file. A name with an extension is a
+/// file name.
 /// \throw InputError at `where` if the machine does not exist, or if the file is invalid
 Machine load_machine(const std::string& name_or_file, const InputLocation& where);
 
