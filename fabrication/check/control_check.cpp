@@ -236,9 +236,9 @@ bool ControlCheck::is_within_turn(const LimitExcess& excess) const {
   return excess.position + turns * turn_deg <= excess.limits.high;
 }
 
-/// Checks the speed of each axis in a move at a feed. The feed is the speed along the path of the linear axes, or of
-/// the rotary axes if only these move. Each axis gets a part of the feed. An axis with unknown start position may move
-/// at the full feed.
+/// Checks the speed of each axis in a move at a feed. The feed is the speed along the path of the linear axes, or along
+/// that of the rotary axes if only these axes move. The speed of an axis is its component of the feed. If the start
+/// position of an axis is unknown, the axis is assumed to move at the full feed.
 void ControlCheck::axis_speeds(const Machine& machine, const NcMotion& motion) {
   const AxisPositions& from = motion.from;
   const AxisPositions& to = motion.to;

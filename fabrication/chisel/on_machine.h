@@ -13,8 +13,8 @@
 namespace retrace::fabrication {
 
 /// Minimum cosine of the angle between a facet and the plane that the edge sweeps in a cut along this facet. It is
-/// about the cosine of 10 degrees. Errors of machine axes are only arc minutes, and facets are at least 60 degrees
-/// apart.
+/// about the cosine of 10 degrees. The exact value is not critical: errors of machine axes are only arc minutes, and
+/// facets are at least 60 degrees apart.
 inline constexpr double kAlongFacet = 0.985;
 
 /// Returns true if the strategy of the job has finishing cuts.

@@ -114,9 +114,9 @@ using Velocities = std::array<double, kAxes>;
 /// Path of timed moves without stops between them. It begins at the present axis positions.
 struct Path {
   std::vector<Move> moves;
-  /// Velocities of all axes at the end of each move. Each axis then follows a cubic polynomial of time, with the
-  /// positions and velocities at both ends of a move. The path starts and ends at rest, and all moves have the same
-  /// axes. Empty: straight moves.
+  /// Velocities of all axes at the end of each move. Each axis then follows a cubic polynomial of time, which is
+  /// determined by the positions and velocities at both ends of a move. The path starts and ends at rest, and all moves
+  /// have the same axes. If the list is empty, the moves are straight.
   std::vector<Velocities> end_velocities = {};
   double blend_mm = 1e-6;  ///< maximum deviation from the path between moves, for controls that support a tolerance
 };

@@ -160,7 +160,7 @@ void ProgramCheck::find_corners(const SweptVolume& sweep, std::optional<std::siz
   corners_.clear();
   const RigidMotion& back = back_[sweep.pose];
   const BlankFace& face = way_.face();
-  // Outside of the elements, the face is approximated by its tangential plane below the tool.
+  // Outside of the elements, the face is approximated by its tangent plane below the tool.
   const Vec3 tip = back.point(sweep.to_mm);
   const Vec3 out = element ? workpiece_.grooves[*element].axis : face.normal_at(tip);
   const double face_mm = element          ? workpiece_.grooves[*element].face_mm

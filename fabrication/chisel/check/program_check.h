@@ -55,7 +55,7 @@ class ProgramCheck : public NcSink {
  private:
   std::size_t pose_index(const RotaryPose& pose);
   void check_cut(const NcMotion& motion, const SweptVolume& sweep, std::size_t element);
-  /// Finds the corners of the tool's part that is inside the blank during a move, in the workpiece frame.
+  /// Finds the corners of the part of the tool that is inside the blank during a move, in the workpiece frame.
   void find_corners(const SweptVolume& sweep, std::optional<std::size_t> element);
   std::optional<std::size_t> element_of(const SweptVolume& sweep) const;
 

@@ -55,11 +55,12 @@ struct Verification {
   double root_residual_nm_predicted = 0.0;
   double wall_overcut_nm_max = 0.0;
   double wall_overcut_nm_predicted = 0.0;
-  double chip_um_max = 0.0;      ///< maximum chip thickness, perpendicular to the plane that the edge sweeps
-  double chip_share_max = 0.0;   ///< maximum chip thickness divided by its limit; values above 1 give a finding
-  double root_radius_um = 0.0;   ///< radius of the root due to the radius of the tool's edge
-  double root_chamfer_um = 0.0;  ///< total width of the strips that the nose of a V-shaped tool leaves at an edge
-  double root_ridge_um = 0.0;    ///< height of the ridge between these strips, above the dihedral edge
+  double chip_um_max = 0.0;     ///< maximum chip thickness, perpendicular to the plane that the edge sweeps
+  double chip_share_max = 0.0;  ///< maximum chip thickness divided by its limit; values above 1 give a finding
+  double root_radius_um = 0.0;  ///< radius of the root due to the radius of the tool's edge
+  /// Total width of the strips that the nose of a V-shaped tool leaves along a dihedral edge.
+  double root_chamfer_um = 0.0;
+  double root_ridge_um = 0.0;  ///< height of the ridge between the strips of two facets, above the dihedral edge
   /// Volume that is unavoidably removed outside of the apertures of hexagonal cube corners. Their cavities are
   /// triangular, so that the outermost ones extend beyond the array.
   double border_overcut_mm3 = 0.0;

@@ -37,7 +37,7 @@ class WayCheck {
   /// Checks the holder of the tool for collisions with the blank.
   void holder(const SweptVolume& sweep, const RigidMotion& back);
   /// Checks a cut outside of all elements.
-  /// \param corners corners of the tool's part inside the blank
+  /// \param corners corners of the part of the tool that is inside the blank
   void outside(const SweptVolume& sweep, std::span<const geometry::Vec3> corners);
 
   const BlankFace& face() const { return face_; }

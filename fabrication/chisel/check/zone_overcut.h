@@ -12,7 +12,7 @@ namespace retrace::fabrication {
 
 struct ZoneOvercut {
   double volume_mm3 = 0.0;    ///< volume removed outside of all hexagons or below the facets of other zones
-  double area_mm2 = 0.0;      ///< area, in plan, of the facets of other zones that are damaged
+  double area_mm2 = 0.0;      ///< area, seen along Z, of the facets of other zones that are damaged
   double deepest_mm = 0.0;    ///< maximum depth of the material that is removed from these facets, along z
   std::int64_t elements = 0;  ///< number of elements that lose material
 };

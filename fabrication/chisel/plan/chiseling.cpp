@@ -28,8 +28,8 @@ Vec3 words_of(const Machine& machine, const Vec3& point_mm, const RotaryPose& po
   return {axes.x_mm, axes.y_mm, axes.z_mm};
 }
 
-/// Transforms the unit normal of a plane in the workpiece frame to the coordinates of the linear axes' positions. For a
-/// head that tilts, these positions are not points of the machine frame.
+/// Transforms the unit normal of a plane from the workpiece frame to the coordinate space of the axis positions X, Y
+/// and Z. If the head tilts, these positions are not points of the machine frame.
 Vec3 in_words(const Machine& machine, const RotaryPose& pose, const Vec3& normal) {
   const Vec3 zero = words_of(machine, Vec3::Zero(), pose);
   Eigen::Matrix3d words_from_points;

@@ -14,9 +14,9 @@ struct Routine {
 };
 
 /// Returns the number of roughing cuts per facet, or the number of layers of a bidirectional strategy. Unidirectional
-/// cuts are slices of thickness `roughing_depth_um` (DOC) parallel to facet 1. At 90 degrees, their number is
-/// ceil((base / sqrt 2 - allowance) / DOC). Bidirectional layers are nested V shapes with equal thickness on both
-/// facets.
+/// cuts are slices of thickness `roughing_depth_um` (DOC) parallel to facet 1. At an apex angle of 90 degrees, the
+/// number of slices is ceil((base / sqrt 2 - allowance) / DOC). Bidirectional layers are nested V shapes with equal
+/// thickness on both facets.
 /// \param stock_mm height of the blank's face above the rims
 int cuts_per_facet(const Job& job, double stock_mm = 0.0);
 
@@ -58,12 +58,13 @@ double finishing_allowance_mm(const Job& job);
 /// radius of the edge.
 double shortest_plough_mm(const Job& job, const Section& section);
 
-/// Returns the subroutine with all cuts of an element by plunging and ploughing. The distance of cut i of N from the
-/// last wall is (N - i) times the depth of cut. The root of every cut is on the floor. The finishing allowance remains
-/// on wall and floor.
+/// Returns the subroutine with all cuts of an element by plunging along the wall (one facet) and ploughing along the
+/// floor (the other facet). The distance of cut i of N from the last wall is (N - i) times the depth of cut. The root
+/// of every cut is on the floor. The finishing allowance remains on wall and floor.
 Routine unidirectional_routine(const Job& job, const Section& section);
 
-/// Returns the subroutine with one plunge along the wall and a retract along the bisector.
+/// Returns the subroutine with one plunge along the wall (the plunged facet) and a retract along the bisector of wall
+/// and floor (the other facet).
 /// \param left_mm thickness that remains on wall and floor
 Routine plunge_routine(const Job& job, const Section& section, double left_mm, double feed_mm_per_min);
 

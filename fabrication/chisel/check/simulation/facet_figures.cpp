@@ -22,7 +22,8 @@ constexpr double kAtRootMm = 1.5e-6;
 constexpr double kMostLayerShare = 0.01;
 /// Maximum tolerance for the position of a pass along the root, relative to half of the width of the element.
 constexpr double kMostEndShare = 0.01;
-/// Safety factor on the predicted size of the strip at the root. It allows for rounded poses and positions.
+/// Safety factor on the predicted width of the strip at the root that the edge leaves uncut. It allows for rounded
+/// poses and positions.
 constexpr double kRootMargin = 1.05;
 constexpr int kEvenLines = 12;
 /// Maximum distance, in mm, between the centers of two passes that count as one pass. Their ploughed surfaces differ by

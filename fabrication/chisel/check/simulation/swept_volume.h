@@ -32,7 +32,7 @@ struct ToolWedge {
   };
   /// Sides of the wedge, at most kMostSides. Chisel: clearance face, rake face, ends of the edge at +X and -X. V-shaped
   /// tool: clearance face, leading flank, trailing flank, and the trailing flank again as the fourth side. A rounded
-  /// nose adds its tangential planes.
+  /// nose adds planes that are tangent to its arc.
   std::vector<Side> sides;
   geometry::Vec3 edge = geometry::Vec3::UnitX();                 ///< direction of the edge
   geometry::Vec3 clearance_direction = geometry::Vec3::UnitZ();  ///< upward direction in the clearance face
