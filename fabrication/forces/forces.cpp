@@ -101,7 +101,8 @@ ForceEvents force_events(const ForceModel& model, const CutConditions& cut) {
   ForceEvents events;
   events.full_chip_fz_n = -model.chip_fz_n_per_mm.at(d) * cut.width_mm;
   events.full_chip_fy_n = -model.chip_fy_n_per_mm.at(d) * cut.width_mm;
-  // The measured friction begins at full chip load.
+  // The friction force rises from the position of full chip load to the position where the additional force at the root
+  // begins. `rising_mm` is the distance between these positions.
   const double rising_mm = std::max(0.0, cut.plunge_mm - mm(model.root_travel_um.at(d)) - chip_mm);
   events.before_root_fz_n = events.full_chip_fz_n - friction * rising_mm;
   events.root_fx_n = is_isolated(cut) ? -model.side_fx_n_per_mm.at(d) * cut.plunge_mm : 0.0;
@@ -110,8 +111,8 @@ ForceEvents force_events(const ForceModel& model, const CutConditions& cut) {
     events.peak_fy_n = -model.plough_fy_n_per_mm.at(d) * cut.width_mm;
     return events;
   }
-  // These forces were measured at one depth of cut with another tool. They are scaled with the cross-section of the
-  // chip.
+  // The forces of bidirectional cuts were measured at one depth of cut with another tool. They are scaled with the
+  // cross-section of the chip.
   const auto f = static_cast<std::size_t>(cut.facet - 1);
   const double share = d / model.bidirectional_um * cut.width_mm;
   events.root_fz_n = std::min(events.before_root_fz_n, -model.bidirectional_root_n_per_mm[f] * share);

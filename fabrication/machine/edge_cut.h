@@ -1,7 +1,7 @@
 #pragma once
 
-// Computes the plane that a straight cut produces in the workpiece. The axis positions of the cut may have been planned
-// for another machine.
+// Computes the plane that a straight cut produces in the workpiece. The machine on which the cut is made may differ
+// from the machine for which the axis positions were planned.
 
 #include "fabrication/machine/machine.h"
 #include "geometry/vec.h"
@@ -34,8 +34,8 @@ struct CutPlane {
 /// tool about its edge therefore does not change these axes.
 Eigen::Matrix3d edge_frame(const Machine& machine);
 
-/// Returns the change of the clearance angle due to the mounting of the tool. It is the rotation angle of a chisel
-/// about its edge, relative to the plane of plunging.
+/// Returns the change of the clearance angle due to the mounting of the tool. A chisel may be mounted with a rotation
+/// about its edge, relative to the plane of plunging. The angle of this rotation is the result.
 Angle clearance_change(const Machine& machine);
 
 /// Returns the unit vector along the cutting edge, in the machine frame.

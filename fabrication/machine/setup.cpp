@@ -142,7 +142,8 @@ class CutMotion {
   }
 
  private:
-  /// Applies a small rotation about a point of an inclined axis.
+  /// Sets the derivatives for a small rotation about a point of an axis. Such a rotation occurs if the axis is
+  /// inclined.
   /// \param from_axis vector from this point to the tip
   void turn_about(const Vec3& turn, const Vec3& from_axis) {
     turn_ = turn;
@@ -172,7 +173,8 @@ class CutMotion {
     const Vec3 lean = gain(directions_.col(slide), axis);
     travel_change_ = slides_ * lean * cut_.travel_mm[slide];
     shift_ = both_.rotation.transpose() * slides_ * lean * at_words_[slide];
-    // A tool on a tilting head is aligned with Y and Z.
+    // A tool on a tilting head is aligned with Y and Z. Its edge therefore changes its direction if one of these axes
+    // is inclined.
     if (machine_.tilt == Tilt::head)
       edge_change_ = v_edge_change(slide, lean);
     else if (slide == 2)

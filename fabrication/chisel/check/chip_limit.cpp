@@ -27,7 +27,7 @@ BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spi
     const double away = spine.dot(across.normalized());
     if (away <= 0.0) continue;
     const double slope = spine.dot(normal) / away;
-    // Cosine of the angle between the facet and the material on the neighbouring facet. The chip is evaluated in two
+    // Cosine of the angle between the facet and the material on the neighbouring facet. This angle is computed in two
     // sections: normal to the edge, and in the plane of the two other edges. The larger of the two cosines is used.
     const Vec3& third = cavity.edges[(facet + 2) % 3];
     const double cosine =
@@ -66,7 +66,8 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
   rake_slope_ = std::tan(rake.rad());
   const double sine = std::sin(apex_.rad());
   const double cosine = std::cos(apex_.rad());
-  // Plunges with a tilted edge leave a burr above the uncut strip at the root. Add the height of this burr.
+  // A plunge with a tilted edge leaves an uncut strip at the root, and a burr above this strip. Add the height of the
+  // burr to the tolerance.
   const double across = rake_slope_ * sine + cosine;
   if (across > 0.0)
     slack_mm_ += workpiece.prediction(element).root_mm *
@@ -77,8 +78,8 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
     share_ = std::max(0.0, std::tan(half - rake.rad())) / std::sin(half);
   } else if (cut->is_by_clearance) {
     kind_ = Kind::plunge;
-    // The limit has two kinks. One is where the surface that the last cut left on the other facet crosses the layer
-    // that this plunge removes. The other one is where that surface crosses the rake face.
+    // The limit has two kinks. They are the distances at which the surface that the last cut left on the other facet
+    // crosses the layer that this plunge removes, and at which it crosses the rake face.
     bends_mm_ = {depth_mm * (1.0 + cosine) / sine, depth_mm / std::max(1e-9, sine - rake_slope_ * cosine)};
   } else {
     kind_ = Kind::plough;

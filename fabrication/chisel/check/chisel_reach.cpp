@@ -29,8 +29,8 @@ double edge_mm_of(const geometry::Element& element) {
   return std::numbers::sqrt3 * geometry::element_depth_mm(element);
 }
 
-/// Returns a machine whose linear axes are the coordinate axes. Its machine frame is used as the frame of a facet. The
-/// rotation of the workpiece to this frame is part of the poses in Cutter, so the rotary axes are not used.
+/// Returns a machine without rotary axes for the simulation. Its linear axes are the coordinate axes. The class Cutter
+/// rotates the workpiece instead, so that the machine frame is the frame of the facet that is cut.
 Machine still_machine() {
   Machine machine;
   machine.x.direction.value = Vec3::UnitX();

@@ -29,7 +29,7 @@ class ChiselingCheck : public CutCheck {
     std::array<double, 3> tip_mm{};  ///< heights of the tip above the three facets
     NcPlace place;
     double rest_s = 0.0;   ///< dwell time at the apex
-    bool went_up = false;  ///< true after the move up the second edge
+    bool went_up = false;  ///< true after the move up the second dihedral edge
   };
   /// Progress of one element.
   struct State {
@@ -38,9 +38,10 @@ class ChiselingCheck : public CutCheck {
   };
 
   void open(const CutMove& move);
-  /// Returns the tolerance, in mm, for the position of the tip at the apex of a layer. The tip should have equal
-  /// heights above all facets. The tolerance limits the difference between its height above the facet `other` and its
-  /// height above the facet that is cut. It allows for the rounding of positions to the increments of the control.
+  /// Returns the tolerance, in mm, for the position of the tip at the apex of a layer. At this apex, the heights of the
+  /// tip above all facets should be equal. The tolerance is the maximum difference between the height above the facet
+  /// `other` and the height above the facet that is cut. It allows for the rounding of positions to the increments of
+  /// the control.
   double short_limit_mm(const OpenCut& cut, std::size_t other) const;
   /// Returns the tolerance, in mm, for the difference in remaining material between the facets of one element after a
   /// complete layer.

@@ -18,9 +18,8 @@ struct ZoneOvercut {
 };
 
 /// Computes the overcut on a dense grid of points. At the end of each dihedral edge, a triangular cavity extends beyond
-/// its hexagon in a small corner. Each half of this corner is inside the hexagon of one neighbour. The grid covers a
-/// half unless this neighbour belongs to the same zone and is cut. The relative error of areas and volumes is a few
-/// thousandths.
+/// its hexagon in a small corner. Each half of this corner is inside the hexagon of one neighbour. A half is omitted if
+/// this neighbour belongs to the same zone and is cut. The relative error of areas and volumes is a few thousandths.
 /// \param is_cut for each element: true if it is cut
 /// \pre the job has zones of hexagonal cube corners
 ZoneOvercut zone_overcut(const Workpiece3d& workpiece, const std::vector<bool>& is_cut);

@@ -224,7 +224,7 @@ Place rounded_words(const Vec3& words_mm, const Vec3& along, Nanometres step_nm)
   for (int k = 0; k < 8; ++k) {
     const Vec3 candidate = low + Vec3((k & 1) != 0, (k & 2) != 0, (k & 4) != 0);
     const Vec3 error = candidate - exact;
-    // Among grid points with equal errors along the direction, prefer the nearest one.
+    // Among grid points with equal errors along this direction, prefer the point nearest to the exact position.
     const double measure = std::abs(along.dot(error)) + 1e-3 * error.norm();
     if (measure >= least) continue;
     least = measure;

@@ -1,7 +1,8 @@
 #pragma once
 
 // Plans diamond micro chiseling of cube corners (docs/theory/micro_chiseling.md). A V-shaped tool is tilted by B until
-// its leading edge is in the facet. It moves down one dihedral edge to the apex and up the other one.
+// its leading edge is in the facet. The tool moves down one dihedral edge of the facet to the apex and up the other
+// dihedral edge of the facet.
 
 #include <array>
 #include <string>
@@ -39,7 +40,7 @@ void check_v_in_poses(const Job& job, const Machine& machine, const std::array<C
                       const Stance& stance);
 
 /// Returns the subroutine that cuts one facet of one layer. The tool moves down the first dihedral edge of the facet to
-/// the apex of the layer, and up the second one.
+/// the apex of the layer, and up the second dihedral edge of the facet.
 /// \param left_mm thickness of the material that the layer leaves on all facets
 Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingPose& pose, double left_mm,
                           double feed_mm_per_min);
@@ -49,7 +50,8 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
 std::string zone_description(const Job& job, std::size_t zone);
 
 /// Rounds axis positions to whole increments. If `along` is 0, each position is rounded to the nearest increment.
-/// Otherwise, the result is the one of the eight neighbouring grid points with the smallest error along this direction.
+/// Otherwise, one of the eight neighbouring grid points is returned: the point with the smallest error along the
+/// direction `along`.
 Place rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along, Nanometres step_nm);
 
 }  // namespace retrace::fabrication

@@ -33,7 +33,8 @@ struct EdgeUse {
   double seconds = 0.0;
 };
 
-/// Adds up the use of the present edge and decides whether a stop or a new program is required before more cuts.
+/// Adds up the length of cut and the run time of the edge in use. Decides whether a stop or a new program is required
+/// before the next visit.
 class EdgeAccount {
  public:
   explicit EdgeAccount(const Job& job) : job_(job) {}
@@ -48,7 +49,7 @@ class EdgeAccount {
   std::optional<StopReason> stop_before(const EdgeUse& visit) const;
   /// Returns true if the visit needs a new edge and therefore a new program.
   bool needs_program(const EdgeUse& visit) const;
-  /// Checks that a visit can be made as the first one after a stop.
+  /// Checks that a new edge and a stop before the visit are sufficient to make the visit within the limits.
   /// \param fresh_s run time from this stop to the visit
   /// \throw InputError naming the key if the visit exceeds the tool life or the maximum run time
   void check(const EdgeUse& visit, double fresh_s, std::int32_t element) const;

@@ -89,8 +89,8 @@ struct Plan {
 /// \throw InputError naming axis and element for a job that the machine cannot cut, or for options that do not apply
 Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& options = {});
 
-/// Returns the Z position, in mm, at which the rotary axes may move. It is the maximum height of the corners of the
-/// blank's face while A moves from 0 to the poses and C rotates by a full turn, plus `rotary_clearance_mm` and
+/// Returns the minimum Z position, in mm, at which the rotary axes may move. It is the maximum height of the corners of
+/// the blank's face while A moves from 0 to the poses and C rotates by a full turn, plus `rotary_clearance_mm` and
 /// `clearance_mm`.
 /// \pre the whole blank is below z = 0 of the workpiece
 double safe_height_mm(const Job& job, const Machine& machine, const std::vector<CuttingPose>& poses);

@@ -60,15 +60,16 @@ Vec2 on_clearance_plane(const Section& section, const Vec2& point, const Vec2& d
 }
 
 /// Returns the maximum chip thickness of the first slice, divided by the width of the slice at the floor. The thickness
-/// is measured along the wall's normal. The chip is the part of the triangle between rake face and blank's face.
+/// is measured along the wall's normal. The chip of the first slice is bounded by the rake face and the blank's face.
 double share_of_first_slice(const Section& section) {
   const double rake_slope = std::tan(section.rake.rad());
   const double face_slope = 1.0 / std::tan(0.5 * section.apex.rad());
   return rake_slope * face_slope / (rake_slope + face_slope) / std::sin(section.apex.rad());
 }
 
-/// Returns the total thickness, along the wall's normal, of all slices of a unidirectional subroutine, up to the
-/// blank's face. Heights are measured from the intersection of the edge's tangents, which is below the reference point.
+/// Returns the total thickness, along the wall's normal, of all slices of a unidirectional subroutine. The slices fill
+/// the element up to the blank's face. Heights are measured from the intersection of the edge circle's tangents, which
+/// is below the tool reference point.
 double slices_across_mm(const Section& section, double left_mm) {
   const auto over_floor_mm = [&](double y) {
     const double tip_z = section.floor_z(y, left_mm) - section.edge_mm / section.floor_normal.y();

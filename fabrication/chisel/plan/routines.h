@@ -42,9 +42,9 @@ inline double edge_dip_mm(const Section& section) {
 double left_of_roughing_mm(const Job& job, double across_mm, int cut, int cuts, double share = 1.0,
                            double dip_mm = 0.0);
 
-/// Checks that material remains for roughing, besides the finishing allowance.
+/// Checks that roughing has material to remove in addition to the finishing allowance.
 /// \param left_mm thickness that remains for roughing
-/// \throw InputError naming the key if it is not positive
+/// \throw InputError naming the key if the thickness is not positive
 void check_allowance(const Job& job, double left_mm);
 
 /// Rounds a number of cuts up to a whole number, at least 1.

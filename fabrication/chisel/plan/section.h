@@ -14,9 +14,9 @@
 
 namespace retrace::fabrication {
 
-/// Facet that is cut in a pose. The normal of facet 1 of a prism points towards -Y of the workpiece frame (-X for a
-/// rotated element), that of facet 2 in the opposite direction (docs/theory/cutting.md). Facet k = 1, 2, 3 of a cube
-/// corner is between its dihedral edges k and k + 1 (docs/theory/micro_chiseling.md).
+/// Facet that is cut in a pose. For a prism, the normal of facet 1 points towards -Y of the workpiece frame (-X for a
+/// rotated element), and the normal of facet 2 points in the opposite direction (docs/theory/cutting.md). For a cube
+/// corner, facet k = 1, 2, 3 is between the dihedral edges k and k + 1 (docs/theory/micro_chiseling.md).
 struct FacetChoice {
   bool rotated = false;
   int facet = 1;
@@ -44,8 +44,8 @@ struct Section {
   double floor_z(double y, double left_mm) const {
     return (left_mm + edge_mm - floor_normal.x() * y) / floor_normal.y() + lift_mm;
   }
-  /// Returns the Z position at `height_mm` above the start level (`start_mm` above the rims), measured along the face's
-  /// normal.
+  /// Returns the Z position of a point at height `height_mm` above the start level. The start level is `start_mm` above
+  /// the rims. Heights are measured along the face's normal.
   double face_z(double y, double height_mm) const {
     return (depth_mm + start_mm + height_mm - face_normal.x() * y) / face_normal.y();
   }
@@ -62,7 +62,7 @@ struct CuttingPose {
   RotaryUnits c = 0;    ///< position of C, rounded, as written in programs
   RotaryPose rounded;   ///< rounded pose in degrees, from which all positions are computed
   Angle root_tilt;      ///< angle between the root line and the tool's edge
-  geometry::Vec3 root;  ///< direction of the root line, in the workpiece frame, that becomes machine +X in this pose
+  geometry::Vec3 root;  ///< direction of the root line in the workpiece frame; this pose rotates it to machine +X
   Section section;
   /// Direction, in coordinates of the linear axes, along which the rounding error of positions is minimized. It is the
   /// normal of the cut facet. Zero: each position is rounded to the nearest increment.
@@ -71,19 +71,20 @@ struct CuttingPose {
 
 /// Returns the outward normal of facet 1 or 2 of a prism as it is cut, in the workpiece frame.
 geometry::Vec3 facet_normal(const geometry::RtpElement& element, const FacetChoice& facet);
-/// Returns the direction of the root line that becomes machine +X when the facet is plunged.
+/// Returns the direction of the root line, in the workpiece frame. The pose in which the facet is plunged rotates this
+/// direction to machine +X.
 geometry::Vec3 root_direction(const FacetChoice& facet);
 /// Returns the depth of the root below the rims.
 double root_depth_mm(const geometry::RtpElement& element);
 
 /// Returns the angle of C, plus or minus full turns, that is within the limits and closest to the previous angle. Full
-/// turns are only added if they bring C closer by more than 1 degree.
+/// turns are only added if C is then closer to the previous angle by more than 1 degree.
 /// \throw InputError at `where` if no angle is within the limits
 double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where,
                      const std::string& who = "");
 /// Checks that an angle of the tilting axis is within its limits.
 /// \param who beginning of the error message
-/// \throw InputError at `where` if it is not
+/// \throw InputError at `where` if the angle is outside of the limits
 void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where, const std::string& who = "");
 
 /// Orientation of the elements that a pose cuts, and height of the blank above their rims.

@@ -118,8 +118,8 @@ class StageMaker {
     }
   }
 
-  /// Adds the poses facet by facet. Between elements with different tilts, C rotates only a little. Between facets, it
-  /// rotates by 120 degrees.
+  /// Adds the poses facet by facet. With this order, C rotates only a little between elements with different tilts, and
+  /// by 120 degrees between facets.
   void add_poses_by_facet() {
     for (int facet = 1; facet <= 3; ++facet)
       for (const auto& [group, stance] : groups_) plan_.poses.push_back(next_pose(group, facet));

@@ -34,10 +34,10 @@ constexpr NumberRange kDegrees{.low = -3600.0, .high = 3600.0};
 /// about 30 degrees.
 constexpr double kLeastDeterminant = 0.5;
 
-/// Minimum length of a vector that is accepted as a direction.
+/// Minimum length of a vector that is accepted as a direction. Shorter vectors are refused.
 constexpr double kLeastLength = 1e-6;
-/// Maximum deviation of a direction's length from 1 without normalization. A direction that was normalized before is
-/// then read back unchanged.
+/// Maximum deviation of a direction's length from 1. A direction with a larger deviation is normalized when it is read.
+/// A direction that was written with length 1 is therefore read back unchanged.
 constexpr double kUnitTolerance = 1e-15;
 constexpr double kLeastVolumeMm3 = 1e-6;
 
@@ -166,7 +166,7 @@ constexpr Check value_check(std::string_view meaning) {
   return {kValueKeys, meaning, check_by<complaint>};
 }
 
-/// Rows and rules of the tables for one type of value.
+/// Description of a table of a file that contains one type of value: its keys (rows), and the rules for their values.
 struct ValueTable {
   std::span<const Row> rows;
   std::span<const Rule> rules;
@@ -294,7 +294,7 @@ constexpr Table rotary(std::string_view name, std::string_view meaning, Child ch
   return {.name = name, .meaning = meaning, .tables = kRotaryTables, .child = child, .presence = presence};
 }
 
-/// Range of the rotation of a mounted tool.
+/// Range of each component of the rotation vector of a mounted tool.
 constexpr NumberRange kMountDegrees{.low = -5.0, .high = 5.0};
 constexpr NumberRange kMountLength{.low = -10.0, .high = 10.0};
 constexpr auto kMountOffsetRows = sourced<Vec3>(Numbers{3, kMountLength}, access_by<get_point, set_point>);

@@ -20,7 +20,8 @@ using geometry::Vec3;
 constexpr double kStripMm = kEdgeStripMm;
 /// Minimum distance of measuring lines from the border of a facet, relative to the facet's size.
 constexpr double kWithin = 1e-6;
-/// Angle between the tool's leading edge and each of the two measured directions, which are on both sides of this edge.
+/// Angle, in rad, between the tool's leading edge and the measured directions. There is one measured direction on each
+/// side of the edge.
 constexpr double kBesideLeadingRad = 1e-5;
 
 /// Generates the points at which a facet is measured. Their coordinates are distances from the apex along the two

@@ -33,7 +33,8 @@ struct FacetFigures {
   double mean_along_mm = 0.0;  ///< mean position of the measured points along the root
   double slope_up = 0.0;       ///< slope of the fitted plane relative to the design, in the direction up the facet
   double slope_along = 0.0;    ///< slope of the fitted plane relative to the design, along the root
-  double residual_mm3 = 0.0;   ///< residual volume above the designed facet, minus the volume removed below it
+  /// Volume of residual material above the designed facet, minus the volume removed below it.
+  double residual_mm3 = 0.0;
 };
 
 struct ElementFigures {
@@ -43,7 +44,7 @@ struct ElementFigures {
 
 /// Measures the facets of a prism.
 /// \param poses machine_from_workpiece for each SweptVolume::pose
-/// \param is_one_facet_ploughed true if the strategy ploughs the facet that it does not plunge
+/// \param is_one_facet_ploughed true if the strategy plunges one facet and ploughs the other facet
 /// \param tolerance_mm tolerance of facets. A layer of this thickness on a facet is not counted as residual material at
 ///        the root
 ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume> sweeps,
@@ -51,8 +52,8 @@ ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume
                                bool is_one_facet_ploughed, double tolerance_mm);
 
 /// Measures the facets of a cube corner. The measuring lines are normal to each facet. They cover the whole facet and
-/// the strips along the dihedral edges. Additional lines are on both sides of the tool's leading edge, in its position
-/// when the tip is in the apex.
+/// the strips along the dihedral edges. There are additional lines on both sides of the line where the tool's leading
+/// edge is when the tip is in the apex.
 /// \param is_hexagonal true: the facets are squares with half the length of the cavity's edges. False: they are
 ///        triangles up to the blank's face
 /// \param nose_angle_deg nose angle of the tool

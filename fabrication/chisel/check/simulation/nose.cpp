@@ -15,7 +15,7 @@ using geometry::Vec3;
 
 /// Number of planes that are tangent to the arc, without the flanks at its ends.
 constexpr int kTangents = 32;
-/// Maximum distance of the search from an edge, in radii of the nose.
+/// Maximum distance from a dihedral edge up to which cuts are searched, in radii of the nose.
 constexpr double kFurthest = 40.0;
 /// Maximum height, in radii, above the facets at which a cut ends. Cuts that end higher do not reach the dihedral
 /// edges.
@@ -39,7 +39,7 @@ class Searcher {
     NoseResidue residue;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& edge = cavity_.edges[k];
-      // Measure at the center of the edge of a hexagonal element.
+      // Measure at the center of the dihedral edge of a hexagonal element.
       const Vec3 place = cavity_.root_mm + 0.25 * cavity_.facet_length_mm * edge;
       for (const std::size_t facet : {k, (k + 2) % 3}) {
         const Vec3& normal = cavity_.facets[facet].normal;
@@ -79,8 +79,9 @@ class Searcher {
     return first;
   }
 
-  /// Finds, by bisection, the minimum distance from the edge at which a cut exists close to the facet. The ends of the
-  /// arc are slightly above the facet because of the clearance angle.
+  /// Finds, by bisection, the minimum distance from the dihedral edge at which a cut exists close to the facet. A cut
+  /// is close if its height above the facet is less than half of the radius. The height is not exactly 0, because the
+  /// ends of the arc are slightly above the facet due to the clearance angle.
   double strip_mm(const Vec3& edge_point, const Vec3& along_facet, const Vec3& normal) const {
     const double high_mm = 0.5 * radius_mm_;
     double low = 0.0;

@@ -17,7 +17,7 @@ struct Extent {
   double below_mm = 0.0;  ///< depth below the origin of the section
 };
 
-/// Extent of the blank beyond the rims and below the root, relative to the size of the element.
+/// Extent of the modelled part of the blank beyond the rims and below the root, relative to the size of the element.
 constexpr double kBeyond = 0.2;
 /// Number of polygons that approximate the blank below a face that is not flat.
 constexpr int kStrips = 12;
