@@ -1,6 +1,6 @@
 #pragma once
 
-// Findings: errors in programs, for all processes.
+// Data types for findings. A finding is an error that a check found in an NC program.
 
 #include <cstdint>
 #include <map>

@@ -55,8 +55,8 @@ struct ForceModel {
   // Bidirectional plunges along facets 1 and 2 were measured at one depth of cut only.
   std::array<double, 2> bidirectional_root_n_per_mm{};     ///< total F_z at the root, per mm of edge
   std::array<double, 2> bidirectional_retract_n_per_mm{};  ///< peak of F_y at the start of the retract, per mm of edge
-  double calibrated_from_um = 0.0;                         ///< smaller depth of cut of the calibration
-  double calibrated_to_um = 0.0;                           ///< larger depth of cut of the calibration
+  double calibrated_from_um = 0.0;                         ///< smaller one of the two depths of cut of the calibration
+  double calibrated_to_um = 0.0;                           ///< larger one of the two depths of cut of the calibration
   double bidirectional_um = 0.0;                           ///< depth of cut of the bidirectional measurements
 };
 
@@ -66,8 +66,9 @@ ForceModel calibrate(const std::vector<MeasuredForce>& table);
 
 /// Conditions of one cut.
 struct CutConditions {
-  Strategy strategy = Strategy::unidirectional;  ///< two_step is not allowed; use one of its two parts
-  int facet = 1;                                 ///< bidirectional: 1 or 2
+  /// Unidirectional or bidirectional; two_step, which combines both, is not allowed.
+  Strategy strategy = Strategy::unidirectional;
+  int facet = 1;  ///< bidirectional: 1 or 2
   Configuration configuration = Configuration::isolated;
   double depth_of_cut_um = 5.0;
   double width_mm = 1.0;

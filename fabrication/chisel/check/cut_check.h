@@ -85,7 +85,8 @@ inline std::string rubbing_text(double takes_um, double least_um) {
                      fixed(takes_um, 4), shortest(least_um));
 }
 
-/// Maximum component of a cutting direction towards the facet. It allows for rounded end points of the move.
+/// Maximum component of the direction of a cut towards the facet at the clearance face. The direction is a unit vector.
+/// The limit allows for rounded end points of the move.
 inline constexpr double kMostSlip = 1e-3;
 
 }  // namespace retrace::fabrication

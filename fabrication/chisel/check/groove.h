@@ -1,7 +1,7 @@
 #pragma once
 
-// Grooves and cavities in the blank, in the workpiece frame: the elements of a job, and the search for the element at a
-// point.
+// Geometry of the designed elements of a job: grooves of prisms and cavities of cube corners, in the workpiece frame.
+// Also finds the element that contains a given point.
 
 #include <array>
 #include <cstddef>

@@ -13,8 +13,9 @@ namespace {
 
 using geometry::Vec3;
 
-/// Returns the intersection of the edge circle's tangents in the two facets, relative to the tool reference point. This
-/// point is the intersection of the circle's vertical and horizontal tangents (docs/theory/verification.md).
+/// Returns the intersection of the edge circle's tangents in the two facets, relative to the tool reference point. The
+/// tool reference point is the intersection of the circle's vertical and horizontal tangents
+/// (docs/theory/verification.md).
 Vec3 tip_of(const Job& job, const Section& section) {
   if (job.strategy == Strategy::dmc) return Vec3::Zero();
   return -Vec3::UnitZ() * section.edge_mm / std::sin(section.apex.rad());

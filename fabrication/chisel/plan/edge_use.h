@@ -1,6 +1,6 @@
 #pragma once
 
-// Computes the tool wear of cutting edges and decides where a program must stop.
+// Computes how much a cutting edge is used (length of cut and run time) and decides where a program must stop.
 
 #include <array>
 #include <cstdint>

@@ -223,7 +223,8 @@ class ProgramMaker {
     just_turned_ = true;
   }
 
-  /// Returns the rotation of a rotary axis when its word changes by `units`. The axis may take the shortest path.
+  /// Returns the angle by which a rotary axis rotates when its programmed position changes by `units`. If the axis
+  /// takes the shortest path, the angle is at most half a turn in either direction.
   RotaryUnits rotation(char axis, RotaryUnits units) const {
     if (machine_.shortest_axes.find(axis) == std::string::npos) return units;
     return rotary_units(std::remainder(degrees(units), 360.0));
@@ -334,7 +335,7 @@ class ProgramMaker {
     return use;
   }
 
-  /// Starts a new program or adds a stop before a visit, if one of them is required.
+  /// Starts a new program before a visit if one is required. Otherwise, adds a stop if a stop is required.
   void make_way(const Stage& stage, std::int32_t element, const std::vector<Visit>& passes) {
     const EdgeUse use = use_of(stage, passes);
     const std::optional<StopReason> reason = account_.stop_before(use);

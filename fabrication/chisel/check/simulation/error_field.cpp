@@ -26,7 +26,7 @@ constexpr std::size_t kLeastLines = 4;
 /// Extent of a hexagonal cube corner's cavity from its apex, divided by the radius of its aperture.
 constexpr double kCavityReach = 2.0;
 
-/// Dexels of one element, converted to heights above its facets.
+/// Result of the dexel simulation of one element, converted to heights above the facets.
 struct ElementField {
   DexelBox box;
   std::size_t columns = 0;

@@ -24,7 +24,7 @@ struct ErrorField {
   std::vector<double> height_nm;
 };
 
-/// Computes the height errors of programs.
+/// Computes the height errors of the part that the programs produce.
 /// \param pixels number of pixels along the longer side of the array
 /// \pre pixels >= 1
 /// \throw InputError for a program that cannot be simulated

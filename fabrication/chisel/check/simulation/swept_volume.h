@@ -64,7 +64,7 @@ struct SweptVolume {
 
 /// Returns the half-spaces whose intersection is the body that a wedge sweeps, in the machine frame. The wedge is
 /// displaced by t * travel with 0 <= t <= 1, and t is eliminated from the inequalities (Fourier-Motzkin elimination).
-/// Some half-spaces may be redundant. For all others, the vector `outward` has length 1.
+/// Some half-spaces may be redundant. The vector `outward` of every half-space has length 1.
 std::vector<ToolWedge::Side> swept_sides(const ToolWedge& wedge, const SweptVolume& sweep);
 
 /// Part of a line that a sweep removes, as a range of the line parameter.
