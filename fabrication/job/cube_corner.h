@@ -1,6 +1,6 @@
 #pragma once
 
-// Facet planes and dihedral edges of the cube corners of a job, including errors of angle.
+// Facet planes and dihedral edges of the cube corners of a job, including the intended angle errors.
 
 #include <array>
 #include <cstddef>
@@ -17,14 +17,14 @@ struct CubeCorner {
   double depth_mm = 0.0;  ///< depth of the apex below the blank's face
   /// Unit normals of the facets, pointing out of the material.
   std::array<geometry::Vec3, 3> normals = {geometry::Vec3::Zero(), geometry::Vec3::Zero(), geometry::Vec3::Zero()};
-  /// Unit vectors along the dihedral edges, upwards.
+  /// Unit vectors along the dihedral edges, pointing upwards from the apex.
   std::array<geometry::Vec3, 3> edges = {geometry::Vec3::Zero(), geometry::Vec3::Zero(), geometry::Vec3::Zero()};
 
   /// Returns the intersection point of three planes that are parallel to the facets.
   /// \param facets_mm height of each plane above its facet
   geometry::Vec3 apex_over(const geometry::Vec3& facets_mm) const;
-  /// Returns the distance, along z, between the apex of a layer and the nominal apex, per mm of material that the layer
-  /// leaves on each facet. It is sqrt(3) without angle errors.
+  /// Returns the height, along z, of a layer's apex above the nominal apex, divided by the thickness of the material
+  /// that the layer leaves on every facet. It is sqrt(3) without angle errors.
   double layer_rise() const { return apex_over(geometry::Vec3::Ones()).z(); }
   /// Returns the largest deviation from 90 degrees among the angles between facets and the angles between edges.
   double largest_error_deg() const;

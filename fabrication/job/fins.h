@@ -14,8 +14,9 @@ namespace retrace::fabrication {
 
 /// Width of the strip along a dihedral edge in which residual material is attributed to the edge and not to a facet.
 inline constexpr double kEdgeStripMm = 1e-3;
-/// Distances of the measuring lines in the strip from the dihedral edge, in least increments of the control. All are
-/// larger than 1, because rounding of positions displaces a facet by at most one increment.
+/// Distances from the dihedral edge to the measuring lines, along which material in this strip is measured. The unit is
+/// the least increment of the control. All distances are larger than 1, because rounding of positions displaces a facet
+/// by at most one increment.
 inline constexpr double kEdgeLineSteps[] = {1.5, 8.0};
 
 /// Returns the maximum displacement of the tip, parallel to the facet that it cuts, due to rounded positions.
@@ -36,9 +37,8 @@ struct EdgeCover {
 /// Returns the sectors at the three dihedral edges. Here, edge k is between the facets k and (k + 1) % 3, unlike in
 /// CubeCorner::edges.
 /// \param normals unit normals of the facets, out of the material, in counter-clockwise order
-/// \param spines for each facet: direction of the spine while the tool cuts this facet, in the frame of the normals.
-///         The
-///        spine is the edge between the two flanks of the tool
+/// \param spines direction of the tool's spine while the tool cuts each facet, in the frame of the normals. The spine
+///        is the edge between the two flanks of the tool
 std::array<EdgeCover, 3> edge_covers(const std::array<geometry::Vec3, 3>& normals,
                                      const std::array<geometry::Vec3, 3>& spines);
 

@@ -67,7 +67,8 @@ struct Tool {
   double side_clearance_deg = 2.0;   ///< clearance angle of a chisel's side walls behind the ends of the edge; > 0
   double nose_angle_deg = 50.0;      ///< angle between the two edges of a V-shaped tool
   std::vector<EdgeChip> edge_chips;  ///< chips in the edge of a chisel; they do not overlap
-  /// Tool life of an edge: path length of the tip below the blank's face in cutting moves. Empty: no limit.
+  /// Tool life of an edge: maximum path length, in mm, of the tip in cutting moves below the blank's face. If it is
+  /// empty, there is no limit.
   std::optional<double> edge_life_mm;
   NextEdge next_edge = NextEdge::stop;  ///< used only if edge_life_mm is given
 };
@@ -93,15 +94,15 @@ struct Process {
   double retract_feed_mm_per_min = 200.0;  ///< feed of retracts and of moves to the next cut of an element
   bool shortest_plough = false;  ///< true: a plough ends when the chip is free, not at plough_length_mm (thesis 4.4)
   double plough_lift_um = 0.0;   ///< lift of the tool off the facet after the chip has separated; 0: no lift
-  /// Bidirectional cuts: length of the first part of the retract, which is made at the cutting feed (thesis 4.4).
+  /// Length, in um, of the first part of the retract of a bidirectional cut. This part is made at the cutting feed
+  /// (thesis 4.4).
   double slow_retract_um = 0.0;
   bool mist = true;                      ///< true: mist during cuts, which removes chips and cools the edge
   double rotary_clearance_mm = 5.0;      ///< clearance above the rotating blank during rotary moves
   std::optional<double> least_chip_um;   ///< minimum chip thickness, below which the edge rubs; empty: no limit
   std::optional<double> stop_every_min;  ///< maximum run time of a program without a stop; empty: no limit
   bool stop_before_finishing = false;    ///< true: every element is inspected between roughing and finishing
-  /// Areal roughness Sa of facets that was measured after each kind of motion. Source: Milliken 2017 and Hamilton et
-  /// al. 2017.
+  /// Measured areal roughness Sa of facets after each kind of motion. Source: Milliken 2017 and Hamilton et al. 2017.
   double plough_sa_nm = 468.0;
   double roughing_plunge_sa_nm = 115.0;
   double finishing_plunge_sa_nm = 48.9;
@@ -147,7 +148,7 @@ struct Job {
 /// Element that is cut, in the workpiece frame: x_w = y_part, y_w = -x_part, origin at the center of the array's extent
 /// on the blank's face.
 struct CutElement {
-  /// Center of the aperture, in the workpiece frame. For elements along the normal of a substrate: position on the
+  /// Center of the aperture, in the workpiece frame. For elements whose axes are normal to a substrate: position on the
   /// unrolled substrate.
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();
   std::int32_t row = 0;     ///< row index, from 0 at y = 0

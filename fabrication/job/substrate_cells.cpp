@@ -66,7 +66,7 @@ Opening opening_of(const geometry::Element& element, bool rotated) {
       }
     return opening;
   }
-  // Dihedral edges move outward by sqrt(2) mm per mm of height.
+  // In plan, a point of a dihedral edge moves outward by sqrt(2) mm per mm of height.
   constexpr double kDeg = std::numbers::pi / 180.0;
   std::array<Vec2, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -125,8 +125,8 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
   double stock = 0.0;
   for (const CutElement& cut : elements) {
     const Opening& opening = openings[cut.rotated ? 1 : 0];
-    // A higher face gives a wider opening. At the border of the wider opening, the blank may be even higher. Iterate
-    // until the height is constant.
+    // The higher the face, the wider the opening. At the border of a wider opening, the face may be higher still.
+    // Iterate until the height is constant.
     for (int round = 0; round < kMostRounds; ++round) {
       double highest = stock;
       for (std::size_t k = 0; k < opening.grows.size(); ++k) {

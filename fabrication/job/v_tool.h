@@ -29,7 +29,8 @@ VToolEdges v_tool_edges(const Tool& tool);
 /// \pre the element is a cube corner
 double cavity_edge_mm(const geometry::Element& element);
 
-/// Returns the width of the strip along a dihedral edge that the rounded nose of the tool leaves uncut on each facet.
+/// Returns the width of the strip that remains uncut on each facet along a dihedral edge, because the nose of the tool
+/// is rounded.
 double nose_strip_mm(const Tool& tool);
 
 /// Checks that the tool can cut a cube corner up to its apex, and every point of its facets. Calls `refuse` for each

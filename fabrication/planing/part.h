@@ -11,8 +11,9 @@
 
 namespace retrace::fabrication {
 
-/// Flat zone lens: one side is flat, and the side of the focus has stepped hyperbolas. Widths are across the zones of a
-/// cylindrical lens, or along the radius of a round lens. All lengths are > 0, and the index is > 1.
+/// Flat zone lens: one side is flat. The side that faces the focus has a stepped profile, and each step is a piece of a
+/// hyperbola. Widths are across the zones of a cylindrical lens, or along the radius of a round lens. All lengths are
+/// positive, and the index is above 1.
 struct ZoneLens {
   double focal_length_mm = 0.0;  ///< distance of the focus from the center of the stepped face
   double wavelength_mm = 0.0;    ///< wavelength in air
@@ -20,9 +21,9 @@ struct ZoneLens {
   double half_width_mm = 0.0;
 };
 
-/// Milling machine used for planing, with a spindle that does not rotate. The machine permits this only in fast feed.
-/// Every move is therefore along one axis, and has at least the minimum length of fast feed. X is across the zones, Y
-/// is along them, and Z is up.
+/// Milling machine used for planing, with a spindle that does not rotate. The machine permits a stationary spindle only
+/// in fast feed (rapid moves). Every move is therefore along one axis, and has at least the minimum length of fast
+/// feed. X is across the zones, Y is along them, and Z is up.
 struct PlaningMill {
   double fast_feed_mm_per_min = 0.0;
   double frame_s = 0.0;  ///< frame time: additional time that each move takes

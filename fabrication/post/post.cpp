@@ -246,7 +246,7 @@ class FileWriter {
     add(dialect_.path_time, 60.0 / move.seconds, 1e3 * move.seconds, 60.0 * way / move.seconds);
   }
 
-  /// Returns the path length of a move over all axes, in which 1 mm counts as 1 degree.
+  /// Returns the path length of a move over all linear and rotary axes. One degree counts as 1 mm.
   double way_of(const Move& move) const {
     double way = 0.0;
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
@@ -320,7 +320,7 @@ class FileWriter {
       refuse(fmt::format("F{}.{:03}", thousandths / 1000, thousandths % 1000));
     fmt::format_to(std::back_inserter(text_), " F{}.{:03}", thousandths / 1000, thousandths % 1000);
   }
-  /// Returns the maximum feed of the increment system, IS-B to IS-E (parameter 1422), in thousandths.
+  /// Returns the maximum feed of the increment system, IS-B to IS-E (parameter 1422), in thousandths of mm/min.
   long long most_feed_thousandths() const {
     constexpr std::array kMost = {999'000'000, 99'999'900, 9'999'990, 999'999};
     return kMost[static_cast<std::size_t>(program_.control.increment_system)];

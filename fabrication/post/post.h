@@ -27,7 +27,8 @@ std::span<const Dialect> dialects();
 /// \throw InputError for an unknown dialect
 std::string nc_text(const Program& program, std::string_view dialect);
 
-/// Returns the requirements on the control that programs cannot set, as lines of text that begin with "Needs: ".
+/// Returns the settings of the control that programs require but cannot make. The result is a list of lines that begin
+/// with "Needs: ".
 /// \throw InputError for an unknown dialect
 std::vector<std::string> control_needs(std::string_view dialect, const Control& control);
 

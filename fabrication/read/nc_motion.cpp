@@ -81,7 +81,8 @@ class Runner {
         {program_.file, program_.stop_line, ""},
         "the program cannot be stopped there: nothing is executed in that line, or no axis moved before it");
   }
-  /// Returns true if the execution must stop before a block. The subroutine that the last line calls is still executed.
+  /// Returns true if the execution must stop before a block: a block of the main program after the stop line. A
+  /// subroutine that the stop line calls is executed completely.
   bool stops_before(const NcBlock& block) const {
     return program_.stop_line > 0 && calls_.empty() && stops_in_main_ && block.line > program_.stop_line;
   }
@@ -272,7 +273,8 @@ class Runner {
     }
   }
 
-  /// Evaluates the Hermite cubic from the start position and velocity to the present ones.
+  /// Evaluates the cubic Hermite polynomial of each axis, from the start position and velocity to the present position
+  /// and velocity.
   /// \param t fraction of the duration, 0 to 1
   std::array<double, kNcAxes> place_along(const std::array<double, kNcAxes>& from,
                                           const std::array<double, kNcAxes>& begin, double time_s, double t) const {

@@ -11,10 +11,10 @@
 
 namespace retrace::fabrication {
 
-/// Required setting of the control.
+/// Setting of the control that a program must make before its first move.
 struct NcNeed {
   std::uint16_t said = 0;    ///< bit of nc_said
-  std::string_view words;    ///< words that make the setting
+  std::string_view words;    ///< NC words that a program uses to make the setting
   std::string_view meaning;  ///< description for messages
 };
 

@@ -29,7 +29,7 @@ constexpr bool has_times_since_begin(NcDialect dialect) {
   return dialect == NcDialect::a3200;
 }
 
-/// Returns true if a feed is the speed of all linear and rotary axes together, in which 1 mm counts as 1 degree.
+/// Returns true if a feed is the speed of all linear and rotary axes together. One degree counts as 1 mm.
 constexpr bool has_feeds_of_all_axes(NcDialect dialect) {
   return dialect == NcDialect::a3200 || dialect == NcDialect::automation1;
 }
@@ -82,7 +82,7 @@ inline constexpr std::uint16_t kRoundingOff = 1U << 14U;  ///< rounding of corne
 /// Returns the maximum rounding error of a number that is written with `decimals` decimals: half of its last decimal.
 double half_decimal(std::uint8_t decimals);
 
-/// Setting that a block may make. Empty: the block does not make it.
+/// Setting that a block may make. It is empty if the block does not make the setting.
 template <class Value>
 using Setting = std::optional<Value>;
 
@@ -112,9 +112,9 @@ struct NcBlock {
   Setting<double> move_time_s;  ///< duration of this move and of the following moves until the next feed
   Setting<bool> exact_stop;     ///< false: blocks are blended
   Setting<double> blend_mm;     ///< maximum deviation from the path in blending
-  std::uint16_t says = 0;       ///< bits of nc_said, except those that follow from a setting with a value
+  std::uint16_t says = 0;       ///< bits of nc_said for settings that have no value of their own in this struct
   std::uint8_t shortest = 0;    ///< bit i: axis i takes the shortest path to an angle of 0 to 360 degrees
-  std::uint8_t increments = 0;  ///< bit i: the word of axis i is an increment in any mode
+  std::uint8_t increments = 0;  ///< bit i: the word of axis i is an increment even if positions are absolute
   std::uint8_t decimals = 0;    ///< maximum number of decimals of the axis words, for dialects that limit it
   Setting<NcSpindle> spindle;
   Setting<double> spindle_rpm;  ///< S word

@@ -89,7 +89,7 @@ void skip_comment_marks(std::string_view& text);
 
 /// Reads a line whose meaning the machine file or the part file defines, and adds it to the program as a block.
 /// \param misplaced error message if such a line is not allowed at this position; empty if it is allowed
-/// \return false for any other line
+/// \return false if the line is not one of these lines
 /// \throw InputError for a line that is not allowed at this position
 bool take_text(std::string_view line, const NcTexts& texts, std::string_view misplaced, const NcLines& lines,
                NcProgram& program);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Access to members that a file contains only under certain conditions.
+// Access of the file formats to members that are not in every file: they are written only under a condition.
 
 #include "core/schema/access.h"
 
@@ -17,7 +17,8 @@ inline constexpr schema::Access access_given = {
       static_cast<typename schema::MemberTypes<decltype(member)>::Object*>(object)->*member = std::get<double>(value);
     }};
 
-/// Access to a member that is written to a file only if `is_written` returns true for its object.
+/// Access to a member that is written to a file only if `is_written` returns true for the object that contains the
+/// member.
 template <auto member, auto is_written>
 inline constexpr schema::Access access_where = {
     [](const void* object) {

@@ -48,10 +48,10 @@ constexpr Kind kWedge = Number{{.low = 10.0, .high = kMaxWedgeDeg}};
 /// Maximum number of elements. It limits the memory of a plan, which needs about 1 KiB per element.
 constexpr double kMostElements = 2e6;
 constexpr std::size_t kMostZoneElements = 2'000'000;
-/// Tolerance, in mm, for a tool that is wider than the element.
+/// Tolerance, in mm, of the check that the tool is not wider than the element.
 constexpr double kFitToleranceMm = 1e-6;
 constexpr std::size_t kMostChips = 100;
-/// Minimum angle, in degrees, between the rake face and the other facet. The chip leaves through the gap between them.
+/// Minimum angle, in degrees, between the rake face and the facet that is not being cut. The chip leaves between them.
 /// The value is an assumption. It is half of the 25 degrees that remain of a right angle with a wedge angle of 50
 /// degrees and a clearance angle of 15 degrees.
 constexpr double kChipRoomDeg = 12.5;
@@ -341,7 +341,8 @@ void check_chisel(const Job& job, const Refuse& refuse) {
                                          "and facet, got {}",
                                          fixed_apart(apex_deg - kChipRoomDeg, taken_deg, 3),
                                          fixed_apart(taken_deg, apex_deg - kChipRoomDeg, 3)));
-  // If both facets are plunged, the rake faces of both cuts must intersect above the root. Otherwise, a fin remains.
+  // If both facets are cut by plunging, the rake faces of both cuts must intersect above the root. Otherwise, a fin
+  // remains.
   if (job.strategy != Strategy::unidirectional && 2.0 * taken_deg < apex_deg)
     refuse("tool.wedge_deg",
            fmt::format("with clearance_deg must be >= {}, half the apex angle, or a fin of {} degrees "
@@ -349,7 +350,7 @@ void check_chisel(const Job& job, const Refuse& refuse) {
                        shortest(0.5 * apex_deg), fixed_visible(apex_deg - 2.0 * taken_deg, 3),
                        fixed_apart(taken_deg, 0.5 * apex_deg, 3)));
   // The diamond becomes narrower towards its shank. Its width must still be positive at the height of the element's
-  // rims.
+  // rims (upper edges).
   const double half_apex_rad = 0.5 * Angle::from_deg(apex_deg).rad();
   const double facet_mm = 0.5 * blank_prism(job).base_mm / std::sin(half_apex_rad);
   const double side_limit_deg = Angle::from_rad(std::atan(0.5 * job.tool.width_mm / facet_mm)).deg();
@@ -425,7 +426,7 @@ void check_square(const Job& job, const Refuse& refuse) {
                                            shortest(prism.base_mm), shortest(prism.width_mm)));
 }
 
-/// Checks that a job with a substrate is a mould of an array without margins and patterns.
+/// Checks that a job with a substrate makes a mould, and that its array has neither margins nor a pattern.
 void check_array_on_substrate(const Job& job, const Refuse& refuse) {
   if (!job.substrate) return;
   const std::string_view key = geometry::substrate_shape_key(*job.substrate);

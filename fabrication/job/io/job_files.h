@@ -13,12 +13,12 @@
 
 namespace retrace::fabrication {
 
-/// Returns the format of job files (retrace.job/1), which describes a Job.
+/// Returns the schema of job files (retrace.job/1). A job file contains the data of a Job.
 const schema::Format& job_format();
 
 /// Reads and checks a job file. The path of a machine file is relative to the folder of the job.
 /// \param texts contents of files that are used instead of reading these files
-/// \throw InputError in one line, with file, line, key, allowed values and given value
+/// \throw InputError with a message of one line that contains file, line, key, allowed values and given value
 Job read_job(const std::filesystem::path& file, const FileTexts& texts = {});
 
 /// Reads and checks the text of a job file.

@@ -96,8 +96,9 @@ std::string hanging_chip(const Process& p) {
                      shortest(p.roughing_depth_um), shortest(p.plough_length_mm));
 }
 
-/// Returns an error message if the minimum chip is thicker than half a depth of cut. If the first cut is too thin, its
-/// thickness and that of the second cut are made equal. Both chips are then thick enough.
+/// Returns an error message if the minimum chip thickness is more than half of a depth of cut. If the first cut of a
+/// facet would be too thin, the planner gives the first and the second cut the same thickness. Both are then at least
+/// half a depth of cut thick, which must be enough.
 std::string rubbing_depth(const Process& p) {
   const double most_um = 0.5 * std::min(p.roughing_depth_um, p.finishing_depth_um);
   if (!p.least_chip_um || *p.least_chip_um <= most_um) return {};

@@ -12,7 +12,7 @@
 
 namespace retrace::fabrication {
 
-/// Returns the format of process files (retrace.process/1), which describes a Process.
+/// Returns the schema of process files (retrace.process/1). A process file contains the data of a Process.
 const schema::Format& process_format();
 
 /// Returns the keys of a process as a table of another format, such as `[process]` of a job.

@@ -31,12 +31,14 @@ struct PlaningCheck {
   double shortest_y_mm = 0.0;
   double shortest_z_mm = 0.0;
   std::vector<ProfileSample> profile;  ///< mill
-  /// Lathe: maximum distance between the surface after the last pass and the surface that its nose can produce.
+  /// Lathe: maximum distance between the surface after the last pass and the surface that an exact path of the nose
+  /// would produce.
   double path_distance_mm_max = 0.0;
   /// Mill: slope of the flank of the tool that the profile requires, as depth divided by distance.
   double flank_slope = 0.0;
   double chip_mm_max = 0.0;  ///< lathe: maximum thickness, along Z, of the material that a pass removes
-  /// Lathe: maximum distance from the design of the surface that a perfect pass produces, because the nose is round.
+  /// Lathe: maximum distance between the design and the surface that an exact path of the nose would produce. It is
+  /// above 0 if a round nose does not reach into the corners of the profile.
   double unreached_mm_max = 0.0;
 
   bool passes() const { return findings.empty(); }

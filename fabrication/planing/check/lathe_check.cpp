@@ -129,7 +129,8 @@ void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
     result_.time_s.back() += std::hypot(to.x_mm - from.x_mm, to.z_mm - from.z_mm) / feed * 60.0;
 }
 
-/// Checks a rapid move. It may be not straight, so that the nose may be anywhere in the box between both end points.
+/// Checks a rapid move. Its path is not always straight, so the nose may be anywhere in the box between both end
+/// points.
 void LatheCheck::follow_rapid(const NcMotion& motion) {
   const double clear_mm = part_.lathe->clear_mm;
   const double from_z = is_known(motion, 'Z') ? motion.from.z_mm : motion.to.z_mm;
@@ -231,9 +232,10 @@ void LatheCheck::measure() {
   SectionLine reachable = design;
   SectionLine left;
   for (const SectionPoint& p : path) left.push_back({p.x_mm, p.z_mm + nose});
-  double limit = part_.tolerance_mm * (1.0 + 1e-3);  // much larger than the effect of rounded positions
+  // The added thousandth is much larger than the effect of rounded positions.
+  double limit = part_.tolerance_mm * (1.0 + 1e-3);
   if (nose > 0.0) {
-    // The nose touches the rim from positions beyond the rim.
+    // Include positions of the nose beyond the rim, because the nose also touches the rim from there.
     reachable = left_by_nose(lowest_centres(design, nose, places_to(end + nose, spacing_mm_)), nose, places);
     if (goes_outwards(path)) left = left_by_nose(left, nose, places);
     result_.unreached_mm_max = largest_distance(design, reachable, 2.0 * nose);

@@ -65,7 +65,8 @@ void MillCheck::check_grid(const NcMotion& motion, std::size_t axis, double plac
                   fmt::format("{} is at a position that is not on the machine's grid", kLetters[axis]), off_mm, 0.0);
 }
 
-/// Checks that the tool does not move across or down while it is in the part, and stores the strokes.
+/// Checks that the tool does not move across or down while it is in the part, and stores the strokes (cutting moves
+/// along the zones).
 void MillCheck::check_place(const NcMotion& motion, std::size_t axis) {
   const double lowest = std::min(motion.from.z_mm, motion.to.z_mm);
   const bool is_beside = motion.to.y_mm < 0.0 || motion.to.y_mm > part_.length_mm;
@@ -140,7 +141,8 @@ void MillCheck::measure_at(double x_mm, double left_mm, const Stroke* stroke) {
   double gouge = std::max(0.0, left_mm - design_mm);
   for (const Wall& wall : profile_.walls())
     if (std::abs(place_mm - wall.x_mm) <= near_mm) standing = gouge = 0.0;
-  // The other half of the lens is planed after the part has been rotated.
+  // The other half of the lens is planed after the part has been rotated. Material that remains there is therefore not
+  // an error.
   if (x_mm < 0.0 || x_mm > part_.lens.half_width_mm - near_mm) standing = 0.0;
   result_.standing_mm_max = std::max(result_.standing_mm_max, standing);
   result_.gouge_mm_max = std::max(result_.gouge_mm_max, gouge);
@@ -152,10 +154,10 @@ void MillCheck::measure_at(double x_mm, double left_mm, const Stroke* stroke) {
 
 void MillCheck::measure() {
   std::sort(strokes_.begin(), strokes_.end(), [](const Stroke& a, const Stroke& b) { return a.x_mm < b.x_mm; });
-  // Proceed from the largest to the smallest x. At a position, the deepest flank belongs to the stroke with the
-  // greatest value of depth - slope * x among the strokes farther outside.
-  // Distance of evaluated points from the grid, on which the strokes are: most material remains just outside of a
-  // stroke.
+  // Evaluate the surface on both sides of each grid point, from the largest to the smallest x. The surface at x is cut
+  // by the flank of one of the strokes at or beyond x: the stroke with the greatest value of depth - slope * x. All
+  // strokes are at grid points, and most material remains just outside of a stroke. The evaluated points are therefore
+  // at the distance kBeside, in mm, from the grid points.
   constexpr double kBeside = 1e-9;
   const double grid = part_.mill->grid_mm;
   const double slope = result_.flank_slope;

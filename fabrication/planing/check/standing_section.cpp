@@ -6,7 +6,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Maximum width, in mm, of lines that are considered vertical.
+/// Maximum extent along X, in mm, of line segments that are considered vertical.
 constexpr double kUprightMm = 1e-9;
 
 }  // namespace

@@ -82,8 +82,9 @@ SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::
 }
 
 SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& places_mm) {
-  // Centers that do not cut into the section are above the upper envelope of circles about the points of the section.
-  // It is the lower envelope for the negated section, negated.
+  // If the center of the nose is above the upper envelope of circles about the points of the section, the nose does not
+  // cut into the section. This upper envelope is the negative of the lower envelope of circles about the negated
+  // section.
   return negated(left_by_nose(negated(section), nose_mm, places_mm));
 }
 

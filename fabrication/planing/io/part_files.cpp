@@ -20,11 +20,12 @@ using namespace schema;
 
 constexpr Kind kLength = Number{{.low = 0.1, .high = 1e4}};
 constexpr Kind kFeed = Number{{.low = 1.0, .high = 1e6}};
-/// Maximum tolerance in steps of the grid, and maximum half width in these steps. The grid is that of the mill, or a
-/// tenth of the tolerance for a lathe. All depth increments from the tolerance down to one step are tried.
+/// Maximum tolerance and maximum half width, both in steps of the grid. For a mill, this is the grid of the machine.
+/// For a lathe, a step is a tenth of the tolerance. The first maximum limits the planning time, because the planner
+/// tries all depth increments from the tolerance down to one step.
 constexpr double kMostQuanta = 200.0;
 constexpr double kMostSteps = 1e6;
-/// Minimum width of a zone in steps of the grid. Narrower zones have no profile.
+/// Minimum width of a zone in steps of the grid. The profile of a narrower zone cannot be represented on the grid.
 constexpr double kLeastStepsOfZone = 4.0;
 
 constexpr Words kLenses = {"zone_lens", "round_zone_lens"};

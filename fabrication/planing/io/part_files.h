@@ -11,7 +11,7 @@
 
 namespace retrace::fabrication {
 
-/// Returns the format of part files (retrace.planed_part/1), which describes parts that are planed or turned.
+/// Returns the schema of part files (retrace.planed_part/1). They contain parts that are planed or turned.
 const schema::Format& planed_part_format();
 
 /// Reads a part that is planed or turned (`retrace.planed_part/1`, docs/planing_file.md).

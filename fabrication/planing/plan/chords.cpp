@@ -18,16 +18,16 @@ double distance_to_piece(const ProfilePoint& p, const ProfilePoint& a, const Pro
   return std::hypot(p.x_mm - a.x_mm - t * dx, p.z_mm - a.z_mm - t * dz);
 }
 
-/// Calls visit(j) for every point that a chord from `start` may end at. The chord directions that keep within the
-/// tolerance of all points so far are an interval. Each point makes this interval narrower. If it becomes empty, no
-/// later point can be reached.
+/// Calls visit(j) for every point j at which a chord from `start` may end. The directions of chords that pass all
+/// points so far within the tolerance form an interval. Each further point makes this interval narrower. If it becomes
+/// empty, no later point can be reached.
 template <class Visit>
 void for_each_reached(const std::vector<ProfilePoint>& profile, std::size_t start, double tolerance_mm, Visit visit) {
   const ProfilePoint& from = profile[start];
   double reference = 0.0;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  // Tolerance, so that rounding errors do not exclude a chord that ends exactly at the border of the tube.
+  // Tolerance, so that rounding errors do not exclude a chord whose distance from a point is exactly `tolerance_mm`.
   constexpr double kRounding = 1e-12;
   double farthest = 0.0;  // maximum distance of the points so far from the start
   const auto all_beside = [&](std::size_t j) {

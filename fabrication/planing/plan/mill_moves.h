@@ -29,8 +29,9 @@ class MillMoves {
   void stroke();
   /// Moves up, and then back to the center of the lens.
   void go_home();
-  /// Makes moves that must be in one program. If they would not end in time, they begin the next program.
-  /// \throw InputError if these moves alone take too long
+  /// Makes moves that must be in one program. If the present program would exceed its time limit with them, they become
+  /// the first moves of the next program.
+  /// \throw InputError if these moves alone exceed the time limit
   template <class Moves>
   void together(const Moves& moves) {
     const Mark before = mark();

@@ -19,9 +19,9 @@ bool nose_fits(const ZoneProfile& profile, double nose_mm);
 /// \pre at least one nose fits
 double largest_nose_mm(const ZoneProfile& profile);
 
-/// Returns the maximum deviation of the nose from its path with which the machined surface keeps a tolerance. It is
-/// smaller than this tolerance: the edges at the upper ends of walls are between two flanks, and are displaced by more
-/// than each flank. For a pointed tool, it is the tolerance itself.
+/// Returns the maximum deviation of the nose from its path that keeps the machined surface within a tolerance. It is
+/// smaller than this tolerance, because an edge at the upper end of a wall is displaced by more than each of its two
+/// flanks. For a pointed tool, it is the tolerance itself.
 double path_tolerance_mm(const ZoneProfile& profile, double nose_mm, double tolerance_mm);
 
 /// Returns the path of a round nose's lowest point if the nose touches the profile wherever it can. The nose moves

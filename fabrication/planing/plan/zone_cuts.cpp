@@ -56,7 +56,7 @@ std::optional<ZoneCut> ZoneCutter::at_depth(std::size_t zone, std::int64_t depth
   const std::int64_t high = std::min(last, static_cast<std::int64_t>(std::floor(place(middle + 0.5 * grid_mm_))));
   if (low == high) return ZoneCut{zone, low, depth};  // exactly one grid point is at this depth
   if (low < high) {
-    // Several grid points are at this depth. Use the one that leaves most material within the tolerance.
+    // Several grid points are at this depth. Use the outermost one that leaves no more material than the tolerance.
     std::int64_t fits = low;
     std::int64_t beyond = high + 1;
     while (beyond - fits > 1) {

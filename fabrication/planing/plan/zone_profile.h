@@ -32,7 +32,7 @@ class ZoneProfile {
   /// \pre 0 <= x <= half width
   std::size_t zone_of(double x_mm) const;
   double depth_mm(double x_mm) const { return depth_in_zone_mm(zone_of(x_mm), x_mm); }
-  /// Returns the depth by the formula of one zone, also beyond the ends of this zone.
+  /// Returns the depth according to the formula of one zone. The position may be outside of this zone.
   double depth_in_zone_mm(std::size_t zone, double x_mm) const;
   /// Returns the slope of the depth in a zone. It increases outwards.
   double slope_in_zone(std::size_t zone, double x_mm) const;

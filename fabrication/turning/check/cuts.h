@@ -36,7 +36,7 @@ struct TurningCuts {
   std::vector<CutPass> passes;
   std::vector<FreeMove> free_moves;  ///< moves without cutting, except vertical upward moves
   std::vector<DownMove> down_moves;
-  double blend_mm = 0.0;                          ///< maximum path tolerance between moves that the programs set
+  double blend_mm = 0.0;                          ///< maximum path tolerance that the programs set for blending
   double lowest_travel_mm[3] = {0.0, 0.0, 0.0};   ///< minimum positions of X, Y and the slide Z
   double highest_travel_mm[3] = {0.0, 0.0, 0.0};  ///< maximum positions of X, Y and the slide Z
 };

@@ -22,10 +22,11 @@ std::pair<double, double> largest_between(const std::function<double(double)>& f
 /// Returns true if a point is inspected. Points at the rim and near the spindle's axis are not inspected.
 bool is_inspected(const InspectedRegion& region, const geometry::Vec2& p);
 
-/// Computes the map of the result, its interference and its rms. A pixel contains the deviation with the largest
-/// absolute value, with its sign. It is searched over the length of one feed across the cuts, through a random point of
-/// the pixel. In pixels smaller than a quarter of a feed, it is searched among random points. This avoids aliasing if
-/// cusps are finer than pixels. The rms is computed from one random point of each pixel.
+/// Computes the map of the result, its interference and its rms. Each pixel of the map contains the deviation with the
+/// largest absolute value, with its sign. In pixels larger than a quarter of a feed, this deviation is searched for
+/// along a line across the cuts, through a random point of the pixel. The line is one feed long. In smaller pixels, it
+/// is searched for among random points. This search avoids aliasing if cusps are finer than pixels. The rms is computed
+/// from one random point of each pixel.
 /// \throw InputError if the programs leave a part of the region uncut
 void fill_map(Inspection& result, const Envelope& envelope, const geometry::FreeformSurface& design,
               const InspectedRegion& region, std::size_t pixels);

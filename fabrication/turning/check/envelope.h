@@ -82,7 +82,8 @@ class Envelope {
   Index index_of(const CutPass& pass) const;
   double lift_mm(double aside_mm) const;
   void cross_turning(const CutPass& pass, const Index& index, double x_mm, double y_mm, double& lowest) const;
-  /// Finds the crossing of the edge over a point near an angle of the spindle, and updates the minimum height.
+  /// Computes the height of the edge while it passes over a point of the part, and reduces `lowest` to this height if
+  /// it is lower. The angle of the spindle at this time is near `c`.
   void cross_at(const CutPass& pass, double r, double theta, double c, double& lowest) const;
   void cross_line(const CutPass& pass, double x_mm, double y_mm, double& lowest) const;
 

@@ -73,13 +73,13 @@ std::vector<double> whole_blocks_s(const CutPass& pass) {
   return seconds;
 }
 
-/// Returns true if a pass has points inside of blocks, which are cubic moves. The first point, before all blocks, also
-/// has the duration 0.
+/// Returns true if a pass has points inside of blocks, whose duration is stored as 0. Only cubic moves have such
+/// points. The first point of a pass, before all blocks, also has the duration 0 and does not count.
 bool has_cubics(const CutPass& pass) {
   return std::count(pass.block_s.begin(), pass.block_s.end(), 0.0) > 1;
 }
 
-/// Returns only the ends of blocks. The acceleration of cubic moves has steps there.
+/// Returns a pass with only the ends of blocks. The acceleration of cubic moves may have steps at these points.
 CutPass block_ends(const CutPass& pass) {
   CutPass ends;
   ends.program = pass.program;
@@ -97,8 +97,8 @@ CutPass block_ends(const CutPass& pass) {
   return ends;
 }
 
-/// Computes difference quotients of a position over the blocks of a pass. The index is that of a block's end, or that
-/// of a node between two blocks.
+/// Computes difference quotients of a position over the blocks of a pass. The index of a velocity is that of the point
+/// at the end of the block. The index of an acceleration or a jerk is that of the node (point) between two blocks.
 class Quotients {
  public:
   Quotients(const CutPass& pass, const std::function<double(std::size_t)>& position, double half_word)

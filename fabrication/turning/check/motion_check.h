@@ -8,7 +8,8 @@
 
 namespace retrace::fabrication::turning {
 
-/// Motion of an axis over cuts. The maximum effect of rounded positions is subtracted from all values.
+/// Extreme values of the motion of an axis over the cuts. The maximum effect of rounded positions is subtracted from
+/// all values.
 struct AxisMotion {
   double low_mm = 0.0;
   double high_mm = 0.0;

@@ -11,7 +11,7 @@
 
 namespace retrace::fabrication::turning {
 
-/// Returns the format of part files (retrace.turned_part/1).
+/// Returns the schema of part files (retrace.turned_part/1). A part file contains the data of a TurnedPart.
 const schema::Format& turned_part_format();
 
 /// Reads the text of a part file and makes all checks that do not need the path. The surface must be finite without

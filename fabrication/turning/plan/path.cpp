@@ -166,7 +166,8 @@ double NoseCompensation::sampled(double x_mm, double y_mm, const Vec2& across, c
 NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, const Vec2& across, const Vec2& cut,
                                                    double& angle) const {
   constexpr int kMostSteps = 12;
-  // The error after a step is of third order in the step: below 1e-14 mm.
+  // The error of the height after a step is of third order in the step. For steps below this limit, it is less than
+  // 1e-14 mm.
   constexpr double kSmallStep = 2e-5;
   Touch touch;
   for (int step = 0; step < kMostSteps; ++step) {

@@ -39,9 +39,9 @@ using Pass = std::vector<PathPoint>;
 std::vector<Pass> make_path(const geometry::FreeformSurface& surface, const TurningTool& tool,
                             const PathOptions& options, const InputLocation& where);
 
-/// Computes the height of the tool's lowest edge point at which its edge touches the surface. It is the maximum, over
-/// the sharp arc, of the surface height at an edge point minus the height of this point above the lowest point. The
-/// edge is along `across` and is inclined by the rake against the direction of the cut.
+/// Computes the height of the lowest point of the tool's edge when the edge touches the surface. This height is the
+/// maximum, over the sharp arc, of the surface height at an edge point minus the height of this point above the lowest
+/// point. The edge is along `across` and is inclined by the rake against the direction of the cut.
 class NoseCompensation {
  public:
   /// \param map positions at which there is only one point of contact. At other positions, the whole arc is searched

@@ -37,7 +37,8 @@ class SpinTimes {
   double c_deg(double time_s) const;
   double speed_deg_per_s(double time_s) const;
   double ramp_s() const { return speed_ / acceleration_; }
-  /// Returns a slightly slower rotation whose ramps, and the motion between them, take whole numbers of steps.
+  /// Returns a slightly slower rotation. Its ramps (acceleration and deceleration), and the motion between them, take
+  /// whole numbers of steps.
   SpinTimes in_whole_steps(double step_s) const;
 
  private:
