@@ -18,8 +18,9 @@ using geometry::Vec3;
 
 namespace {
 
-/// Boundary plane of one cut at a dihedral edge. A point has the height h above the facet of the cut and the height g
-/// above the other facet. The cut leaves the material with h > `ratio` * g.
+/// Boundary plane of the material that one cut leaves at a dihedral edge. Let h be the height of a point above the
+/// facet that is cut, and g its height above the other facet at this edge. The cut leaves the points with h > `ratio` *
+/// g.
 struct CutBoundary {
   double ratio = 0.0;
   double shift_mm = 0.0;  ///< maximum displacement of the boundary, measured in h, due to rounded positions

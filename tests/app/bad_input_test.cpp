@@ -53,7 +53,7 @@ TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
       {9, "", "d.toml:6: array.y_length_mm"},                                  //
       {3, "base_mm = 0", "d.toml:3: element.base_mm"},                         // size zero
       {3, "base_mm = -0.5", "d.toml:3: element.base_mm"},                      // negative
-      {12, "[light]\nwavelength_nm = 1e9", "d.toml:13: light.wavelength_nm"},  // no index there
+      {12, "[light]\nwavelength_nm = 1e9", "d.toml:13: light.wavelength_nm"},  // no index at this wavelength
       {11, "thickness_mm = -1", "d.toml:11: body.thickness_mm"},               //
       {3, "base_mm = inf", "d.toml:3: element.base_mm"},                       // not finite
       {4, "width_mm = nan", "d.toml:4: element.width_mm"},                     //
@@ -64,10 +64,10 @@ TEST(BadInput, WrongDesignsAreRefusedWithFileLineAndKey) {
       {8, "x_length_mm = 0.4", "d.toml:8: array.x_length_mm"},                 // smaller than an element
       {9, "y_length_mm = 0.4", "d.toml:9: array.y_length_mm"},                 //
       {12, "material = \"Glas\"", "d.toml:12: body.material"},                 // unknown material
-      {7, "arrangement = \"honeycomb\"", "d.toml:7: array.arrangement"},       // of another kind
+      {7, "arrangement = \"honeycomb\"", "d.toml:7: array.arrangement"},       // only for cube corners
       {2, "kind = \"prism\"", "d.toml:2: element.kind"},                       //
       {4, "this is no TOML", "d.toml:4"},                                      //
-      {4, "base_mm = 1", "d.toml:4"},                                          // twice the same key
+      {4, "base_mm = 1", "d.toml:4"},                                          // the same key twice
       {12, "[light]\nspectrum = \"B\"", "d.toml:13: light.spectrum"},
       {12, "[light]\nspectrum = \"no.csv\"", "d.toml:13: light.spectrum"},
       {12, "[light]\nspectrum = \"d.toml/a.csv\"", "d.toml:13: light.spectrum"},

@@ -91,7 +91,8 @@ TEST_F(ChiselingCommand, HexagonsAsMachinedHaveFlares) {
       folder_, {"verify", "job.toml", "rs274ngc/program.ngc", "--as-machined", "part.toml", "--map", "map.png"});
   EXPECT_EQ(json["verdict"], "pass");
   ASSERT_EQ(json["elements_cut"], 7);
-  // A hexagon with six hexagons around it has 12 corners at dihedral edges, which gives (12 - 7) / 6 of a cube.
+  // The outline of seven hexagons has 12 corners at dihedral edges. The cuts beyond the outline have a volume of 5 / 6
+  // cubes, because (12 - 7) / 6 = 5 / 6.
   const double a = 0.3 * std::sqrt(3.0 / 8.0);
   EXPECT_NEAR(json["border_overcut_mm3"].get<double>(), 5.0 / 6.0 * a * a * a, 1e-12);
   ASSERT_NE(folder_.read("part.toml").find("facets = \"part_facets.csv\""), std::string::npos);
@@ -127,7 +128,8 @@ TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
     EXPECT_NEAR(reach["facet_area_mm2"].get<double>(), area, 1e-12);
     EXPECT_NEAR(reach["reached_share"].get<double>(), 1.0 - 0.01 / area, 1e-12);
     EXPECT_NEAR(reach["reached_share_cut"].get<double>(), 1.0 - 0.01 / area, 0.01);
-    // At a point on the axis with the distance t from each facet: sqrt(2) t - 0.1 = t / tan 53.
+    // The highest point of the remaining material is on the axis. Its distance t from each facet follows from the
+    // equation sqrt(2) t - 0.1 = t / tan(53 degrees).
     const double t = 0.1 / (std::sqrt(2.0) - 1.0 / std::tan(53.0 * 3.14159265358979 / 180.0));
     EXPECT_NEAR(reach["core_mm"].get<double>(), std::sqrt(3.0) * t, 1e-9);
     EXPECT_NEAR(reach["core_mm_cut"].get<double>(), std::sqrt(3.0) * t, 1e-6);

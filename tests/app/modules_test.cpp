@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A command that needs a module, and the path at which the module is searched.
+/// A command that needs a module, and the path at which the program searches for the module.
 struct Need {
   std::string module;
   std::string command;

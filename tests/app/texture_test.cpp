@@ -107,7 +107,7 @@ TEST(HeightMapOfADesign, ExactEngineRefusesIt) {
 
 struct OutOfRange {
   std::string surface;
-  std::string word;  ///< of its warning, no other has it
+  std::string word;  ///< word that only the warning of this model contains
 };
 
 // Each model warns if it is used outside of its range, on standard error and in the JSON documents of both commands.

@@ -55,7 +55,8 @@ class ToolsRun : public ::testing::Test {
   }
   /// Returns the arguments of apt-get calls, one call per line.
   std::string asked() const { return fs::exists(folder_.path() / "asked") ? folder_.read("asked") : ""; }
-  /// Expects an end with code 3 and a last line of ours, after as many others, and no build folder.
+  /// Expects exit code 3 and no build folder. On standard error, the last line and `others` further lines must be lines
+  /// of tools/run itself, which begin with "run: ".
   void expect_gives_up(const Outcome& outcome, std::ptrdiff_t others = 0) const {
     EXPECT_EQ(outcome.code, 3) << outcome.err;
     EXPECT_EQ(outcome.out, "");

@@ -6,8 +6,8 @@
 
 #include "tests/app/program.h"
 
-// retrace validate: every figure is met, the page of the documentation has the numbers that it writes, and the document
-// has the shape that docs/commands.md says.
+// Tests of `retrace validate`: all expected values are met, the page of the documentation contains the numbers that the
+// command writes, and the JSON document has the structure that docs/commands.md describes.
 
 namespace retrace::test::validate_test {
 namespace {

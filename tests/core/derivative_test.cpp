@@ -1,5 +1,5 @@
-// Tests of numerical differentiation: the reported error bounds the true error, and functions without a derivative get
-// none.
+// Tests of numerical differentiation. The reported error must bound the true error. For functions without a derivative,
+// no derivative may be reported.
 #include "core/math/derivative.h"
 
 #include <gtest/gtest.h>

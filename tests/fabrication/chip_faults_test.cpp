@@ -55,8 +55,8 @@ class DexelFacet {
     double left_mm = 0.0;  ///< height above the facet at which the chip begins
   };
 
-  /// Removes a move and returns the maximum thickness that it removes along the lines. It is a chip only if the move
-  /// runs along the facet.
+  /// Subtracts the volume that a move sweeps from the lines, and returns the thickest chip. If the move does not run
+  /// along the facet, returns an empty Chip.
   Chip cut(const SweptVolume& sweep, const RigidMotion& pose, const ToolWedge& wedge) {
     RigidMotion from_field;
     from_field.rotation = pose.rotation * from_workpiece_.transpose();

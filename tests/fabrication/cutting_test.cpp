@@ -129,7 +129,8 @@ RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
   const Vec3 direction = (vector() + Vec3(0, 0, 2)).normalized();
   const auto span = swept_span(wedge, sweep, point, direction);
   const auto is_swept = [&](const Vec3& p) {
-    // Compute the bounds on t from each side of the wedge. The variables are eliminated in the reverse order.
+    // Each side of the wedge bounds the path parameter t, which is 0 at the start of the move and 1 at its end. The
+    // point is swept if a value of t meets all bounds.
     double low = 0.0;
     double high = 1.0;
     for (const auto& side : wedge.sides) {
@@ -162,7 +163,8 @@ TEST(Bodies, HullsMeetWhereTheyDo) {
                         corner + ((i & 4) != 0 ? 0.5 : 0.0));
     return cube;
   };
-  // The box meets the face x + y + z = 1 at 3 corner = 1, although the bounding boxes overlap up to corner = 1.
+  // The box leaves the face x + y + z = 1 if `corner` exceeds 1 / 3, although the bounding boxes overlap until it
+  // exceeds 1.
   for (const double corner : {0.0, 0.2, 0.333}) EXPECT_TRUE(hulls_meet(tetrahedron, cube_at(corner))) << corner;
   for (const double corner : {0.334, 0.4, 0.9, 1.5}) EXPECT_FALSE(hulls_meet(tetrahedron, cube_at(corner))) << corner;
   EXPECT_FALSE(hulls_meet(cube_at(-0.501), tetrahedron));
@@ -244,8 +246,8 @@ TEST(Cutting, DexelsAgreeInVolume) {
   }
 }
 
-/// The error field must agree with the exact figures: it shows only unavoidable errors, and a raised element at its
-/// position.
+/// The error field must agree with the exact figures. For correct programs, it shows only unavoidable errors. If an
+/// element is raised, it shows this error at the position of the element.
 TEST(Cutting, TheErrorFieldShowsFaultsWhereTheyAre) {
   Job job = square_job(2, Arrangement::aligned);
   job.process.roughing_depth_um = 50;

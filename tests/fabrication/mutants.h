@@ -84,8 +84,8 @@ inline std::vector<Mutant> mutants_of(const std::string& text, const std::vector
 }
 
 /// Move of a program that is read by a simple independent reader. The reader supports the few words of programs for
-/// lathes and planing mills: RS274/NGC without subroutines. It shares no code with the readers of the program, so that
-/// test rules are independent of them.
+/// lathes and planing mills: RS274/NGC without subroutines. It shares no code with fabrication/read/, so that test
+/// rules are independent of the readers that they test.
 struct PlainMove {
   bool is_rapid = true;
   bool is_timed = false;                ///< true if G93 is active
@@ -103,7 +103,7 @@ struct PlainProgram {
   std::vector<PlainMove> moves;
   bool ends = false;          ///< true if the program ends with M2 and %
   bool is_prepared = true;    ///< true if all settings are made before the first move
-  bool stops_spindle = true;  ///< true if the spindle is also stopped before the first move
+  bool stops_spindle = true;  ///< true if the program stops the spindle before the first move
   bool is_odd = false;        ///< true if the program contains a word that this reader does not support
   bool spindle_is_left_on = false;
 };

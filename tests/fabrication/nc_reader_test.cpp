@@ -27,9 +27,9 @@ std::string word_of(NcDialect dialect) {
   return std::string(kNcDialectWords[static_cast<std::size_t>(dialect)]);
 }
 
-/// Returns the same program in the given dialect, written by hand according to the manual of the control. The program
-/// rotates the table, approaches the part, and calls a subroutine at two positions. The subroutine plunges, dwells,
-/// ploughs and retracts.
+/// Returns a program in the given dialect, written by hand according to the manual of the control. All dialects give
+/// the same moves. The program rotates the table, approaches the part, and calls a subroutine at two positions. The
+/// subroutine plunges, dwells, ploughs and retracts.
 std::string sample(NcDialect dialect) {
   switch (dialect) {
     case NcDialect::rs274ngc:

@@ -77,7 +77,7 @@ TEST_P(PartialPrograms, EveryPhaseIsRightAfterWhatComesBefore) {
     for (std::size_t k = 0; k < whole.stages.size(); ++k) {
       PlanOptions options;
       options.phase = whole.stages[k].name;
-      // The name may denote a group of stages.
+      // The name of a phase may stand for several stages of the plan.
       const bool is_last = make_plan(c.job, machine_of(c), options).stages.back().name == whole.stages.back().name;
       std::vector<NcProgram> programs = {program(texts(c, options).front())};
       if (k > 0) {
@@ -103,7 +103,8 @@ TEST_P(PartialPrograms, AProgramGoesOnWhereAnotherWasStopped) {
     for (const std::size_t stage : {std::size_t{0}, whole.stages.size() - 1}) {
       PlanOptions options;
       options.phase = whole.stages[stage].name + "+";
-      // Restart at the second element of the stage, after the operator stopped after the call for the first.
+      // Restart at the second element of the stage. The operator stopped the program after the call for the first
+      // element.
       const Plan rest = make_plan(c.job, machine_of(c), options);
       std::vector<std::int32_t> visited;
       for (const Item& item : rest.programs.front().items)

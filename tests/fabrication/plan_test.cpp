@@ -296,8 +296,8 @@ TEST(Order, TravelBetweenElementsIsShort) {
       last = at;
       ++lines;
     }
-    // In a checker, the neighbours of prisms with the same orientation are diagonal. Along a line, the distance between
-    // them is two pitches.
+    // In a checker arrangement, the nearest prisms with the same orientation are diagonal neighbours. Along a row,
+    // prisms with the same orientation are two pitches apart.
     const double pitches = arrangement == Arrangement::checker ? 2.0 : arrangement == Arrangement::offset ? 1.15 : 1.0;
     EXPECT_LT(travel_mm, 1.05 * pitches * 0.451 * lines);
   }

@@ -110,8 +110,8 @@ TEST(RandomMachines, PloughsKeepToTheFacetWhereSlidesLeanAlongATiltedEdge) {
     }
 }
 
-/// Returns a random machine. The tilts of its axes and of its tool are at most `most_arcsec`. The displacements are at
-/// most 0.01 `most_arcsec`, in um.
+/// Returns a random machine. The tilts of its axes and of its tool are at most `most_arcsec`. The displacements, in um,
+/// are at most 0.01 times `most_arcsec`.
 Machine any_machine(std::mt19937_64& bits, const std::string& name, double most_arcsec) {
   std::uniform_real_distribution<double> share(-1.0, 1.0);
   Machine m = machine(name);

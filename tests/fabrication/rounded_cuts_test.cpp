@@ -80,8 +80,8 @@ TEST(RoundedCuts, FinsAreNoHigherThanTheFormula) {
   }
 }
 
-/// Three facet planes with random angle errors. For each facet, the direction of the spine of a random tool during the
-/// cut. The two flanks of the tool meet in the spine.
+/// Three facet planes with random angle errors, and the directions of the spine of a random tool while it cuts each of
+/// the facets. The spine is the edge between the two flanks of the tool.
 struct RandomCuts {
   std::array<geometry::Vec3, 3> normals;
   std::array<geometry::Vec3, 3> spines;
@@ -329,8 +329,8 @@ std::optional<double> number_after(const std::string& text, const std::string& b
   return std::strtod(text.c_str() + text.find_first_of("0123456789", at + before.size()), nullptr);
 }
 
-/// The values that a message names as allowed are accepted. Smaller wedge angles and larger increments are refused
-/// again. No number in a message has more than eight digits.
+/// The values that a message names as allowed are accepted. Smaller wedge angles and larger increments are refused. No
+/// number in a message has more than eight digits.
 TEST(RoundedCuts, RefusalsNameValuesThatAreAccepted) {
   const auto refusal = [](const Job& job, const Machine& m) -> std::string {
     try {

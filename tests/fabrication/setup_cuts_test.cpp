@@ -53,8 +53,8 @@ Verification cut_on(const Made& made, const Machine& real) {
   return verify_programs(made.job, real, made.programs, {}, {});
 }
 
-/// Effect of an error on a facet, from its figures or from the derivatives: its height at the point of its mean, and
-/// its slopes.
+/// Effect of an error on a facet, as the derivatives predict it: the change of the height at the mean point of the
+/// facet, and the changes of the slopes.
 struct Effect {
   double height_nm = 0.0;
   double slope_up = 0.0;

@@ -218,7 +218,7 @@ TEST_P(Stops, EveryLineOfAStopIsMissed) {
         if (is_comment(lines[k])) continue;
         Lines spoilt = lines;
         spoilt.erase(spoilt.begin() + static_cast<std::ptrdiff_t>(k));
-        // A missing warm-up stroke is not judged, because the other strokes may take long enough without it.
+        // A missing warm-up stroke is not tested, because the other strokes may take long enough without it.
         const bool is_stroke =
             k > i && k < end && (lines[k].find(" X") != std::string::npos || lines[k].find(" Y") != std::string::npos);
         if (!is_stroke) {

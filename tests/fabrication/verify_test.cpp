@@ -84,7 +84,8 @@ TEST(Verify, TheTiltOfAPloughedFacetIsToldWithWhatIsUnavoidable) {
   EXPECT_LT(finished.facet_angle_arcmin_max, 0.01);
 }
 
-/// Golden programs: several passes per element, another apex angle, masks, direct cutting, and every dialect.
+/// Verifies the golden programs. They cover several passes per element, another apex angle, masks, direct cutting, and
+/// every dialect.
 TEST(Verify, GoldenProgramsOfEveryDialect) {
   int count = 0;
   for (const auto& folder : std::filesystem::directory_iterator(RETRACE_SOURCE_DIR "/tests/fabrication/golden")) {
@@ -393,8 +394,8 @@ TEST_F(Faults, AxisVectorScaledByOnePercent) {
 TEST_F(Faults, PlannedForIdealAxesShowsTheErrorsOfTheMachine) {
   const Verification v = verify_texts(job_, "paper", texts_of(job_, "ideal"));
   EXPECT_FALSE(v.passes());
-  // The facets of upright elements deviate by 5.06 and 5.42 arcmin, and their apex angle by 3.32 arcmin. Rotated
-  // elements have other deviations.
+  // The facets of upright elements deviate by 5.06 and 5.42 arcmin, and their apex angle by 3.32 arcmin. The deviations
+  // of rotated elements are different.
   double upright = 0.0;
   for (const ElementResult& e : {v.elements[0], v.elements[3]}) {
     EXPECT_NEAR(e.facet_angle_arcmin[0], 5.06, 0.01);

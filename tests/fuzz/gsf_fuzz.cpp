@@ -1,4 +1,4 @@
-// Reads Gwyddion Simple Field files. The input follows the fixed first words.
+// Reads Gwyddion Simple Field files. Each file consists of the fixed first words of the format and the fuzz input.
 
 #include "tests/fuzz/height_map_fuzz.h"
 

@@ -1,4 +1,4 @@
-// Reads native files of Gwyddion. The input follows the fixed first four bytes.
+// Reads native files of Gwyddion. Each file consists of the fixed first four bytes of the format and the fuzz input.
 
 #include "tests/fuzz/height_map_fuzz.h"
 

@@ -1,4 +1,4 @@
-// Reads surface data files (SDF). The input follows the fixed first word.
+// Reads surface data files (SDF). Each file consists of the fixed first word of the format and the fuzz input.
 
 #include "tests/fuzz/height_map_fuzz.h"
 

@@ -21,7 +21,7 @@ namespace retrace::documents_test {
 
 using namespace schema;
 
-/// Returns a random number of the range that its shortest text gives exactly.
+/// Returns a random number inside the range. Its shortest text is read back as exactly the same number.
 inline double number_in(const NumberRange& range, const NumberRange& sane = {}) {
   const double low = std::max({range.low, sane.low, -1e3});
   const double high = std::min({range.high, sane.high, low + 1e3});

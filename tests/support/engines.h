@@ -67,8 +67,8 @@ inline void expect_nothing_lost(const geometry::Part& part, const std::vector<do
       }
 }
 
-/// Expects that beams and rays give the same power in each account of the ledger. The tolerance is the power that beams
-/// truncate at `cutoff`, plus `slack`.
+/// Expects that beams and rays give the same power in each account (energy term) of the ledger. The tolerance is the
+/// power that beams truncate at `cutoff`, plus `slack`.
 inline void expect_same_accounts(const geometry::Part& part, const raytrace::Illumination& light, double cutoff,
                                  double slack, const std::string& name) {
   raytrace::BeamPolicy policy;
@@ -82,8 +82,8 @@ inline void expect_same_accounts(const geometry::Part& part, const raytrace::Ill
         << name << ": " << raytrace::kAccountNames[a];
 }
 
-/// Expects that rays give the same power in each account as the reference. The tolerance is the noise of the reference
-/// plus its truncated power and `slack`.
+/// Expects that rays give the same power in each account (energy term) of the ledger as the reference. The tolerance is
+/// the noise of the reference plus its truncated power and `slack`.
 /// \param comparisons total number of comparisons in the test
 inline void expect_accounts_of(const ReferenceResult& reference, const raytrace::Ledger& traced,
                                std::size_t comparisons, double slack, const std::string& name) {

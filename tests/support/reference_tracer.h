@@ -25,7 +25,8 @@ enum class Polarisation { kept, averaged };
 
 /// Traces light with an independent engine for small finite parts. It traces plain random rays against all triangles of
 /// the closed boundary in double precision, with complex field vectors in space, and follows every branch. It shares
-/// only the boundary and the names of the accounts with the tracers of the program. It is slow on purpose.
+/// only the boundary and the names of the accounts (energy terms) with the tracers of the program. It is slow on
+/// purpose.
 ReferenceResult reference_trace(const geometry::Part& part, const raytrace::Optics& optics,
                                 const raytrace::Illumination& illumination, double cone_half_angle_deg,
                                 std::uint64_t rays, std::uint64_t seed, Polarisation polarisation = Polarisation::kept);

@@ -34,8 +34,9 @@ std::string recorded_place_of(const Error& error);
 std::string facts_of(const Warning& warning);
 std::vector<std::string> facts_of(const Warnings& warnings);
 
-/// Returns place_of() the error that `read` throws. For tests of random inputs, whose messages are not recorded.
-/// \param taken the answer if it throws none
+/// Returns place_of() for the error that `read` throws. Use this function in tests of random inputs, because it does
+/// not record the message.
+/// \param taken result if `read` throws no error
 template <class Read>
 std::string unrecorded_refusal_of(const Read& read, const std::string& taken = "") {
   try {
@@ -47,8 +48,8 @@ std::string unrecorded_refusal_of(const Read& read, const std::string& taken = "
   return taken;
 }
 
-/// Returns place_of() the error that `read` throws, and records its message.
-/// \param taken the answer if it throws none
+/// Returns place_of() for the error that `read` throws, and records the message of the error.
+/// \param taken result if `read` throws no error
 template <class Read>
 std::string refusal_of(const Read& read, const std::string& taken = "") {
   try {

@@ -1,7 +1,7 @@
 #pragma once
 
-// A part with four prisms as the verifier cuts it on a machine with hidden errors, and simulated measurements of this
-// part.
+// A part with four prisms, whose facets the verifier computes for a machine with hidden errors. Also simulates
+// measurements of this part.
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -155,7 +155,7 @@ class PatternedSurface {
 };
 
 /// Returns the measured value of a quantity of a facet on a part with an unknown pose.
-/// \param figures values that the verifier computes in the machine
+/// \param figures values that the verifier computes for the facet, in the workpiece frame
 inline double measured_of(const fabrication::Groove& groove, const fabrication::FacetFigures& figures,
                           std::size_t facet, studies::FacetQuantity what, const fabrication::RigidMotion& pose) {
   const fabrication::DesignFacet& design = groove.facets[facet];

@@ -135,7 +135,8 @@ void MillCheck::end(const NcEnd& end) {
 void MillCheck::measure_at(double x_mm, double left_mm, const Stroke* stroke) {
   const double place_mm = std::abs(x_mm);
   const double design_mm = profile_.depth_mm(place_mm);
-  // Close to a wall, a point may belong to either side. Points within one step of the grid are therefore not evaluated.
+  // Close to a wall, a point may belong to either side of the wall. Points within one step of the grid from a wall are
+  // therefore not compared with the design.
   const double near_mm = part_.mill->grid_mm;
   double standing = std::max(0.0, design_mm - left_mm);
   double gouge = std::max(0.0, left_mm - design_mm);

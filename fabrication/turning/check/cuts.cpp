@@ -78,7 +78,8 @@ class CutReader : public NcSink {
   }
 
   void state(const NcSettings& settings, const NcPlace& place) override {
-    // Cuts are paths without stops. The check of exact stops is done for their moves, so it is disabled here.
+    // Cuts are paths without stops. check_state() checks exact stops for each move, so the check of exact stops is
+    // disabled here.
     NcSettings asked = settings;
     asked.exact_stop = true;
     control_.state(asked, place, is_down_);

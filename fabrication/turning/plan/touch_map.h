@@ -16,8 +16,8 @@ class TouchMap {
  public:
   /// Creates an empty map: nothing is proved at any position.
   TouchMap() = default;
-  /// Computes the map by interval arithmetic. The proof is possible inside of the base's boundary, for bases and
-  /// lenslets without a formula, and for tools without rake.
+  /// Computes the map by interval arithmetic. The proof is possible only inside of the base's boundary, only for bases
+  /// and lenslets that are not given by a formula, and only for tools without rake.
   /// \param reach_mm maximum distance of the edge from the origin
   TouchMap(const geometry::FreeformSurface& surface, const TurningTool& tool, double reach_mm);
 
