@@ -63,7 +63,7 @@ struct Tool {
   double width_mm = 0.0;    ///< chisel: length of the edge, 0.1..2; V-shaped: distance between ends of edges, 0.01..10
   double wedge_deg = 50.0;  ///< angle between clearance face and rake face; 65 by default for a V-shaped tool
   double clearance_deg = 3.0;        ///< angle between clearance face and cut facet, 2..15
-  double edge_radius_um = 0.0;       ///< radius of a chisel's edge, or of the nose of a V-shaped tool; 0: sharp
+  double edge_radius_um = 0.0;       ///< radius of a chisel's edge, or of the nose of a V-shaped tool; 0 if sharp
   double side_clearance_deg = 2.0;   ///< clearance angle of a chisel's side walls behind the ends of the edge; > 0
   double nose_angle_deg = 50.0;      ///< angle between the two edges of a V-shaped tool
   std::vector<EdgeChip> edge_chips;  ///< chips in the edge of a chisel; they do not overlap
@@ -93,14 +93,14 @@ struct Process {
   double finishing_feed_mm_per_min = 20.0;
   double retract_feed_mm_per_min = 200.0;  ///< feed of retracts and of moves to the next cut of an element
   bool shortest_plough = false;  ///< true: a plough ends when the chip is free, not at plough_length_mm (thesis 4.4)
-  double plough_lift_um = 0.0;   ///< lift of the tool off the facet after the chip has separated; 0: no lift
+  double plough_lift_um = 0.0;   ///< lift of the tool off the facet after the chip has separated; 0 for no lift
   /// Length, in um, of the first part of the retract of a bidirectional cut. This part is made at the cutting feed
   /// (thesis 4.4).
   double slow_retract_um = 0.0;
   bool mist = true;                      ///< true: mist during cuts, which removes chips and cools the edge
   double rotary_clearance_mm = 5.0;      ///< clearance above the rotating blank during rotary moves
-  std::optional<double> least_chip_um;   ///< minimum chip thickness, below which the edge rubs; empty: no limit
-  std::optional<double> stop_every_min;  ///< maximum run time of a program without a stop; empty: no limit
+  std::optional<double> least_chip_um;   ///< minimum chip thickness, below which the edge rubs; no limit if empty
+  std::optional<double> stop_every_min;  ///< maximum run time of a program without a stop; no limit if empty
   bool stop_before_finishing = false;    ///< true: every element is inspected between roughing and finishing
   /// Measured areal roughness Sa of facets after each kind of motion. Source: Milliken 2017 and Hamilton et al. 2017.
   double plough_sa_nm = 468.0;
@@ -131,7 +131,8 @@ struct Job {
   /// Zones that are cut instead of the array. If there are zones, only the x and y lengths of `array` are used.
   std::vector<CutZone> zones;
   /// Curved or inclined surface on which the elements are placed, and shape of the blank's face. Its highest point over
-  /// the part is z = 0. Only for moulds of arrays without offsets and patterns. Empty: the plane z = 0.
+  /// the part is z = 0. It is allowed only for moulds of arrays without offsets and patterns. If it is empty, the
+  /// blank's face is the plane z = 0.
   std::optional<geometry::Substrate> substrate;
   Tool tool;
   std::string machine = "ideal";  ///< name of a shipped machine, or a file

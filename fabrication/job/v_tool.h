@@ -19,7 +19,7 @@ inline constexpr double kMaxWedgeDeg = 80.0;
 /// the facet. The clearance face is inclined to the facet about the leading edge (docs/theory/micro_chiseling.md).
 struct VToolEdges {
   geometry::Vec3 leading = geometry::Vec3::UnitY();   ///< cutting edge, on the side of the second dihedral edge
-  geometry::Vec3 trailing = geometry::Vec3::UnitX();  ///< the other edge of the clearance face
+  geometry::Vec3 trailing = geometry::Vec3::UnitX();  ///< second edge of the clearance face
   geometry::Vec3 spine = geometry::Vec3::UnitZ();     ///< edge between the two flanks
 };
 VToolEdges v_tool_edges(const Tool& tool);

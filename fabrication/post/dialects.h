@@ -38,11 +38,11 @@ struct DialectWords {
   std::string_view path_time;
   std::string_view path_end;  ///< return to exact stops and feeds per minute. Arguments: control
   /// Start of a path whose moves contain positions, velocities and times, for controls that interpolate by cubic
-  /// polynomials. Empty: the control cannot do this.
+  /// polynomials. It is empty if the control cannot do this.
   std::string_view cubic_begin = {};
   std::string_view cubic_end = {};
-  std::string_view cubic_word = {};  ///< one axis of such a move. Arguments: letter; position; velocity
-  /// Move of such a path. Arguments: words of all axes; list of letters; list of positions; list of velocities;
+  std::string_view cubic_word = {};  ///< one axis of a move with velocities. Arguments: letter; position; velocity
+  /// Move with velocities. Arguments: words of all axes; list of letters; list of positions; list of velocities;
   /// duration in milliseconds; duration in seconds; time since the start of the path in seconds.
   std::string_view cubic_move = {};
   double cubic_time_s = 1.0;  ///< time unit of the velocities, in s

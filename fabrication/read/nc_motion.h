@@ -53,7 +53,7 @@ struct NcSettings {
   std::optional<double> unit_mm;
   std::optional<double> feed_time_s;
   std::optional<bool> exact_stop;
-  std::optional<double> blend_mm;  ///< path tolerance of blending; empty: not given in the program
+  std::optional<double> blend_mm;  ///< path tolerance of blending; empty if the program does not give it
   std::uint16_t said = 0;          ///< bits of nc_said
   std::optional<NcSpindle> spindle;
   std::optional<double> spindle_rpm;

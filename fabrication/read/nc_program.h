@@ -44,8 +44,8 @@ enum class NcMove : std::uint8_t { rapid, linear };
 /// State of the spindle: set by M5, M3 or M4, or by a line of NcTexts.
 enum class NcSpindle : std::uint8_t { stopped, clockwise, counterclockwise, started_by_text, stopped_by_text };
 
-/// Program lines whose meaning the machine file or the part file defines, for dialects with has_own_texts(). Empty:
-/// there is no such line.
+/// Program lines whose meaning the machine file or the part file defines, for dialects with has_own_texts(). A text is
+/// empty if there is no such line.
 struct NcTexts {
   std::string spindle_start;
   std::string spindle_stop;
@@ -121,8 +121,8 @@ struct NcBlock {
   Setting<bool> mist_on;
   Setting<double> dwell_s;
   NcStop stop = NcStop::none;
-  std::int32_t call = -1;      ///< index of the called subroutine; -1: none
-  std::int32_t cubic = -1;     ///< index of the cubic move in NcProgram::cubics; -1: none
+  std::int32_t call = -1;      ///< index of the called subroutine; -1 if the block has no call
+  std::int32_t cubic = -1;     ///< index of the cubic move in NcProgram::cubics; -1 if the block has none
   bool begins_cubics = false;  ///< true: the times of cubic moves count from this block
   bool returns = false;
   bool ends = false;
@@ -147,9 +147,9 @@ struct NcProgram {
   std::size_t main_first = 0;
   std::size_t main_last = 0;  ///< index after the last block of the main program
   std::int32_t lines = 0;     ///< number of lines of the file
-  int coordinate_system = 0;  ///< number of the coordinate system of a Power PMAC; 0: not given
-  /// Line after which the operator stopped the program when it was executed for the first time; 0: the program ran to
-  /// its end.
+  int coordinate_system = 0;  ///< number of the coordinate system of a Power PMAC; 0 if not given
+  /// Line after which the operator stopped the program when it was executed for the first time. It is 0 if the program
+  /// ran to its end.
   std::int32_t stop_line = 0;
   /// Description of what is missing if the file is incomplete; empty if it is complete.
   std::optional<std::string> truncated;

@@ -99,8 +99,9 @@ bool starts_with_word(std::string_view text, std::string_view word);
 /// G or M code of a dialect.
 struct NcCode {
   double number = 0.0;
-  int group = 0;                       ///< modal group; a line may have one code of each group. 0: no group
-  void (*effect)(NcBlock&) = nullptr;  ///< effect on the block; null: a dwell, whose time is another word of the line
+  int group = 0;  ///< modal group; a line may have one code of each group. 0: no group
+  /// Effect on the block; null for a dwell, whose time is another word of the line.
+  void (*effect)(NcBlock&) = nullptr;
 };
 
 /// Effects of codes, for the tables of the dialects.

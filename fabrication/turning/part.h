@@ -23,7 +23,7 @@ struct TurnedPart {
   TurningMachine machine;
   double form_tolerance_nm = 10.0;
   std::size_t map_pixels = 101;
-  std::optional<double> mesh_thickness_mm;  ///< thickness of the moulded part in the mesh; empty: no mesh is written
+  std::optional<double> mesh_thickness_mm;  ///< thickness of the moulded part in the mesh; no mesh is written if empty
   int mesh_rings = 100;
   Warnings warnings;
 };

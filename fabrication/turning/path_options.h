@@ -30,10 +30,11 @@ struct PathOptions {
   double clear_mm = 1.0;             ///< clearance above the highest point, for moves without cutting
   double blend_mm = 1e-6;            ///< maximum deviation from the path between moves, due to blending
   double approach_mm_per_min = 5.0;  ///< feed of the downward move to the start of a cut
-  /// Angular acceleration of C at both ends of a spiral, between rest and the speed of the spindle. Empty: infinite.
+  /// Angular acceleration of C at both ends of a spiral, between rest and the speed of the spindle. The acceleration is
+  /// infinite if no value is given.
   std::optional<double> spin_deg_per_s2 = std::nullopt;
-  /// Maximum deviation of cubic moves from a spiral, for controls with such moves. Empty: straight moves are used for
-  /// all controls.
+  /// Maximum deviation of cubic moves from a spiral, for controls with such moves. If no value is given, straight moves
+  /// are used for all controls.
   std::optional<double> cubic_error_nm = std::nullopt;
 };
 

@@ -302,7 +302,7 @@ TEST(Inputs, LongFilesAreRefusedWithTheirLimit) {
     EXPECT_NE(outcome.err.find(" " + std::to_string(c.most_bytes) + " "), std::string::npos) << outcome.err;
     EXPECT_FALSE(fs::exists(folder.path() / "r.json"));
     fs::remove(folder.path() / c.file);
-    // A folder with the name of the file is refused as well.
+    // A folder with the name of the file is also refused, like a file that is too long.
     if (c.command.front() == "report") continue;
     fs::create_directory(folder.path() / c.file);
     const Outcome as_folder = retrace(folder, arguments);

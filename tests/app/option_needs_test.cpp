@@ -54,7 +54,7 @@ class Line {
   }
 
   /// Adds options until the requirements of all given options are met.
-  /// \param but requirement that remains violated; null: all requirements are met
+  /// \param but requirement that remains violated; null if all requirements must be met
   void satisfy(const Json& but) {
     for (bool changed = true; changed;) {
       changed = false;

@@ -69,7 +69,7 @@ constexpr std::chrono::seconds patient(int seconds) {
 /// A program that runs as a child process, without a shell. The first argument is the program.
 class Child {
  public:
-  /// \param out file for standard output; empty: standard output is captured
+  /// \param out file for standard output. If it is empty, standard output is captured
   Child(const std::filesystem::path& folder, const Arguments& arguments, const std::string& input = {},
         Input kind = Input::text, const std::string& out = {});
   ~Child();
@@ -100,7 +100,7 @@ class Child {
 
 /// Runs retrace in `folder`.
 /// \param input text on standard input
-/// \param out file for standard output; empty: standard output is captured
+/// \param out file for standard output. If it is empty, standard output is captured
 Outcome retrace(const TemporaryFolder& folder, Arguments arguments, const std::string& input = {},
                 const std::string& out = {});
 

@@ -169,8 +169,8 @@ TEST(Rre, AutoIsExactWhereThatIsCheap) {
   EXPECT_EQ(cheap["engine_requested"], "auto");
   EXPECT_EQ(cheap["engine"], "exact");
   for (const Json& point : cheap["points"]) EXPECT_LE(point["ledger"]["truncated"].get<double>(), 1e-4);
-  // Beams are expensive for cube corners at oblique incidence. The engine for this direction does not determine the
-  // engine for the other direction.
+  // Beams are expensive for cube corners at oblique incidence, but not at normal incidence. `auto` selects the engine
+  // for each direction separately.
   const Json dear = retrace_json(folder, {"rre", RETRACE_SOURCE_DIR "/examples/honeycomb_infinite.toml",
                                           "--incidence=0,20", "--azimuth=4", "--target-error=0.01"});
   EXPECT_EQ(dear["engine"], "mixed");

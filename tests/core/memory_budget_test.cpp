@@ -20,7 +20,7 @@ struct Budget {
   ~Budget() { set_memory_budget_bytes(1024 * kMiB); }
 };
 
-/// Adds bytes to a sum. The destructor subtracts them again, also after an exception.
+/// Adds bytes to a sum. The destructor subtracts them again, even after an exception.
 struct Share {
   std::atomic<std::uint64_t>& sum;
   std::uint64_t own = 0;

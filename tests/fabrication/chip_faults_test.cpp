@@ -274,7 +274,7 @@ TEST_P(ChipFaults, AStageThatIsGoneOrStandsTooHighIsFound) {
         for (const std::optional<Nanometres> by_nm : {std::optional<Nanometres>(), {Nanometres{60'000}}}) {
           const std::string text = changed_stage(plan, k, by_nm);
           if (!verified(job, m, text).passes()) continue;
-          // A first layer may be so thin that the next layer removes its material as well.
+          // The first layer may be so thin that a program without it is correct: the next layer removes its material.
           const std::string& title = plan.subroutines[k].title;
           EXPECT_TRUE(title.starts_with("layer-1") && true_excess_um(job, m, text) < 0.0) << title << " of " << cuts;
         }

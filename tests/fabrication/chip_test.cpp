@@ -126,8 +126,8 @@ RC_GTEST_PROP(Chips, HalfSpacesOfASweepHoldItsLines, ()) {
   RC_ASSERT(std::abs(std::min(span->high, 1e3) - high) < 1e-6);
 }
 
-/// If a tip moves one depth of cut beyond the other facet, its rake face, at 53 degrees to the wall, removes tan 53
-/// degrees times this depth.
+/// If a tip moves one depth of cut beyond the facet that it is not cutting, its rake face, at 53 degrees to the wall,
+/// removes tan 53 degrees times this depth.
 TEST(Chips, ThickestOfRightProgramsIsThatOfTheRakeFace) {
   const double slope = std::tan(53.0 * M_PI / 180.0);
   Job job = square_job(1);

@@ -310,7 +310,7 @@ TEST_P(ControlState, CutsAreNotTooSlow) {
   EXPECT_GE(tried, 3);
 }
 
-/// Moves of rotary axes and the first moves must also respect the limits of the axes.
+/// All moves must respect the limits of the axes, including moves of rotary axes and the first moves.
 TEST_P(ControlState, FeedsOfEveryMove) {
   int tried = 0;
   for (std::size_t i = first_move(); i < lines_.size(); ++i) {
@@ -399,7 +399,7 @@ TEST_P(ControlState, WhatControlsRefuse) {
   EXPECT_EQ(kinds_in(lines_), "setup");
 }
 
-/// The deviation of facets due to a coarse increment is at most the tolerance, also where two facets meet.
+/// The deviation of facets due to a coarse increment is at most the tolerance, even where two facets meet.
 TEST_P(ControlState, CoarseIncrementsLeaveWhatTheyRound) {
   if (GetParam() != NcDialect::fanuc) return;
   for (const IncrementSystem system : {IncrementSystem::d, IncrementSystem::c})
@@ -424,7 +424,7 @@ TEST_P(ControlState, IncrementsAreFinerThanCuts) {
   EXPECT_EQ(refusal_of([&] { make_plan(job_, for_dialect(machine, "fanuc")); }), "process.finishing_depth_um");
 }
 
-/// A correct program also passes with a tolerance that is larger than the chip thickness. Such a tolerance does not
+/// A correct program passes even with a tolerance that is larger than the chip thickness. Such a tolerance does not
 /// affect the check that chips are separated.
 TEST_P(ControlState, WideTolerancesPassToo) {
   std::string text;

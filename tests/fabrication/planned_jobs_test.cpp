@@ -47,7 +47,8 @@ Verification verified(const Job& planned, const Job& job, const Machine& m) {
 }
 
 /// Returns the programs with the visits of one element (calls of cutting subroutines) moved along Z.
-/// \param title first words of the titles of the subroutines whose visits are moved; empty: all subroutines
+/// \param title first words of the titles of the subroutines whose visits are moved. If it is empty, the visits of all
+///        subroutines are moved
 std::vector<Program> raised(std::vector<Program> programs, std::int32_t element, Nanometres by_nm,
                             const std::string& title = "") {
   int moved = 0;
@@ -231,7 +232,8 @@ TEST(PlannedJobs, APloughedFacetThatLeavesTheBlankBelowItsRimIsNoGouge) {
   EXPECT_TRUE(v.passes()) << listed(v);
   EXPECT_EQ(v.elements_cut, 2);
   EXPECT_LT(v.facet_distance_nm_max, 2.0);
-  // 15 nm along Z are 10.6 nm along the normal of the facet. This is more than the tolerance, also at the rim.
+  // 15 nm along Z are 10.6 nm along the normal of the facet. This is more than the tolerance, even at the rim (the
+  // upper end of the facet).
   EXPECT_TRUE(has_kind(verified(raised(programs, 0, -15), job, paper), "gouge"));
   EXPECT_TRUE(has_kind(verified(raised(programs, 0, 15), job, paper), "excess"));
 }
@@ -321,9 +323,9 @@ TEST(PlannedJobs, RootsThatStandObliqueByMoreThanACutAreRefused) {
     }
 }
 
-/// The floor that a plough leaves at an oblique root is predicted exactly, also for slides that are not perpendicular
-/// to each other and for several passes. Correct programs pass. Programs that are 30 nm too high or too low fail. Terms
-/// of third order are up to 0.4 um here.
+/// The floor that a plough leaves at an oblique root is predicted exactly, even for slides that are not perpendicular
+/// to each other, and for several passes. Correct programs pass. Programs that are 30 nm too high or too low fail.
+/// Terms of third order are up to 0.4 um here.
 TEST(PlannedJobs, PloughedFloorsOfObliqueRootsAreAsDerived) {
   for (const double slope : {0.01, 0.05, 0.1, 0.15})
     for (const double lean : {0.0, 0.002})

@@ -374,7 +374,7 @@ RC_GTEST_PROP(LeastChip, NoCutOfARightProgramRubs, ()) {
   RC_ASSERT(!verified(job, machine, without).passes());
 }
 
-/// No cut of a correct program is too thin, also for other wedge angles, rounded edges and larger increments. In these
+/// No cut of a correct program is too thin, even for other wedge angles, rounded edges and larger increments. In these
 /// cases, the edge extends below its reference point.
 RC_GTEST_PROP(LeastChip, OfAnyPrisms, ()) {
   Job job = square_job(1);

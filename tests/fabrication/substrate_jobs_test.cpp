@@ -234,8 +234,8 @@ TEST(OnSubstrate, MeasuredAxesAreAllowedFor) {
   }
 }
 
-/// On a machine with axis B in its head, errors of the axes are compensated on a substrate as well. The remaining
-/// errors only rotate the tool slightly in the plane of the facets.
+/// On a machine with axis B in its head, errors of the axes are compensated on a substrate as on a flat blank. The
+/// remaining errors only rotate the tool slightly in the plane of the facets.
 TEST(OnSubstrate, MeasuredAxesOfAHeadAreAllowedFor) {
   Machine m = machine("ideal-dmc");
   m.name = "crooked";

@@ -152,7 +152,8 @@ TEST(LiveEngine, RefusesChangesThatMakeNoDesign) {
   EXPECT_EQ(refused({{"element.cant_deg", 10}, {"body.thickness_mm", 1e-6}}), "design.toml: body.thickness_mm");
 }
 
-/// A design can be changed from every kind of element to every other kind. The engine adapts the other keys.
+/// A design can be changed from every kind of element to every other kind. The engine adapts the remaining keys of the
+/// design.
 TEST(LiveEngine, AdaptsWhatIsLeftOfAnotherKind) {
   live::Engine engine;
   for (const std::string_view from : studies::design_kinds())

@@ -47,7 +47,7 @@ struct Picture {
   int height = 0;
   std::vector<std::uint32_t> pixels;
 
-  /// Returns the number of pixels whose colour is close to `rgb`, so that anti-aliased edges are counted as well.
+  /// Returns the number of pixels whose colour is close to `rgb`, so that anti-aliased edges are counted.
   std::size_t count_near(std::uint32_t rgb, int tolerance = 12) const {
     const auto is_near = [&](std::uint32_t pixel) {
       for (const int shift : {0, 8, 16}) {

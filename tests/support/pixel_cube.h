@@ -34,7 +34,7 @@ struct PixelCubeSpec {
 
 /// Far field of one cube corner as a sum over the pixels of its aperture. Each pixel contributes a plane wave in the
 /// direction of its outgoing ray, with the phase that this wave has at the apex. The exit pixel and the entry pixel are
-/// symmetric about the apex. The model uses this symmetry also for facets with angle errors.
+/// symmetric about the apex. The model uses this symmetry even for facets with angle errors.
 class PixelCube {
  public:
   using Vec2 = geometry::Vec2;

@@ -17,8 +17,8 @@ class StandingSection {
  public:
   StandingSection(double end_mm, double spacing_mm, double nose_mm);
 
-  /// Removes the material of a straight move of the nose's lowest point. Because the part rotates, a tool beyond the
-  /// axis cuts on the other side.
+  /// Removes the material of a straight move of the nose's lowest point. Because the workpiece rotates, a nose beyond
+  /// the axis cuts the section from the opposite side.
   /// \param who number of the move, which is stored at all positions where it removes material
   /// \return the maximum thickness, along Z, of the removed material
   double cut(const SectionPoint& from, const SectionPoint& to, std::int32_t who);

@@ -42,7 +42,8 @@ class ZoneCutter {
   std::vector<ZoneCut> one_after_another(std::size_t zone) const;
 
   /// Returns the maximum height of the material that remains between two neighbouring cuts of a zone.
-  /// \param before previous cut; null: the material between the inner step of the zone and the first cut
+  /// \param before previous cut. If it is null, the material between the inner step of the zone and the first cut is
+  ///        measured
   double left_standing_mm(std::size_t zone, const ZoneCut* before, const ZoneCut& cut) const;
 
  private:

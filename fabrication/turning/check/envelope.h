@@ -23,7 +23,7 @@ struct CutPass {
   std::vector<std::int32_t> line;  ///< program line of the block that ends at the point
   /// Duration of the whole block that ends at the point; 0 for a point inside of a cubic move.
   std::vector<double> block_s;
-  std::vector<double> servo_mm;  ///< strokes of a servo, which are part of z_mm; empty: no servo
+  std::vector<double> servo_mm;  ///< strokes of a servo, which are part of z_mm; empty without a servo
   std::size_t program = 0;       ///< index of the program
   double seconds = 0.0;
 

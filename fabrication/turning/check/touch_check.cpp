@@ -61,8 +61,8 @@ class EdgeProbe {
     return {x * cosine + y * sine, y * cosine - x * sine};
   }
 
-  /// Returns the Z position at which a point of the arc touches the surface. If the surface is not defined there, there
-  /// is no contact.
+  /// Returns the Z position at which a point of the arc touches the surface. Returns kNowhere if the surface is not
+  /// defined at this point.
   double touches_mm(const Pose& at, double angle) const {
     const Vec2 p = place(at, angle);
     const double z = surface_.height_mm(p.x(), p.y()) - lift_mm(angle) * cos_rake_;
@@ -301,7 +301,8 @@ class TouchCheck {
     end_stretches();
   }
 
-  /// Checks the end of a downward move for gouges. The tool may be above the surface there.
+  /// Checks the end point of a downward move for gouges. Material that is left is not checked at this point, because
+  /// the tool may be above the surface.
   void follow(const DownMove& move) {
     Standing standing;
     double angle = 0.0;

@@ -180,7 +180,7 @@ NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, con
         surface_.evaluate(aside * across.x() - back * cut.x() + x_mm, aside * across.y() - back * cut.y() + y_mm) -
         lift * cos_rake_;
     touch.height_mm = f[0];
-    // If the surface is more concave than the nose, there is no maximum here. Another start value is needed.
+    // If the surface is more concave than the nose, there is no maximum near this angle. Another start value is needed.
     if (!(f[2] < 0.0)) return touch;
     const double change = std::clamp(-0.5 * f[1] / f[2], -0.5, 0.5);
     const double next = std::clamp(angle + change, -end_rad_, end_rad_);

@@ -97,7 +97,7 @@ TEST(ShadedView, NearerFacesHideOthers) {
   const report::Colour& middle = seen.colours[80 * 200 + 100];
   for (std::size_t row = 30; row < 130; ++row)
     for (std::size_t column = 40; column < 160; ++column) EXPECT_EQ(seen.colours[row * 200 + column].blue, middle.blue);
-  // Seen from behind, there are three orientations of facets and their edges.
+  // Seen from behind, the part shows facets of three orientations and the edges between them.
   const ShadedView back = shaded_view(view.mesh, view.edges, {-Vec3::UnitZ(), Vec3::UnitY()}, 200, 160);
   std::vector<double> shades;
   for (std::size_t row = 40; row < 120; ++row)

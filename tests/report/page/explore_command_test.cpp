@@ -80,7 +80,7 @@ TEST(Explore, RefusesWhatAPageCannotHave) {
   EXPECT_EQ(folder.read("mesh.toml"), mesh);
 }
 
-/// A page of results contains the design as well, unless the design refers to files.
+/// A page of `retrace report` contains the page of `retrace explore` as a section, unless the design refers to files.
 TEST(Explore, IsASectionOfReports) {
   const TemporaryFolder folder;
   ASSERT_EQ(

@@ -105,7 +105,7 @@ TEST(Report, ShowsDrawingsAndPictures) {
   EXPECT_NE(html.find("data:image/svg+xml;base64,"), std::string::npos);
 }
 
-/// Parts from a mesh and parts from a table of facets are shown in views and sections as well.
+/// Views and sections show parts from a mesh and parts from a table of facets.
 TEST(Report, TakesMeshesAndTablesOfFacets) {
   const TemporaryFolder folder;
   const std::string shape =
