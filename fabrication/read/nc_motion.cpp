@@ -285,8 +285,8 @@ class Runner {
     return at;
   }
 
-  /// Returns the number of straight segments for a cubic move. The deviation of a segment from the curve is at most 1/8
-  /// of the second derivative times the squared duration of the segment.
+  /// Returns the number of straight segments for a cubic move. The deviation of a segment from the curve is at most the
+  /// maximum second derivative times 0.125 h^2, where h is the duration of the segment.
   int pieces_of(const std::array<double, kNcAxes>& from, const std::array<double, kNcAxes>& begin,
                 double time_s) const {
     double most = 1.0;

@@ -178,8 +178,8 @@ RC_GTEST_PROP(Chips, RightProgramsOfAnyPrismsPass, ()) {
   RC_ASSERT(v.chip_share_max <= 1.0 + 1e-9);
 }
 
-/// Correct programs pass on blanks whose faces are curved or inclined and that extend above the rims of elements with
-/// parallel axes.
+/// Correct programs pass on blanks with curved or inclined faces. If the axes of the elements are parallel, such a
+/// blank extends above the rims (upper edges) of elements.
 RC_GTEST_PROP(Chips, RightProgramsOnAnyBasePass, ()) {
   const ElementAxes axes = *rc::gen::element(ElementAxes::normal, ElementAxes::parallel);
   const double radius_mm = *rc::gen::element(12.0, -12.0, 30.0, -30.0, 200.0);

@@ -16,9 +16,9 @@
 #include "tests/fabrication/jobs.h"
 #include "tests/support/refusals.h"
 
-// Tests in every dialect of states of the control that an earlier program, a manual input or a reset may have left. The
-// verifier must notice if any word of the preparation is missing. If a state is changed in the middle of a program, the
-// verifier must report it at the next cut.
+// Tests, in every dialect, of programs on a control whose state is unknown at the start: an earlier program, a manual
+// input or a reset may have changed it. The verifier must notice if any word of the preparation is missing. If a state
+// is changed in the middle of a program, the verifier must report it at the next cut.
 
 namespace retrace::fabrication::test::control_state_test {
 namespace {

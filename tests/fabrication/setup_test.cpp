@@ -13,8 +13,8 @@
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/machine/setup.h"
 
-// Tests of the effect of one unit of each quantity of the set-up on the plane of a cut. The results are compared with
-// closed forms and with the kinematics.
+// Tests how one unit of each quantity of the set-up, such as the tilt of an axis, changes the plane of a cut. The
+// results are compared with closed forms and with the kinematics.
 
 namespace retrace::fabrication::setup_test {
 namespace {

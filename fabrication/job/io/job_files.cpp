@@ -52,8 +52,8 @@ constexpr std::size_t kMostZoneElements = 2'000'000;
 constexpr double kFitToleranceMm = 1e-6;
 constexpr std::size_t kMostChips = 100;
 /// Minimum angle, in degrees, between the rake face and the facet that is not being cut. The chip leaves between them.
-/// The value is an assumption. It is half of the 25 degrees that remain of a right angle with a wedge angle of 50
-/// degrees and a clearance angle of 15 degrees.
+/// The value is an assumption. A wedge angle of 50 degrees and a clearance angle of 15 degrees leave 25 degrees of a
+/// right angle. The value is half of this angle.
 constexpr double kChipRoomDeg = 12.5;
 
 // Conversions between members of Job and values in files.

@@ -32,10 +32,10 @@ void check_free_moves(const TurnedPart& part, const TurningCuts& cuts, const Tou
                     "the program ends with the tool nearer to the part than clear_mm", cuts.end_mm[k], limit, 1});
 }
 
-/// Returns the maximum deviation of a blended path from the corners between moves. If one move decelerates while the
-/// next one accelerates uniformly, the blend is a parabola, at most from the center of one move to the center of the
-/// next. Its distance from the corner is then a quarter of the corner's height above the chord between its neighbours.
-/// C is converted to the path length at the tool.
+/// Returns the maximum deviation of a blended path from the corners between moves. If one move decelerates uniformly
+/// while the next move accelerates uniformly, the blend is a parabola. It extends at most from the center of one move
+/// to the center of the next move. Its distance from the corner is then a quarter of the corner's height above the
+/// chord between its neighbours. C is converted to the path length at the tool.
 double widest_blend_mm(const std::vector<CutPass>& passes) {
   using Place = Eigen::Vector4d;
   double highest = 0.0;

@@ -166,7 +166,8 @@ TEST(TurningEnvelope, MapsShowCuspsAndNoWavesOfThePixels) {
     for (std::size_t k = 0; k < i.map_nm.size(); ++k) {
       const double x = (static_cast<double>(k % pixels) + 0.5) / static_cast<double>(pixels) - 0.5;
       const double y = (static_cast<double>(k / pixels) + 0.5) / static_cast<double>(pixels) - 0.5;
-      // Near the rim and near the centre, the map does not cover a whole feed, and near the centre the cusps differ.
+      // Skip pixels near the rim and near the centre, where the map does not cover a whole feed. Near the centre, the
+      // cusps have other heights.
       const double r = 1.6 * std::hypot(x, y);
       if (r < 0.4 || r > 0.6) continue;
       EXPECT_NEAR(i.map_nm[k], cusp, 0.02 * cusp) << r;

@@ -111,8 +111,8 @@ TEST_F(Turn, FindsTheLeastSkew) {
 }
 
 TEST_F(Turn, FindsTheLeastSkewOfARaster) {
-  // For a slope of 18 degrees along the lines, the skew s must satisfy sin 18 cos s <= sin 12, with the clearance angle
-  // of 12 degrees of the tool.
+  // For a slope of 18 degrees along the lines, the skew s must satisfy sin 18 cos s <= sin 12, where 12 degrees is the
+  // clearance angle of the tool.
   const Json json = turned(kHead +
                            "[base]\nkind = \"formula\"\nformula = \"0.325*y\"\n[tool]\nnose_radius_mm = "
                            "0.1\nclearance_deg = 12\nfind_least_skew = true\n[path]\nstrategy = \"raster\"\nsize_mm = "
