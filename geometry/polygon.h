@@ -34,7 +34,7 @@ Rectangle moved(const Rectangle& rectangle, const Vec2& by);
 /// tolerance.
 Polygon clip(const Polygon& polygon, const Rectangle& rectangle, double tolerance_mm);
 
-/// Returns the intersection of two convex polygons, with the tolerance of the function above.
+/// Returns the intersection of two convex polygons. `tolerance_mm` has the same meaning as in the function above.
 Polygon clip(const Polygon& polygon, const Polygon& region, double tolerance_mm);
 
 /// Returns true if a counter-clockwise polygon is convex and winds around once. At each vertex it must turn left,

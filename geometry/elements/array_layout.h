@@ -21,17 +21,17 @@ struct ArrayLayout {
   Extent extent = Extent::finite;
   RowParity shifted_rows = RowParity::even;
   PartialElements partial_elements = PartialElements::cut;
-  double x_length_mm = 0.0;  ///< lengths of finite arrays that are not `single`
+  double x_length_mm = 0.0;  ///< lengths of the array along x and y; used only for finite arrays that are not `single`
   double y_length_mm = 0.0;
   double x_gap_mm = 0.0;  ///< width of the flat land (surface without elements) between elements; prisms only
   double y_gap_mm = 0.0;
-  double x_offset_mm = 0.0;  ///< width of the flat margin kept free on both borders
+  double x_offset_mm = 0.0;  ///< width of the flat margin without elements at both ends along x
   double y_offset_mm = 0.0;
   double overlap_percent = 50.0;  ///< shift of alternate rows of `offset`, in percent of the base
   /// Mask of complete elements: one text per row, beginning with the row of largest y, with x ascending. '#' marks an
   /// element that exists, '-' marks an element that is missing. An empty mask means that all elements exist.
   /// The last column of a shifted row is beyond the border and is ignored. A row of cube corners has as many characters
-  /// as there are complete cells in the array at its height.
+  /// as there are complete cells at the y of this row.
   std::vector<std::string> pattern;
 };
 

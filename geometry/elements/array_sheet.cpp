@@ -20,7 +20,8 @@ constexpr double kWhole = 1e-9;
 constexpr double kEndlessPeriods = 1e3;
 constexpr double kEndlessReaches = 10.0;
 
-/// Sets each bound of the part to the same bound of the block if the two differ only by rounding errors.
+/// Snaps the part to the block: each bound of the part that equals the corresponding bound of the block within rounding
+/// errors is set to exactly that bound.
 void snap(Rectangle& part, const Rectangle& block, const Vec2& length) {
   const auto one = [](double& bound, double to, double scale) {
     if (std::abs(bound - to) <= 2.0 * kWhole * scale) bound = to;

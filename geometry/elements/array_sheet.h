@@ -35,13 +35,14 @@ struct ArraySheet {
   IndexRange indices() const;
   /// Returns the position on the sheet of the lattice's origin after a shift by (i, j) periods.
   Vec2 at_mm(std::int64_t i, std::int64_t j) const;
-  /// Returns true if periods that differ only along this axis (0: x, 1: y) are equal except for their height.
+  /// Returns true if a shift along this axis (0: x, 1: y) changes only the height of the substrate. Periods of the
+  /// lattice that differ only in their index along this axis then have the same shape.
   bool repeats_along(std::size_t axis) const;
 
   const PartSpec* spec;
   std::optional<SubstrateSurface> surface;  ///< not set for the plane z = 0
   bool is_upright = true;
-  std::optional<PrismBlock> prisms;  ///< relative to the centre of the block
+  std::optional<PrismBlock> prisms;  ///< set if the elements are prisms; positions are relative to the block's centre
   Lattice lattice;
   Vec2 anchor_mm = Vec2::Zero();  ///< origin of the lattice on the sheet
   Vec2 middle_mm = Vec2::Zero();  ///< centre of the part, where the substrate has its origin
@@ -54,7 +55,8 @@ struct ArraySheet {
   double sliver_mm = 0.0;
   double tolerance_mm = 0.0;     ///< tolerance for the border of the part in plan
   std::vector<Vec2> middles_mm;  ///< for each cell of the lattice, the point that is placed on the substrate
-  /// For each corner of each cell, its height above the substrate. Rims of full cubes are not horizontal.
+  /// For each cell, the height of each corner of its outline (its rim) above the substrate. The corners of one cell may
+  /// have different heights, because the rim of a full cube corner is not horizontal.
   std::vector<std::vector<double>> rims_mm;
 
  private:
@@ -75,8 +77,8 @@ struct CellPlace {
   SubstrateFrame frame;  ///< frame of the substrate at the cell's reference point
 };
 
-/// Portion of a sheet. Its coordinates are relative to the lattice's origin in one period, so equal portions of the
-/// array have equal coordinates.
+/// Portion of a sheet. Its coordinates are relative to the lattice's origin in the period (i, j). Portions of the same
+/// shape therefore have the same coordinates, wherever they are on the sheet.
 class SheetPiece {
  public:
   /// \param is_alone true if this is the only portion of the sheet; heights are then relative to z = 0 of the part

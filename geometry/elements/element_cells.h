@@ -1,7 +1,7 @@
 #pragma once
 
-// Geometry of single elements in plan. Prisms and cube corners are planes over polygons, with their errors of angle and
-// cant.
+// Geometry of single elements. A prism or cube corner consists of plane facets over polygons in the xy plane. Errors of
+// angle and cant change the planes of the facets.
 
 #include <cstdint>
 #include <optional>

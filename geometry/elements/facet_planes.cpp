@@ -128,7 +128,7 @@ Cell flared_land(const Cell& cell, const ElementPlanes& element, const Vec2& cen
     flare.plane = *element.flares[k / 2];
     flare.plane.height_mm -= flare.plane.slope.dot(centre_mm);
     flare.outline = {hexagon[(k + 5) % 6], hexagon[k], hexagon[(k + 1) % 6]};
-    flare.is_edge = true;  // the flare was cut as part of a facet, although this cell is land
+    flare.is_edge = true;  // a flare is not a facet of an element: a neighbour's cavity cuts this land
     land.facets.push_back(std::move(flare));
   }
   return land;

@@ -20,7 +20,7 @@ namespace retrace::geometry {
 struct ElementPlanes {
   Vec2 centre_mm = Vec2::Zero();  ///< centre of a prism's aperture, or apex of a cube corner, in the part frame
   /// Prism: facets towards -x and +x (rotated element: -y and +y). Cube corner: facet k is between the dihedral edges
-  /// at 120 k and 120 (k + 1) degrees. Empty: the element is missing, and only `flares` are used.
+  /// at 120 k and 120 (k + 1) degrees. An empty list means that the element is missing; only `flares` are then used.
   std::vector<HeightPlane> planes = std::vector<HeightPlane>(2);
   /// Cuts in the flat land that replaces a missing hexagonal cube corner. The machined cavities of its neighbours are
   /// triangular and extend into the corners of the hexagon. Cut k removes the corner at 120 k degrees, up to the line
@@ -31,9 +31,10 @@ struct ElementPlanes {
   std::array<std::optional<HeightPlane>, 3> caps;
 };
 
-/// Adds the flares next to hexagonal cube corners, which are machined as triangular cavities. A hexagon's corner at a
-/// dihedral edge is also a corner of two neighbouring hexagons. If one of these elements is missing, a facet of the
-/// cavity extends across its corner (docs/theory/micro_chiseling.md).
+/// Adds the flares, which are cuts in the land of missing hexagonal cube corners. Hexagonal cube corners are machined
+/// as triangular cavities. A hexagon's corner at a dihedral edge is also a corner of two neighbouring hexagons. If one
+/// of these two elements is missing, a facet of the cavity extends across this corner into its land
+/// (docs/theory/micro_chiseling.md).
 /// \param elements all elements that exist, at least one
 /// \param radius_mm radius of their apertures
 void add_flares(std::vector<ElementPlanes>& elements, double radius_mm);
@@ -63,7 +64,8 @@ class FacetPlanes {
   std::map<Key, std::size_t> places_;
 };
 
-/// Returns the position that ElementPlanes::centre_mm has for a cell. For land, returns its centre.
+/// Returns the reference position of a cell, as ElementPlanes::centre_mm defines it. The reference position of land is
+/// its centre.
 Vec2 place_of(const PartSpec& spec, const Cell& cell);
 
 /// Returns the element at the position of `cell`, with individual facet planes. Each facet ends where its plane

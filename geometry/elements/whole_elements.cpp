@@ -74,8 +74,9 @@ class Walk {
 
   const ArraySheet sheet_;
   const SheetPiece piece_;
-  std::map<double, std::map<double, std::size_t>> rows_;  ///< cells of a period by y and x
-  std::int32_t row_ = 0;                                  ///< row number among the rows with complete elements
+  /// for each y and x of an element in a period, the index of its cell in the lattice
+  std::map<double, std::map<double, std::size_t>> rows_;
+  std::int32_t row_ = 0;  ///< row number among the rows with complete elements
   std::int32_t column_ = 0;
 };
 

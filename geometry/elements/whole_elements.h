@@ -73,7 +73,8 @@ struct PlacedElement {
 };
 
 /// Returns all elements that are not outside the border, row by row in order of y, x ascending. The pattern is ignored.
-/// Rows and columns of prisms are their positions on the sheet. For cube corners, only complete elements are counted.
+/// The row and column numbers of prisms count all positions on the sheet. The numbers of cube corners count only
+/// complete elements.
 /// \pre the array is finite and not `single`
 /// \throw InputError if the array is smaller than one element
 std::vector<PlacedElement> place(const PartSpec& spec);

@@ -16,11 +16,12 @@ namespace {
 
 constexpr int kCellsPerFeature = 8;
 constexpr int kFewestCells = 64;
-// Maximum ratio of the mean curvatures of two grids that resolve the same features.
+// Two grids of different density resolve the same features if the ratio of the mean curvatures that they measure is at
+// most this value.
 constexpr double kSameBend = 1.3;
 // Changes of slope below this value are rounding errors; the surface is then treated as a plane.
 constexpr double kFlat = 1e-9;
-// Distance from a corner at which the local curvature is measured, relative to the cell.
+// Distance from a corner at which the local curvature is measured, relative to the size of a grid cell.
 constexpr double kSmall = 1e-3;
 
 bool is_inside(const Polygon& outline, const Vec2& p) {

@@ -16,8 +16,8 @@ namespace retrace::geometry {
 /// The first string is the row with the largest y. A pixel is dark if its grey value is less than threshold * 255. The
 /// grey value is 0 (black) to 255 (white): 0.299 R + 0.587 G + 0.114 B, rounded, on a white background (Milliken 2017,
 /// section 2.4).
-/// \param cells required numbers of columns and rows, with one pixel per cell of the array as in Array::pattern; empty:
-///        any size up to 4e7 pixels
+/// \param cells required numbers of columns and rows; each pixel is a cell of the array, as in ArrayLayout::pattern. If
+///     there is no value, the picture may have any size up to 4e7 pixels
 /// \param where location of the mask's file name, for messages
 /// \throw InputError if the file is not a readable picture, has another size, or has no dark pixels
 /// \throw OutputError if this build cannot read pictures (picture_files())

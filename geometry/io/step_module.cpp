@@ -45,8 +45,8 @@ gp_Pnt point(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-/// Builds a solid from faces that share vertices and edges by construction. No sewing or fusing is needed, which might
-/// miss connections.
+/// Builds a solid from faces that share vertices and edges by construction. Methods that find the connections
+/// afterwards, such as sewing or fusing, might miss some of them and are not needed.
 class SolidBuilder {
  public:
   explicit SolidBuilder(const FacetedSolid& source) : source_(source) {

@@ -229,7 +229,7 @@ std::optional<Extrapolation> read_extrapolation(const Document& file) {
   return Extrapolation{read_boundary(file), static_cast<int>(file.number("extrapolation.order"))};
 }
 
-/// Describes a table of the file whose keys are read by other functions.
+/// Describes a table that may contain any keys, because other functions read its keys.
 constexpr schema::Table left_to_others(std::string_view name) {
   return {.name = name, .meaning = "How it is made.", .presence = schema::Presence::optional, .is_open = true};
 }
@@ -240,7 +240,7 @@ constexpr schema::Table kMade[] = {left_to_others("tool"),
                                    left_to_others("machine"),
                                    left_to_others("inspect")};
 
-/// Returns the keys of the format of turned parts that are read here.
+/// Returns the format of files of turned parts, with only those keys that the functions of this source file read.
 const schema::Format& front_format() {
   static const std::vector<schema::Table> tables = [] {
     std::vector<schema::Table> all(surface_tables().begin(), surface_tables().end());

@@ -140,7 +140,8 @@ bool ChosenElements::is_chosen(const Place& element, const Vec2& place_mm) const
 }
 
 bool ChosenElements::has_wall_at(const Vec2& place_mm) const {
-  // The point is moved slightly inward, because the lattice would continue on both sides of the border.
+  // The point is moved slightly inward, because the lattice also has elements beyond the border. A point exactly on the
+  // border could belong to one of them.
   const Vec2 within = place_mm.cwiseMax(part_mm_.lower + inwards_).cwiseMin(part_mm_.upper - inwards_);
   return is_chosen(element_at(within), within);
 }

@@ -61,7 +61,7 @@ class FaceBuilder {
     grow_regions();
     for (std::uint32_t r = 0; r < members_.size(); ++r) {
       std::vector<Loop> loops = loops_of(r);
-      // The list is copied, because regions that are split are appended to it.
+      // A reference would become invalid, because a region that is split adds regions to members_ below.
       const std::vector<std::uint32_t> members = members_[r];
       if (is_simple(loops) || members.size() == 1) {
         add_face(r, std::move(loops));

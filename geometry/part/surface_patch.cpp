@@ -14,7 +14,8 @@ namespace {
 
 using Ring = std::vector<std::uint32_t>;
 
-/// Two neighbouring vertices (from < to) and the tiles on both sides of the edge between them.
+/// Two neighbouring vertices (from < to) and the tiles (facets that are joined to the patch) on both sides of the edge
+/// between them.
 struct SharedEdge {
   std::uint32_t from = 0;
   std::uint32_t to = 0;

@@ -19,9 +19,9 @@ struct Tile {
   HeightPlane plane;
   FacetRole role = FacetRole::retro_facet;
   std::uint32_t cell = 0;  ///< cell of the tile; tiles of one cell must be consecutive in the input
-  /// false: the tile is not output, but its neighbours need it for walls and shared vertices
+  /// if false, the tile is not output; it only provides walls and shared vertices for its neighbours
   bool owned = true;
-  std::optional<Vec2> middle_mm = {};  ///< as CellFacet::middle_mm
+  std::optional<Vec2> middle_mm = {};  ///< position defined by CellFacet::middle_mm
 };
 
 /// A plane, convex face of the back surface.

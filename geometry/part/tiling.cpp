@@ -20,8 +20,8 @@
 namespace retrace::geometry {
 namespace {
 
-// Maximum number of elements in a patch if the sheet repeats along only one axis. Patches are then short along the
-// other axis.
+// Maximum number of elements in a patch if the sheet (the plane on which the array is laid out) repeats along only one
+// axis. Patches are then short along the other axis.
 constexpr double kElementsPerColumnPatch = 256.0;
 // Approximate number of facets, including rounded edges, in a shared patch, and minimum number of periods. A patch
 // should not be smaller, because the neighbours on all sides are laid out together with each patch.
@@ -139,7 +139,7 @@ class Tiler {
   }
 
  private:
-  /// A patch and the numbers of its elements. Equal portions of the array share one patch.
+  /// A patch and its numbers of complete and partial elements. Equal portions of the array share one patch.
   struct Piece {
     std::uint32_t patch = kNoPatch;  ///< kNoPatch if no portion of the patch is within the part
     std::int64_t full = 0;
@@ -184,7 +184,7 @@ class Tiler {
   }
 
   /// Returns a key that is equal for equal portions of the array. It contains the positions of borders and the shape of
-  /// the substrate. Borders outside the neighbourhood are ignored.
+  /// the substrate. The position of a border that is more than two periods away from the portion has no effect.
   Key key_of(const IndexRange& range) const {
     const double quantum = 1e-7 * sheet_.lattice.period_mm.minCoeff();
     const Vec2 reach = 2.0 * sheet_.lattice.period_mm;
@@ -240,7 +240,7 @@ class Tiler {
       }
   }
 
-  /// \param piece its elements are counted
+  /// \param piece its numbers of elements are increased
   void collect(Piece& piece, const IndexRange& range) {
     tiles_.clear();
     visit_cells(range, [&](const Index& index, std::uint32_t number, const Vec2& shift_mm, bool owned) {

@@ -206,9 +206,9 @@ SubstrateSurface::ArcTables& SubstrateSurface::tables() const {
 SubstrateSurface::~SubstrateSurface() = default;
 SubstrateSurface::SubstrateSurface(SubstrateSurface&&) noexcept = default;
 
-// Outside a valid region, the surface is continued along its tangent. The region ends where a circle becomes vertical.
-// It ends at the part's border where a formula has no value or is steep outside. Only cells that the border cuts extend
-// that far.
+// Outside the region where the substrate is valid, it is continued along its tangent. The region of a circular cross
+// section ends just before the circle becomes vertical. If a formula has no value or is steep at a point outside the
+// part, the region ends at the part's border. Only cells that the border cuts extend that far.
 Jet SubstrateSurface::at(const Vec2& plan) const {
   constexpr double kSteepBeyond = 4.0;
   Vec2 from = short_of_upright(substrate_.shape, plan);

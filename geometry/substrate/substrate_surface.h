@@ -51,7 +51,8 @@ class SubstrateSurface {
   SubstrateFrame frame_at(const Vec2& arc) const { return frame_over(plan_of(arc)); }
   SubstrateFrame frame_over(const Vec2& plan) const;
 
-  /// Return true if the substrate has the same shape, except for its height, at every u or at every v.
+  /// Return true if a shift along u (or along v) changes the substrate only by a constant height. Both are true for a
+  /// plane. For a cylinder, only the function for the direction of its axis returns true.
   bool repeats_along_u() const;
   bool repeats_along_v() const;
   bool is_upright() const { return substrate_.element_axes == ElementAxes::parallel; }

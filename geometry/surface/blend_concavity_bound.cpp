@@ -52,8 +52,8 @@ struct Ray {
   std::array<Series<C, 2>, kMostDegree + 1> node;  ///< Bernstein coefficients of z
 };
 
-/// Returns the height on the lenslet along a line, in doubles. In contrast to the enclosures below, this always
-/// succeeds.
+/// Returns the height on the lenslet along a line, in doubles. The result always has a value. It is optional only
+/// because the overload for enclosures below may fail.
 template <int N>
 std::optional<Series<Jet2, N>> on_lenslet(const Lenslet& lenslet, const Series<Jet2, N>& x, const Series<Jet2, N>& y) {
   return lenslet.evaluate(x, y);
@@ -265,7 +265,8 @@ bool is_blend_concavity_bounded(const Lenslet& lenslet, const Sag& base, double 
   // If the blend and the base have no common slope, the surface has a sharp edge at their boundary.
   if (lenslet.blend_order < 1 || !lenslet.ends_on_base || lenslet.sag.formula || base.formula) return false;
   const std::vector<double> breaks = breaks_of(lenslet);
-  constexpr double kNone = 1e-12;  // smaller intervals are between knots that both boundaries share
+  // length up to which an interval is a rounding error between equal knots of the two boundaries
+  constexpr double kNone = 1e-12;
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
     if (breaks[i + 1] - breaks[i] > kNone && !is_proved_in_parts(lenslet, base, limit_per_mm, breaks[i], breaks[i + 1]))
       return false;

@@ -50,7 +50,7 @@ T hermite_blend(const T& share, const T& width, const jets::Series<T, N>& first,
 struct Lenslet {
   Sag sag;                        ///< in the frame of the lenslet
   Vec3 origin_mm = Vec3::Zero();  ///< origin of this frame in the part frame
-  /// its z axis is the base's normal if the lenslet is tilted
+  /// axes of this frame in the part frame; the z axis of a tilted lenslet is the base's normal
   Eigen::Matrix3d part_from_lenslet = Eigen::Matrix3d::Identity();
   Boundary inner;            ///< inner end of the blend, at the lenslet
   Boundary outer;            ///< outer end of the blend, at the base
