@@ -65,9 +65,9 @@ struct RandomTilts {
   std::uint32_t seed = 1;
 };
 
-/// Rounding or chamfering of edges by wear and by the tool's tip. All elements have the same sizes, which are in mm; 0
-/// means a sharp edge. Arcs are approximated by chords whose corners are on the circle. A row of chords is therefore
-/// exactly as wide as the arc.
+/// Rounding or chamfering of edges by wear and by the tool's tip. The sizes are in mm and apply to the edges of all
+/// elements; 0 means a sharp edge. Arcs are approximated by chords whose corners are on the circle. A row of chords is
+/// therefore exactly as wide as the arc.
 struct EdgeShape {
   double root_radius_mm = 0.0;   ///< radius of roots, where facets of one element meet
   double root_chamfer_mm = 0.0;  ///< width of a flat that replaces the root; not together with root_radius_mm

@@ -61,7 +61,8 @@ class FaceBuilder {
     grow_regions();
     for (std::uint32_t r = 0; r < members_.size(); ++r) {
       std::vector<Loop> loops = loops_of(r);
-      // A reference would become invalid, because a region that is split adds regions to members_ below.
+      // The list is copied. A reference would become invalid, because splitting a region adds regions to members_
+      // below.
       const std::vector<std::uint32_t> members = members_[r];
       if (is_simple(loops) || members.size() == 1) {
         add_face(r, std::move(loops));
