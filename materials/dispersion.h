@@ -35,7 +35,7 @@ struct Sellmeier {
     double resonance_um2 = 0.0;
   };
   std::vector<Term> terms;
-  PowerSeries rest = {};  ///< used only by some formulas of glass catalogues
+  PowerSeries rest = {};  ///< additional terms, which only some formulas of glass catalogues have
 };
 
 /// n = constant + by_w / w + by_w35 / w^3.5, w in um (Conrady).
@@ -83,7 +83,7 @@ struct RecordFormula {
   std::vector<double> c;  ///< c1 first
 };
 
-/// Table of the index, with linear interpolation. There is no index outside its wavelengths.
+/// Table of the index, with linear interpolation. There is no index outside the wavelengths of the table.
 struct TabulatedIndex {
   SpectralCurve n;
 };

@@ -18,8 +18,8 @@ struct FresnelCoefficients {
   std::complex<double> r_p;
   std::complex<double> t_s;
   std::complex<double> t_p;
-  /// Degree of coherence between s and p after the interface. It is less than 1 behind thick layers, because the powers
-  /// of reflections in thick layers are added, without a fixed phase.
+  /// Degree of coherence between s and p after the interface. It is less than 1 behind thick layers. Reflections in
+  /// thick layers have no fixed phase relation, so their powers are added instead of their amplitudes.
   double r_coherence = 1.0;
   double t_coherence = 1.0;
   double cos_refracted = 0.0;  ///< 0 under total reflection

@@ -12,8 +12,8 @@ namespace {
 /// Spacing in nm of grid points for the trapezium rule. They are used in addition to the wavelengths of the lamp's
 /// table.
 constexpr double kTableStepNm = 5.0;
-/// Distance in nm from a knee to the first grid point of the trapezium rule. Point j is at j^2 times this distance from
-/// the knee.
+/// Distance in nm from a knee to the first grid point of the trapezium rule. A knee is a wavelength near which the
+/// property changes like the square root of the distance from it. Point j is at j^2 times this distance from the knee.
 constexpr double kFirstStepNm = 0.05;
 constexpr int kStepsAtKnee = 10;
 

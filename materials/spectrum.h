@@ -46,7 +46,7 @@ Spectrum resolved_spectrum(const SpectralCurve& power, const SpectralCurve* effi
 Spectrum line_spectrum(const std::vector<SpectralLine>& lines, const SpectralCurve* efficiency);
 
 /// Returns a Gauss rule: a spectrum with only `nodes` wavelengths that gives the same means as `spectrum` for
-/// polynomials in the wavelength up to the degree 2 nodes - 1. Returns the spectrum itself if it has at most `nodes`
+/// polynomials in the wavelength up to the degree 2 * nodes - 1. Returns the spectrum itself if it has at most `nodes`
 /// wavelengths.
 /// The recurrence coefficients are computed by the procedure of Stieltjes. Nodes and weights follow from the
 /// eigenvalues of the Jacobi matrix (Golub and Welsch, Math. Comp. 23, 221 (1969); Gautschi, Orthogonal Polynomials

@@ -13,7 +13,7 @@ namespace retrace::materials {
 /// Properties of a layer at one wavelength.
 struct ThinLayer {
   std::complex<double> index = 1.0;  ///< n + i k relative to the air around the part, k >= 0
-  /// in wavelengths in that air, >= 0; infinite: an opaque layer, which requires k > 0
+  /// thickness in wavelengths in the air around the part, >= 0; infinite for an opaque layer, which requires k > 0
   double thickness = 0.0;
 };
 

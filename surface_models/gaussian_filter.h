@@ -23,7 +23,8 @@ struct Split {
 
 /// Splits a map at the cut-off. At borders and around missing points, the weights of the measured points are scaled to
 /// the sum 1 (normalised convolution; ISO 16610-61, 4.3.3). A constant therefore passes unchanged everywhere. Within
-/// half a cut-off of a border, the filter transmits other fractions of waves than inside. Missing points stay missing.
+/// half a cut-off of a border, the fraction of a wave's amplitude that passes the filter differs from that in the
+/// interior. Missing points stay missing.
 /// \pre cutoff_um > 0
 Split gaussian_split(const HeightMap& map, double cutoff_um);
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Height parameters of surface texture (Sa, Sq, Sz, Ssk, Sku). Mean and standard deviation of repeated measurements.
+// Computes the height parameters of a surface texture (Sa, Sq, Sz, Ssk, Sku), and the mean and standard deviation of
+// repeated measurements.
 
 #include <cstddef>
 #include <span>
@@ -29,7 +30,7 @@ double median(std::vector<double> values);
 struct Summary {
   std::size_t count = 0;
   double mean = 0.0;
-  /// standard deviation of a single measurement, with the divisor n - 1; 0 if there is only one
+  /// standard deviation of a single measurement, with the divisor n - 1; 0 if there is only one measurement
   double standard_deviation = 0.0;
   double median = 0.0;
 };

@@ -19,8 +19,9 @@ struct Scratch {
 
 /// Returns the grid lines along `along` that are scratches or ridges, in order of position. The height of a line is
 /// compared with the medians of the neighbouring lines on both sides. Two conditions must hold. The mean difference
-/// must exceed five robust standard deviations (1.4826 times the median absolute deviation) of all lines. Also, the
-/// difference must be at least half of its mean in at least three quarters of sixteen sections of the line.
+/// must exceed five robust standard deviations (1.4826 times the median absolute deviation) of all lines. In addition,
+/// the line is divided into sixteen sections: in at least three quarters of them, the difference must be at least half
+/// of the mean difference.
 /// Regular feed marks increase the standard deviation and are therefore not reported as scratches. They appear as peaks
 /// of the spectrum.
 /// \param roughness a map without form and waviness; a profile has no lines

@@ -13,8 +13,8 @@ namespace {
 constexpr double kMmPerUm = 1e-3;
 constexpr std::size_t kLeastPoints = 8;
 /// Criteria for a peak: ratio of its density to the median of its surroundings, and height above it in median
-/// deviations. The bins of one line of noise have an exponential distribution, and exceed 35 deviations with a
-/// probability of 1 in 2e7. The mean of many lines scatters less, so weaker peaks are detected.
+/// deviations. In the spectrum of a single line of noise, the densities have an exponential distribution. They exceed
+/// 35 deviations with a probability of 1 in 2e7. The mean over many lines scatters less, so weaker peaks are detected.
 constexpr double kPeakHeight = 3.0;
 constexpr double kPeakDeviations = 35.0;
 constexpr double kLeastPeakPower = 0.01;

@@ -39,9 +39,9 @@ class FilteredGaussian {
   }
   /// Returns the variance that passes into the waviness.
   double waviness() const { return share(twice_); }
-  /// Returns the mean square gradient of this waviness, per um^2.
+  /// Returns the mean square gradient of the roughness that passes into the waviness, per um^2.
   double waviness_gradient() const { return 2.0 * d_ * share(twice_) / twice_; }
-  /// Returns the correlation length of this waviness.
+  /// Returns the correlation length of the roughness that passes into the waviness.
   double waviness_length_um() const { return std::sqrt(twice_); }
 
  private:
@@ -58,7 +58,7 @@ struct Sample {
   double waviness = 0.0;  ///< relative to its value at distance 0
 };
 
-/// Returns both autocorrelations at the same distances within a circle.
+/// Returns the autocorrelations of roughness and waviness at the same distances within a circle.
 std::vector<Sample> samples_within(const Autocorrelation& roughness, const Autocorrelation& waviness, double reach_um) {
   std::vector<Sample> samples;
   const double scale = waviness.variance_nm2() > 0.0 ? 1.0 / waviness.variance_nm2() : 0.0;
@@ -78,8 +78,9 @@ std::vector<Sample> samples_within(const Autocorrelation& roughness, const Autoc
   return fewer;
 }
 
-/// Fit of the autocorrelation of the roughness map. It is the sum of FilteredGaussian and of the waviness that the
-/// filter left, whose shape is that of the waviness map.
+/// Fit of the autocorrelation of the roughness map. The fit is the sum of two autocorrelations: that of
+/// FilteredGaussian, and that of the waviness that the filter left. The second has the shape of the autocorrelation of
+/// the waviness map.
 struct Fit {
   double length_um = 0.0;
   double variance_nm2 = 0.0;  ///< variance of the roughness before the filter

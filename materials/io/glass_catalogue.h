@@ -20,8 +20,8 @@ namespace retrace::materials {
 /// NM (name, number of the formula, glass code, n_d), CD (coefficients of the formula), TD (thermo-optic coefficients
 /// and the temperature of the data), LD (wavelength range in um), IT (wavelength in um, internal transmittance,
 /// thickness in mm).
-/// The text may be in ASCII, in an encoding that contains ASCII, or in UTF-16 with a byte order mark. Indices are
-/// relative to air.
+/// The text may be in ASCII, in an encoding that is a superset of ASCII, or in UTF-16 with a byte order mark. Indices
+/// are relative to air.
 class GlassCatalogue {
  public:
   /// \param file name of the file, for messages

@@ -1,6 +1,7 @@
 #pragma once
 
-// ABG model of scatter: a BSDF that is fitted to measurements. It is used if the surface itself is not known.
+// ABG model of scatter: a BSDF that is fitted to measured scatter. It is used if the heights of the surface are not
+// known.
 
 #include <string>
 #include <vector>

@@ -150,8 +150,9 @@ Polarisation2 DielectricInterface::amplitudes(double k_in, const Vec2& along, co
 }
 
 double DielectricInterface::bound(double k_in, const Polarisation2& coherency) const {
-  // The bound follows from the Cauchy-Schwarz inequality. Over all directions, the squared field of the scattered light
-  // divided by q, added over both sides, is largest at the critical angle (docs/theory/scatter.md).
+  // The bound follows from the Cauchy-Schwarz inequality. It uses the squared field of the scattered light, divided by
+  // q (the normal component of its wave vector) and added over both sides. This sum is largest at the critical angle
+  // (docs/theory/scatter.md).
   const Vertex in = arriving(k_in);
   const double felt =
       std::norm(in.s) * coherency(0, 0).real() + (std::norm(in.p) + std::norm(in.across)) * coherency(1, 1).real();

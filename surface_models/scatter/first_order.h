@@ -31,13 +31,14 @@ class DielectricInterface {
   /// Returns the field at the interface for incident light whose wave vector along the interface is `k`.
   /// \param k 0 <= k < index_from
   Vertex arriving(double k) const;
-  /// Returns the field at the interface for the reversed light of a scattered wave on the side of the lobe.
-  /// \param k less than the index on this side
+  /// Returns the field at the interface for light that arrives in the reversed direction of a scattered wave. The
+  /// scattered wave is on the side of the lobe.
+  /// \param k magnitude of the scattered wave vector along the interface; less than the index on this side
   Vertex leaving(double k, Lobe lobe) const;
 
-  /// Returns the matrix F of scattered amplitudes per incident amplitude. Let N be a height spectrum of variance s^2,
-  /// and J the coherency of incident light of power 1. The power that is scattered into d2k is then (2 pi s / w)^2
-  /// trace(F J F^+) N(k_out - k_in) d2k.
+  /// Returns the matrix F of scattered amplitudes per incident amplitude. Let N be a height spectrum whose integral is
+  /// the variance of the heights, and J the coherency of incident light of power 1. The power that is scattered into
+  /// d2k is then (2 pi / w)^2 trace(F J F^+) N(k_out - k_in) d2k.
   /// The rows of F are s and p of the scattered light, where s = k x z / |k| and p = direction x s. The columns are s
   /// and p of the incident light.
   /// \param along unit vector of the incident wave vector along the interface, also if k_in is 0

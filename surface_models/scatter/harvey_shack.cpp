@@ -24,7 +24,7 @@ void require(bool holds, const char* key, const char* allowed, double given) {
 // (docs/theory/scatter.md).
 constexpr double kLongOfLay = 2.0;
 
-/// Returns the correlation length of Gaussian waves that have the same slope as waves with the period `length_um`.
+/// Returns the correlation length of Gaussian waves that have the same rms slope as waves with the period `length_um`.
 double equivalent_correlation_um(double length_um) {
   return length_um / pi;
 }
@@ -39,10 +39,10 @@ Vec2 correlation_lengths_um(const Roughness& r) {
   return {r.correlation_length_um, r.is_isotropic() ? r.correlation_length_um : r.y_correlation_length_um};
 }
 
-/// Returns the mean of f(t, u) over the directions of spatial frequency vectors, where the spectrum is an ellipse with
-/// the two correlation lengths. t is half of the square of the frequency n / w, divided by the variance of the
-/// frequencies in this direction. u is the variance of the slopes in this direction, in units of 2 Sq^2 / um^2. The
-/// integrand is smooth and periodic, so equal steps are accurate.
+/// Returns the mean of f(t, u) over the directions of spatial frequency vectors. The spectrum is a Gaussian with
+/// elliptical contours, which follow from the two correlation lengths. If v is the variance of the spatial frequencies
+/// in a direction, t is (n / w)^2 / (2 v) in this direction. u is the variance of the slopes in this direction, in
+/// units of 2 Sq^2 / um^2. The integrand is smooth and periodic, so equal steps are accurate.
 template <class F>
 double mean_over_directions(const Vec2& lengths_um, double index, double wavelength_nm, const F& f) {
   constexpr int kSteps = 64;
@@ -156,8 +156,9 @@ std::array<double, 2> HarveyShack::first_order_shares(const ScatterEvent& event,
 DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const Facet& facet,
                                                 const materials::FresnelCoefficients& fresnel) const {
   const std::array<double, 2> scattered = first_order_shares(event, facet);
-  // The scattered power is removed from both specular fields. Each field loses power in proportion to its power times
-  // its phase variance, in the same way as for long correlation lengths.
+  // The scattered power is removed from the specular light on both sides: the reflected and the transmitted light. Each
+  // loses power in proportion to its own power times its phase variance. For long correlation lengths, the losses are
+  // divided in this ratio.
   const double reflected_path = 2.0 * event.index_from * event.cos_in();
   const double transmitted_path = event.index_from * event.cos_in() - event.index_to * fresnel.cos_refracted;
   const double a_r = reflected_path * reflected_path, a_t = transmitted_path * transmitted_path;
@@ -338,7 +339,8 @@ double HarveyShack::shift_density(const Band& band, int order, const Vec2& shift
   };
   if (band.roughness_share == 1.0) return gaussian(order * band.roughness_variance);
   if (band.roughness_share == 0.0) return gaussian(order * band.waviness_variance);
-  // The number of shifts by roughness has a binomial distribution.
+  // Each of the `order` shifts is caused either by roughness or by waviness. The number of shifts by roughness
+  // therefore has a binomial distribution.
   const double log_rough = std::log(band.roughness_share), log_wavy = std::log1p(-band.roughness_share);
   double sum = 0.0;
   for (int rough = 0; rough <= order; ++rough) {

@@ -73,7 +73,8 @@ struct DiffractedOnce {
 /// Events are in the frame of the facet. Directions are given by their cosines along its x and y.
 class HarveyShack {
  public:
-  /// \throw InputError if a value is out of range, or if the slope of the waviness is beyond the range of all models
+  /// \throw InputError if a value is out of range, or if the rms slope of the waviness is above kSlopeOfNoModel, the
+  ///     limit above which no scatter model is valid
   explicit HarveyShack(const Roughness& roughness);
   /// Creates a model between two dielectrics. First-order theory is used where it applies; roughness with a lay always
   /// uses the phase model.
@@ -83,13 +84,13 @@ class HarveyShack {
   bool is_between_dielectrics() const { return media_ != nullptr; }
 
   /// \param fresnel coefficients of the facet's plane for this event
-  /// \pre is_between_dielectrics(); the event is in the media of the model
+  /// \pre is_between_dielectrics(); the indices of the event are those of the media of the model
   DiffractionMeans diffraction_means(const ScatterEvent& event, const Facet& facet,
                                      const materials::FresnelCoefficients& fresnel) const;
   /// Draws light that is diffracted once, to both sides of the facet. Returns nothing if no direction is found.
   /// \param s_axis unit vector normal to event.direction_in and to the facet's normal
   /// \param coherency coherency of the incident light along s_axis and p, with the trace 1
-  /// \pre is_between_dielectrics(); the event is in the media of the model
+  /// \pre is_between_dielectrics(); the indices of the event are those of the media of the model
   std::optional<DiffractedOnce> draw_diffracted_once(const ScatterEvent& event, const Facet& facet, const Vec3& s_axis,
                                                      const Polarisation2& coherency, RandomStream& random) const;
   /// Returns the light that is diffracted once into a direction. The trace of its coherency is the density over
@@ -97,9 +98,9 @@ class HarveyShack {
   /// \param direction unit vector in the frame of the event, on the side of the lobe
   DiffractedOnce diffracted_once_into(const ScatterEvent& event, const Facet& facet, const Vec3& s_axis,
                                       const Polarisation2& coherency, const Vec3& direction) const;
-  /// Returns the fraction of the incident power per d2beta that first order scatters, where beta are the direction
-  /// cosines on the side of the lobe.
-  /// \pre is_between_dielectrics(); the event is in the media of the model
+  /// Returns the fraction of the incident power per d2beta that is scattered according to first-order theory. beta
+  /// are the direction cosines on the side of the lobe.
+  /// \pre is_between_dielectrics(); the indices of the event are those of the media of the model
   double diffracted_once_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& s_axis,
                                  const Polarisation2& coherency, const Vec2& beta) const;
 
@@ -121,7 +122,9 @@ class HarveyShack {
   /// Returns the fraction of light into `direction` that the waviness does not mask. The direction is in the frame of
   /// the mean surface.
   double unmasked_share(const Vec3& direction) const { return slopes_.visible_share(direction); }
-  /// \throw InputError if the slopes of the scattering heights are beyond the range of all models
+  /// Checks that a scatter model is valid for the rms slope of the roughness. Only spatial frequencies that scatter
+  /// count.
+  /// \throw InputError if this slope is above kSlopeOfNoModel
   void require_in_range(double index, double wavelength_nm) const;
   /// Returns a warning for each condition of the model that is violated at this wavelength. The index is that of the
   /// denser side.
@@ -135,11 +138,12 @@ class HarveyShack {
   const SlopeDistribution& slopes() const { return slopes_; }
 
  private:
-  /// Heights that scatter in an event: Sq of both parts, and the widths of their spectra in direction cosines.
+  /// Heights that scatter in an event: the rms height of roughness and waviness together, and the spread of direction
+  /// cosines that roughness and waviness cause.
   struct Band {
     double sq_nm = 0.0;
-    double roughness_share = 0.0;            ///< fraction of sq_nm squared
-    Vec2 roughness_variance = Vec2::Zero();  ///< variance of one shift, along x and along y
+    double roughness_share = 0.0;            ///< fraction of sq_nm^2 that is due to roughness
+    Vec2 roughness_variance = Vec2::Zero();  ///< variance of the shift by one diffraction, along x and along y
     Vec2 waviness_variance = Vec2::Zero();
   };
   Band band(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
@@ -156,7 +160,8 @@ class HarveyShack {
   };
   /// Returns roughness, and waviness if it acts by diffraction.
   std::array<Part, 2> parts(const Facet& facet) const;
-  /// Returns the fractions of the power of s and of p that first order scatters, summed over both sides.
+  /// Returns the fractions of the power of s and of p that are scattered according to first-order theory, summed over
+  /// both sides.
   std::array<double, 2> first_order_shares(const ScatterEvent& event, const Facet& facet) const;
   /// Returns light whose coherency is scaled: its trace is the density over wave vectors along the facet, as a fraction
   /// of the incident power.

@@ -57,7 +57,8 @@ std::vector<double> variance_shares(const HeightMap& levelled) {
   double sum = 0.0;
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t c = 0; c < columns; ++c) {
-      // Columns beyond the centre are complex conjugates of those at the opposite frequency.
+      // Columns beyond the centre are not stored. They are the complex conjugates of the columns at the opposite
+      // frequency.
       const bool held = c < fft.spectrum_columns();
       const std::size_t row = held ? r : (rows - r) % rows;
       const std::size_t column = held ? c : columns - c;
@@ -293,7 +294,8 @@ double HeightMapScatter::scattered_density(const ScatterEvent& event, const Face
   const Band band(*texture_, event, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, band.sq_nm);
   if (facet.is_tilted || !phase_lobe || band.cells == 0) return 0.0;
-  // Light that is diffracted once follows the cells. The density of all other light is smooth.
+  // The direction of light that is diffracted once follows the cells of the spectrum. The density of all other light is
+  // smooth.
   const Vec2 specular = phase_lobe->specular_beta();
   double sum = 0.0;
   for (std::size_t k = 0; k < band.cells; ++k) {

@@ -32,7 +32,8 @@ inline double gaussian_sa(double sq) {
   return std::sqrt(2.0 / std::numbers::pi) * sq;
 }
 
-/// Squared phase at and above which waves of a surface act by their slopes. Below this value they act by diffraction.
+/// Limit of the squared phase of a surface's waves. At and above this value, the waves act by their slopes; below it,
+/// they act by diffraction.
 inline constexpr double kSlopePhase2 = 10.0;
 
 }  // namespace retrace::surface_models

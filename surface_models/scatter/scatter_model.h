@@ -25,7 +25,7 @@ namespace retrace::surface_models {
 ///     const auto f = materials::fresnel(event.index_from / event.index_to, -event.direction_in.dot(facet.normal));
 ///     // ... reflected and transmitted Stokes parameters at the facet, for both lobes or for one that is chosen
 ///     const auto out = sample(model, event, facet, Lobe::reflection, random);
-///     // ... scale by out->weight; turn the polarisation as specular_direction turns into direction
+///     // ... scale by out->weight; rotate the polarisation by the rotation from specular_direction to direction
 using ScatterModel = std::variant<Smooth, HarveyShack, Abg, Microfacet, HeightMapScatter>;
 
 /// Draws the surface element that the light hits.
@@ -36,8 +36,8 @@ Facet sample_facet(const ScatterModel& model, const ScatterEvent& event, RandomS
 std::optional<ScatterSample> sample(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                     RandomStream& random);
 
-/// Specular and scattered light of a lobe. The weights include their fractions of the power. A member is not set if its
-/// light is lost to the wrong side.
+/// Specular and scattered light of a lobe. The weight of each member includes its fraction of the lobe's power. A
+/// member is not set if its light is lost to the wrong side.
 struct ScatterSplit {
   std::optional<ScatterSample> specular;
   std::optional<ScatterSample> scattered;
@@ -91,8 +91,8 @@ bool has_phases(const ScatterModel& model);
 PhaseTexture phase_texture(const ScatterModel& model, const ScatterEvent& event, Lobe lobe);
 
 /// Returns the BSDF of the scattered light of a lobe for a given facet, per sr, without the Fresnel factor and the
-/// specular light. Its cosine is relative to the facet's normal. Some models use quadrature, so this function is for
-/// tests and tables.
+/// specular light. The cosine in the definition of the BSDF is that of the angle to the facet's normal. Some models use
+/// quadrature, so this function is for tests and tables.
 double evaluate(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
                 const Vec3& direction);
 

@@ -20,9 +20,9 @@ inline constexpr double kLargestSlope = 0.3;
 /// more than once.
 inline constexpr double kSlopeOfNoModel = 1.0;
 
-/// Isotropic distribution of the slopes of a surface, with Smith's masking. It assumes that heights and slopes of
-/// facets are independent (Walter, Marschner, Li, Torrance, Microfacet Models for Refraction through Rough Surfaces,
-/// EGSR 2007). Visible facets: Heitz and d'Eon, Computer Graphics Forum 33, 103 (2014).
+/// Isotropic distribution of the slopes of a surface, with Smith's masking. Smith's masking assumes that heights and
+/// slopes of facets are independent (Walter, Marschner, Li, Torrance, Microfacet Models for Refraction through Rough
+/// Surfaces, EGSR 2007). Visible facets: Heitz and d'Eon, Computer Graphics Forum 33, 103 (2014).
 class SlopeDistribution {
  public:
   /// \param rms_slope areal rms slope (Sdq of ISO 25178-2: root mean square of the gradient), >= 0. For `ggx` it is the
