@@ -1,5 +1,6 @@
 // Computes RRE against incidence at the current azimuth. A coarse curve is computed first, and is finished even while
-// the design changes. Finer curves follow. If nothing changes, all points are then computed again with higher accuracy.
+// the design changes. Finer curves follow. If the user makes no changes, all points are then computed again with higher
+// accuracy.
 import { directionOf, nameOf } from "./directions.js";
 import { AT_ONCE, MOVING } from "./session.js";
 

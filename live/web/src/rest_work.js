@@ -1,5 +1,5 @@
-// Computations while nothing changes: the direction at full accuracy, the test points of a standard, and the curves of
-// pinned designs.
+// Computations that run while the user makes no changes: the result for the current direction with the highest
+// accuracy, the test points of a standard, and the curves of pinned designs.
 import { CurvePass } from "./curve_work.js";
 import { RESTING } from "./session.js";
 

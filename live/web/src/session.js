@@ -7,15 +7,15 @@ import { Rest } from "./rest_work.js";
 
 // Target errors of RRE. They are standard errors if weak beams are resampled, and otherwise the untraced power.
 export const MOVING = 1e-4; // while the user makes changes
-export const RESTING = 1e-6; // when nothing changes
+export const RESTING = 1e-6; // while the user makes no changes
 export const AT_ONCE = 1e-3; // first accuracy for the many directions of curves and maps
-const REST_MS = 260; // time without changes before the picture is computed at full accuracy
+const REST_MS = 260; // time without changes after which the computations in rest_work.js begin
 const MOST_S = 1.5; // maximum time for one direction during changes
 const PACE_MS = 66; // minimum time between two directions during changes, so that the page has time to draw
 const SOON_MS = 30; // time to wait after a change, because a drag often causes another change within this time
 const FRESH_MS = 3; // a change younger than this time is traced immediately
-const QUICK_MS = 45; // if a direction takes longer during changes, the next one is traced only to AT_ONCE
-const RATIO = 4; // estimated ratio of the times for tracing to MOVING and to AT_ONCE
+const QUICK_MS = 45; // if a direction takes longer during changes, the next one is traced with the target error AT_ONCE
+const RATIO = 4; // estimated time of tracing with the target error MOVING, divided by the time with AT_ONCE
 
 export class Session {
   constructor(engine) {
@@ -28,13 +28,13 @@ export class Session {
     this.wanted = null; // design text that will replace `base`
     this.direction = { incidence_deg: 0, azimuth_deg: 0 };
     this.spot = null;
-    this.answer = null; // answer for the direction during changes
+    this.answer = null; // results for the current direction while the user makes changes
     this.part = null;
     this.isDue = false;
     this.isMoving = false;
     this.sent = -Infinity; // time of the last request for a direction
     this.touched = -Infinity; // time of the last change
-    this.isSlow = false; // true if tracing a direction to MOVING is too slow to follow the pointer
+    this.isSlow = false; // true if tracing with the target error MOVING is too slow to follow the pointer
     this.target_error = MOVING; // target error of the next direction
     this.revision = 0;
     this.measure = new Measure();

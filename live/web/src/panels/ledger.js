@@ -1,4 +1,5 @@
-// Energy ledger: one bar in which the width of each account is its fraction of the power.
+// Energy ledger: a bar that is divided into accounts (destinations of the light, such as absorption). The width of each
+// account is its fraction of the power.
 import { h } from "../dom.js";
 import { percent, words } from "../units.js";
 
