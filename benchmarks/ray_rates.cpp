@@ -112,7 +112,8 @@ void report(benchmark::State& state, std::size_t rays_per_iteration) {
                          benchmark::Counter::kIsRate);
 }
 
-// Runs a benchmark with the same static rays. Args: number of elements along a side, and whether the rays are coherent.
+// Runs a benchmark with rays_of(), which are computed only one time. Args: number of elements along a side, and whether
+// the rays are coherent.
 template <class Trace>
 void run_raw(benchmark::State& state, const Trace& trace) {
   static const RawEmbree small(scene_of(20));

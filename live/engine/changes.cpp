@@ -67,7 +67,8 @@ class Changes {
     }
   }
 
-  /// Repeats until nothing changes, because the validity of a key may depend on other keys.
+  /// Removes keys without an effect and adds missing required keys. This is repeated until the document does not
+  /// change, because the validity of a key may depend on other keys.
   void adapt() {
     for (bool goes_on = true; goes_on;) goes_on = drop_meaningless() || give_missing();
   }

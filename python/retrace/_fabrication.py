@@ -86,8 +86,9 @@ class Fabrication(Result):
 
 #: A job, or the name of its file.
 AnyJob = Union[Job, PathLike]
-#: Result of fabricate(), texts by name, or names of files in the order of execution. A name can have
-#: the form FILE@LINE, which means that the program was stopped after this line.
+#: NC programs: the result of fabricate(), a mapping from names to texts, or names of files in the
+#: order of execution. A name can have the form FILE@LINE, which means that the program was stopped
+#: after this line.
 AnyPrograms = Union[Fabrication, Mapping[str, str], PathLike, Sequence[PathLike]]
 
 

@@ -381,7 +381,7 @@ TEST(Zones, UnlikeElementsByCellHoldWhatEachHoldsInItsArray) {
               1e-9);
 }
 
-/// Returns the zone of a fault and records its text.
+/// Returns the zone of a fault and records the text of the fault.
 template <class Fault>
 std::optional<int> zone_of(const std::optional<Fault>& fault) {
   if (!fault) return std::nullopt;

@@ -164,8 +164,8 @@ TEST(Spectrum, NodesAreEnoughForSmoothProperties) {
     }
 }
 
-// Total reflection ends like a step function of the wavelength. The reflectance falls from 1 like a square root. The
-// errors of both means are bounded.
+// The mean of a step function and the mean of a square-root function of the wavelength have limited errors. The step is
+// like total reflection that ends at a wavelength. The square root is like the reflectance, which falls from 1 there.
 TEST(Spectrum, AStepCostsLessThanATenthOfIt) {
   const CieTable table = cie();
   for (const SpectralCurve* lamp : {&table.illuminant_a, &table.illuminant_d65}) {

@@ -223,9 +223,9 @@ TEST(FirstOrder, SpecularLightLosesWhatIsScattered) {
   }
 }
 
-// For small heights, the specular light on both sides loses the power R (1 - exp(-x_r)) + T (1 - exp(-x_t)). This
-// equals the power that the model scatters to both sides, below and above the critical angle. At total reflection,
-// transmitted light loses nothing.
+// For small heights, the specular light on both sides loses the power R (1 - exp(-x_r)) + T (1 - exp(-x_t)), where x_r
+// and x_t are the DiffractionMeans. This equals the power that the model scatters to both sides, below and above the
+// critical angle. At total reflection, transmitted light loses nothing.
 TEST(FirstOrder, MeansTakeWhatIsScatteredToBothSides) {
   for (const double length_um : {0.3, 1.5}) {
     const HarveyShack model({0.2, length_um, 0.0, 0.0}, {kIndex, 1.0, 550.0});
@@ -356,7 +356,7 @@ Polarisation2 askew() {
 }
 
 // Draws in both hemispheres follow the density, for light of every polarisation, below and above the critical angle.
-// Their mean coherency is also that of the amplitudes.
+// The coherency of each draw equals the coherency that diffracted_once_into() returns for its direction.
 TEST(FirstOrder, DrawsFollowTheDensity) {
   constexpr std::uint32_t kDraws = 60000;
   const Roughness heights = {5.0, 0.39, 4.0, 8.0};
@@ -398,8 +398,8 @@ TEST(FirstOrder, DrawsFollowTheDensity) {
   }
 }
 
-// For correlation lengths much longer than the wavelength, the means are the phase variances. For short lengths, they
-// are smaller at total reflection.
+// For correlation lengths much longer than the wavelength, the mean numbers of diffractions equal the phase variances.
+// For short correlation lengths, they are smaller at total reflection.
 TEST(FirstOrder, MeansAreThePhaseVariancesOfLongHeights) {
   const double sq_nm = 10.0;
   for (const double incidence_deg : {0.0, 20.0, 50.0, 54.74, 70.0}) {

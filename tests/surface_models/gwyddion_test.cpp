@@ -1,4 +1,5 @@
-// Tests of quantities of surfaces against the libraries of Gwyddion, whose lengths and heights are in metres.
+// Compares the library's results for surfaces with those of the Gwyddion libraries, whose lengths and heights are in
+// metres.
 
 #include <gtest/gtest.h>
 #include <libgwyddion/gwycontainer.h>
@@ -99,8 +100,8 @@ TEST(Gwyddion, AgreesOnSpectraAlongBothAxes) {
                         axis == Axis::x ? GWY_ORIENTATION_HORIZONTAL : GWY_ORIENTATION_VERTICAL,
                         GWY_INTERPOLATION_LINEAR, GWY_WINDOWING_HANN, -1);
     const Spectrum spectrum = line_spectrum(map, axis);
-    // Gwyddion's density also starts at the first harmonic. It is two-sided, in m^3, and a function of the angular
-    // frequency 2 pi f.
+    // Both densities begin with the first harmonic. Gwyddion's density is two-sided, in m^3, and a function of the
+    // angular frequency 2 pi f.
     constexpr double kOneSided = 2.0;
     constexpr double kNm2MmPerM3 = 1e21;
     double ours = 0.0;

@@ -230,8 +230,9 @@ inline double specular_draws(const ScatterModel& model, const ScatterEvent& even
   return specular / draws;
 }
 
-/// Compares the specular fraction with closed form 7, both by the formula and by drawing. The fraction is exp(-q^2),
-/// with the phase q = 4 pi n s cos t / w in reflection and 2 pi s (n1 cos t1 - n2 cos t2) / w in transmission.
+/// Compares the specular fraction with closed form 7 in docs/theory/closed_forms.md, both by the formula and by
+/// drawing. The fraction is exp(-q^2), with the phase q = 4 pi n s cos t / w in reflection and 2 pi s (n1 cos t1 - n2
+/// cos t2) / w in transmission.
 inline void expect_closed_form_share(const ScatterModel& model, double sq_nm, const Case& c, std::uint32_t seed,
                                      std::size_t comparisons) {
   constexpr std::uint32_t kDraws = 50000;

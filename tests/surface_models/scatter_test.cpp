@@ -104,7 +104,7 @@ TEST(HarveyShack, SpecularShareIsTheClosedForm) {
       }
 }
 
-// The same fraction is measured by drawing in transmission and from outside.
+// The specular fraction is also measured by drawing in transmission and for light from outside.
 TEST(HarveyShack, SpecularShareIsTheClosedFormOnBothSides) {
   std::uint32_t seed = 700;
   for (const Case& c : cases())
