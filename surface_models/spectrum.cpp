@@ -18,8 +18,8 @@ constexpr std::size_t kLeastPoints = 8;
 constexpr double kPeakHeight = 3.0;
 constexpr double kPeakDeviations = 35.0;
 constexpr double kLeastPeakPower = 0.01;
-/// Number of bins on each side that the main lobe of a Hann window occupies, and number of bins whose median is the
-/// surroundings.
+/// kLobe is the number of bins on each side that the main lobe of a Hann window occupies. kSurroundings is the number
+/// of bins beyond them, on each side, that are the surroundings of a peak.
 constexpr std::size_t kLobe = 2;
 constexpr std::size_t kSurroundings = 12;
 

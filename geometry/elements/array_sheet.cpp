@@ -116,8 +116,7 @@ void ArraySheet::lay_on_substrate() {
   reach_mm = arcs_of_border();
 }
 
-/// Lays out prisms in the same way as in a flat array. On a substrate, this array has the size of the unrolled
-/// substrate.
+/// Lays out prisms as a flat array. On a substrate, the flat array has the size of the substrate unrolled into a plane.
 void ArraySheet::lay_out_prisms(const RtpElement& prism) {
   const Rectangle all = is_upright ? part_mm : moved(surface->arc_reach(), middle_mm);
   ArrayLayout array = spec->array;

@@ -82,8 +82,8 @@ Cant cant_of(const Element& element);
 /// Returns the largest angle between a facet of an element and the xy plane.
 double steepest_facet_deg(const Element& element, const AngleErrors& errors);
 
-/// Returns the height of the rim of an element above z = 0 that results from errors or cant. Returns 0 if the rim is
-/// not above z = 0.
+/// Returns the height above z = 0 to which errors or cant raise the highest point of an element's rim. Returns 0 if the
+/// rim is not above z = 0.
 double element_top_mm(const Element& element, const AngleErrors& errors);
 
 /// Returns the outline of one element's aperture, shifted such that its bounding box begins at the origin.

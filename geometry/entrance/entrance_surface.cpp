@@ -58,8 +58,8 @@ std::vector<Vec2> sample_points(const Polygon& outline, int cells) {
 ///     corner
 double mean_bend(const EntranceSurface& surface, const Rectangle& box, int cells, double reach) {
   const Vec2 cell_mm = box.size() / cells;
-  // Two displacements are used, because a surface could repeat with the period of one of them. It then does not repeat
-  // with the period of the other displacement.
+  // Two displacements are used. A periodic surface may have equal slopes at both ends of one displacement by
+  // coincidence, but not at both ends of the other displacement.
   const std::array<Vec2, 2> ways = {reach * Vec2(kWithinEntranceCell[0], kWithinEntranceCell[1]).cwiseProduct(cell_mm),
                                     reach * Vec2(0.7548776662, 0.5698402910).cwiseProduct(cell_mm)};
   double sum = 0.0;

@@ -65,8 +65,8 @@ int cells_to_show(const EntranceSurface& surface, const Polygon& outline);
 
 inline constexpr int kMostEntranceCells = 1024;
 
-/// Relative positions within a cell at which the surface is also sampled. The values are irrational, so that a periodic
-/// structure that matches the grid is not missed.
+/// Relative positions within a cell at which the surface is sampled in addition to the cell's corners. The values are
+/// irrational, so that a periodic structure that matches the grid is not missed.
 inline constexpr std::array<double, 2> kWithinEntranceCell = {0.3819660113, 0.6180339887};
 
 }  // namespace retrace::geometry

@@ -1,6 +1,6 @@
 #pragma once
 
-// Tables of a file that describe a freeform surface and the region over which it is made.
+// Tables of a file that describe a freeform surface and the region of the surface that is machined.
 
 #include <cstddef>
 #include <span>
@@ -25,7 +25,7 @@ FreeformSurface read_surface(const schema::Document& file);
 /// Returns the location of the table that error messages about the whole surface refer to.
 InputLocation surface_place(const schema::Document& file);
 
-/// Keys of [path] that define the region over which the surface is made.
+/// Keys of [path] that define the region of the surface that is machined.
 inline constexpr schema::Words kStrategies = {"spiral", "raster"};
 inline constexpr schema::Condition kSpiralOnly[] = {schema::is("strategy", schema::only(kStrategies, "spiral"))};
 inline constexpr schema::Condition kRasterOnly[] = {schema::is("strategy", schema::only(kStrategies, "raster"))};

@@ -8,7 +8,8 @@
 namespace retrace::geometry {
 namespace {
 
-/// Adds a vertex on the entrance face above each vertex of the rim. A vertex that was added before is returned again.
+/// Provides a vertex on the entrance face above each vertex of the rim. The vertex is added to the mesh on the first
+/// request, and later requests return the same vertex.
 class EntranceVertices {
  public:
   EntranceVertices(BoundaryMesh& mesh, double thickness_mm) : mesh_(mesh), thickness_mm_(thickness_mm) {}

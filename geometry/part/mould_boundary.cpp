@@ -50,7 +50,7 @@ class MouldBuilder {
     collect_columns(border);
     const std::uint32_t hub = add_vertex({middle_.x(), middle_.y(), bottom_z_});
     for (const auto& [a, b] : border) {
-      // vertical end of a wall; add_side() inserts its vertices as part of the column
+      // The edge is a vertical end of a wall. Both vertices are in one Column and are inserted by add_side().
       if (place(a) == place(b)) continue;
       add_side(a, b);
       add_triangle(hub, columns_.at(place(b)).bottom, columns_.at(place(a)).bottom, FacetRole::flat_back);

@@ -23,8 +23,9 @@ namespace {
 // Maximum number of elements in a patch if the sheet (the plane on which the array is laid out) repeats along only one
 // axis. Patches are then short along the other axis.
 constexpr double kElementsPerColumnPatch = 256.0;
-// Approximate number of facets, including rounded edges, in a shared patch, and minimum number of periods. A patch
-// should not be smaller, because the neighbours on all sides are laid out together with each patch.
+// kFacetsPerPatch is the approximate number of facets in a shared patch, including those of rounded edges.
+// kFewestPeriods is the minimum number of periods in a shared patch. Smaller patches would be inefficient, because one
+// additional period on all sides is laid out together with each patch.
 constexpr double kFacetsPerPatch = 16384.0;
 constexpr double kFewestPeriods = 4.0;
 // Number of periods on each side of the central period. An infinite array is stored as one patch with all these

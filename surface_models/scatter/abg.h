@@ -16,8 +16,8 @@ namespace retrace::surface_models {
 /// direction cosines from the specular direction (Pfisterer, Optics and Photonics News 22(10), 16 (2011)). The BSDF is
 /// relative to the Fresnel power of the lobe. It is the same function in reflection and transmission.
 ///
-/// Light that is not scattered is specular. Scatter into evanescent directions is added to the specular light. Weights
-/// are 1, and energy is conserved exactly. The model is reciprocal in reflection.
+/// Light that is not scattered is specular. Scatter into evanescent directions is added to the specular light. All
+/// samples have the weight 1, and energy is conserved exactly. The model is reciprocal in reflection.
 class Abg {
  public:
   /// \param a parameter A, > 0, per sr. The total scattered fraction must be at most 1. This fraction is 2 pi times the

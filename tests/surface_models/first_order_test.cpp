@@ -135,7 +135,8 @@ TEST(FirstOrder, IsTheFirstOrderOfAShallowGrating) {
         if (!grating.propagates(m, lobe)) continue;
         const Vec2 k_out = i.k() + Vec2(m * i.g, 0.0);
         const Polarisation2 f = interface.amplitudes(i.k().norm(), unit(i.k()), k_out, lobe);
-        // Each first order gets half of the cosine. Scattered fields are delayed by a quarter of a period.
+        // The cosine is the sum of both first orders, each with half of the depth: the factor 1/2. Scattered fields are
+        // delayed by a quarter of a period: the factor i.
         const Polarisation2 expected = grating.order(m, lobe) / (Complex(0.0, 1.0) * 0.5 * kDepth);
         EXPECT_LT((f - expected).norm(), 2e-5 * (1.0 + expected.norm()))
             << i.incidence_deg << " deg, order " << m << ", lobe " << static_cast<int>(lobe) << "\n"

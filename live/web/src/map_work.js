@@ -5,8 +5,9 @@ import { AT_ONCE } from "./session.js";
 
 const PIECE_S = 0.004;
 const RING_STEPS_DEG = [20, 10, 5, 2.5];
-const WHILE_MOVING = 1; // the map of an old design is completed up to this index in RING_STEPS_DEG
-const PATIENCE_MS = 700; // after this time, any complete ring step of the old design is sufficient
+// during changes, a map is completed up to this index in RING_STEPS_DEG before the next map begins
+const WHILE_MOVING = 1;
+const PATIENCE_MS = 700; // after this time, any complete ring step is sufficient
 const PLACES = 6; // number of points of the first ring; ring k has k times this number
 
 export class MapPass {
