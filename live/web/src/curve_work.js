@@ -35,7 +35,7 @@ export class CurvePass {
     this.target_error = AT_ONCE;
     this.begun = performance.now();
     this.queue = []; // names of directions
-    this.ms = 0; // engine time in ms at the target error AT_ONCE
+    this.ms = 0; // total engine time in ms for points with the target error AT_ONCE
     this.advance();
   }
 
